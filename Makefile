@@ -1,0 +1,64 @@
+# Sheets of a course project in the theory of mechanisms and machines. "make help" lists what can be made.
+
+PYTHON ?= python3
+PROJECT ?= lugansk/shaper
+VENV := .venv
+BIN := $(VENV)/bin
+OUT := out/$(subst /,-,$(PROJECT))
+SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
+
+.DEFAULT_GOAL := sheets
+.PHONY: help sheets test lint types wheel-test gallery gallery-check gold picture clean distclean
+
+sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
+
+$(OUT)/sheet1.pdf: $(VENV)/.installed $(SOURCES)
+	$(BIN)/tmm-sheets build $(PROJECT) -o $(OUT)
+
+test: lint types  ## everything the tests prove: ruff, mypy, pytest
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/.tested  ## style of the code (ruff)
+	$(BIN)/ruff check .
+
+types: $(VENV)/.tested  ## types of the code (mypy)
+	$(BIN)/mypy
+
+wheel-test: $(VENV)/.tested  ## build the wheel, install it elsewhere, draw a project with it
+	PYTHON=$(PYTHON) bash tests/wheel_test.sh
+
+gallery: $(VENV)/.tested  ## every shipped project, small, on contact sheets in out/gallery
+	$(BIN)/python -m tests.gallery
+
+gallery-check: gallery  ## the same; fails when a sheet cannot be drawn or a label finds no free place
+
+gold: $(VENV)/.tested  ## accept the display lists as they are drawn now (look at the sheets first)
+	$(BIN)/python -m tests.sheets.gold
+
+picture: sheets  ## the picture of sheet 1 in README (needs pdftoppm)
+	pdftoppm -r 40 -png -gray -singlefile $(OUT)/sheet1.pdf templates/pictures/sheet1
+
+clean:  ## remove what was made, keep the virtual environment
+	rm -rf out dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+distclean: clean  ## remove the virtual environment as well
+	rm -rf $(VENV)
+
+help:  ## this list
+	@grep -hE '^[a-z-]+:.*  ## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14
+
+# The environment: made once, brought up to date when pyproject.toml changes.
+
+$(VENV)/.made:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	    { echo "Python 3.11 or newer is needed; name it: make PYTHON=python3.12" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+$(VENV)/.installed: $(VENV)/.made pyproject.toml
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@touch $@
+
+$(VENV)/.tested: $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@touch $@

@@ -1,0 +1,108 @@
+"""Scale factors: handy series, standard scales, Russian numbers."""
+
+from decimal import Decimal
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tmm_sheets.construction.scale import HANDY, STANDARD, Scale, fit, fit_standard, fixed, handy, number
+
+
+@given(st.floats(1e-12, 1e12))
+def test_handy_is_the_next_number_of_the_series(least):
+    found = handy(least)
+    assert found >= least * (1 - 1e-9)
+    # A mantissa of the series, as a decimal literal: 0.0025, not 0.0025000000000000001 of a product.
+    mantissa = Decimal(repr(found)).normalize().as_tuple()
+    assert "".join(map(str, mantissa.digits)) in {"1", "2", "25", "4", "5"}
+    # The one before it would be too small.
+    series = sorted(float(f"{m}e{k}") for m in HANDY for k in range(-14, 14))
+    before = series[series.index(found) - 1]
+    assert before < least
+
+
+@pytest.mark.parametrize(
+    ("least", "expected"), [(1.0, 1.0), (1.001, 2.0), (2.3, 2.5), (0.0045, 0.005), (5.1, 10.0), (0.02, 0.02), (99.9, 100.0),
+                            (3 * 0.1 / 0.3, 1.0), (0.1 + 0.2, 0.4)],
+)
+def test_handy_examples(least, expected):
+    assert handy(least) == expected
+
+
+@pytest.mark.parametrize("least", [0.0, -1.0, float("nan")])
+def test_no_scale_for_nothing(least):
+    with pytest.raises(ValueError, match="must be positive"):
+        handy(least)
+
+
+@given(st.floats(1e-6, 1e6), st.floats(10, 800))
+def test_fit_fills_the_place_without_leaving_it(span, mm):
+    scale = fit("μ_l", "м/мм", span, mm)
+    drawn = scale.mm(span)
+    assert drawn <= mm * (1 + 1e-9)
+    # The series' widest step is from 1 to 2: never less than half of the place.
+    assert drawn > mm / 2 * (1 - 1e-9)
+
+
+def test_there_and_back():
+    scale = Scale("μ_V", 0.02, "м·с^{−1}/мм")
+    assert scale.mm(0.6) == pytest.approx(30)
+    assert scale.real(30) == pytest.approx(0.6)
+    np.testing.assert_allclose(scale.mm(np.array([0.02j, 0.04])), [1j, 2])
+    assert str(scale) == "μ_V = 0,02 м·с^{−1}/мм"
+
+
+def test_standard_scales_are_those_of_the_standard():
+    """GOST 2.302: reductions and enlargements, from small to large."""
+    ratios = [Fraction(drawn, real) for real, drawn in STANDARD]
+    assert ratios == sorted(ratios)
+    assert {(2, 1), (5, 2), (4, 1), (5, 1), (10, 1), (20, 1), (40, 1), (50, 1), (100, 1)} <= {(r, d) for r, d in STANDARD if r > d}
+    assert {(1, 2), (2, 5), (1, 4), (1, 5), (1, 10), (1, 20), (1, 40), (1, 50), (1, 100)} == {(r, d) for r, d in STANDARD if r < d}
+
+
+@given(st.floats(0.01, 1e5), st.floats(10, 800))
+def test_standard_fit_is_the_largest_that_fits(span, mm):
+    ratios = [Fraction(drawn, real) for real, drawn in STANDARD]
+    fitting = [x for x in ratios if span * float(x) <= mm * (1 + 1e-9)]
+    if not fitting:
+        with pytest.raises(ValueError, match="do not fit"):
+            fit_standard(span, mm)
+        return
+    real, drawn = fit_standard(span, mm)
+    assert Fraction(drawn, real) == max(fitting)
+
+
+def test_too_large_for_any_standard_scale():
+    with pytest.raises(ValueError, match="1000000 mm do not fit in 500 mm"):
+        fit_standard(1000000, 500)
+
+
+# --- numbers ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("x", "text"),
+    [(0, "0"), (0.0025, "0,0025"), (2.5, "2,5"), (100.0, "100"), (-3.14159, "−3,142"), (12345.678, "12346"), (1e-7, "0,0000001"),
+     (0.1 + 0.2, "0,3"), (99999.0, "99999"), (7744.8836, "7745"), (-0.02, "−0,02"), (1234567.0, "1234567")],
+)
+def test_number(x, text):
+    assert number(x) == text
+
+
+@pytest.mark.parametrize(
+    ("x", "decimals", "text"),
+    [(51.432, 2, "51,43"), (-0.001, 2, "0,00"), (-1.5, 1, "−1,5"), (2.0, 0, "2"), (30.0, 1, "30,0"), (-0.0, 1, "0,0")],
+)
+def test_fixed(x, decimals, text):
+    assert fixed(x, decimals) == text
+
+
+@given(st.floats(-1e9, 1e9))
+def test_numbers_read_back(x):
+    for text, allowed in ((number(x), max(abs(x) * 5e-4, 0)), (fixed(x, 3), 5.0001e-4)):
+        assert "." not in text
+        assert "-" not in text
+        assert abs(float(text.replace(",", ".").replace("−", "-")) - x) <= allowed + abs(x) * 1e-12

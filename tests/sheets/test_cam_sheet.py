@@ -1,0 +1,220 @@
+"""The cam sheet: every view stays in its place, fills it, and shows what the constructions hold."""
+
+from importlib import import_module
+from itertools import combinations
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.methods.cam_cases import cam_data, flat_data, rocker_data
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import place, text_box
+from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
+from tmm_sheets.methods.cam_profile import DIAGRAMS, cam
+from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.cam import HEADS
+
+TITLE_BLOCK = Box(651, 5, 836, 60)
+FRAME = Box(20, 5, 836, 589)
+
+
+def project(_data=cam_data, **changes):
+    return SimpleNamespace(cam=cam(_data(**changes)))
+
+
+PROJECTS = {
+    "manual 000": project(),
+    "both limits": project(sense="counter-clockwise", limit="both", roller=None, stroke=25, rise=60, upper_dwell=0, fall=70,
+                           pressure_angle=35),
+    "cosine, no lower dwell": project(law="cosine", rise=180, upper_dwell=60, fall=120, roller=None, stroke=55),
+    "constant": project(law="constant", rise=60, upper_dwell=10, fall=150, roller=None, stroke=20, limit="both", pressure_angle=25),
+    "no offset": project(rise=120, upper_dwell=0, fall=120, roller=None, stroke=4, limit="both", pressure_angle=45),
+    "steep fall": project(rise=150, fall=40, roller=None, stroke=15),
+    "given offset, spring": project(law="constant", rise=60, upper_dwell=0, fall=60, eccentricity=6, pressure_angle=25, speed=200,
+                                    follower_mass=0.5, roller=None),
+    "two discs": project(law="trapezoid", rise=80, upper_dwell=20, fall=80, eccentricity=6, pressure_angle=25, limit="both",
+                         closure="geometric", roller=None),
+    "diagram, 12 parts": project(law="table", table=[[0, 0], [0.15, 1], [0.3, 0], [0.65, -0.43], [1, 0]], fall_law="cosine",
+                                 stroke=20, roller=None, parts=12, speed=400, follower_mass=0.8),
+    "rocker of manual 000": project(rocker_data),
+    "press": project(rocker_data, rise=60, upper_dwell=30, fall=60, swing=20, arm=100, pressure_angle=30, limit="both", parts=6,
+                     roller=None, speed=150, follower_inertia=0.06),
+    "opposite rocker": project(rocker_data, rise=70, upper_dwell=10, fall=70, swing=15, arm=70, pressure_angle=40, roller=None,
+                               rotation="opposite", sense="counter-clockwise", speed=300, follower_inertia=4e-4),
+    "rocker, two discs": project(rocker_data, law="linearly decreasing", rise=70, upper_dwell=30, fall=70, swing=20, arm=110,
+                                 pressure_angle=40, limit="both", closure="geometric", roller=None),
+    "flat of manual 000": project(flat_data),
+    "flat, spring": project(flat_data, law="sine", rise=90, fall=90, stroke=20, base_radius=None, speed=500, follower_mass=0.3),
+}
+
+
+def places(data):
+    """Views drawn for a cam, by name, with their places."""
+    traits = data.cam.traits
+    return {v.draw: v.box for v in arrangement("cam").views
+            if traits.issuperset(v.options.get("when", ())) and traits.isdisjoint(v.options.get("unless", ()))}
+
+
+def view(name):
+    module, function = name.split(".")
+    return getattr(import_module(f"tmm_sheets.sheets.{module}"), function)
+
+
+def drawn(name, data):
+    canvas = Canvas()
+    view(name)(data, canvas, places(data)[name], {})
+    return canvas
+
+
+def whole(data):
+    canvas = Canvas()
+    for v in arrangement("cam").views:
+        view(v.draw)(data, canvas, v.box, v.options)
+    return canvas
+
+
+def ink(marks):
+    return np.concatenate([text_box(m) if isinstance(m, Text) else flat(m) for m in marks])
+
+
+def texts(canvas):
+    """What is written: fixed lettering run by run, labels as they are asked for."""
+    return [m.text for m in canvas.marks if isinstance(m, Text)] + [label.text for label in canvas.labels]
+
+
+VIEWS = [(name, view_name) for name, data in PROJECTS.items() for view_name in places(data)]
+
+
+@pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
+def test_places_do_not_overlap(data):
+    boxes = [*places(data).values(), TITLE_BLOCK]
+    for a, b in combinations(boxes, 2):
+        assert min(a.x1, b.x1) <= max(a.x0, b.x0) or min(a.y1, b.y1) <= max(a.y0, b.y0)
+    assert all(FRAME.contains(complex(b.x0, b.y0)) and FRAME.contains(complex(b.x1, b.y1)) for b in boxes)
+
+
+def test_kinds_have_their_views():
+    def named(name):
+        return {v.split(".")[1] for v in places(PROJECTS[name])}
+
+    assert named("manual 000") == {"motion", "of_tappet", "roller", "pressure", "profile", "table"}
+    assert named("rocker of manual 000") == {"motion", "of_rocker", "roller", "pressure", "profile", "table"}
+    assert named("press") == named("rocker of manual 000") | {"spring"}
+    assert named("flat, spring") == {"motion", "sum_graph", "plate", "profile", "table", "spring"}
+
+
+@pytest.mark.parametrize(("name", "view_name"), VIEWS)
+def test_view_stays_in_its_place_and_fills_it(name, view_name):
+    data = PROJECTS[name]
+    box = places(data)[view_name]
+    canvas = drawn(view_name, data)
+    points = ink(canvas.marks)
+    assert np.isfinite(points).all()
+    assert points.real.min() >= box.x0 - 1e-6
+    assert points.real.max() <= box.x1 + 1e-6
+    assert points.imag.min() >= box.y0 - 1e-6
+    assert points.imag.max() <= box.y1 + 1e-6
+    assert all(box.contains(label.anchor, 1e-6) for label in canvas.labels)
+    assert np.ptp(points.imag) >= 0.6 * box.height
+    assert np.ptp(points.real) >= 0.6 * box.width
+
+
+@pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
+def test_every_label_finds_its_place_and_no_lettering_lies_on_other_lettering(data):
+    canvas = whole(data)
+    assert place(canvas, FRAME) == []
+    runs = [m for m in canvas.marks if isinstance(m, Text)]
+    x0, y0, x1, y1 = np.array([(c.real.min(), c.imag.min(), c.real.max(), c.imag.max()) for c in map(text_box, runs)]).T
+    wide = np.minimum(x1[:, None], x1) - np.maximum(x0[:, None], x0)
+    high = np.minimum(y1[:, None], y1) - np.maximum(y0[:, None], y0)
+    pairs = [(runs[i], runs[j], j - i) for i, j in np.argwhere(np.triu((wide > 0.8) & (high > 0.8), 1))]
+    # The boxes of slanted letters overhang their neighbours by up to 0.7 mm, that of an index its own letter by more.
+    assert [(p.text, q.text) for p, q, apart in pairs if not (apart == 1 and q.height < p.height)] == []
+
+
+def test_protocol_has_the_scale_factors_of_the_sheet():
+    data = PROJECTS["manual 000"]
+    canvas = whole(data)
+    assert {name: scale.mu for name, scale in canvas.scales.items()} == {"cam-motion": 1.0, "cam-zone": 2e-4, "cam-profile": 1e-4}
+    assert {s.mu for s in (data.cam.motion.scales.dds, data.cam.motion.scales.ds, data.cam.motion.scales.s)} == {1e-3, 2e-4, 5e-5}
+    assert "μ" in texts(drawn("cam.motion", data))
+
+
+@pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
+def test_diagrams_on_the_sheet_are_those_of_the_protocol(data):
+    box = places(data)["cam.motion"]
+    assert DIAGRAMS[data.cam.kind] == pytest.approx((box.width, box.height - 8 - HEADS), abs=2e-12)
+    assert data.cam.motion_on(box.width, box.height - 8 - HEADS) is data.cam.motion
+
+
+def test_profile_on_paper_is_the_profile():
+    data = PROJECTS["manual 000"]
+    canvas = drawn("cam_profile.profile", data)
+    (working,) = (m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "curve")
+    (centres,) = (m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "centre")
+    cam = data.cam
+    axis = centres[0] - cam.dense.centres.value[0] / 1e-4
+    np.testing.assert_allclose(working, axis + cam.dense.plan["F"].value[:-1] / 1e-4, atol=1e-9)
+    rollers = [m for m in canvas.marks if isinstance(m, Arc) and m.radius == pytest.approx(35)]
+    # 18 positions; 16 and 0 are one only when there is no lower dwell.
+    assert len(rollers) == 18
+    np.testing.assert_allclose([m.centre for m in rollers], axis + cam.inversion.centres.value / 1e-4, atol=1e-9)
+    radii = [m.radius for m in canvas.marks if isinstance(m, Arc) and abs(m.centre - axis) < 1e-6]
+    for radius in (cam.zone.r0, cam.zone.e):
+        assert np.abs(np.array(radii) - radius / 1e-4).min() < 1e-9
+
+
+def test_follower_lines_are_tangents_on_paper():
+    data = PROJECTS["manual 000"]
+    canvas = drawn("cam_profile.profile", data)
+    axis = next(m.centre for m in canvas.marks if isinstance(m, Arc))
+    e = data.cam.zone.e / 1e-4
+    tangents = [m for m in canvas.marks if isinstance(m, Line) and m.style == "construction"
+                and abs(abs(m.a - axis) - e) < 1e-6]
+    assert len(tangents) == 18
+    for m in tangents:
+        assert abs(((m.a - axis).conjugate() * (m.b - m.a)).real) < 1e-6
+
+
+def test_motion_shows_rays_chords_and_numbers():
+    data = PROJECTS["manual 000"]
+    canvas = drawn("cam.motion", data)
+    asked = [label.text for label in canvas.labels]
+    for number in data.cam.law.labels:
+        # Numbers stand at each of the three diagrams.
+        assert asked.count(number) >= 3
+    assert {"P_1", "P_2"} <= set(asked)
+    curves = [m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "curve"]
+    assert [np.ptp(c.real) for c in curves] == pytest.approx([205.0] * 3)
+    assert np.ptp(curves[2].imag) == pytest.approx(0.01 / 5e-5)
+
+
+def test_allowed_zone_lies_between_the_tangents():
+    data = PROJECTS["manual 000"]
+    canvas = drawn("cam_zone.of_tappet", data)
+    anchors = {label.text: label.anchor for label in canvas.labels}
+    apex, start = anchors["O"], anchors["B"]
+    assert (apex - start) * 2e-4 == pytest.approx(complex(0.00443232, -0.00767701), abs=1e-8)
+    hatch = [m for m in canvas.marks if isinstance(m, Line) and m.style == "hatch"]
+    assert len(hatch) > 5
+    for m in hatch:
+        for p in (m.a, m.b):
+            assert apex.imag - p.imag >= abs(p.real - apex.real) / np.tan(np.pi / 6) - 1e-6
+
+
+def test_pressure_graph_shows_the_permitted_angle():
+    canvas = drawn("cam.pressure", PROJECTS["manual 000"])
+    asked = [label.text for label in canvas.labels]
+    assert "[α] = 30°" in asked
+    levels = [m for m in canvas.marks if isinstance(m, Line) and m.style == "hidden"]
+    (curve,) = (m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "curve")
+    top = max(m.a.imag for m in levels)
+    assert curve.imag.max() <= top + 1e-9
+    assert curve.imag.max() == pytest.approx(top, abs=0.01)
+
+
+def test_nothing_but_the_cam_is_asked_for():
+    data = SimpleNamespace(cam=PROJECTS["manual 000"].cam)
+    for name in places(data):
+        assert drawn(name, data).marks

@@ -1,0 +1,147 @@
+"""Kinematic diagrams and balancing moment: what is drawn against formulas, and both sheets of six-bar tasks without crowding."""
+
+import re
+
+import numpy as np
+import pytest
+
+from tmm_sheets import variant
+from tmm_sheets.box import Box
+from tmm_sheets.catalogue import read
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Line, Polyline, Text
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import diagrams
+from tmm_sheets.sheets.sheet import composed
+
+BOX = Box(20.0, 10.0, 330.0, 240.0)
+
+
+def edited(name, *changes):
+    """A project with lines of its file changed."""
+    text = read(name).text
+    for pattern, by in changes:
+        text, count = re.subn(pattern, by, text, flags=re.MULTILINE)
+        assert count == 1, pattern
+    return Project(variant.parse(text, "edited.toml"))
+
+
+def curves(canvas, key):
+    """Drawn curves of a graph with their axes as origin: angle axis and scale taken back, so (phi, value)."""
+    scale = canvas.scales[key].mu
+    axis = next(m for m in canvas.marks if isinstance(m, Line) and m.of == key and m.style == "axis" and m.a.imag == m.b.imag)
+    found = [m.points - axis.a for m in canvas.marks if isinstance(m, Polyline) and m.of == key]
+    length = found[0][-1].real
+    return [(2 * np.pi * p.real / length, scale * p.imag) for p in found]
+
+
+def drawn(project, view=diagrams.motion, **options):
+    canvas = Canvas()
+    view(project, canvas, BOX, options)
+    return canvas
+
+
+def test_sine_rocker_against_its_formulas():
+    """Task 6: S = l3 sin psi with tan psi = r sin phi/(a + r cos phi), and its derivatives by a fine difference."""
+    r, a, l3, w = 0.107, 0.054, 0.2, 20.9
+    canvas = drawn(Project(read("sixbar/6:1")))
+
+    def s(phi):
+        return l3 * np.sin(np.arctan2(r * np.sin(phi), a + r * np.cos(phi)))
+
+    h = 1e-4
+    derivatives = {
+        "graph-S": s,
+        "graph-V": lambda x: w * (s(x + h) - s(x - h)) / (2 * h),
+        "graph-a": lambda x: w * w * (s(x + h) - 2 * s(x) + s(x - h)) / h**2,
+    }
+    for key, f in derivatives.items():
+        ((phi, value),) = curves(canvas, key)
+        assert np.max(np.abs(value - f(phi))) < 1e-6 * np.max(np.abs(value))
+
+
+def test_positive_is_the_way_the_motion_begins():
+    """Task 10 begins downwards, task 5 to the left: both diagrams begin upwards."""
+    for name in ("sixbar/10:1", "sixbar/5:1"):
+        ((_, value),) = curves(drawn(Project(read(name))), "graph-S")
+        assert value[0] == 0
+        assert value[5] > 0
+
+
+def test_rocker_has_its_angle():
+    ((phi, value),) = curves(drawn(Project(read("sixbar/8:1"))), "graph-psi")
+    r, l2, a = 0.129, 0.516, 0.4
+    s = r * np.sin(phi) + np.sqrt(l2**2 - (r * np.cos(phi)) ** 2) - np.sqrt(l2**2 - r**2)
+    assert np.max(np.abs(value - np.arctan(s / a))) < 1e-12
+
+
+def test_two_outputs_share_the_graphs():
+    canvas = drawn(Project(read("sixbar/7:1")))
+    (_, first), (_, second) = curves(canvas, "graph-S")
+    assert first.max() == pytest.approx(0.1 + 0.4 - np.sqrt(0.4**2 - 0.1**2))
+    assert second.max() == pytest.approx(0.2)
+    assert {label.text for label in canvas.labels} >= {"S_{B}", "S_{C}", "V_{B}", "a_{C}"}
+
+
+def test_option_names_others():
+    canvas = drawn(Project(read("sixbar/7:1")), of=["5", "2", "C"])
+    assert {"graph-S", "graph-psi"} <= set(canvas.scales)
+
+
+def test_a_curved_path_is_refused():
+    with pytest.raises(CannotBuild, match="point A does not move along a straight line"):
+        drawn(Project(read("sixbar/1:1")), of=["A"])
+
+
+def test_nothing_to_draw_is_refused():
+    project = edited("sixbar/1:1", (r"^diagrams = .*\n", ""), (r"^output = .*\n", ""), (r"^working_sense = .*\n", ""),
+                     (r'^stroke = "working".*$', 'stroke = "working"\nsense = "+x"'))
+    with pytest.raises(CannotBuild, match="nothing is named"):
+        drawn(project)
+
+
+def test_unknown_name_of_a_diagram():
+    text = read("sixbar/1:1").text.replace('diagrams = ["C"]', 'diagrams = ["K"]')
+    with pytest.raises(Exception, match=r"cycle\.diagrams\[1\]: unknown point or link"):
+        variant.parse(text, "edited.toml")
+
+
+def test_table_has_every_position():
+    canvas = drawn(Project(read("sixbar/7:1")), diagrams.motion_table)
+    texts = [m.text for m in canvas.marks if isinstance(m, Text)]
+    assert {str(i) for i in range(24)} <= set(texts)
+    assert len([t for t in texts if t.strip("−").replace(",", "").isdigit()]) == 24 * 7 + 2  # the squares of two units
+
+
+def test_balancing_moment_has_two_ends_where_the_load_is_switched():
+    """Task 8: just before the rocker's turning point M5 acts, just behind it does not; its power is zero there, M_ur joins."""
+    project = Project(read("sixbar/8:1"))
+    canvas = drawn(project, diagrams.balancing)
+    ((phi, value),) = curves(canvas, "graph-M")
+    at = np.interp(project.cycle.turned, phi, value)
+    moments = -np.asarray(project.study.forces.balancing.value)
+    assert np.max(np.abs(at - moments)) < 1e-6 * np.max(np.abs(moments))
+
+
+def test_balancing_moment_needs_a_moment():
+    with pytest.raises(CannotBuild, match="driven by a moment"):
+        drawn(Project(read("lugansk/shaper")), diagrams.balancing)
+
+
+def test_couple_of_a_guide_without_a_force_is_shown():
+    """Task 10: nothing pushes slider 5 across its guide, a couple keeps it from turning."""
+    canvas = Canvas()
+    from tmm_sheets.sheets import kinetics
+
+    kinetics.group(Project(read("sixbar/10:1")), canvas, Box(450.0, 300.0, 830.0, 580.0), {"group": 1})
+    labels = [label.text for label in canvas.labels]
+    assert "M_{50}" in labels
+    assert "F̅_{50}" not in labels
+
+
+@pytest.mark.parametrize("name", [f"sixbar/{task}:{1 + task % 5}" for task in range(1, 11)])
+def test_both_sheets_have_room(name):
+    project = Project(read(name))
+    for n in (1, 2):
+        assert composed(project, n).crowded == ()

@@ -1,0 +1,168 @@
+"""Sheet 2 as marks: everything in its place, projected points where both graphs say."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from importlib import import_module
+from itertools import pairwise
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.methods.shaper_truth import Shaper
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import place, text_box
+from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.flywheel import flywheel
+
+VIEWS = tomllib.loads((Path(__file__).parents[2] / "templates/sheets/flywheel.toml").read_text(encoding="utf-8"))["view"]
+FRAME = Box(20, 5, 836, 589)
+TITLE_BLOCK = Box(651, 5, 836, 60)
+DESIGNATION = Box(20, 575, 90, 589)
+
+
+@dataclass(frozen=True)
+class Cutting(Shaper):
+    breaks: tuple[float, ...] = (0.31, 3.44)
+
+
+@dataclass(frozen=True)
+class Engine(Shaper):
+    resisting: bool = False
+    omega1: float = 40.0
+
+    def moment(self, phi, side=1):
+        return -super().moment(phi, side)
+
+
+def project(reduced, form="rim"):
+    data = SimpleNamespace(
+        method="wittenbauer", delta=0.025, form=form, density=7300.0, width_ratio=0.2, thickness_ratio=0.12,
+        rim_share=1.0, motor=None)
+    return SimpleNamespace(flywheel=flywheel(reduced, data), reduced=reduced)
+
+
+def draw(p, only=None):
+    canvas = Canvas()
+    for view in VIEWS:
+        module, name = view["draw"].split(".")
+        if only in (None, name):
+            getattr(import_module(f"tmm_sheets.sheets.{module}"), name)(p, canvas, Box(*map(float, view["box"])), view)
+    return canvas
+
+
+def option(name, key):
+    return next(v[key] for v in VIEWS if v["draw"] == f"flywheel.{name}")
+
+
+def reach(marks):
+    return np.concatenate([text_box(m) if isinstance(m, Text) else flat(m) for m in marks])
+
+
+@pytest.mark.parametrize(("reduced", "form"), [
+    (Shaper(), "rim"), (Shaper(8), "disc"), (Shaper(12), "rim"), (Cutting(12), "rim"), (Engine(16), "disc")])
+def test_every_label_finds_a_place_and_nothing_leaves_the_frame(reduced, form):
+    canvas = draw(project(reduced, form))
+    assert place(canvas, FRAME) == []
+    points = reach(canvas.marks)
+    assert not np.isnan(points).any()
+    assert points.real.min() > FRAME.x0
+    assert points.real.max() < FRAME.x1
+    assert points.imag.min() > FRAME.y0
+    assert points.imag.max() < FRAME.y1
+    assert not any(TITLE_BLOCK.contains(p) or DESIGNATION.contains(p) for p in points)
+
+
+@pytest.mark.parametrize("name", [v["draw"].split(".")[1] for v in VIEWS])
+def test_a_view_keeps_to_its_place(name):
+    canvas = draw(project(Shaper()), only=name)
+    box = Box(*option(name, "box"))
+    if name == "energy_mass":  # its projection lines start in the graphs of dE and J
+        box = Box(option("total_work", "box")[0], box.y0, box.x1, option("inertia", "box")[3])
+    outside = [p for p in reach(canvas.marks) if not box.contains(p, 1e-6)]
+    assert outside == []
+
+
+def test_positions_stand_one_under_another():
+    p = project(Shaper())
+    x = option("moments", "axis") + p.flywheel.scales.angle.mm(p.reduced.phi)
+    for name in ("force_graph", "moments", "works", "total_work"):
+        marks = draw(p, only=name).marks
+        ticks = sorted(m.a.real for m in marks if isinstance(m, Line) and m.style == "axis" and abs(m.b - m.a) < 2)
+        np.testing.assert_allclose(ticks, x, atol=1e-9)
+
+
+def test_every_point_of_the_energy_mass_curve_is_projected_from_both_graphs():
+    p = project(Shaper())
+    f = p.flywheel
+    marks = draw(p, only="energy_mass").marks
+    lines = [m for m in marks if isinstance(m, Line) and m.style == "construction"]
+    curves = {name: [m.points for m in draw(p, only=name).marks if isinstance(m, Polyline)]
+              for name in ("total_work", "inertia", "energy_mass")}
+    assert [len(c) for c in curves.values()] == [1, 1, 1]
+    assert len(lines) == 2 * 10
+    for k in range(10):
+        across, down = lines[2 * k], lines[2 * k + 1]
+        assert across.b == down.b
+        assert across.a.imag == pytest.approx(across.b.imag, abs=1e-9)
+        assert down.a.real == pytest.approx(down.b.real, abs=1e-9)
+        for point, (curve,) in ((across.a, curves["total_work"]), (down.a, curves["inertia"]), (across.b, curves["energy_mass"])):
+            assert np.abs(curve - point).min() < 1e-9
+        assert (across.b.real - option("energy_mass", "axis")) * f.scales.inertia.mu == pytest.approx(f.J_reduced[k], rel=1e-9)
+
+
+def test_rays_and_chords_are_parallel_on_the_sheet():
+    p = project(Shaper())
+    f = p.flywheel
+    slopes = [(m.b - m.a).imag / (m.b - m.a).real for m in draw(p, only="moments").marks
+              if isinstance(m, Line) and m.style == "construction" and m.a == f.scales.pole * -1 + draw_origin(p)]
+    assert len(slopes) == 4  # three different ordinates and the ray to K'
+    chords = [m for m in draw(p, only="works").marks if isinstance(m, Line) and m.style == "construction"]
+    tilted = [c for c in chords if abs((c.b - c.a).imag) > 1e-9]
+    assert len(tilted) == 6
+    for c in tilted:
+        slope = (c.b - c.a).imag / (c.b - c.a).real
+        assert min(abs(slope - s) for s in slopes) < 1e-12
+    assert max(slopes) == pytest.approx(-f.driving_plan["K"].value.imag / -f.scales.angle.mm(2 * np.pi), rel=1e-12)
+
+
+def draw_origin(p):
+    """Origin of the moment graph: where its angle axis begins."""
+    axis = next(m for m in draw(p, only="moments").marks if isinstance(m, Line) and m.style == "axis" and m.a.imag == m.b.imag)
+    return axis.a
+
+
+def test_curves_are_thick_and_axes_are_axes():
+    styles = {m.style for m in draw(project(Shaper())).marks if isinstance(m, Polyline)}
+    assert styles == {"curve", "main"}
+
+
+def test_the_sheet_is_evenly_filled():
+    canvas = draw(project(Shaper()))
+    place(canvas, FRAME)
+    points = reach(canvas.marks)
+    cells = {(int((p.real - 20) // 60), int((p.imag - 5) // 60)) for m in canvas.marks for p in
+             (text_box(m) if isinstance(m, Text) else dense(flat(m)))}
+    block = {(i, 0) for i in range(10, 14)}
+    assert len(points) > 1000
+    assert len(cells | block) >= 0.8 * 14 * 10
+
+
+def dense(points):
+    parts = [points[:1]]
+    for a, b in pairwise(points):
+        parts.append(np.linspace(a, b, int(abs(b - a) // 10) + 2))
+    return np.concatenate(parts)
+
+
+@pytest.mark.parametrize("name", ["force_graph", "moments", "works", "total_work", "inertia"])
+def test_a_place_that_is_too_small_is_refused(name):
+    view = next(v for v in VIEWS if v["draw"] == f"flywheel.{name}")
+    x0, y0, x1, _ = view["box"]
+    with pytest.raises(CannotBuild, match=rf"view flywheel\.{name} needs \d+ mm more height"):
+        getattr(import_module("tmm_sheets.sheets.flywheel"), name)(
+            project(Shaper()), Canvas(), Box(x0, y0, x1, y0 + 25), view)

@@ -1,0 +1,166 @@
+"""The sheet of gears with a reducer: views keep to their places, and what they show is to scale."""
+
+import tomllib
+from itertools import combinations
+from math import radians
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.methods import reducer_cases as cases
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import place, text_box
+from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
+from tmm_sheets.methods.gears import gear_pair, settled
+from tmm_sheets.methods.reducer import reducer, rpm
+from tmm_sheets.resources import template
+from tmm_sheets.sheets import gear, rack
+from tmm_sheets.sheets import reducer as reducers
+
+TITLE_BLOCK = Box(651, 5, 836, 60)
+DESIGNATION = Box(20, 575, 90, 589)
+FRAME = Box(20, 5, 836, 589)
+MODULES = {"gear": gear, "rack": rack, "reducer": reducers}
+
+
+def project(machine, c, **over):
+    found = reducer(cases.column(machine, c, **over))
+    section = SimpleNamespace(teeth="reducer", module=None, addendum=None, clearance=None, shift="rule", pressure_angle=radians(20),
+                              driver=1, sense="clockwise", profile="rack")
+    return SimpleNamespace(reducer=found, gear=gear_pair(settled(section, found)))
+
+
+PROJECTS = {
+    "diesel 0": project("diesel", 0), "diesel 4": project("diesel", 4), "diesel 5": project("diesel", 5),
+    "press 1": project("press", 1), "press 7, rings": project("press", 7, scheme="two internal"),
+    "compressor 2": project("compressor", 2), "compressor 4, rings driven": project("compressor", 4, driver="ring"),
+    "compressor 6": project("compressor", 6), "crusher 4": project("crusher", 4), "crusher 9": project("crusher", 9),
+}
+ALL = pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
+
+
+def arrangement():
+    found = tomllib.loads(template("sheets/gear_reducer.toml").read_text("utf-8"))["view"]
+    return [(v["draw"], Box(*v["box"])) for v in found]
+
+
+def draw(canvas, name, box, data):
+    module, function = name.split(".")
+    getattr(MODULES[module], function)(data, canvas, box, {})
+
+
+def sheet(data):
+    """Canvas of the whole sheet, and its marks view by view."""
+    canvas, parts = Canvas(), {}
+    for name, box in arrangement():
+        before = len(canvas.marks), len(canvas.labels)
+        draw(canvas, name, box, data)
+        parts[name] = canvas.marks[before[0]:], canvas.labels[before[1]:], box
+    return canvas, parts
+
+
+def test_places_do_not_overlap():
+    boxes = [box for _, box in arrangement()] + [TITLE_BLOCK, DESIGNATION]
+    for a, b in combinations(boxes, 2):
+        assert min(a.x1, b.x1) <= max(a.x0, b.x0) or min(a.y1, b.y1) <= max(a.y0, b.y0)
+    for box in boxes:
+        assert FRAME.contains(complex(box.x0, box.y0))
+        assert FRAME.contains(complex(box.x1, box.y1))
+
+
+@ALL
+def test_views_stay_in_their_places(data):
+    _, parts = sheet(data)
+    for name, (marks, labels, box) in parts.items():
+        points = np.concatenate([text_box(m) if isinstance(m, Text) else flat(m) for m in marks])
+        assert np.isfinite(points).all(), name
+        assert points.real.min() >= box.x0 - 1e-6, name
+        assert points.real.max() <= box.x1 + 1e-6, name
+        assert points.imag.min() >= box.y0 - 1e-6, name
+        assert points.imag.max() <= box.y1 + 1e-6, name
+        assert all(box.contains(label.anchor, 1e-6) for label in labels), name
+        if name != "reducer.choice":  # as tall as it has runners-up
+            assert np.ptp(points.imag) >= 0.6 * box.height, name
+        # handy scale factors are up to a factor of two apart
+        assert np.ptp(points.real) >= (0.5 if name == "reducer.speeds" else 0.75) * box.width, name
+
+
+@ALL
+def test_every_label_finds_its_place(data):
+    canvas, _ = sheet(data)
+    assert place(canvas, FRAME) == []
+
+
+@ALL
+def test_front_view_shows_all_pitch_circles_to_scale(data):
+    canvas, parts = sheet(data)
+    mm = canvas.scales["reducer-scheme"].mm
+    radii = [m.radius for m in parts["reducer.scheme"][0] if isinstance(m, Arc)]
+    stage, count = data.reducer.stages[0], data.reducer.data.satellites
+    for wheel in {w.number: w for w in (*stage.wheels, *data.reducer.simple)}.values():
+        same = sum(abs(r - mm(wheel.diameter / 2)) < 1e-9 for r in radii)
+        assert same >= (count if wheel in (stage.wheels[1], stage.wheels[2]) else 1)
+    spokes = [m for m in parts["reducer.scheme"][0] if isinstance(m, Line) and abs(abs(m.b - m.a) - mm(stage.axis)) < 1e-9]
+    directions = {round(float(np.angle(m.b - m.a)) % (2 * np.pi), 6) for m in spokes if m.style == "main"}
+    assert len(directions) >= count
+
+
+@ALL
+def test_rays_are_parallel_to_the_lines_of_the_picture(data):
+    """On paper: each link's line and its ray have one direction, and the ray's end reads the link's speed."""
+    canvas, parts = sheet(data)
+    height, speed = canvas.scales["reducer-scheme"], canvas.scales["reducer-velocities"]
+    titles = [m.text for m in parts["reducer.speeds"][0] if isinstance(m, Text)]
+    factor = next(t for t in titles if "об/мин" in t and "=" in t)
+    mu = float(factor.split("=")[1].split()[0].replace(",", "."))
+    rays = [m for m in parts["reducer.speeds"][0] if isinstance(m, Line) and m.style == "main"]
+    pole, plan = rays[0].a, data.reducer.velocities
+    lines = [s for s in plan if s.rule.gives == "direction"]
+    assert len(rays) == len(lines)
+    origin = pole.real
+    for line in lines:
+        u = complex(line.value)
+        drawn = complex(speed.mm(u.real), height.mm(u.imag))
+        assert min(abs(((m.b - m.a) * drawn.conjugate()).imag) / abs(m.b - m.a) / abs(drawn) for m in rays) < 1e-9
+    read = sorted((m.b.real - origin) * mu for m in rays)
+    links = data.reducer.links
+    assert read == pytest.approx(sorted(rpm(links[s.name.split("-")[0]]) for s in lines), rel=1e-4, abs=1e-3)
+
+
+@ALL
+def test_generating_engagement_shows_positions_and_teeth(data):
+    canvas, parts = sheet(data)
+    marks = parts["rack.generating"][0]
+    thin = [m for m in marks if isinstance(m, Polyline) and m.style == "thin" and not m.closed]
+    assert len(thin) >= len(data.gear.generating.labels)
+    teeth = [m for m in marks if isinstance(m, Polyline) and m.style == "main"]
+    assert sum(len(m.points) for m in teeth) > 100
+    anchors = {label.text: label.anchor for label in parts["rack.generating"][1]}
+    pole, mm = anchors["P_0"], canvas.scales["gear-rack"].mm
+    rack_ = data.gear.pinion.rack
+    # both lie on the line of generation; where the shift follows the rule, in one point
+    n = np.exp(-1j * rack_.alpha)
+    if "N" in anchors and "B_l" in anchors:
+        assert anchors["N"] - pole == pytest.approx(mm(rack_.r * np.sin(rack_.alpha)) * n, abs=1e-9)
+        assert abs(anchors["N"] - anchors["B_l"]) == pytest.approx(mm(rack_.rho_limit), abs=1e-9)
+
+
+def test_tables_tell_the_choice_and_the_conditions():
+    _, parts = sheet(PROJECTS["crusher 9"])
+    texts = [m.text for m in parts["reducer.choice"][0] if isinstance(m, Text)]
+    for value in ("15", "25", "18", "58", "12", "19", "10,086", "0,86"):
+        assert value in texts
+    found = "".join(m.text for m in parts["reducer.conditions"][0] if isinstance(m, Text))
+    assert "10,086; 0,86 %" in found
+    assert "40 = 40" in found
+
+
+def test_undercut_is_named_on_the_view():
+    undercut = SimpleNamespace(gear=gear_pair(SimpleNamespace(
+        teeth=(9, 9), shift=(0.2, 0.4), module=0.01, pressure_angle=radians(20), addendum=1.0, clearance=0.25, driver=1,
+        sense="clockwise", profile="rack")))
+    canvas = Canvas()
+    rack.generating(undercut, canvas, dict(arrangement())["rack.generating"], {})
+    assert "подрез" in [label.text for label in canvas.labels]
+    assert place(canvas, FRAME) == []

@@ -1,0 +1,129 @@
+"""The gear sheet: every view stays in its place, fills it, and shows what the plans hold."""
+
+import tomllib
+from itertools import combinations
+from math import radians
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import place, text_box
+from tmm_sheets.drawing.marks import Box, Polyline, Text, flat
+from tmm_sheets.methods.gears import gear_pair
+from tmm_sheets.resources import template
+from tmm_sheets.sheets import gear as views
+
+TITLE_BLOCK = Box(651, 5, 836, 60)
+DESIGNATION = Box(20, 575, 90, 589)
+FRAME = Box(20, 5, 836, 589)
+
+
+def project(teeth=(14, 28), shift=(3 / 17, 0.0), module=0.0035, driver=1, sense="clockwise"):
+    angle = radians(20)
+    return SimpleNamespace(gear=gear_pair(SimpleNamespace(
+        teeth=teeth, shift=shift, module=module, pressure_angle=angle, addendum=1.0, clearance=0.25, driver=driver, sense=sense,
+        profile="fillet")))
+
+
+PROJECTS = {
+    "manual 000": project(),
+    "manual 002": project((10, 20), (0.5, 0.5), 0.01, sense="counter-clockwise"),
+    "great ratio": project((10, 60), (0.5, 0.0), 0.002, driver=2),
+    "small wheel below": project((45, 17), (0.1, 0.3), 0.005),
+    "alike": project((30, 30), (0.0, 0.0), 0.008),
+    "coarse": project((12, 13), (0.4, 0.4), 0.02, driver=2, sense="counter-clockwise"),
+}
+
+
+def arrangement():
+    found = tomllib.loads(template("sheets/gear.toml").read_text("utf-8"))["view"]
+    return [(v["draw"].split(".")[1], Box(*v["box"])) for v in found]
+
+
+def drawn(name, box, data):
+    canvas = Canvas()
+    getattr(views, name)(data, canvas, box, {})
+    return canvas
+
+
+def ink(marks):
+    return np.concatenate([text_box(m) if isinstance(m, Text) else flat(m) for m in marks])
+
+
+def test_places_do_not_overlap():
+    boxes = [box for _, box in arrangement()] + [TITLE_BLOCK, DESIGNATION]
+    for a, b in combinations(boxes, 2):
+        assert min(a.x1, b.x1) <= max(a.x0, b.x0) or min(a.y1, b.y1) <= max(a.y0, b.y0)
+    for box in boxes:
+        assert FRAME.contains(complex(box.x0, box.y0))
+        assert FRAME.contains(complex(box.x1, box.y1))
+
+
+@pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
+@pytest.mark.parametrize(("name", "box"), arrangement(), ids=[name for name, _ in arrangement()])
+def test_view_stays_in_its_place_and_fills_it(name, box, data):
+    canvas = drawn(name, box, data)
+    points = ink(canvas.marks)
+    assert np.isfinite(points).all()
+    assert points.real.min() >= box.x0 - 1e-6
+    assert points.real.max() <= box.x1 + 1e-6
+    assert points.imag.min() >= box.y0 - 1e-6
+    assert points.imag.max() <= box.y1 + 1e-6
+    assert all(box.contains(label.anchor, 1e-6) for label in canvas.labels)
+    # the title stands at the top and the drawing reaches well down
+    assert np.ptp(points.imag) >= 0.75 * box.height
+    # standard scales are up to a factor of two apart, and the line of action keeps 34 mm for its letters
+    assert np.ptp(points.real) >= (0.5 if name == "sliding" else 0.75) * box.width
+
+
+@pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
+def test_every_label_finds_its_place(data):
+    canvas = Canvas()
+    for name, box in arrangement():
+        getattr(views, name)(data, canvas, box, {})
+    assert place(canvas, FRAME) == []
+
+
+def test_scale_of_the_manual():
+    canvas = drawn("engagement", dict(arrangement())["engagement"], PROJECTS["manual 000"])
+    assert "М 4:1" in [m.text for m in canvas.marks if isinstance(m, Text)]
+    assert canvas.scales["gear-engagement"].mu == 0.00025
+
+
+@pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
+def test_both_centres_stand_on_the_picture_and_teeth_are_thick(data):
+    box = dict(arrangement())["engagement"]
+    canvas = drawn("engagement", box, data)
+    anchors = {label.text: label.anchor for label in canvas.labels}
+    assert box.contains(anchors["O_1"], -10)
+    assert box.contains(anchors["O_2"], -10)
+    gear = data.gear
+    mm = abs(anchors["O_1"] - anchors["O_2"]) / gear.a_w
+    for w in gear.wheels:
+        outline = (gear.shape(w).outline() - gear.engagement[f"O{w.number}"].value) * mm + anchors[f"O_{w.number}"]
+        thick = [m for m in canvas.marks if isinstance(m, Polyline) and m.style == "main"]
+        assert any(abs(m.points[0] - outline[0]) < 1e-9 and abs(m.points[-1] - outline[-1]) < 1e-9 for m in thick)
+
+
+def test_sliding_curves_show_the_table():
+    """The drawn curves pass through the values of the divisions, taken back through the scale factor."""
+    data = PROJECTS["manual 000"]
+    canvas = drawn("sliding", dict(arrangement())["sliding"], data)
+    curves = [m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "curve"]
+    factor = next(m.text for m in canvas.marks if isinstance(m, Text) and "1/мм" in m.text)
+    mu = float(factor.split("=")[1].split()[0].replace(",", "."))
+    anchors = {label.text: label.anchor for label in canvas.labels}
+    plan = data.gear.sliding
+    for i, points in enumerate(curves, 1):
+        for k in (1, 2, 4, 5):
+            at = anchors[plan.labels[k]]
+            value = float(np.interp(at.real, points.real, points.imag)) - at.imag
+            assert value * mu == pytest.approx(plan[f"theta{i}"].value[k], abs=0.02)
+
+
+def test_nothing_but_the_gear_is_asked_for():
+    """A view of this sheet reads the gear pair alone: any other attribute of the project would fail here."""
+    for name, box in arrangement():
+        drawn(name, box, SimpleNamespace(gear=PROJECTS["manual 000"].gear))

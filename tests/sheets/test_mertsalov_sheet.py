@@ -1,0 +1,151 @@
+"""Sheets 1 and 2 of the press: every label has its place, curves are where their plans say, numbers are those of the method."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.methods.press_truth import OMEGA, inertia
+from tests.methods.shaper_truth import Shaper
+from tmm_sheets import catalogue
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.flywheel import flywheel
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import mertsalov
+from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.sheet import composed
+
+AXIS = 382.0
+COLUMN = Box(324, 8, 647, 586)
+
+
+@pytest.fixture(scope="module")
+def press():
+    return Project(catalogue.read("press"))
+
+
+@pytest.fixture(scope="module")
+def sheets(press):
+    return {n: composed(press, n) for n in (1, 2)}
+
+
+def draw(press, view, box, **options):
+    canvas = Canvas()
+    getattr(mertsalov, view)(press, canvas, box, {"axis": AXIS, **options})
+    return canvas
+
+
+def curves(canvas):
+    return [m.points for m in canvas.marks if isinstance(m, Polyline)]
+
+
+@pytest.mark.parametrize("n", [1, 2])
+def test_every_label_finds_a_place_and_nothing_leaves_the_frame(sheets, n):
+    assert sheets[n].crowded == ()
+    points = np.concatenate([text_box(m) if isinstance(m, Text) else flat(m) for m in sheets[n].drawing.marks])
+    assert not np.isnan(points).any()
+    assert points.real.min() >= 0
+    assert points.real.max() <= 841
+    assert points.imag.min() >= 0
+    assert points.imag.max() <= 594
+
+
+@pytest.mark.parametrize("view", [v.draw for v in arrangement("press_1").views if v.draw.startswith(("mertsalov", "flywheel"))])
+def test_a_view_keeps_to_its_place(press, view):
+    found = next(v for v in arrangement("press_1").views if v.draw == view)
+    canvas = Canvas()
+    module, _, name = view.partition(".")
+    getattr(import_module(f"tmm_sheets.sheets.{module}"), name)(press, canvas, found.box, found.options)
+    points = np.concatenate([text_box(m) if isinstance(m, Text) else flat(m) for m in canvas.marks])
+    assert [p for p in points if not found.box.contains(p, 1.0)] == []
+
+
+def test_curve_of_the_first_energy_is_the_other_less_the_second(press):
+    fw = press.flywheel
+    total, own = curves(draw(press, "energies", Box(324, 100, 647, 400)))
+    x = (total.real - AXIS) * fw.scales.angle.mu
+    below = (total - own).imag * fw.scales.energy.mu
+    np.testing.assert_allclose(below, inertia(x) * OMEGA**2 / 2, rtol=1e-9)
+
+
+def test_segment_and_axis_on_paper(press):
+    """The mean axis halves ab; both tangents touch the curve from outside."""
+    fw = press.flywheel
+    canvas = draw(press, "energies", Box(324, 100, 647, 400))
+    _, own = curves(canvas)
+    (axis,) = [m for m in canvas.marks if isinstance(m, Line) and m.style == "centre"]
+    low, high = own.imag.min(), own.imag.max()
+    assert axis.a.imag == pytest.approx((low + high) / 2, abs=0.005)
+    assert high - low == pytest.approx(fw.ab_mm, abs=0.005)  # the polyline cuts the corner
+    said = "".join(m.text for m in canvas.marks if isinstance(m, Text))
+    assert f"{fw.ab_mm:.1f}".replace(".", ",") in said
+
+
+def test_tangent_touches_the_graph_of_inertia(press):
+    fw, k = press.flywheel, press.force_index
+    canvas = draw(press, "inertia", Box(324, 10, 647, 260))
+    at = complex(AXIS, 18.0) + complex(fw.inertia_plan["points"].value[k])
+    (tangent,) = [m for m in canvas.marks if isinstance(m, Line) and m.style == "axis" and abs((m.a + m.b) / 2 - at) < 1e-6]
+    assert np.angle(tangent.b - tangent.a) == pytest.approx(float(fw.position_acceleration["ψ"].value[k]), rel=1e-12)
+    whole = curves(canvas)[0]
+    parts = curves(canvas)[1:]
+    assert len(parts) == 3
+    np.testing.assert_allclose(sum(p.imag - 18.0 for p in parts), whole.imag - 18.0, atol=1e-9)
+
+
+def test_signs_of_manual_001(press):
+    canvas = draw(press, "energies", Box(324, 100, 647, 400), energies=["ΔE", "E_{зв}", "E_М"])
+    assert {"ΔE", "E_{зв}", "E_М, ω_1"} <= {label.text for label in canvas.labels}
+
+
+def test_graphs_of_the_column_stand_one_under_another(press):
+    fw = press.flywheel
+    canvas = draw(press, "column", COLUMN)
+    period = fw.scales.angle.mm(2 * np.pi)
+    for curve in curves(canvas):
+        assert curve.real.min() == pytest.approx(AXIS, abs=1e-6)
+        assert curve.real.max() == pytest.approx(AXIS + period, abs=1e-6)
+    points = np.concatenate([text_box(m) if isinstance(m, Text) else flat(m) for m in canvas.marks])
+    assert points.imag.min() >= COLUMN.y0
+    assert points.imag.max() <= COLUMN.y1
+    assert np.ptp(points.imag) > 0.95 * COLUMN.height
+
+
+def test_a_place_too_low_is_refused(press):
+    with pytest.raises(CannotBuild, match=r"view mertsalov\.column needs \d+ mm more height"):
+        draw(press, "column", Box(324, 100, 647, 586))
+
+
+def test_table_says_the_results(press):
+    said = [m.text for m in draw(press, "position_table", Box(600, 400, 832, 586)).marks if isinstance(m, Text)]
+    fw = press.flywheel
+    for value in (*(f"{w:.3f}" for w in fw.omega), *(f"{e:.3f}" for e in fw.position_acceleration["ε1"].value)):
+        assert value.replace(".", ",").replace("-", "−") in said
+
+
+def test_results_say_what_is_taken(press):
+    said = "".join(m.text for m in draw(press, "results", Box(655, 300, 832, 444)).marks if isinstance(m, Text))
+    assert "принято" in said
+    assert "301,27" in said
+    assert "генераторногорежиманет" in said.replace(" ", "")
+
+
+def test_comparison_has_a_row_for_each_flywheel(press):
+    said = [m.text for m in draw(press, "comparison", Box(654, 258, 832, 326)).marks if isinstance(m, Text)]
+    for c in press.flywheel.compared:
+        assert f"{c.first:.2f}".replace(".", ",") in said
+        assert f"{c.running.delta:.5f}".replace(".", ",") in said
+
+
+def test_views_of_the_other_method_are_refused():
+    data = SimpleNamespace(method="wittenbauer", delta=0.03, form="rim", density=7300.0, width_ratio=0.2, thickness_ratio=0.12,
+                           rim_share=1.0, motor=None)
+    project = SimpleNamespace(flywheel=flywheel(Shaper(), data))
+    with pytest.raises(CannotBuild, match=r'belongs to flywheel\.method = "mertsalov"'):
+        draw(project, "energies", Box(324, 100, 647, 400))

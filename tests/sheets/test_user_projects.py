@@ -1,0 +1,115 @@
+"""Project files of mechanisms that stand in no manual: everything a shipped project can, from the file alone."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tmm_sheets import summary, variant
+from tmm_sheets.__main__ import run
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import Arc, Text, flat
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.project import Project
+from tmm_sheets.sheets.sheet import composed
+
+FILES = sorted((Path(__file__).parents[1] / "projects").glob("*.toml"))
+
+
+@pytest.fixture(scope="module", params=FILES, ids=lambda path: path.stem)
+def project(request):
+    return Project(variant.read(request.param))
+
+
+def test_all_kinds_are_there():
+    kinds = {g.kind for path in FILES for g in Project(variant.read(path)).mechanism.groups}
+    assert kinds == {1, 2, 3, 4, 5}
+    assert any(g.link != "0" for path in FILES for g in Project(variant.read(path)).mechanism.guides.values())
+
+
+def test_it_is_shown_and_checked(project):
+    project.check()
+    told = summary.text(project.variant)
+    assert "Mobility W = 3n - 2 p5 - p4" in told
+    assert told.count("class 2, order 2") == len(project.mechanism.groups)
+    assert project.mechanism.mobility == 1
+
+
+def test_lever_agrees_with_kinetostatics_at_every_position(project):
+    forces, lever = project.study.forces, project.study.lever
+    kinetic = forces.balancing.value
+    if lever.direction is not None:
+        kinetic = (kinetic * np.conj(lever.direction)).real
+    np.testing.assert_allclose(kinetic, lever.balancing.value, atol=1e-9 * np.abs(lever.balancing.value).max())
+
+
+@pytest.mark.parametrize("sheet", [1, 2])
+def test_sheets_are_clean(project, sheet):
+    done = composed(project, sheet)
+    assert not done.crowded
+    for mark in done.drawing.marks:
+        if mark.of == "title block":
+            continue
+        p = text_box(mark) if isinstance(mark, Text) else flat(mark)
+        assert np.isfinite(p).all()
+        assert p.real.min() > 20
+        assert p.real.max() < 836
+        assert p.imag.min() > 5
+        assert p.imag.max() < 589
+        if not isinstance(mark, Arc):
+            assert not ((p.real > 651) & (p.imag < 60)).any(), "in the title block"
+
+
+def test_other_positions_can_be_the_analysed_one(project):
+    for label in project.cycle.labels[::3]:
+        cycle = project.variant.cycle.model_copy(update={"force_position": label})
+        other = Project(project.variant.model_copy(update={"cycle": cycle}))
+        other.study = project.study
+        assert not composed(other, 1).crowded
+
+
+def test_command_line(tmp_path):
+    assert run(["build", str(FILES[0]), "-o", str(tmp_path)]) == 0
+    sheets = sorted(p.name for p in tmp_path.iterdir() if not p.name.startswith("."))
+    assert sheets == ["sheet1.dxf", "sheet1.pdf", "sheet2.dxf", "sheet2.pdf"]
+
+
+MASSLESS = """schema = 1
+[project]
+name = "a"
+title = "a"
+sheets = ["kinematics_forces"]
+[crank]
+link = "1"
+pivot = "A"
+pin = "B"
+length = "0.1 m"
+speed = "60 rpm"
+sense = "clockwise"
+[points]
+A = ["0 m", "0 m"]
+[[guide]]
+name = "g"
+through = "A"
+[[group]]
+kind = 2
+links = ["2", "3"]
+outer = ["B"]
+inner = "C"
+length = "0.3 m"
+guide = "g"
+[cycle]
+start = "0 deg"
+positions = 8
+force_position = "1"
+"""
+
+
+def test_a_mechanism_without_forces_says_so():
+    with pytest.raises(CannotBuild, match="there is nothing to draw, all its vectors are zero"):
+        composed(Project(variant.parse(MASSLESS, "a.toml")), 1)
+
+
+def test_one_group_alone():
+    text = MASSLESS + '[[link]]\nname = "3"\nmass = "2 kg"\ncentre = "C"\n[balancing]\nkind = "moment"\nname = "M1"\n'
+    assert not composed(Project(variant.parse(text, "a.toml")), 1).crowded

@@ -1,0 +1,96 @@
+"""Sets of files appear whole or not at all."""
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from tmm_sheets.errors import BadInput
+from tmm_sheets.files import check_folder, write_all
+
+
+def listing(folder):
+    return sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*"))
+
+
+@pytest.fixture
+def full_disk(monkeypatch):
+    """A disk that takes the first file and half of the second."""
+    taken = []
+    original = Path.write_bytes
+
+    def write(path, data):
+        if taken:
+            original(path, data[: len(data) // 2])
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        taken.append(path)
+        return original(path, data)
+
+    monkeypatch.setattr(Path, "write_bytes", write)
+
+
+def test_all_are_written(tmp_path):
+    write_all({tmp_path / "a" / "b" / "x": b"1", tmp_path / "a" / "y": b"2"})
+    assert (tmp_path / "a" / "b" / "x").read_bytes() == b"1"
+    assert listing(tmp_path) == ["a", "a/b", "a/b/x", "a/y"]
+
+
+def test_full_disk_leaves_the_old_files(tmp_path, full_disk):
+    for name in "xy":
+        with (tmp_path / name).open("w") as file:
+            file.write("old")
+    with pytest.raises(BadInput, match=r"y: cannot be written: no space left on device") as e:
+        write_all({tmp_path / "x": b"new", tmp_path / "y": b"new", tmp_path / "z": b"new"})
+    assert "nothing was written" in str(e.value)
+    assert listing(tmp_path) == ["x", "y"]
+    assert {(tmp_path / name).read_text() for name in "xy"} == {"old"}
+
+
+def test_interrupt_leaves_nothing(tmp_path, monkeypatch):
+    def write(path, data):
+        path.touch()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "write_bytes", write)
+    with pytest.raises(KeyboardInterrupt):
+        write_all({tmp_path / "x": b"new"})
+    assert listing(tmp_path) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+def test_device_that_is_full_stays_a_device():
+    with pytest.raises(BadInput, match="no space left on device"):
+        write_all({Path("/dev/full"): b"1"})
+    assert Path("/dev/full").is_char_device()
+
+
+def test_link_is_followed(tmp_path):
+    (tmp_path / "real").write_bytes(b"old")
+    (tmp_path / "link").symlink_to("real")
+    write_all({tmp_path / "link": b"new"})
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "real").read_bytes() == b"new"
+
+
+def test_file_in_the_place_of_a_folder(tmp_path):
+    (tmp_path / "out").write_bytes(b"")
+    for folder in (tmp_path / "out", tmp_path / "out" / "deeper"):
+        with pytest.raises(BadInput, match="out: expected a folder, this is a file"):
+            check_folder(folder)
+    with pytest.raises(BadInput, match="expected a folder"):
+        write_all({tmp_path / "out" / "x": b""})
+
+
+def test_folder_in_the_place_of_a_file(tmp_path):
+    (tmp_path / "x").mkdir()
+    with pytest.raises(BadInput, match="expected a file, this is a folder"):
+        write_all({tmp_path / "x": b""})
+
+
+def test_no_permission(tmp_path, monkeypatch):
+    # The tests may run as root, who may write anywhere: ask the same question with another answer.
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+    with pytest.raises(BadInput, match="cannot be written: permission denied"):
+        check_folder(tmp_path / "new")
+    assert listing(tmp_path) == []

@@ -1,0 +1,79 @@
+"""Entry of the command line: exit status and messages; ``tmm-sheets`` and ``python -m tmm_sheets``."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import NoReturn
+
+DONE, CANNOT_BUILD, BAD_INPUT = 0, 1, 2
+INTERRUPTED, BROKEN_PIPE = 130, 141
+"""As a shell reports programs ended by SIGINT and SIGPIPE."""
+
+
+def main() -> NoReturn:
+    """Run the command line and leave with its exit status."""
+    # The arrays here are short: threads of the linear algebra library would only cost start-up time and memory.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    sys.exit(_flushed(run(sys.argv[1:])))
+
+
+def _flushed(status: int) -> int:
+    """Exit status after the last output has left; a reader that went away or a full disk shows only here."""
+    try:
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:
+        status = BROKEN_PIPE
+    except OSError as e:
+        status = _say(f"output cannot be written: {(e.strerror or str(e)).lower()}", BAD_INPUT)
+    # What is still buffered must not raise again while Python shuts down.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return status
+
+
+def run(arguments: list[str]) -> int:
+    """Run the commands with these arguments; messages go to stderr, the exit status comes back."""
+    import click
+
+    from tmm_sheets.cli import commands
+    from tmm_sheets.errors import BadInput, CannotBuild
+
+    try:
+        # Not commands.main(): that ends the program by itself and with other statuses on Ctrl-C and closed pipes.
+        with commands.make_context("tmm-sheets", arguments) as context:
+            commands.invoke(context)
+        return DONE
+    except click.exceptions.Exit as e:
+        return e.exit_code
+    except click.ClickException as e:
+        e.show(file=sys.stderr)
+        return BAD_INPUT
+    except BadInput as e:
+        return _say(str(e), BAD_INPUT)
+    except CannotBuild as e:
+        return _say(str(e), CANNOT_BUILD)
+    except (KeyboardInterrupt, click.Abort):
+        return INTERRUPTED
+    except BrokenPipeError:
+        return BROKEN_PIPE  # main() quiets the buffer
+    except OSError as e:
+        place = f"{e.filename}: " if e.filename else "output cannot be written: "
+        return _say(f"{place}{(e.strerror or str(e)).lower()}", BAD_INPUT)
+    except MemoryError:
+        return _say("not enough memory; ask for fewer positions", CANNOT_BUILD)
+    except Exception as e:
+        if os.environ.get("TMM_SHEETS_TRACEBACK"):
+            raise
+        hint = "this is a defect of the program; TMM_SHEETS_TRACEBACK=1 shows where it happened"
+        return _say(f"internal error: {type(e).__name__}: {e}\n    {hint}", CANNOT_BUILD)
+
+
+def _say(message: str, status: int) -> int:
+    print(message, file=sys.stderr)
+    return status
+
+
+if __name__ == "__main__":
+    main()

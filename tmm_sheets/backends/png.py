@@ -1,0 +1,139 @@
+"""PNG at any resolution: black on white, 8 bits of grey, anti-aliased, true widths; the size on paper is in the file.
+
+matplotlib's Agg draws; it does so band by band, and the bands go into the file one after another: A1 at 600 dots per inch
+is 279 million pixels, which at four bytes each nobody wants in memory.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.path import Path as AggPath
+from matplotlib.transforms import Affine2D
+
+from tmm_sheets.backends.whole_file import write_whole
+from tmm_sheets.drawing.clipping import polyline_inside
+from tmm_sheets.drawing.ink import SAGITTA, Stroke, ink
+from tmm_sheets.drawing.marks import Box, Drawing, Points
+
+DPI = 150.0
+LEAST_DPI, MOST_DPI = 10.0, 1200.0
+BAND = 8_000_000  # pixels drawn at a time
+INCH = 25.4
+
+
+def write(drawing: Drawing, path: Path, dpi: float = DPI) -> None:
+    """Write a drawing as PNG with ``dpi`` dots per inch.
+
+    Raises
+    ------
+    ValueError
+        When a mark has coordinates that are not finite or a letter is missing from the font.
+    OSError
+        When the file cannot be written; nothing is left behind.
+    """
+    write_whole(path, render(drawing, dpi))
+
+
+def render(drawing: Drawing, dpi: float = DPI) -> bytes:
+    """The bytes of the PNG file."""
+    chord = min(max(SAGITTA, 0.02 * INCH / dpi), 0.02)
+    return picture(drawing.width, drawing.height, ink(drawing.marks, chord), dpi, drawing.title, drawing.author)
+
+
+def picture(
+    width: float, height: float, strokes: Iterable[Stroke], dpi: float = DPI, title: str = "", author: str = ""
+) -> bytes:
+    """PNG of strokes on paper of ``width`` x ``height`` mm.
+
+    Raises
+    ------
+    ValueError
+        When ``dpi`` is out of range.
+    """
+    if not LEAST_DPI <= dpi <= MOST_DPI:
+        raise ValueError(f"expected {LEAST_DPI:g} to {MOST_DPI:g} dots per inch, not {dpi:g}")
+    columns, rows = round(width / INCH * dpi), round(height / INCH * dpi)
+    packer = zlib.compressobj(6)
+    data = b"".join(packer.compress(lines) for lines in _filtered(_bands(columns, rows, list(strokes), dpi)))
+    per_metre = round(1000 * dpi / INCH)
+    words = [(key, text.encode("utf-8")) for key, text in ((b"Title", title), (b"Author", author)) if text]
+    chunks = [
+        (b"IHDR", struct.pack(">IIBBBBB", columns, rows, 8, 0, 0, 0, 0)),
+        (b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
+        *((b"iTXt", key + b"\0\0\0\0\0" + text) for key, text in words),
+        (b"IDAT", data + packer.flush()),
+        (b"IEND", b""),
+    ]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(map(_chunk, *zip(*chunks, strict=True)))
+
+
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def _filtered(bands: Iterable[npt.NDArray[np.uint8]]) -> Iterator[bytes]:
+    """Rows as the file wants them, each as its difference from the row above (filter 2): blank paper becomes zeros."""
+    above: npt.NDArray[np.uint8] | None = None
+    for band in bands:
+        if above is None:
+            above = np.zeros((1, band.shape[1]), np.uint8)
+        lines = np.full((band.shape[0], band.shape[1] + 1), 2, np.uint8)
+        lines[:, 1:] = band - np.concatenate((above, band[:-1]))
+        above = band[-1:]
+        yield lines.tobytes()
+
+
+def _bands(columns: int, rows: int, strokes: list[Stroke], dpi: float) -> Iterator[npt.NDArray[np.uint8]]:
+    """The picture from the top down, in bands of whole rows: 255 for paper, 0 for ink."""
+    pixel = dpi / INCH
+    # Lines are cut a little outside of a band, by half a pen and more, where their round ends do not show.
+    rim = int(max((s.width for s in strokes), default=0.0) * pixel) + 4
+    low = np.array([s.points.imag.min() for s in strokes]) * pixel
+    high = np.array([s.points.imag.max() for s in strokes]) * pixel
+    deep = max(BAND // columns, 1)
+    for top, bottom in pairwise([*range(0, rows, deep), rows]):
+        tall = bottom - top + 2 * rim
+        agg: Any = RendererAgg(columns, tall, dpi)  # type: ignore[no-untyped-call]
+        pen = agg.new_gc()
+        pen.set_capstyle("round")
+        pen.set_joinstyle("round")
+        pen.set_snap(False)
+        floor = rows - bottom - rim  # row of the sheet, counted from below, at the lower edge of the picture
+        place = Affine2D().scale(pixel).translate(0, -floor)
+        box = Box(-1 / pixel, (floor + 1) / pixel, (columns + 1) / pixel, (floor + tall - 1) / pixel)
+        for i in np.flatnonzero((high > floor) & (low < floor + tall)):
+            stroke = strokes[i]
+            pen.set_linewidth(stroke.width / INCH * 72)
+            for path in _paths(stroke, box):
+                agg.draw_path(pen, path, place, (0.0, 0.0, 0.0) if stroke.filled else None)
+        # The empty picture is transparent: how opaque a pixel has become is how much of it the ink covers.
+        yield 255 - np.asarray(agg.buffer_rgba())[rim : tall - rim, :, 3]
+
+
+def _paths(stroke: Stroke, box: Box) -> Iterator[AggPath]:
+    """A stroke as Agg wants it, cut to a box: left to itself matplotlib draws lines of its own where a curve leaves the picture."""
+    points = stroke.points
+    if stroke.filled:
+        yield _path(np.append(points, points[:1]), True)
+    elif (points == points[0]).all():
+        yield _path(np.append(points[:1], points[0] + 1e-4), False)  # a dot: Agg leaves out what has no length
+    else:
+        x, y = points.real, points.imag
+        inside = x.min() >= box.x0 and x.max() <= box.x1 and y.min() >= box.y0 and y.max() <= box.y1
+        for part in (points,) if inside else polyline_inside(box, points):
+            yield _path(part, False)
+
+
+def _path(points: Points, closed: bool) -> AggPath:
+    path = AggPath(np.column_stack((points.real, points.imag)), closed=closed)
+    path.should_simplify = False
+    return path

@@ -1,0 +1,103 @@
+"""SVG 1.1: paths in millimetres, one group for each line type, lettering as strokes.
+
+Letters are strokes and not text: a viewer without the drawing font would show others, wider and upright. What they say
+stands in the ``aria-label`` of their path, for those who search or listen. Inside, y points up as on the sheet.
+"""
+
+from __future__ import annotations
+
+import re
+from cmath import exp
+from collections.abc import Iterable
+from math import ceil, pi
+from pathlib import Path
+
+from tmm_sheets.backends.whole_file import write_whole
+from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.ink import check, letters
+from tmm_sheets.drawing.lettering import PEN
+from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Polyline, Text
+from tmm_sheets.drawing.styles import line_type
+
+PIECE = pi / 2  # an arc is written in pieces: the centre of a half turn hangs on the last digit of its ends
+
+
+def write(drawing: Drawing, path: Path) -> None:
+    """Write a drawing as SVG, 1:1.
+
+    Raises
+    ------
+    ValueError
+        When a mark has coordinates that are not finite or a letter is missing from the font.
+    OSError
+        When the file cannot be written; nothing is left behind.
+    """
+    write_whole(path, render(drawing))
+
+
+def render(drawing: Drawing) -> bytes:
+    """The bytes of the SVG file."""
+    lines: dict[str, list[str]] = {}
+    fills: list[str] = []
+    texts: dict[float, list[str]] = {}
+    for mark in strokes(drawing.marks):
+        check(mark)
+        if isinstance(mark, Text):
+            data = "".join(_polyline(points.tolist()) for points in letters(mark))
+            texts.setdefault(mark.height, []).append(f'<path aria-label="{_escaped(mark.text)}" d="{data}"/>')
+        elif isinstance(mark, Fill):
+            fills.append(f'<path d="{_polyline(mark.points.tolist())}z"/>')
+        else:
+            lines.setdefault(mark.style, []).append(f'<path d="{_path(mark)}"/>')
+    body = [
+        *(_group(style, f'stroke-width="{line_type(style).width:g}"', lines[style]) for style in lines),
+        _group("fills", 'stroke="none" fill="#000"', fills),
+        *(_group(f"text-{height:g}", f'stroke-width="{PEN * height:g}"', texts[height]) for height in sorted(texts)),
+    ]
+    width, height = f"{drawing.width:g}", f"{drawing.height:g}"
+    author = f"<desc>{_escaped(drawing.author)}</desc>\n" if drawing.author else ""
+    text = (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}mm" height="{height}mm" '
+        f'viewBox="0 0 {width} {height}">\n'
+        f"<title>{_escaped(drawing.title)}</title>\n{author}"
+        f'<g transform="matrix(1 0 0 -1 0 {height})" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">\n'
+        f"{''.join(body)}</g>\n</svg>\n"
+    )
+    return text.encode("utf-8")
+
+
+def _group(name: str, look: str, paths: list[str]) -> str:
+    return "\n".join((f'<g id="{name}" {look}>', *paths, "</g>\n")) if paths else ""
+
+
+def _path(mark: Line | Arc | Polyline) -> str:
+    if isinstance(mark, Line):
+        return _polyline((mark.a, mark.b))
+    if isinstance(mark, Polyline):
+        return _polyline(mark.points.tolist()) + ("z" if mark.closed else "")
+    n = max(ceil((mark.end - mark.start) / PIECE - 1e-9), 1)
+    ends = [mark.centre + mark.radius * exp(1j * (mark.start + (mark.end - mark.start) * i / n)) for i in range(n + 1)]
+    arc = f"A{_number(mark.radius)} {_number(mark.radius)} 0 0 1 "
+    closed = "z" if mark.end - mark.start > 2 * pi - 1e-9 else ""
+    return f"M{_place(ends[0])}" + "".join(arc + _place(end) for end in ends[1:]) + closed
+
+
+def _polyline(points: Iterable[complex]) -> str:
+    return "M" + "L".join(map(_place, points))
+
+
+def _place(p: complex) -> str:
+    return f"{_number(p.real)} {_number(p.imag)}"
+
+
+def _number(value: float) -> str:
+    """Micrometres are kept, idle zeros are not."""
+    text = f"{value:.3f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def _escaped(text: str) -> str:
+    """Text fit for XML, which takes no control characters at all."""
+    text = re.sub("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "\ufffd", text)
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")

@@ -1,0 +1,130 @@
+"""What one sheet, one format or one number costs against the whole: time, modules, steps and marks.
+
+Every row is a command in a fresh process; time is the processor's (that of the wall depends on who else works on the machine), the
+least of some runs, the process's start included. A second kind of process counts steps and marks, which would disturb the first.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from tmm_sheets.errors import BadInput
+from tmm_sheets.explain import HEAVY
+
+RUNS = 3
+NUMBERS = ("positions", "forces", "flywheel", "gear", "cam")
+
+PLAIN = """
+import sys, json
+from tmm_sheets.__main__ import run
+status = run(sys.argv[2:])
+sys.stdout.flush()
+with open(sys.argv[1], "w") as f:
+    json.dump({"status": status, "modules": sorted(sys.modules)}, f)
+"""
+COUNTING = """
+import sys, json
+from tmm_sheets.construction import plan
+from tmm_sheets.drawing import canvas
+steps, sheets = [], []
+add, begin = plan.Plan.add, canvas.Canvas.__init__
+def adding(self, *a, **k):
+    steps.append(add(self, *a, **k))
+    return steps[-1]
+def beginning(self, *a, **k):
+    sheets.append(self)
+    begin(self, *a, **k)
+plan.Plan.add, canvas.Canvas.__init__ = adding, beginning
+from tmm_sheets.__main__ import run
+status = run(sys.argv[2:])
+sys.stdout.flush()
+with open(sys.argv[1], "w") as f:
+    json.dump({"steps": len(steps), "evaluated": sum(s.evaluated for s in steps), "marks": sum(len(c.marks) for c in sheets)}, f)
+"""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Cost of one command: processor time, s; steps recorded and evaluated, marks made, modules of ours and large ones."""
+
+    command: str
+    seconds: float
+    steps: int
+    evaluated: int
+    marks: int
+    modules: int
+    heavy: tuple[str, ...]
+
+
+def _child(program: str, arguments: list[str], folder: Path) -> tuple[dict[str, Any], float]:
+    report = folder / "report.json"
+    start = os.times()
+    done = subprocess.run([sys.executable, "-c", program, str(report), *arguments], capture_output=True, text=True, check=False)
+    end = os.times()
+    took = end.children_user - start.children_user + end.children_system - start.children_system
+    if not report.exists():
+        raise BadInput(f"{' '.join(arguments)}: ended without a report", hint=done.stderr.strip()[-300:])
+    found = json.loads(report.read_text())
+    report.unlink()
+    if found.get("status", 0):
+        raise BadInput(f"{' '.join(arguments)}: {done.stderr.strip()}")
+    return found, took
+
+
+def measure(arguments: list[str], runs: int = RUNS, forced: bool = True) -> Cost:
+    """Cost of a command; ``{out}`` in an argument is a folder, empty at each run unless ``forced`` is off."""
+    with TemporaryDirectory() as name:
+        folder, seconds = Path(name), []
+        plain: dict[str, Any] = {}
+        if not forced:
+            _child(PLAIN, [a.format(out=folder / "out") for a in arguments], folder)
+        for k in range(runs):
+            out = folder / (f"out{k}" if forced else "out")
+            plain, took = _child(PLAIN, [a.format(out=out) for a in arguments], folder)
+            seconds.append(took)
+        counted, _ = _child(COUNTING, [a.format(out=folder / ("counted" if forced else "out")) for a in arguments], folder)
+    modules = plain["modules"]
+    shown = " ".join(a for a in arguments if a not in ("-o", "{out}"))
+    ours = sum(m.startswith("tmm_sheets") for m in modules)
+    return Cost(shown, min(seconds), counted["steps"], counted["evaluated"], counted["marks"], ours,
+                tuple(h for h in HEAVY if h in modules))
+
+
+def commands(project: str) -> list[tuple[list[str], bool]]:
+    """The commands compared, the whole first, and whether each begins in an empty folder."""
+    from tmm_sheets import catalogue, results
+    from tmm_sheets.project import Project
+
+    variant = catalogue.read(project)
+    build = ["build", project, "-o", "{out}"]
+    found = [(build, True), ([*build, "--format", "dxf"], True), ([*build, "--format", "pdf"], True)]
+    found += [([*build, "--sheet", str(n)], True) for n in range(1, len(variant.sheets) + 1)]
+    found += [(build, False)]
+    parts = results.parts_of(Project(variant))
+    found += [(["solve", project, "--part", part], True) for part in NUMBERS if part in parts]
+    return [*found, (["check", project], True), (["show", project], True)]
+
+
+def table(project: str, say: Callable[[str], None]) -> str:
+    """The table in Markdown, as it stands in README."""
+    rows = []
+    for arguments, forced in commands(project):
+        say(" ".join(arguments))
+        rows.append((measure(arguments, forced=forced), forced))
+    whole = rows[0][0].seconds
+    heads = ("command", "processor time", "of the whole", "steps evaluated", "marks", "own modules", "large libraries")
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    for c, forced in rows:
+        name = f"`{c.command}`" + ("" if forced else ", again: unchanged")
+        cells = (name, f"{1000 * c.seconds:.0f} ms", f"{100 * c.seconds / whole:.0f} %", f"{c.evaluated} of {c.steps}",
+                 str(c.marks), str(c.modules), ", ".join(c.heavy))
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)

@@ -1,0 +1,228 @@
+"""Graphical integration, excess work and both methods of the flywheel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
+from math import pi
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+
+from tmm_sheets import catalogue, variant
+from tmm_sheets.bench.records import Bench
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.methods.energy_mass import highest
+from tmm_sheets.methods.flywheel import Flywheel
+from tmm_sheets.methods.integration import Floats, Quadrature, integrate, ordinates, smooth
+from tmm_sheets.methods.mertsalov import Mertsalov
+from tmm_sheets.methods.wittenbauer import Wittenbauer
+from tmm_sheets.project import Project
+
+CHORDS = (6, 12, 24, 48, 96, 192, 384)
+POSITIONS = (10, 20, 40, 80, 160, 320)
+DIGITS = 40
+TURN = 2 * pi
+
+
+# --- integrands with their integrals in closed form -------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Integrand:
+    """A graph over one turn: ``f`` in doubles, its integral from 0 in mpmath, where it jumps or has a peak."""
+
+    name: str
+    f: Callable[[Floats], Floats]
+    integral: Callable[[Any], Any]
+    borders: tuple[float, ...] = ()
+
+    @cached_property
+    def size(self) -> float:
+        """Largest value of the integral."""
+        with mp.workdps(DIGITS):
+            return max(float(abs(self.integral(mp.mpf(x)))) for x in (*np.linspace(0, TURN, 721).tolist(), *self.borders))
+
+
+ON, OFF, PEAK, WIDTH = 0.31, 3.44, 2.05, 0.4
+
+
+def _cut_integral(x: Any) -> Any:
+    x = min(max(x, mp.mpf(ON)), mp.mpf(OFF))
+    return (x - ON) - (mp.cos(x) - mp.cos(mp.mpf(ON))) / 2
+
+
+def _peak_integral(x: Any) -> Any:
+    t = min(max((x - PEAK) / mp.mpf(WIDTH), mp.mpf(-1)), mp.mpf(1))
+    return mp.mpf(WIDTH) * ((1 + t) ** 2 / 2 if t < 0 else 1 - (1 - t) ** 2 / 2)
+
+
+SMOOTH = Integrand("smooth", lambda x: np.sin(x) ** 2, lambda x: x / 2 - mp.sin(2 * x) / 4)
+JUMPS = Integrand("force with jumps", lambda x: np.where((x > ON) & (x < OFF), 1 + np.sin(x) / 2, 0.0), _cut_integral, (ON, OFF))
+PEAKED = Integrand("diagram with a peak", lambda x: np.maximum(1 - np.abs(x - PEAK) / WIDTH, 0.0), _peak_integral,
+                   (PEAK - WIDTH, PEAK, PEAK + WIDTH))
+
+
+def _edges(n: int, borders: tuple[float, ...] = ()) -> Floats:
+    return np.unique(np.concatenate((np.linspace(0, TURN, n + 1), borders)))
+
+
+def _chords(f: Callable[[Floats], Floats], edges: Floats) -> Floats:
+    """Ends of the chords over the borders, by the recorded construction."""
+    heights = f((edges[:-1] + edges[1:]) / 2)
+    names = [str(k) for k in range(len(edges))]
+    return ordinates(integrate(Plan("bench", "", "mm"), "", edges, heights, 1.0, borders=names))
+
+
+def _integration(bench: Bench) -> None:
+    ways = [(SMOOTH, "equal intervals", ()), (JUMPS, "equal intervals", ()), (JUMPS, "jumps as borders", JUMPS.borders),
+            (PEAKED, "equal intervals", ()), (PEAKED, "peak as border", PEAKED.borders)]
+    for g, way, borders in ways:
+
+        def error(found: tuple[Floats, Floats], g: Integrand = g) -> float:
+            edges, values = (part.tolist() for part in found)
+            with mp.workdps(DIGITS):
+                return max(float(abs(v - g.integral(mp.mpf(x)))) for x, v in zip(edges, values, strict=True)) / g.size
+
+        for n in bench.upto(CHORDS, 24):
+
+            def run(g: Integrand = g, borders: tuple[float, ...] = borders, n: int = n) -> tuple[Floats, Floats]:
+                edges = _edges(n, borders)
+                return edges, _chords(g.f, edges)
+
+            bench.row(("graphical integration", f"{g.name}, {way}", "chords"), n, run, error)
+
+
+# --- excess work of the moment 1/2 - sin^2: the sine of twice the angle over 4, so the span is exactly 1/2 -------------
+
+
+def _span(curve: Callable[[Floats], Floats], samples: Floats) -> float:
+    high, low = (float(curve(np.array([highest(lambda t, s=s: s * curve(t), samples)]))[0])  # type: ignore[misc]
+                 for s in (1.0, -1.0))
+    return high - low
+
+
+def _excess(bench: Bench) -> None:
+    def f(x: Floats) -> Floats:
+        return np.asarray(0.5 - np.sin(x) ** 2)
+
+    def at_nodes(n: int) -> float:
+        return float(np.ptp(_chords(f, _edges(n))))
+
+    def on_curve(n: int) -> float:
+        edges = _edges(n)
+        ends = _chords(f, edges)
+        return _span(lambda t: np.asarray(smooth(edges, ends, f(edges[:-1]), f(edges[1:]), t)), np.linspace(0, TURN, 721))
+
+    def converged(n: int) -> float:
+        return _span(Quadrature(f, _edges(n), order=4), np.linspace(0, TURN, 721))
+
+    ways = (("extremes among the ends of the chords", at_nodes), ("smooth curve, extremes between", on_curve),
+            ("limit: 4 Gauss points for each interval", converged))
+    for name, way in ways:
+        for n in bench.upto(CHORDS, 24):
+            bench.row(("excess work", name, "chords"), n, partial(way, n), lambda found: abs(found - 0.5) / 0.5)
+
+
+# --- flywheel of the shaper: constant force on the working stroke, everything in closed form --------------------------
+
+
+@dataclass(frozen=True)
+class _Shaper:
+    """The shaper's energy over the turned angle in mpmath, from the numbers of its project file."""
+
+    project: Project
+
+    def swing(self, beta: Any) -> tuple[Any, Any]:
+        """Rocker's angle from the vertical and its derivative; ``beta`` is the crank's angle from the vertical, clockwise."""
+        v = self.project.variant
+        r, d = mp.mpf(v.crank.length), abs(mp.mpf(self.project.mechanism.fixed["C"].imag))  # type: ignore[union-attr]
+        x, y = r * mp.sin(beta), d + r * mp.cos(beta)
+        return mp.atan2(x, y), r * (r + d * mp.cos(beta)) / (x * x + y * y)
+
+    def inertia(self, beta: Any) -> Any:
+        """Reduced moment of inertia of links 2 to 5; the balanced crank has none."""
+        m = self.project.mechanism
+        cd, cs = (mp.mpf(p.distance) for p in m.points)
+        angle, rate = self.swing(beta)
+        links = m.links
+        turning = links["3"].inertia + links["3"].mass * cs**2 + links["4"].mass * cd**2
+        return links["2"].mass * mp.mpf(m.crank.length) ** 2 + (turning + links["5"].mass * (cd * mp.cos(angle)) ** 2) * rate**2
+
+    def first(self, mertsalov: bool) -> Any:
+        """Moment of inertia of all that turns with the crank, kg m2, in :data:`DIGITS` digits."""
+        p = self.project
+        with mp.workdps(DIGITS):
+            cd = mp.mpf(p.mechanism.points[0].distance)
+            start = mp.pi / 2 - mp.mpf(p.cycle.start)  # of the crank from the vertical
+            start -= 2 * mp.pi * mp.nint(start / (2 * mp.pi))
+            r, d = mp.mpf(p.mechanism.crank.length), abs(mp.mpf(p.mechanism.fixed["C"].imag))
+            dead = mp.acos(-r / d)
+            size, omega, delta = mp.mpf(_FORCE), mp.mpf(p.mechanism.crank.speed), mp.mpf(p.variant.flywheel.delta)  # type: ignore[union-attr]
+            stroke = 2 * cd * r / d
+            total = mp.mpf(0)
+            for sign in (1, -1):
+                half = (omega * (1 + (0 if mertsalov else sign * delta / 2))) ** 2 / 2
+
+                def height(t: Any, sign: int = sign, half: Any = half) -> Any:
+                    done = size * cd * (mp.sin(self.swing(min(max(start + t, -dead), dead))[0]) + r / d)
+                    return sign * (size * stroke * t / (2 * mp.pi) - done - half * self.inertia(start + t))
+
+                grid = sorted([2 * mp.pi * k / 360 for k in range(361)] + [-dead - start, dead - start])
+                best = max((t for t in grid if t >= 0), key=height)
+                if best not in (-dead - start, dead - start):
+                    best = mp.findroot(lambda t, height=height: mp.diff(height, t), best)
+                total += height(best)
+            return total / (delta * omega**2)
+
+
+_FORCE = 2800.0
+"""The shaper's cutting force, N."""
+
+
+def _of(n: int) -> Project:
+    """The shaper with that many positions, a multiple of five, more of them on the working stroke."""
+    text = catalogue.read("lugansk/shaper").text
+    for old, new in (("working = 6 ", f"working = {n * 3 // 5} "), ("idle = 4 ", f"idle = {n * 2 // 5} ")):
+        if text.count(old) != 1:
+            raise ValueError(f"the shaper's project file has no {old!r}")
+        text = text.replace(old, new)
+    return Project(variant.parse(text, "shaper"))
+
+
+def _drawn(method: type[Flywheel], p: Project) -> float:
+    return method(p.reduced, _data(p)).J_first
+
+
+def _converged(method: type[Flywheel], p: Project) -> float:
+    return method(p.reduced, _data(p)).J_first_converged
+
+
+def _data(p: Project) -> Any:
+    return p.variant.flywheel
+
+
+def _flywheel(bench: Bench) -> None:
+    methods: tuple[tuple[str, type[Flywheel]], ...] = (("Wittenbauer", Wittenbauer), ("Mertsalov", Mertsalov))
+    goals = {name: _Shaper(_of(10)).first(name == "Mertsalov") for name, _ in methods}
+    for n in bench.upto(POSITIONS, 20):
+        p = _of(n)
+        for name, method in methods:
+
+            def error(found: float, name: str = name) -> float:
+                return float(abs((found - goals[name]) / goals[name]))
+
+            bench.row(("flywheel", f"{name}, construction", "positions"), n,
+                      partial(_drawn, method, p), error)
+            if n == POSITIONS[0]:
+                bench.row(("flywheel", f"{name}, limit", "positions"), n,
+                          partial(_converged, method, p), error)
+
+
+def rows(bench: Bench) -> None:
+    """Graphical integration, excess work, flywheel."""
+    _integration(bench)
+    _excess(bench)
+    _flywheel(bench)

@@ -1,0 +1,140 @@
+"""Plans of positions, velocities, accelerations and forces for 12 to a million positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cached_property, partial
+from math import pi
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets import catalogue
+from tmm_sheets.bench import truth
+from tmm_sheets.bench.records import Bench
+from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
+from tmm_sheets.methods.cycle import even_cycle
+from tmm_sheets.methods.study import Study
+from tmm_sheets.project import Project
+
+COUNTS = (12, 24, 120, 360, 1000, 10_000, 100_000, 1_000_000)
+BLOCK = 8192
+"""Positions worked at a time: the arrays of a block stay in the processor's cache, and the memory bounded."""
+CHECKED = 8
+"""Positions compared with the truth, spread over the turn."""
+GRAVITY = 9.81
+
+
+def four_bar() -> Mechanism:
+    """Crank 0.1, coupler 0.35, rocker 0.25, frame 0.4 m; masses in the middles of the links."""
+    return Mechanism(
+        Crank("1", "A", "B", 0.1, 10.0, 1), {"A": 0j, "D": 0.4 + 0j}, {},
+        (StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), 1),),
+        (LinkPoint("S2", "2", "B", "C", 0.175), LinkPoint("S3", "3", "D", "C", 0.125)),
+        {"1": Link("1"), "2": Link("2", "", 3.5, "S2", 0.036), "3": Link("3", "", 2.5, "S3", 0.013)})
+
+
+def slider_crank() -> Mechanism:
+    """Crank 0.1, rod 0.35 m, guide 0.02 m below the axis; centre of mass of the rod at a third."""
+    return Mechanism(
+        Crank("1", "A", "B", 0.1, 10.0, 1), {"A": 0j}, {"x": Guide("x", "0", -0.02j, 0.0)},
+        (StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",), 1),),
+        (LinkPoint("S2", "2", "B", "C", 0.35 / 3),),
+        {"1": Link("1"), "2": Link("2", "", 3.5, "S2", 0.036), "3": Link("3", "", 5.0, "C")})
+
+
+def shaper() -> Mechanism:
+    """The six-bar shaper of manual 000: turning rocker with a stone, ram."""
+    return Project(catalogue.read("lugansk/shaper")).mechanism
+
+
+MECHANISMS: tuple[tuple[str, Callable[[], Mechanism]], ...] = (
+    ("four-bar", four_bar), ("slider-crank", slider_crank), ("six-bar", shaper),
+)
+PLANS = ("positions", "velocities", "accelerations", "forces")
+
+Values = dict[str, Any]
+
+
+def _values(study: Study, plan: str) -> dict[str, Values]:
+    """What a plan gives, by kinds whose sizes compare."""
+    if plan == "positions":
+        return {"points": {k: s.value for k, s in study.positions.points.items()}}
+    if plan == "velocities":
+        v = study.velocities
+        return {"points": {k: s.value for k, s in v.points.items()}, "links": {k: s.value for k, s in v.omega.items()}}
+    if plan == "accelerations":
+        a = study.accelerations
+        return {"points": {k: s.value for k, s in a.points.items()}, "links": {k: s.value for k, s in a.epsilon.items()}}
+    balancing = study.forces.balancing
+    assert balancing is not None  # every linkage here is driven by a moment
+    return {"reactions": {k: s.value for k, s in study.forces.reactions.items()}, "balancing": {"": balancing.value}}
+
+
+def study_of(m: Mechanism, turned: npt.NDArray[np.float64]) -> Study:
+    """All plans for angles turned from 0, rad, under weights and inertia, a moment balancing the crank."""
+    return Study(m, even_cycle(m, 0.0, 1), turned, ("",), GRAVITY, tuple, None)
+
+
+def _blocks(n: int) -> Iterator[tuple[int, npt.NDArray[np.float64]]]:
+    for start in range(0, n, BLOCK):
+        yield start, np.asarray(2 * pi / n * np.arange(start, min(start + BLOCK, n)), dtype=np.float64)
+
+
+def _run(m: Mechanism, n: int, plan: str, keep: npt.NDArray[np.int64]) -> dict[tuple[str, str], npt.NDArray[Any]]:
+    """A plan for ``n`` positions; what it gives at the positions to be checked is kept."""
+    found: dict[tuple[str, str], list[Any]] = {}
+    for start, turned in _blocks(n):
+        here = keep[(keep >= start) & (keep < start + len(turned))] - start
+        for kind, values in _values(study_of(m, turned), plan).items():
+            for name, value in values.items():
+                found.setdefault((kind, name), []).append(np.broadcast_to(value, turned.shape)[here])
+    return {key: np.concatenate(parts) for key, parts in found.items()}
+
+
+class _Truth:
+    """Truth at some of ``n`` positions, for all plans."""
+
+    def __init__(self, m: Mechanism, n: int, most: int) -> None:
+        checked = min(n, most)
+        self.keep = np.arange(checked) * n // checked + n // (3 * most)
+        self.mechanism = m
+        self.step = 2 * pi / n
+
+    @cached_property
+    def _moved(self) -> list[truth.Motion]:
+        return [truth.motion(self.mechanism, self.mechanism.crank.sense * (self.step * k)) for k in self.keep.tolist()]
+
+    def _at(self, moved: truth.Motion, plan: str) -> dict[str, Values]:
+        if plan == "forces":
+            forces, moment = truth.reactions(self.mechanism, moved, GRAVITY)
+            return {"reactions": forces, "balancing": {"": moment}}
+        if plan == "positions":
+            return {"points": moved.z}
+        if plan == "velocities":
+            return {"points": moved.v, "links": moved.omega}
+        return {"points": moved.a, "links": moved.epsilon}
+
+    def error(self, plan: str, found: dict[tuple[str, str], Any]) -> float:
+        """Largest error of a kind of quantity, relative to the largest of that kind."""
+        off: dict[str, float] = {}
+        size: dict[str, float] = {}
+        goals = [self._at(moved, plan) for moved in self._moved]
+        for (kind, name), values in found.items():
+            for goal, value in zip(goals, values.tolist(), strict=True):
+                if name in goal[kind]:  # not a foot or another auxiliary point of the construction
+                    off[kind] = max(off.get(kind, 0.0), float(abs(value - goal[kind][name])))
+                    size[kind] = max(size.get(kind, 0.0), float(abs(goal[kind][name])))
+        return max(off[kind] / size[kind] for kind in off)
+
+
+def rows(bench: Bench) -> None:
+    """Every plan of the four-bar, the slider-crank and the six-bar; each with the plans before it."""
+    for name, build in MECHANISMS:
+        m = build()
+        truths = {n: _Truth(m, n, 4 if bench.quick else CHECKED) for n in bench.upto(COUNTS, 24)}
+        for plan in PLANS:
+            for n, true in truths.items():
+                bench.row(("linkages", f"{plan} of the {name}", "positions"), n,
+                          partial(_run, m, n, plan, true.keep), partial(true.error, plan))

@@ -1,0 +1,273 @@
+"""Cam by tangents and as an envelope, involute by unrolling, tooth cut by a rack."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from math import asin, pi, radians, tan
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from mpmath import mp
+
+from tmm_sheets import catalogue
+from tmm_sheets.bench.records import Bench
+from tmm_sheets.methods.cam_profile import RollerCam, cam
+from tmm_sheets.methods.gear_engagement import involute_plan
+from tmm_sheets.methods.gear_geometry import Wheel
+from tmm_sheets.methods.gears import GearPair
+from tmm_sheets.methods.rack import Rack, flank
+from tmm_sheets.project import Project
+
+DIGITS = 40
+CHECKED = 24
+
+Complex = npt.NDArray[np.complex128]
+
+
+def _away(points: Any, goals: list[Any]) -> float:
+    """Largest distance of points from their true places."""
+    with mp.workdps(DIGITS):
+        return max(float(abs(p - goal)) for p, goal in zip(np.asarray(points).tolist(), goals, strict=True))
+
+
+def _from_chord(goal: complex, a: complex, b: complex) -> float:
+    """Distance of a true point from the chord that stands for it."""
+    return abs(((goal - a) * (b - a).conjugate()).imag) / abs(b - a)
+
+
+def _edge_of(shape: Any, points: Any) -> float:
+    """Largest distance of points from the border of a shapely polygon."""
+    import shapely
+
+    at = shapely.points(np.column_stack((points.real, points.imag)))
+    return float(np.max(shapely.distance(shape.exterior, at)))
+
+
+def _polygon(points: Any) -> Any:
+    import shapely
+
+    return shapely.polygons(np.column_stack((points.real, points.imag)))
+
+
+# --- cam of the shaper: sine law, translating roller --------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class SineCam:
+    """The translating roller cam with the sine law in mpmath; e, s0 and the roller as the doubles of the construction."""
+
+    cam: RollerCam
+
+    def motion(self, phi: Any) -> tuple[Any, Any]:
+        """Displacement and its derivative, m, at a cam angle within the turn."""
+        d = self.cam.data
+        rise, dwell, fall, h = (mp.mpf(x or 0) for x in (d.rise, d.upper_dwell, d.fall, d.stroke))
+        for start, angle, first, sign in ((mp.mpf(0), rise, 0, 1), (rise + dwell, fall, h, -1)):
+            if start <= phi <= start + angle:
+                x = (phi - start) / angle
+                return first + sign * h * (x - mp.sin(2 * mp.pi * x) / (2 * mp.pi)), sign * h / angle * (1 - mp.cos(2 * mp.pi * x))
+        return (h if phi < rise + dwell else mp.mpf(0)), mp.mpf(0)
+
+    def r0(self) -> Any:
+        """Smallest radius of the centre profile from the tangents to S(S') of the rise, m."""
+        d = self.cam.data
+        with mp.workdps(DIGITS):
+            h, rise, slope = mp.mpf(d.stroke or 0), mp.mpf(d.rise), mp.tan(mp.mpf(d.pressure_angle or 0))
+            # Where S'' = S' tan(alpha): 2 pi/rise sin = slope (1 - cos), the half angle of the law.
+            half = mp.atan(2 * mp.pi / (rise * slope))
+            s, ds = h * (half / mp.pi - mp.sin(2 * half) / (2 * mp.pi)), 2 * h / rise * mp.sin(half) ** 2
+            # The second border goes through the start of the curve; both meet below it.
+            u = (s - ds / slope) / 2
+            return mp.hypot(u * slope, u)
+
+    def profile(self, phi: Any) -> Any:
+        """Point of the profile at a cam angle, m."""
+        right = self.cam.right
+        e, s0, roller = mp.mpf(self.cam.zone.e), mp.mpf(self.cam.zone.s0), mp.mpf(self.cam.roller)
+        s, ds = self.motion(phi)
+        at = mp.mpc(-right * e, s0 + s)
+        along = 1j * ds + 1j * right * at
+        inward = 1j * right * along / abs(along)
+        return (at + roller * inward) * mp.expj(right * phi)
+
+
+def _shaper_cam(parts: int = 8) -> RollerCam:
+    data = catalogue.read("lugansk/shaper").cam
+    assert data is not None
+    found = cam(data.model_copy(update={"parts": parts}))
+    assert isinstance(found, RollerCam)
+    return found
+
+
+def _least_radius(parts: int) -> float:
+    return _shaper_cam(parts).zone.r0
+
+
+def _at_points(c: RollerCam, n: int) -> float:
+    """r0 when the ruler is put through numbered points of the curve instead of touching it between them."""
+    x = np.linspace(0, 1, n + 1)
+    slope = tan(c.alpha)
+    s, ds = np.asarray(c.law.rise.s(x)), np.asarray(c.law.rise.ds(x))
+    k = int(np.argmax(ds - s * slope))
+    u = float(s[k] - ds[k] / slope) / 2
+    return abs(complex(u * slope, u))
+
+
+def _cut_by_discs(c: RollerCam, n: int) -> Any:
+    import shapely
+
+    phi = np.asarray(2 * pi / n * np.arange(n), dtype=np.float64)
+    centres = np.asarray(c.at(phi).centres.value) * 1e3
+    at = shapely.points(np.column_stack((centres.real, centres.imag)))
+    discs = shapely.buffer(at, c.roller * 1e3, quad_segs=min(max(n // 4, 16), 256))
+    return shapely.difference(_polygon(centres), shapely.union_all(discs))
+
+
+def _cams(bench: Bench) -> None:
+    c = _shaper_cam()
+    true = SineCam(c)
+    r0 = true.r0()
+    for parts in (4, 6, 8, 10, 12):
+        bench.row(("cam", "r0 by tangents", "parts of a phase"), parts, partial(_least_radius, parts),
+                  lambda found: float(abs(found - r0) / r0))
+    for parts in bench.upto((8, 16, 32, 64, 128, 256, 512), 32):
+        bench.row(("cam", "r0, ruler through numbered points", "parts of a phase"), parts,
+                  partial(_at_points, c, parts), lambda found: float(abs(found - r0) / r0))
+    counts = bench.upto((36, 72, 180, 360, 720, 1440, 2880), 72)
+    for n in counts:
+        phi = 2 * pi / n * np.arange(n)
+        some = np.unique(np.linspace(0, n - 2, CHECKED).astype(int))
+
+        def points(phi: Any = phi) -> Any:
+            return c.at(phi).plan["F"].value
+
+        def at_points(found: Any, phi: Any = phi, some: Any = some) -> float:
+            with mp.workdps(DIGITS):
+                return _away(found[some], [true.profile(mp.mpf(x)) for x in phi[some].tolist()]) * 1e3
+
+        def between(found: Any, phi: Any = phi, some: Any = some) -> float:
+            with mp.workdps(DIGITS):
+                middles = [complex(true.profile(mp.mpf(x))) for x in ((phi[some] + phi[some + 1]) / 2).tolist()]
+            return max(_from_chord(m, complex(found[k]), complex(found[k + 1])) for m, k in zip(middles, some, strict=True)) * 1e3
+
+        bench.row(("cam", "profile, points (mm)", "positions"), n, points, at_points)
+        bench.row(("cam", "profile, chords between the points (mm)", "positions"), n, points, between)
+    with mp.workdps(DIGITS):
+        goals = np.array([complex(true.profile(2 * mp.pi * (k + mp.mpf(1) / 3) / 60)) for k in range(60)]) * 1e3
+    for n in (m for m in counts if m <= 1440):
+        bench.row(("cam", "envelope of roller discs cut out (shapely, mm)", "positions"), n,
+                  partial(_cut_by_discs, c, n), lambda shape: _edge_of(shape, goals))
+
+
+# --- involute by unrolling ----------------------------------------------------------------------------------------------
+
+
+def _involute_at(wheel: Wheel, share: Any) -> Any:
+    """Point of the involute where the tangent is that share of the pole's, seen from the centre, the pole at 1."""
+    rb, whole = mp.mpf(wheel.rb), mp.mpf(wheel.t_pole)
+
+    def polar(t: Any) -> tuple[Any, Any]:
+        return mp.hypot(rb, t), t / rb - mp.atan2(t, rb)
+
+    (r, turned), (r_pole, turned_pole) = polar(whole * share), polar(whole)
+    return r / r_pole * mp.expj(turned - turned_pole)
+
+
+def _seen(pair: GearPair, wheel: Wheel, points: Any) -> Complex:
+    """The same frame for constructed points: mirrored where the involute winds the other way."""
+    centre, pole = (complex(pair.engagement[name].value) for name in (f"O{wheel.number}", "Pw"))
+    z = (np.asarray(points) - centre) / (pole - centre)
+    return np.asarray(z if z[-1].imag > 0 else np.conj(z))
+
+
+def _involutes(bench: Bench) -> None:
+    pair = Project(catalogue.read("lugansk/shaper")).gear
+    wheel = pair.pinion
+    scale = wheel.rw * 1e3  # the pole's radius is 1 there
+
+    def unrolled(parts: int) -> Complex:
+        plan = involute_plan(wheel, pair.engagement, parts)
+        return _seen(pair, wheel, [plan[name].value for name in plan.steps if name.startswith("E")])
+
+    def stepped(parts: int) -> Complex:
+        """Arcs of the base circle stepped off with the dividers: as many chords as divisions."""
+        part = wheel.t_pole / parts
+        k = np.arange(parts + 3)
+        turn = 2 * asin(part / 2 / wheel.rb) * (k - parts)
+        pole = complex(wheel.rb, -wheel.t_pole)
+        return np.asarray((wheel.rb - 1j * part * k) * np.exp(1j * turn) / pole)
+
+    def off(parts: int, found: Complex) -> float:
+        with mp.workdps(DIGITS):
+            return _away(found, [_involute_at(wheel, mp.mpf(k) / parts) for k in range(len(found))]) * scale
+
+    def between(parts: int, found: Complex) -> float:
+        with mp.workdps(DIGITS):
+            middles = [complex(_involute_at(wheel, (mp.mpf(k) + 0.5) / parts)) for k in range(len(found) - 1)]
+        return max(_from_chord(m, complex(a), complex(b)) for m, a, b in zip(middles, found, found[1:], strict=False)) * scale
+
+    ways: tuple[tuple[str, Callable[[int], Complex], Callable[[int, Complex], float]], ...] = (
+        ("points (mm)", unrolled, off), ("chords between the points (mm)", unrolled, between),
+        ("arcs stepped off as chords (mm)", stepped, off))
+    for name, way, error in ways:
+        for parts in bench.upto((2, 4, 8, 16, 32, 64, 128), 8):
+            bench.row(("involute by unrolling", name, "unrolling steps"), parts, partial(way, parts), partial(error, parts))
+
+
+# --- tooth cut by a rack --------------------------------------------------------------------------------------------------
+
+
+RACK = Rack(0.01, radians(20), 1.0, 0.25, 20, 0.0)
+TIP = RACK.r + RACK.module
+
+
+def _flank_at(radius: Any) -> Any:
+    """Point of the involute of :data:`RACK`'s wheel on a circle, m, from the tooth's axis."""
+    alpha, z = mp.mpf(RACK.alpha), RACK.teeth
+    rb = mp.mpf(RACK.module) * z / 2 * mp.cos(alpha)
+    half = mp.pi / (2 * z) + mp.tan(alpha) - alpha
+    a = mp.acos(min(rb / radius, mp.mpf(1)))
+    return radius * mp.expj(half - mp.tan(a) + a)
+
+
+def _cut_by_rack(n: int) -> Any:
+    import shapely
+
+    axis = pi / 2 - pi / RACK.teeth
+    first, last = RACK.rolls(TIP)
+    rolls = np.linspace(first - 0.03, last + 0.03, n)
+    teeth = [_polygon(np.asarray(RACK.placed(RACK.tooth(4 * RACK.module, max(n // 2, 8)), roll)) * 1e3) for roll in rolls]
+    angles = np.linspace(axis, pi / 2 + 0.1, 50)
+    blank = _polygon(np.concatenate(([0j], 1.1 * TIP * 1e3 * np.exp(1j * angles))))
+    return shapely.difference(blank, shapely.union_all(teeth))
+
+
+def _racks(bench: Bench) -> None:
+    turned = np.exp(1j * (pi / 2 - pi / RACK.teeth))
+    with mp.workdps(DIGITS):
+        low = mp.sqrt(mp.mpf(RACK.rb) ** 2 + mp.mpf(RACK.involute_from()) ** 2)
+        goals = [_flank_at(low + (TIP - low) * mp.mpf(k + 1) / 41) for k in range(40)]
+    inside = np.array([complex(g) for g in goals]) * turned * 1e3
+    for n in bench.upto((20, 60, 120, 300, 600), 60):
+
+        def touched(n: int = n) -> Complex:
+            return flank(RACK, TIP, n, 2)[1:]
+
+        def off(found: Complex) -> float:
+            with mp.workdps(DIGITS):
+                radii = [abs(mp.mpc(p)) for p in found.tolist()]
+                return _away(found, [_flank_at(r) for r in radii]) * 1e3
+
+        bench.row(("rack generation", "points of contact (mm)", "rack positions"), n, touched, off)
+        bench.row(("rack generation", "positions cut out (shapely, mm)", "rack positions"), n, partial(_cut_by_rack, n),
+                  lambda shape: _edge_of(shape, inside))
+
+
+def rows(bench: Bench) -> None:
+    """Cam, involute, rack."""
+    _cams(bench)
+    _involutes(bench)
+    _racks(bench)

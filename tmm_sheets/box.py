@@ -1,0 +1,40 @@
+"""Rectangles, of the paper in millimetres or of a plan in its own unit."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Box(NamedTuple):
+    """An axis-parallel rectangle."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+    @property
+    def width(self) -> float:
+        """Extent in x."""
+        return self.x1 - self.x0
+
+    @property
+    def height(self) -> float:
+        """Extent in y."""
+        return self.y1 - self.y0
+
+    @property
+    def centre(self) -> complex:
+        """Middle point."""
+        return complex((self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2)
+
+    def inset(self, left: float, bottom: float | None = None, right: float | None = None, top: float | None = None) -> Box:
+        """The rectangle made smaller on each side; one number means all four sides."""
+        b = left if bottom is None else bottom
+        r = left if right is None else right
+        t = left if top is None else top
+        return Box(self.x0 + left, self.y0 + b, self.x1 - r, self.y1 - t)
+
+    def contains(self, p: complex, slack: float = 0.0) -> bool:
+        """True when the point lies inside or at most ``slack`` outside."""
+        return self.x0 - slack <= p.real <= self.x1 + slack and self.y0 - slack <= p.imag <= self.y1 + slack

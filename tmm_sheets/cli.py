@@ -1,0 +1,419 @@
+"""The commands: arguments in, files and messages out; no mechanics. Everything heavy is imported where it is used."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+import click
+
+from tmm_sheets import __version__
+from tmm_sheets.box import Box
+from tmm_sheets.errors import BadInput, CannotBuild
+
+if TYPE_CHECKING:
+    from tmm_sheets.building import Order
+    from tmm_sheets.drawing.plotters import Plotter
+    from tmm_sheets.project import Project
+    from tmm_sheets.variant import Variant
+
+FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
+"""Formats of drawings."""
+
+PARTS = ("positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "cam")
+"""Parts of the results."""
+
+MOST_POSITIONS = 1_000_000
+
+
+def _among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, str | None], tuple[str, ...] | None]:
+    """Reader of an option that holds several known words with commas between."""
+
+    def split(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...] | None:
+        if value is None:
+            return None
+        words = tuple(dict.fromkeys(word.strip().lower() for word in value.split(",")))
+        for word in words:
+            if word not in known:
+                raise click.BadParameter(f"'{word}' is not one of {', '.join(known)}")
+        return words
+
+    return split
+
+
+def _degrees(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, ...] | None:
+    if value is None:
+        return None
+    from tmm_sheets import units
+
+    try:
+        return tuple(units.parse(f"{part.strip()} deg", units.ANGLE) for part in value.split(","))
+    except ValueError:
+        raise click.BadParameter(f"expected angles in degrees with commas between, such as 0,30.5,60, not '{value}'") from None
+
+
+def _plotter(context: click.Context, parameter: click.Parameter, value: str | None) -> Plotter | None:
+    if value is None:
+        return None
+    from tmm_sheets.drawing import plotters
+
+    try:
+        return plotters.plotter(value)
+    except ValueError as e:
+        raise click.BadParameter(str(e)) from None
+
+
+PROJECT = click.argument("project")
+CORRECTED = click.option("--corrected", is_flag=True, help="With the suggested values instead of suspected misprints.")
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="tmm-sheets", message="%(prog)s %(version)s")
+def commands() -> None:
+    """Sheets of a course project in the theory of mechanisms and machines, drawn by compass and ruler.
+
+    PROJECT is a shipped name, such as lugansk/shaper, or the path of a project file.
+    """
+
+
+@commands.command("list")
+@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+def list_projects(as_json: bool) -> None:
+    """List the shipped projects."""
+    from tmm_sheets import catalogue
+
+    entries = catalogue.entries()
+    if as_json:
+        import json
+        from dataclasses import asdict
+
+        click.echo(json.dumps([asdict(e) for e in entries], ensure_ascii=False, indent=1))
+        return
+    width = max((len(e.name) for e in entries), default=0)
+    for e in entries:
+        click.echo(f"{e.name:{width}}  {', '.join(filter(None, (e.title, e.variant)))}; sheets: {', '.join(e.sheets)}")
+
+
+@commands.command()
+@PROJECT
+@CORRECTED
+@click.option("--file", "as_file", is_flag=True, help="The project file itself, to be changed and used as one's own.")
+def show(project: str, corrected: bool, as_file: bool) -> None:
+    """Show inputs with units and source, links, pairs, mobility W, Assur groups, formula of structure."""
+    from tmm_sheets import summary
+
+    variant = _read(project, corrected)
+    click.echo(variant.text if as_file else summary.text(variant))
+
+
+@commands.command()
+@PROJECT
+@CORRECTED
+def check(project: str, corrected: bool) -> None:
+    """Read and assemble PROJECT; write nothing."""
+    opened = _open(project, corrected)
+    opened.check()
+    click.echo(f"{opened.variant.project.name}: OK")
+
+
+@commands.command()
+@click.argument("projects", metavar="PROJECT...", nargs=-1)
+@click.option("--all", "families", multiple=True, metavar="FAMILY",
+              help="All shipped projects of a family, such as sixbar, or of all.")
+@click.option("--list", "lists", multiple=True, type=click.File(encoding="utf-8"), metavar="FILE",
+              help="Projects named in a file, one a line; - for standard input.")
+@CORRECTED
+@click.option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
+@click.option("--format", "formats", default="dxf,pdf", show_default=True, callback=_among(FORMATS),
+              metavar="F,F", help=f"Formats: {', '.join(FORMATS)}.")
+@click.option("--dpi", type=click.FloatRange(10, 1200), default=150, show_default=True, help="Dots per inch of PNG.")
+@click.option("--plotter", "machine", metavar="NAME", callback=_plotter,
+              help="Plotter for HPGL: a shipped one or a file.  [default: a1]")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
+              help="Folder of the sheets, of several projects the folder with one for each.  [default: out/<project>]")
+@click.option("--zip", "archive", is_flag=True, help="Put each project into a zip file instead of a folder.")
+@click.option("--force", is_flag=True, help="Make again also what has not changed.")
+@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
+@click.option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
+@click.option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
+def build(
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[TextIO, ...], corrected: bool, sheets: tuple[int, ...],
+    formats: tuple[str, ...], dpi: float, machine: Plotter | None, output: Path | None, archive: bool, force: bool,
+    jobs: int | None, scheduler: str | None, explain: bool,
+) -> None:
+    """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
+    if not projects and not families and not lists:
+        raise click.UsageError("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")
+    from tmm_sheets.building import Order
+
+    settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}}
+    order = Order(sheets, formats, settings, corrected, force, archive)
+    if len(projects) == 1 and not families and not lists:
+        if jobs is not None or scheduler is not None:
+            raise click.UsageError("--jobs and --dask are for several projects")
+        _build_one(projects[0], order, output, explain)
+        return
+    if explain:
+        raise click.UsageError("--explain is for one project")
+    _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
+
+
+def _build_one(project: str, order: Order, output: Path | None, explain: bool) -> None:
+    from tmm_sheets.building import build as build_project
+    from tmm_sheets.building import folder_name
+    from tmm_sheets.explain import Stopwatch
+    from tmm_sheets.progress import Progress
+
+    watch = Stopwatch()
+    with watch.phase("read"):
+        variant = _read(project, order.corrected)
+    outlet = order.outlet(output if output is not None else Path("out") / folder_name(variant.project.name))
+    with Progress() as progress:
+        built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
+    for path in built.paths:
+        click.echo(path)
+    unchanged = len(built.paths) - len(built.sizes)
+    if unchanged:
+        told = f"{unchanged} of {len(built.paths)} files unchanged (--force makes them again)"
+        click.echo(f"{variant.project.name}: {told}", err=True)
+    if explain:
+        from tmm_sheets import explain as report
+
+        click.echo(report.text(built.opened, built.drawings, watch))
+
+
+def _build_many(
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[TextIO, ...], order: Order, parent: Path,
+    jobs: int | None, scheduler: str | None,
+) -> None:
+    from time import monotonic
+
+    from tmm_sheets import batch, files
+    from tmm_sheets.progress import Bar
+
+    names = batch.chosen(projects, families, lists)
+    if not names:
+        raise BadInput("no projects to build", hint="the list is empty")
+    files.check_folder(parent)
+    start = monotonic()
+    running = (batch.run(names, order, parent, jobs or batch.processors()) if scheduler is None
+               else batch.run_on_dask(names, order, parent, scheduler))  # fmt: skip
+    done = []
+    with Bar(len(names)) as bar:
+        for outcome in running:
+            done.append(outcome)
+            bar.step(bool(outcome.problem))
+    for outcome in sorted(done, key=lambda o: o.project):
+        for warning in outcome.warnings:
+            click.echo(f"{outcome.project}: {warning}", err=True)
+    click.echo(batch.summary(done, parent, monotonic() - start))
+    failures = [outcome for outcome in done if outcome.problem]
+    if failures:
+        raise CannotBuild(batch.table(failures, len(names)))
+
+
+@commands.command()
+@PROJECT
+@CORRECTED
+@click.option("--json", "target", metavar="FILE", help="Write JSON to FILE, or to standard output for -.")
+@click.option("--phi", callback=_degrees, metavar="DEG,DEG", help="Crank angles, counter-clockwise from the x axis.")
+@click.option("--positions", type=click.IntRange(1, MOST_POSITIONS), metavar="N",
+              help="N equal parts of the turn from position 0 on, in the sense of rotation.")
+@click.option("--part", "parts", callback=_among(PARTS), metavar="P,P", help=f"Only these parts: {', '.join(PARTS)}.")  # fmt: skip
+def solve(
+    project: str, corrected: bool, target: str | None, phi: tuple[float, ...] | None, positions: int | None,
+    parts: tuple[str, ...] | None,
+) -> None:
+    """Compute the numbers of PROJECT; nothing is drawn."""
+    if phi is not None and positions is not None:
+        raise click.UsageError("give either --phi or --positions, not both")
+    from tmm_sheets import results
+
+    found = results.assemble(_open(project, corrected), parts, phi=phi, positions=positions)
+    if target is None:
+        click.echo(results.listing(found))
+    elif target == "-":
+        click.echo(results.as_json(found))
+    else:
+        from tmm_sheets import files
+
+        files.write_all({Path(target): (results.as_json(found) + "\n").encode()})
+
+
+@commands.command()
+@PROJECT
+@CORRECTED
+@click.option("--plan", "name", metavar="NAME", help="Only this plan.")
+def protocol(project: str, corrected: bool, name: str | None) -> None:
+    """Say the construction steps of PROJECT as sentences, in Russian, with millimetres of the sheets."""
+    from tmm_sheets import protocols
+
+    for line in protocols.lines(_open(project, corrected), name):
+        click.echo(line)
+
+
+def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:
+    if value is None:
+        return None
+    try:
+        x0, y0, x1, y1 = (float(part) for part in value.split(","))
+    except ValueError:
+        raise click.BadParameter(f"expected x0,y0,x1,y1 in mm, such as 0,0,400,276, not '{value}'") from None
+    return Box(x0, y0, x1, y1)
+
+
+@commands.command()
+@click.argument("project", metavar="PROJECT|FILE")
+@CORRECTED
+@click.option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
+@click.option("--plotter", "machine", metavar="NAME", callback=_plotter,
+              help="Make plot files (HPGL) for a shipped plotter or that of a file; without it PDF.")
+@click.option("--printer", metavar="NAME", help="Send to this printer of CUPS.")
+@click.option("--tile", type=click.Choice(["a4", "a3"], case_sensitive=False), help="Cut the PDF into pages to glue together.")
+@click.option("--overlap", type=float, default=10.0, show_default=True, metavar="MM", help="Overlap of tiles.")
+@click.option("--bar", is_flag=True, help="Add a control bar of 100 mm, to be measured on paper.")
+@click.option("--outline", type=click.Choice(["on", "off"]), default="on", show_default=True, help="Line round the paper.")
+@click.option("--window", callback=_window, metavar="X0,Y0,X1,Y1", help="Only this part of the sheet, mm from its corner.")
+@click.option("--preview", is_flag=True, help="Also a picture of each plot, made from the plot file itself.")
+@click.option("--dpi", type=click.FloatRange(10, 1200), default=100, show_default=True, help="Dots per inch of the picture.")
+@click.option("--ctb", is_flag=True, help="Also a plot style table for AutoCAD that prints every colour black.")
+@click.option("--dry-run", is_flag=True, help="Tell what would be written and sent; do neither.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
+              help="Folder of the files.  [default: out/<project>]")  # fmt: skip
+def plot(
+    project: str, corrected: bool, sheets: tuple[int, ...], machine: Plotter | None, printer: str | None, tile: str | None,
+    overlap: float, bar: bool, outline: str, window: Box | None, preview: bool, dpi: float, ctb: bool, dry_run: bool,
+    output: Path | None,
+) -> None:
+    """Put the sheets of PROJECT on paper, 1:1, or send a FILE made before (.plt, .pdf)."""
+    if machine is not None and tile is not None:
+        raise click.UsageError("--tile cuts a PDF; a plotter takes a sheet in parts with --window")
+    from tmm_sheets import files
+    from tmm_sheets import plot as plotting
+    from tmm_sheets.progress import Progress
+
+    jobs: dict[Path, plotting.Job] = {}
+    with Progress() as progress:
+        if project.lower().endswith(plotting.FILES):
+            if sheets or tile or bar or window or outline == "off":
+                raise click.UsageError(f"{project} is finished: it can be sent or shown, not changed")
+            jobs[Path(project)] = plotting.ready(Path(project))
+            folder = output if output is not None else Path(project).parent
+            made: dict[Path, bytes] = {}
+        else:
+            from tmm_sheets.building import chosen, folder_name
+
+            opened = _open(project, corrected)
+            folder = output if output is not None else Path("out") / folder_name(opened.variant.project.name)
+            if not dry_run:
+                files.check_folder(folder)
+            look = plotting.Look(machine, tile, overlap, bar, outline == "on", window)
+            for n in chosen(opened.variant, sheets):
+                progress.say(f"sheet {n} ...")
+                from tmm_sheets.sheets import sheet
+
+                job = plotting.job(sheet.composed(opened, n).drawing, f"sheet{n}", look)
+                jobs[folder / job.name] = job
+            made = {path: job.data for path, job in jobs.items()}
+        if preview:
+            from tmm_sheets.drawing.plotters import plotter
+
+            for path, job in jobs.items():
+                progress.say(f"preview of {path} ...")
+                pictures = plotting.preview(job, machine or plotter(), dpi)
+                made |= {folder / name: data for name, data in pictures.items()}
+        if ctb:
+            from tmm_sheets.backends import dxf
+
+            made[folder / "black.ctb"] = dxf.plot_styles()
+        if not dry_run:
+            files.write_all(made)
+    for path in dict.fromkeys((*jobs, *made)):
+        click.echo(path)
+        for note in jobs[path].notes if path in jobs else ():
+            click.echo(f"    {note}")
+    for path, job in jobs.items() if printer is not None else ():
+        if dry_run:
+            import shlex
+
+            click.echo(f"would send: {shlex.join(plotting.command(job, path, str(printer)))}")
+        else:
+            click.echo(plotting.send(job, path, str(printer)))
+
+
+@commands.command()
+@click.option("--json", "target", metavar="FILE", help="Also write the table as JSON, to standard output for -.")
+@click.option("--plot", "folder", type=click.Path(path_type=Path), metavar="DIR", help="Also draw log-log diagrams, SVG.")
+@click.option("--quick", is_flag=True, help="A few small runs only: tries the benchmark out.")
+@click.option("--summary", is_flag=True, help="The first and the last run of each method only, in Markdown.")
+@click.option("--cost", metavar="PROJECT", help="Instead: what one sheet or one number of PROJECT costs against the whole.")
+def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, cost: str | None) -> None:
+    """Measure every method: error against a truth of 30 digits or more, and time."""
+    from tmm_sheets import files
+    from tmm_sheets.progress import Progress
+
+    if cost is not None:
+        if target or folder or quick or summary:
+            raise click.UsageError("--cost goes alone")
+        from tmm_sheets.bench import costs
+
+        with Progress() as progress:
+            told = costs.table(cost, lambda what: progress.say(f"{what} ..."))
+        click.echo(told)
+        return
+    from tmm_sheets.bench import records
+    from tmm_sheets.bench.run import run
+
+    if folder is not None:
+        files.check_folder(folder)
+    with Progress() as progress:
+        found = run(quick, lambda what: progress.say(f"{what} ..."))
+    click.echo((records.summary if summary else records.table)(found), err=target == "-")
+    made: dict[Path, bytes] = {}
+    if target == "-":
+        click.echo(records.as_json(found))
+    elif target is not None:
+        made[Path(target)] = (records.as_json(found) + "\n").encode()
+    if folder is not None:
+        from tmm_sheets.bench import plots
+
+        made |= {folder / name: data for name, data in plots.diagrams(found).items()}
+    files.write_all(made)
+
+
+@commands.command()
+@click.option("--cases", type=click.IntRange(1), default=900, show_default=True, metavar="N", help="How many random mechanisms.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, metavar="S", help="Seed of the random numbers.")
+@click.option("--case", "single", type=click.IntRange(0), metavar="N", help="Only this case of the seed, again.")
+def stress(cases: int, seed: int, single: int | None) -> None:
+    """Try hard random mechanisms: the worst of every invariant against its bound."""
+    from tmm_sheets.progress import Progress
+    from tmm_sheets.stress import report
+
+    if single is not None:
+        worst = report.run_one(seed, single)
+    else:
+        with Progress() as progress:
+            worst = report.run(cases, seed, lambda case: progress.say(f"case {case} of {cases} ..."))
+    click.echo(report.table(worst, seed))
+    failed = report.exceeded(worst)
+    if failed:
+        raise CannotBuild(f"bound exceeded: {', '.join(failed)}", "the table names a case that shows it")
+
+
+def _open(project: str, corrected: bool) -> Project:
+    variant = _read(project, corrected)
+    from tmm_sheets.project import Project
+
+    return Project(variant)
+
+
+def _read(project: str, corrected: bool) -> Variant:
+    """The project's numbers; what is doubtful in them goes to standard error."""
+    from tmm_sheets import catalogue
+
+    variant = catalogue.read(project, corrected)
+    for warning in variant.warnings:
+        click.echo(f"{variant.project.name}: {warning}", err=True)
+    return variant

@@ -1,0 +1,1 @@
+"""Compass and ruler: steps, rules, arithmetic, plans, scales, protocol."""

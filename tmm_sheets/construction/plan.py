@@ -1,0 +1,93 @@
+"""Plans: named lists of construction steps with a quantity, a unit and a pole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction.step import Rule, Step
+
+
+def symbol(name: str) -> str:
+    """Lettering of a vector's name: an overbar on its letter, the rest as its index (F54 -> F̅ with index 54)."""
+    return f"{name[0]}\u0305_{{{name[1:]}}}" if len(name) > 1 else f"{name}\u0305"
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A vector of a plan, drawn as an arrow from ``tail`` to ``head`` and measured as a length on paper."""
+
+    symbol: str
+    tail: Step
+    head: Step
+
+
+class Plan:
+    """A construction in drawing order: position plan, velocity plan, force plan, diagram, profile.
+
+    Parameters
+    ----------
+    name
+        identifier for ``protocol --plan`` and ``build --explain``, e.g. ``"velocities"``.
+    title
+        Russian title as it stands on the sheet.
+    unit
+        SI unit of the quantity laid off (``"m"``, ``"m/s"``, ``"N"`` ...).
+    pole
+        name of the point all others are measured from, on plans of velocities and accelerations.
+    labels
+        position numbers of the cycle, as strings; one entry per position, ``("",)`` for a single construction.
+    """
+
+    def __init__(self, name: str, title: str, unit: str, labels: tuple[str, ...] = ("",), pole: str | None = None) -> None:
+        self.name = name
+        self.title = title
+        self.unit = unit
+        self.labels = labels
+        self.pole = pole
+        self.steps: dict[str, Step] = {}
+        self.segments: list[Segment] = []
+        self.reserved: frozenset[str] = frozenset()
+
+    def add(self, name: str, rule: Rule, *args: Any, say: str | None = None) -> Step:
+        """Record a step under a name that is unique in this plan and return it; nothing is computed."""
+        if name in self.steps:
+            raise ValueError(f"plan {self.name!r} has a step {name!r} already")
+        step = Step(name, rule, args, say)
+        self.steps[name] = step
+        return step
+
+    def free(self, name: str) -> str:
+        """The name itself, or with as many primes as it takes when the plan has it already or keeps it for a later step."""
+        while name in self.steps or name in self.reserved:
+            name += "′"
+        return name
+
+    def vector(self, symbol: str, tail: Step, head: Step) -> None:
+        """Record that ``tail`` .. ``head`` is drawn as the vector ``symbol``."""
+        self.segments.append(Segment(symbol, tail, head))
+
+    def __getitem__(self, name: str) -> Step:
+        return self.steps[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.steps
+
+    def __iter__(self) -> Iterator[Step]:
+        return iter(self.steps.values())
+
+    def check(self) -> tuple[str, tuple[str, ...]] | None:
+        """First step that cannot be built and the labels of the positions where it fails; None when all can."""
+        for step in self:
+            value = np.asarray(step.value)
+            if value.dtype.kind not in "fc":
+                continue
+            bad = np.isnan(value)
+            if bad.any():
+                if value.ndim == 0:
+                    return step.name, self.labels
+                return step.name, tuple(label for label, b in zip(self.labels, bad, strict=True) if b)
+        return None

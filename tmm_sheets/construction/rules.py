@@ -1,0 +1,82 @@
+"""The vocabulary of moves shared by all constructions; rules of one method only live beside that method.
+
+In the wordings ``{0}``, ``{1}`` ... are the arguments: points and directions by name, lengths in millimetres of the
+drawing, angles in degrees; ``{name}`` is the result.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.step import Helper, Rule
+
+
+def _same(x: Any) -> Any:
+    return x
+
+
+def _shift(p: Any, v: Any) -> Any:
+    return p + v
+
+
+def _distance(p: Any, q: Any) -> Any:
+    return np.abs(q - p)
+
+
+def _difference(p: Any, q: Any) -> Any:
+    return q - p
+
+
+GIVEN = Rule("given point", _same, ("point",), "point", "Отметим точку {name}.")
+GIVEN_LENGTH = Rule("given length", _same, ("length",), "length", "Возьмём отрезок {name} = {value}.")
+GIVEN_DIRECTION = Rule("given direction", _same, ("direction",), "direction", "Проведём направление {name}.")
+
+LAY_OFF = Rule(
+    "lay off under an angle", ar.polar, ("point", "length", "angle"), "point",
+    "Из точки {0} радиусом {1} проведём окружность и под углом {2} отметим на ней точку {name}.",
+    lambda a, v: (Helper("circle", a[0], radius=a[1]), Helper("line", a[0], v)),
+)
+RAY = Rule("ray", ar.ray, ("point", "point"), "direction", "Проведём прямую {0}{1}.",
+           lambda a, v: (Helper("line", a[0], a[1]),))
+ALONG = Rule(
+    "lay off along a line", ar.along, ("point", "direction", "length"), "point",
+    "На прямой {1} от точки {0} радиусом {2} сделаем засечку: точка {name}.",
+    lambda a, v: (Helper("arc", a[0], v, abs(a[2])),),
+)
+SHIFT = Rule("lay off a vector", _shift, ("point", "vector"), "point", "От точки {0} отложим {1}: точка {name}.",
+             lambda a, v: (Helper("line", a[0], v),))
+TURN = Rule("turn by 90 degrees", ar.turned, ("direction",), "direction", "Повернём направление {0} на 90°.")
+PERPENDICULAR = Rule(
+    "perpendicular", lambda p, q: 1j * ar.ray(p, q), ("point", "point"), "direction",
+    "Проведём перпендикуляр к {0}{1}.",
+)
+ARC_ARC = Rule(
+    "arc cuts arc", ar.arc_arc, ("point", "length", "point", "length", "number"), "point",
+    "Из точки {0} радиусом {1} и из точки {2} радиусом {3} сделаем засечки: точка {name}.",
+    lambda a, v: (Helper("arc", a[0], v, a[1]), Helper("arc", a[2], v, a[3])),
+)
+ARC_LINE = Rule(
+    "arc cuts line", ar.arc_line, ("point", "length", "point", "direction", "number"), "point",
+    "Из точки {0} радиусом {1} сделаем засечку на прямой {3}: точка {name}.",
+    lambda a, v: (Helper("arc", a[0], v, a[1]),),
+)
+LINE_LINE = Rule(
+    "lines meet", ar.line_line, ("point", "direction", "point", "direction"), "point",
+    "Через точку {0} параллельно {1} и через точку {2} параллельно {3} проведём прямые до пересечения в точке {name}.",
+    lambda a, v: (Helper("line", a[0], v), Helper("line", a[2], v)),
+)
+TANGENT = Rule(
+    "tangent", ar.tangent_point, ("point", "point", "length", "number"), "point",
+    "Из точки {0} проведём касательную к окружности с центром {1} и радиусом {2}; точка касания {name}.",
+    lambda a, v: (Helper("line", a[0], v),),
+)
+FOOT = Rule("foot of a perpendicular", ar.foot, ("point", "point", "direction"), "point",
+            "Из точки {0} опустим перпендикуляр на прямую {2}: точка {name}.",
+            lambda a, v: (Helper("line", a[0], v),))
+DISTANCE = Rule("measure a length", _distance, ("point", "point"), "length", "Измерим отрезок {0}{1} = {value}.")
+DIFFERENCE = Rule("measure a vector", _difference, ("point", "point"), "vector", "Измерим вектор {0}{1}: {value}.")
+ARM = Rule("measure an arm", ar.arm, ("point", "point", "force"), "length",
+           "Измерим плечо силы {2} относительно точки {0}: {value}.")

@@ -1,0 +1,90 @@
+"""Scale factors mu: real quantity per millimetre of drawing (масштабный коэффициент)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import floor, isclose, log10
+from typing import Any
+
+HANDY = (1.0, 2.0, 2.5, 4.0, 5.0)
+"""Mantissas that are handy for mental arithmetic (manuals 000 and 003 ask for such scales)."""
+
+STANDARD = (
+    (1000, 1), (800, 1), (500, 1), (400, 1), (200, 1), (100, 1), (75, 1), (50, 1), (40, 1), (25, 1), (20, 1), (15, 1),
+    (10, 1), (5, 1), (4, 1), (5, 2), (2, 1), (1, 1),
+    (1, 2), (2, 5), (1, 4), (1, 5), (1, 10), (1, 20), (1, 40), (1, 50), (1, 100),
+)
+"""GOST 2.302 scales as (real, drawn) from the largest reduction to the largest enlargement."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Scale factor ``mu`` in ``unit`` (SI per millimetre): real = mu * millimetres."""
+
+    symbol: str
+    mu: float
+    unit: str
+
+    def mm(self, real: Any) -> Any:
+        """Length on paper in millimetres of a real quantity (number or array, complex allowed)."""
+        return real / self.mu
+
+    def real(self, mm: Any) -> Any:
+        """Real quantity of a length on paper."""
+        return mm * self.mu
+
+    def __str__(self) -> str:
+        return f"{self.symbol} = {number(self.mu)} {self.unit}"
+
+
+def fit(symbol: str, unit: str, span: float, mm: float) -> Scale:
+    """Smallest handy scale factor with which the real ``span`` takes at most ``mm`` millimetres."""
+    return Scale(symbol, handy(span / mm), unit)
+
+
+def fit_standard(span_mm: float, mm: float) -> tuple[int, int]:
+    """Largest GOST 2.302 scale (real, drawn) with which ``span_mm`` millimetres of the object fit in ``mm``."""
+    for real, drawn in reversed(STANDARD):
+        if span_mm * drawn <= mm * real * (1 + 1e-9):
+            return real, drawn
+    raise ValueError(f"{span_mm} mm do not fit in {mm} mm at any standard scale")
+
+
+def times(ratio: float) -> str:
+    """How many times something is enlarged, with the right form of the word: 2 раза, 5 раз, 2,5 раза."""
+    whole = isclose(ratio, round(ratio))
+    n = round(ratio) % 100
+    few = not whole or (n % 10 in (2, 3, 4) and n // 10 != 1)
+    return f"{number(ratio)} {'раза' if few else 'раз'}"
+
+
+def handy(least: float) -> float:
+    """Smallest number of the series (1, 2, 2.5, 4, 5) * 10^k that is not less than ``least``."""
+    if not least > 0:
+        raise ValueError(f"a scale factor must be positive, not {least}")
+    power = floor(log10(least))
+    for k in (power - 1, power, power + 1):
+        for mantissa in HANDY:
+            # A decimal literal instead of a product: 2.5 * 10**-3 must be the number written 0.0025.
+            candidate = float(f"{mantissa}e{k}")
+            if candidate > least or isclose(candidate, least, rel_tol=1e-9):
+                return candidate
+    raise AssertionError("unreachable: the series covers every decade")
+
+
+def number(x: float, digits: int = 4) -> str:
+    """A number in Russian notation: decimal comma, at most ``digits`` significant digits, no trailing zeros."""
+    if x == 0:
+        return "0"
+    text = f"{x:.{max(digits - 1 - floor(log10(abs(x))), 0)}f}"
+    if "." in text:
+        text = text.rstrip("0").rstrip(".")
+    return text.replace(".", ",").replace("-", "−")
+
+
+def fixed(x: float, decimals: int = 2) -> str:
+    """A number in Russian notation with a fixed number of decimals; minus sign U+2212."""
+    text = f"{x:.{decimals}f}"
+    if float(text) == 0:
+        text = text.lstrip("-")
+    return text.replace(".", ",").replace("-", "−")

@@ -1,0 +1,136 @@
+"""The record of a construction: rules and steps.
+
+A :class:`Rule` is a stateless move with compass and ruler: how to compute it, how to say it, which helper lines it
+leaves on the paper. A :class:`Step` is one use of a rule; its value is computed when it is first read and never again.
+The numbers, the drawing, the protocol, the error analysis and the laziness all read these same steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from time import perf_counter
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+Complex = npt.NDArray[np.complex128]
+Kind = Literal["point", "direction", "vector", "force", "length", "angle", "number", "inclination"]
+
+
+@dataclass(frozen=True)
+class Helper:
+    """One helper line left by a rule, in the unit of its plan.
+
+    ``kind`` is ``"line"`` (from ``a`` to ``b``), ``"arc"`` (about ``a`` with ``radius``, cutting at ``b``) or
+    ``"circle"`` (about ``a`` with ``radius``).
+    """
+
+    kind: Literal["line", "arc", "circle"]
+    a: complex
+    b: complex = 0j
+    radius: float = 0.0
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A move of the construction (приём построения); a module constant without state.
+
+    Parameters
+    ----------
+    name
+        identifier, also shown by ``build --explain``.
+    compute
+        vectorised arithmetic: values of the arguments in, value out; NaN where it cannot be built.
+    takes
+        kind of each argument, in order; lengths and vectors are said in millimetres of the drawing, forces in newtons.
+    gives
+        kind of the result.
+    wording
+        Russian sentence with ``{0}``, ``{1}`` ... for the arguments, ``{name}`` and ``{value}`` for the result.
+    helpers
+        ``helpers(args, value)`` at one position gives the helper lines; None when the move leaves none.
+    """
+
+    name: str
+    compute: Callable[..., Any]
+    takes: tuple[Kind, ...]
+    gives: Kind
+    wording: str
+    helpers: Callable[[tuple[Any, ...], Any], tuple[Helper, ...]] | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Step:
+    """One step of a construction (шаг построения): a rule applied to earlier steps or given numbers.
+
+    ``value`` is a scalar or an array with one entry per position, complex for points, directions and vectors.
+    ``say`` replaces the rule's sentence where the manual's wording names more than the rule can know.
+    """
+
+    name: str
+    rule: Rule
+    args: tuple[Any, ...] = field(repr=False)  # a step prints without the whole construction before it
+    say: str | None = None
+    seconds: list[float] = field(default_factory=list, repr=False)
+
+    def __repr__(self) -> str:
+        """Name and rule only: the arguments would print the whole construction before this step."""
+        return f"Step({self.name!r}, {self.rule.name})"
+
+    @cached_property
+    def value(self) -> Any:
+        """The step's value, computed once; the time spent on this step alone is kept for ``--explain``."""
+        self._evaluate_arguments()
+        values = [value_of(a) for a in self.args]
+        start = perf_counter()
+        with np.errstate(invalid="ignore", divide="ignore"):
+            result = self.rule.compute(*values)
+        self.seconds.append(perf_counter() - start)
+        return result
+
+    def _evaluate_arguments(self) -> None:
+        """Arguments before results with a list instead of the call stack: a chain of chords may be thousands long."""
+        pending = [a for a in self.args if isinstance(a, Step) and not a.evaluated]
+        while pending:
+            step = pending[-1]
+            before = [a for a in step.args if isinstance(a, Step) and not a.evaluated]
+            if before:
+                pending += before
+            else:
+                pending.pop().value  # noqa: B018 (reading it computes and keeps it)
+
+    @property
+    def evaluated(self) -> bool:
+        """True when somebody has read the value."""
+        return "value" in self.__dict__
+
+    def at(self, k: int) -> Any:
+        """Value at position ``k`` (the value itself when it does not depend on the position)."""
+        return value_at(self, k)
+
+    def ancestors(self) -> Iterator[Step]:
+        """All steps this one depends on, itself included, arguments before results, each once."""
+        seen: set[int] = set()
+        pending: list[tuple[Step, bool]] = [(self, False)]
+        while pending:
+            step, ready = pending.pop()
+            if ready:
+                yield step
+            elif id(step) not in seen:
+                seen.add(id(step))
+                pending.append((step, True))
+                pending += [(a, False) for a in reversed(step.args) if isinstance(a, Step)]
+
+
+def value_of(x: Any) -> Any:
+    """Value of a step, or the given number itself."""
+    return x.value if isinstance(x, Step) else x
+
+
+def value_at(x: Any, k: int) -> Any:
+    """Value of a step or of a given array at position ``k``; numbers are the same at every position."""
+    value = value_of(x)
+    return value if np.ndim(value) == 0 else value[k]

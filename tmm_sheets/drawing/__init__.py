@@ -1,0 +1,1 @@
+"""Display list in millimetres: marks, line types, lettering, symbols, labels."""

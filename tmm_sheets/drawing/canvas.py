@@ -1,0 +1,248 @@
+"""The hand that draws: views put marks and requests for labels on a canvas, in millimetres of the sheet."""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from math import ceil, cos, pi, sin
+from typing import Any, Literal
+
+import numpy as np
+
+from tmm_sheets.drawing.lettering import Lettering, letter
+from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Polyline, Text
+
+Align = Literal["left", "centre", "right"]
+ARROW = (5.0, 0.85)
+"""Length and half width of an arrow head, mm (GOST 2.307: about 20 degrees)."""
+LOOSE = 0.25
+"""Further distance of an index from its base in slanting lettering, mm."""
+
+
+@dataclass(frozen=True)
+class Label:
+    """A request for lettering near ``anchor``; the sheet finds the free place when all views are drawn.
+
+    ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
+    with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
+    """
+
+    anchor: complex
+    text: str
+    height: float
+    away: complex = 0j
+    gap: float = 1.0
+    leader: bool = True
+
+
+@dataclass
+class Canvas:
+    """Collects the marks of a sheet.
+
+    ``of`` names the construction step or view the following marks belong to; it ends up on each mark.
+    ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results.
+    """
+
+    marks: list[Mark] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
+    scales: dict[str, Any] = field(default_factory=dict)
+    of: str = ""
+
+    def line(self, a: complex, b: complex, style: str = "thin") -> None:
+        """Straight stroke; nothing is drawn for a zero length or a NaN end."""
+        if abs(b - a) > 1e-6:
+            self.marks.append(Line(complex(a), complex(b), style, self.of))
+
+    def ray_line(self, a: complex, b: complex, style: str = "thin", over: float = 3.0, before: float = 0.0) -> None:
+        """Line through ``a`` and ``b`` produced by ``over`` mm beyond ``b`` and ``before`` mm before ``a``."""
+        if abs(b - a) > 1e-6:
+            u = (b - a) / abs(b - a)
+            self.line(a - before * u, b + over * u, style)
+
+    def circle(self, centre: complex, radius: float, style: str = "thin") -> None:
+        """Full circle."""
+        if radius > 1e-6:
+            self.marks.append(Arc(complex(centre), float(radius), 0.0, 2 * pi, style, self.of))
+
+    def arc(self, centre: complex, radius: float, start: float, end: float, style: str = "thin") -> None:
+        """Arc from angle ``start`` counter-clockwise to ``end``, rad."""
+        if radius > 1e-6 and end - start > 1e-9:
+            self.marks.append(Arc(complex(centre), float(radius), float(start), float(end), style, self.of))
+
+    def arc_mark(self, centre: complex, at: complex, half: float = 3.0, style: str = "construction") -> None:
+        """Short arc about ``centre`` through ``at``, ``half`` mm to both sides: the cut of a pair of compasses."""
+        r = abs(at - centre)
+        if r > 1e-6:
+            t, d = phase(at - centre), min(half / r, pi)
+            self.arc(centre, r, t - d, t + d, style)
+
+    def polyline(self, points: Any, style: str = "curve", closed: bool = False) -> None:
+        """Curve through points (complex array); stretches of NaN interrupt it."""
+        p = np.asarray(points, dtype=complex)
+        bad = np.isnan(p)
+        if bad.any():
+            for part in np.split(p, np.flatnonzero(bad)):
+                good = part[~np.isnan(part)]
+                if len(good) > 1:
+                    self.marks.append(Polyline(good, style, False, self.of))
+        elif len(p) > 1:
+            self.marks.append(Polyline(p, style, closed, self.of))
+
+    def fill(self, points: Iterable[complex], style: str = "main") -> None:
+        """Filled polygon."""
+        self.marks.append(Fill(np.array(list(points), dtype=complex), style, self.of))
+
+    def dot(self, at: complex, radius: float = 0.7, style: str = "main") -> None:
+        """Filled dot."""
+        t = np.linspace(0, 2 * pi, 13)[:-1]
+        self.fill(at + radius * (np.cos(t) + 1j * np.sin(t)), style)
+
+    def arrow(self, a: complex, b: complex, style: str = "main", head: float | None = None) -> None:
+        """Arrow from ``a`` to ``b``; the head shrinks with short arrows and is left out below half a millimetre."""
+        length = abs(b - a)
+        if not length > 0.5:
+            return
+        u = (b - a) / length
+        size = min(ARROW[0] if head is None else head, 0.6 * length)
+        half = size * ARROW[1] / ARROW[0]
+        self.line(a, b - 0.9 * size * u, style)
+        self.fill((b, b - size * u + 1j * half * u, b - size * u - 1j * half * u), style)
+
+    def arc_arrow(self, centre: complex, radius: float, start: float, end: float, style: str = "axis", head: float = 3.0) -> None:
+        """Curved arrow from angle ``start`` to ``end`` (rad; clockwise when ``end`` < ``start``)."""
+        sense = 1 if end > start else -1
+        lo, hi = min(start, end), max(start, end)
+        cut = 0.8 * head / radius
+        self.arc(centre, radius, lo + (cut if sense < 0 else 0), hi - (cut if sense > 0 else 0), style)
+        tip = centre + rect(radius, end)
+        # The head lies along the chord of its own length, so it seems to sit on the arc.
+        u = rect(1, end + sense * (pi / 2 - 0.5 * head / radius))
+        half = head * ARROW[1] / ARROW[0]
+        self.fill((tip, tip - head * u + 1j * half * u, tip - head * u - 1j * half * u), style)
+
+    def hatch(self, a: complex, b: complex, side: int = 1, depth: float = 2.5, step: float = 2.5) -> None:
+        """Short strokes at 45 degrees along ``a`` .. ``b``, on its left (``side`` +1) or right: a fixed surface."""
+        length = abs(b - a)
+        if not length > 0:
+            return
+        u = (b - a) / length
+        n = max(round(length / step), 1)
+        for i in range(n):
+            p = a + u * (i + 0.5) * length / n
+            self.line(p, p + depth * u * (-1 + 1j * side), "hatch")
+
+    def text(self, at: complex, markup: str, height: float = 3.5, align: Align = "left", angle: float = 0.0) -> Lettering:
+        """Lettering at a fixed place: ``at`` is the left end, middle or right end of the baseline."""
+        laid = letter(markup, height)
+        shift = {"left": 0.0, "centre": -laid.width / 2, "right": -laid.width}[align]
+        self.put(laid, at + rect(1, angle) * shift, angle)
+        return laid
+
+    def put(self, laid: Lettering, at: complex, angle: float = 0.0) -> None:
+        """Set laid out lettering with the left end of its baseline at ``at``."""
+        u = rect(1, angle)
+        # Programs that read a PDF back know upright rectangles only: those of slanting letters and indices overlap sooner.
+        loose = LOOSE if abs(sin(2 * angle)) > 1e-6 else 0.0
+        for run in laid.runs:
+            shift = loose if run.at.imag else 0.0
+            self.marks.append(Text(at + u * (run.at + shift), run.text, run.height, angle, self.of))
+        for bar in laid.bars:
+            self.marks.append(Line(at + u * bar.a, at + u * bar.b, "text", self.of))
+
+    def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
+              leader: bool = True) -> None:
+        """Ask for lettering near a point; see :class:`Label`."""
+        if anchor == anchor:
+            self.labels.append(Label(complex(anchor), markup, height, complex(away), gap, leader))
+
+    def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
+        """Title of a view centred at the top of its place, the scale factor under it; returns what is left below."""
+        x = (box.x0 + box.x1) / 2
+        y = box.y1 - height
+        self.text(complex(x, y), text, height, "centre")
+        if factor:
+            y -= 8.0
+            self.text(complex(x, y), factor, 3.5 if len(factor) > 60 else 5.0, "centre")
+        return Box(box.x0, box.y0, box.x1, y - 3.0)
+
+    def dimension(self, a: complex, b: complex, offset: float, markup: str, height: float = 3.5) -> None:
+        """Linear dimension of ``a`` .. ``b`` with extension lines; the dimension line lies ``offset`` mm to the left."""
+        if not abs(b - a) > 0:
+            return
+        u = (b - a) / abs(b - a)
+        n = 1j * u
+        p, q = a + offset * n, b + offset * n
+        past = 2.0 if offset > 0 else -2.0
+        self.line(a, p + past * n, "thin")
+        self.line(b, q + past * n, "thin")
+        self.line(p, q, "thin")
+        size, half = 3.5, 0.6
+        inside = abs(b - a) > 3 * size
+        for tip, v in ((p, u), (q, -u)):
+            w = v if inside else -v
+            self.fill((tip, tip + size * w + 1j * half * w, tip + size * w - 1j * half * w), "thin")
+            if not inside:
+                self.line(tip, tip + 2 * size * w, "thin")
+        angle = phase(u)
+        if angle > pi / 2 + 1e-6 or angle <= -pi / 2 + 1e-6:
+            u, angle = -u, phase(-u)
+        # Indices hang below the baseline: they must clear the dimension line too.
+        self.text((p + q) / 2 + 1j * u * (0.7 + letter(markup, height).descent), markup, height, "centre", angle)
+
+    def table(self, corner: complex, widths: Sequence[float], rows: Sequence[Sequence[str]], row: float = 7.0,
+              height: float = 3.5, header: int = 1) -> Box:
+        """Table with its upper left corner at ``corner``; the first ``header`` rows are ruled off with a main line."""
+        total, x0, y1 = sum(widths), corner.real, corner.imag
+        y0 = y1 - row * len(rows)
+        for i in range(len(rows) + 1):
+            y = y1 - i * row
+            self.line(complex(x0, y), complex(x0 + total, y), "main" if i in (0, header, len(rows)) else "thin")
+        x = x0
+        for w in [*widths, 0.0]:
+            self.line(complex(x, y0), complex(x, y1), "main" if x in (x0, x0 + total) or not w else "axis")
+            x += w
+        for i, cells in enumerate(rows):
+            x = x0
+            for w, cell in zip(widths, cells, strict=True):
+                laid = letter(cell, height)
+                if laid.width > w - 1.0:
+                    laid = letter(cell, height * (w - 1.0) / laid.width)
+                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - height / 2))
+                x += w
+        return Box(x0, y0, x0 + total, y1)
+
+    def angle_mark(self, vertex: complex, start: float, end: float, radius: float, markup: str, height: float = 3.5,
+                   share: float = 0.5) -> None:
+        """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its sign at ``share`` of it."""
+        self.arc(vertex, radius, start, end, "thin")
+        for tip, sense in ((start, 1), (end, -1)):
+            if (end - start) * radius > 8:
+                u = rect(1, tip + sense * (pi / 2 + 1.5 / radius))
+                p = vertex + rect(radius, tip)
+                self.fill((p, p + 3 * u + 0.5j * u, p + 3 * u - 0.5j * u), "thin")
+        mid = rect(1, start + share * (end - start))
+        self.label(vertex + radius * mid, markup, mid, height)
+
+
+def hatch_polygon(canvas: Canvas, outline: Points, step: float = 3.0, angle: float = pi / 4) -> None:
+    """Hatch a polygon, clipped exactly (shapely)."""
+    from shapely import LineString, MultiLineString, Polygon, intersection
+
+    shape = Polygon(np.column_stack((outline.real, outline.imag)))
+    x0, y0, x1, y1 = shape.bounds
+    reach, u = abs(complex(x1 - x0, y1 - y0)), complex(cos(angle), sin(angle))
+    middle = complex((x0 + x1) / 2, (y0 + y1) / 2)
+    n = ceil(reach / step / 2)
+    lines = []
+    for i in range(-n, n + 1):
+        p = middle + 1j * u * i * step
+        a, b = p - u * reach, p + u * reach
+        lines.append(LineString([(a.real, a.imag), (b.real, b.imag)]))
+    cut: Any = intersection(MultiLineString(lines), shape)
+    for part in getattr(cut, "geoms", [cut]):
+        if part.geom_type == "LineString" and part.length > 0.2:
+            (ax, ay), (bx, by) = part.coords[0], part.coords[-1]
+            canvas.line(complex(ax, ay), complex(bx, by), "hatch")
+
+

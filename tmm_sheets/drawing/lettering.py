@@ -1,0 +1,252 @@
+r"""Lettering of GOST 2.304 type B, slanted: markup with indices and overbars laid out into runs of plain letters.
+
+The letters come from ``templates/fonts/type_b.json``, made by ``templates/fonts/build.py`` from the stroke font. Its
+advances are those of the TrueType font beside it, so strokes and outlined letters fall on one another.
+
+Markup: ``_`` lowers and ``^`` raises what follows, a run of letters, digits and primes or a group in braces; an index of
+the other kind right after it stands above or below it. U+0305 after a letter draws a bar over it. A backslash takes the
+next character literally. ``F̅_{21}^τ``, ``μ_l = 0,0025 м/мм``, ``z\_1``.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache, lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.resources import template
+
+SIZES = (1.8, 2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0)
+"""Letter heights of GOST 2.304, mm."""
+PEN = 0.1
+"""Width of the pen of type B, in heights of a capital letter."""
+BAR = "\u0305"
+PRIMES = "′″'"
+
+_GAP = 0.2  # between letters; all in heights of a capital
+_DROP, _RISE = 0.3, 0.6  # the baseline of an index below or above that of its base
+_BAR_ABOVE = 0.2  # centre of an overbar above the top of its letter
+_OVERLAP = 0.25  # mm an index may reach into the cell of its base, or the next letter into the cell of a raised index:
+# the slope asks for more, but programs that read a PDF back would take that for lettering printed over lettering
+
+
+class Run(NamedTuple):
+    """Plain letters on one baseline; ``at`` is its left end relative to the whole lettering, mm."""
+
+    at: complex
+    text: str
+    height: float
+
+
+class Bar(NamedTuple):
+    """A stroke over a letter, mm."""
+
+    a: complex
+    b: complex
+
+
+class Lettering(NamedTuple):
+    """Laid out lettering, mm: ink from 0 to ``width``, from ``-descent`` to ``ascent`` about the baseline."""
+
+    width: float
+    ascent: float
+    descent: float
+    runs: tuple[Run, ...]
+    bars: tuple[Bar, ...]
+
+
+class Glyph(NamedTuple):
+    """One letter in heights of a capital: advance and slanted centre lines."""
+
+    advance: float
+    strokes: tuple[Points, ...]
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+
+@cache
+def _font() -> dict[str, Any]:
+    data: dict[str, Any] = json.loads(template("fonts/type_b.json").read_text(encoding="utf-8"))
+    return data
+
+
+@cache
+def slant() -> float:
+    """Tangent of the slope of the letters."""
+    return float(_font()["slant"])
+
+
+@cache
+def glyph(char: str) -> Glyph:
+    """The letter of a character.
+
+    Raises
+    ------
+    ValueError
+        When the font has no such letter.
+    """
+    font = _font()
+    row = font["glyphs"].get(char)
+    if row is None:
+        raise ValueError(f"the drawing font has no character '{char}' (U+{ord(char):04X})")
+    cap, half = font["cap"], font["stroke"] / font["cap"] / 2
+    strokes = []
+    for text in filter(None, row[1].split(";")):
+        xy = np.array(text.replace(",", " ").split(), dtype=float).reshape(-1, 2) / cap
+        strokes.append(np.asarray(xy[:, 0] + slant() * xy[:, 1] + 1j * xy[:, 1]))
+    if not strokes:
+        return Glyph(row[0] / cap, (), 0.0, 0.0, 0.0, 0.0)
+    ink = np.concatenate(strokes)
+    return Glyph(row[0] / cap, tuple(strokes), float(ink.real.min()) - half, float(ink.imag.min()) - half,
+                 float(ink.real.max()) + half, float(ink.imag.max()) + half)
+
+
+def advance(text: str, height: float) -> float:
+    """Distance from the origin of the first letter of ``text`` to the origin of what would follow, mm."""
+    return height * sum(glyph(c).advance for c in text)
+
+
+def strokes(text: str, height: float) -> list[Points]:
+    """Centre lines of a run of letters, mm, the left end of the baseline at 0; the pen is ``height``/10 wide."""
+    out: list[Points] = []
+    x = 0.0
+    for char in text:
+        g = glyph(char)
+        out += [height * (s + x) for s in g.strokes]
+        x += g.advance
+    return out
+
+
+def plain(text: str) -> str:
+    """Markup that sets ``text`` literally, whatever signs it holds."""
+    return text.replace("\\", "\\\\").replace("_", "\\_").replace("^", "\\^")
+
+
+def index_size(height: float) -> float:
+    """Height of an index: the next smaller of the standard's sizes; 0.7 of a height that is none of them."""
+    if height in SIZES[1:]:
+        return SIZES[SIZES.index(height) - 1]
+    return 0.7 * height
+
+
+class _Setter:
+    """Sets markup from left to right; the state is the place where the next letter goes."""
+
+    def __init__(self, markup: str) -> None:
+        self.source = markup
+        self.runs: list[Run] = []
+        self.bars: list[Bar] = []
+
+    def fail(self, why: str) -> ValueError:
+        return ValueError(f"lettering '{self.source}': {why}")
+
+    def set(self, markup: str, at: complex, height: float) -> complex:
+        """Set ``markup`` from ``at``; returns where the next letter would go."""
+        i, pen, text, start = 0, at, "", at
+        while i < len(markup):
+            c = markup[i]
+            if c == "\\":
+                if i + 1 == len(markup):
+                    raise self.fail("nothing follows the backslash")
+                c = markup[i + 1]
+                i += 1
+            elif c in "_^":
+                self.flush(text, start, height)
+                i, pen = self.indices(markup, i, pen, height)
+                text, start = "", pen
+                continue
+            elif c == BAR:
+                if not text:
+                    raise self.fail("nothing stands before the overbar")
+                self.bar(text[-1], pen, height)
+                i += 1
+                continue
+            text += c
+            pen += advance(c, height)
+            i += 1
+        self.flush(text, start, height)
+        return pen
+
+    def flush(self, text: str, start: complex, height: float) -> None:
+        if text.strip():
+            self.runs.append(Run(start, text, height))
+
+    def indices(self, markup: str, i: int, pen: complex, height: float) -> tuple[int, complex]:
+        """Set the index at ``i`` and one of the other kind right after it; returns where the markup and the line go on."""
+        small = index_size(height)
+        bodies: dict[float, str] = {}  # by the lift of the baseline
+        while i < len(markup) and markup[i] in "_^":
+            lift = height * (_RISE if markup[i] == "^" else -_DROP)
+            if lift in bodies:
+                break
+            bodies[lift], i = self.body(markup, i + 1)
+        # One above the other means: along the slope of the letters.
+        foot = pen.real + max(max(-_GAP * (height - small), -_OVERLAP - slant() * lift) for lift in bodies)
+        ends = []
+        for lift, body in bodies.items():
+            lean = slant() * lift
+            end = self.set(body, complex(foot + lean, pen.imag + lift), small)
+            ends.append(end.real - min(lean, _OVERLAP))
+        return i, complex(max(ends), pen.imag)
+
+    def body(self, markup: str, i: int) -> tuple[str, int]:
+        """What an index sign at ``i`` - 1 governs."""
+        if i < len(markup) and markup[i] == "{":
+            depth = 0
+            for j in range(i, len(markup)):
+                depth += (markup[j] == "{") - (markup[j] == "}")
+                if not depth:
+                    return markup[i + 1 : j], j + 1
+            raise self.fail("a brace is not closed")
+        j = i
+        while j < len(markup) and (markup[j].isalnum() or markup[j] in PRIMES or markup[j] == BAR):
+            j += 1
+        if j == i:
+            sign = markup[i - 1]
+            raise self.fail(f"'{sign}' has nothing to lower or raise; write '\\{sign}' for the sign itself")
+        return markup[i:j], j
+
+    def bar(self, char: str, pen: complex, height: float) -> None:
+        """Bar over the letter that ends at ``pen``; it continues the bar over the letter before."""
+        g = glyph(char)
+        y = max(g.top, 0.7) + _BAR_ABOVE
+        lean = complex(slant() * y, y)
+        a = pen + height * (lean - g.advance + 0.05)
+        b = pen + height * (lean - _GAP - 0.05)
+        if self.bars and abs((a - self.bars[-1].b).real) < 0.5 * height and abs((a - self.bars[-1].b).imag) < 0.3 * height:
+            last = self.bars.pop()
+            lift = max(a.imag - last.a.imag, 0.0)
+            a, b = last.a + complex(slant() * lift, lift), complex(b.real, last.a.imag + lift)
+        self.bars.append(Bar(a, b))
+
+
+@lru_cache(maxsize=8192)
+def letter(markup: str, height: float) -> Lettering:
+    """Lay out ``markup`` with capital letters ``height`` mm high.
+
+    Raises
+    ------
+    ValueError
+        When a character is missing from the font or the markup makes no sense.
+    """
+    setter = _Setter(markup)
+    setter.set(markup, 0j, height)
+    right = top = bottom = 0.0
+    for at, text, size in setter.runs:
+        x = at.real
+        for char in text:
+            g = glyph(char)
+            if g.strokes:
+                right = max(right, x + size * g.right)
+                top = max(top, at.imag + size * g.top)
+                bottom = min(bottom, at.imag + size * g.bottom)
+            x += size * g.advance
+    for bar in setter.bars:
+        right = max(right, bar.b.real)
+        top = max(top, bar.b.imag + 0.05 * height)
+    return Lettering(right, top, -bottom, tuple(setter.runs), tuple(setter.bars))

@@ -1,0 +1,99 @@
+"""The display list: marks in millimetres of the sheet, x right, y up, origin in the lower left corner of the paper.
+
+All a backend knows of looks is the name of a line type (``templates/linetypes.toml``). Points are complex numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.box import Box as Box
+
+Points = npt.NDArray[np.complex128]
+
+
+class Line(NamedTuple):
+    """A straight stroke."""
+
+    a: complex
+    b: complex
+    style: str
+    of: str = ""
+
+
+class Arc(NamedTuple):
+    """A circular arc from angle ``start`` counter-clockwise to ``end`` (rad); a full circle when they differ by 2 pi."""
+
+    centre: complex
+    radius: float
+    start: float
+    end: float
+    style: str
+    of: str = ""
+
+
+class Polyline(NamedTuple):
+    """A curve through many points."""
+
+    points: Points
+    style: str
+    closed: bool = False
+    of: str = ""
+
+
+class Text(NamedTuple):
+    """One run of plain text; ``at`` is the left end of the baseline, ``height`` that of a capital letter, mm."""
+
+    at: complex
+    text: str
+    height: float
+    angle: float = 0.0
+    of: str = ""
+
+
+class Fill(NamedTuple):
+    """A filled simple polygon (arrow heads, filled quadrants)."""
+
+    points: Points
+    style: str
+    of: str = ""
+
+
+Mark = Line | Arc | Polyline | Text | Fill
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A finished sheet: marks on paper of ``width`` x ``height`` mm."""
+
+    width: float
+    height: float
+    title: str
+    marks: tuple[Mark, ...] = field(repr=False)
+    author: str = ""
+
+
+def flat(mark: Mark, step: float = 0.5) -> Points:
+    """A mark's line as points: ends of lines, vertices of polylines, arcs cut into chords of at most ``step`` mm."""
+    if isinstance(mark, Line):
+        return np.array([mark.a, mark.b])
+    if isinstance(mark, Arc):
+        n = max(int(np.ceil(abs(mark.end - mark.start) * mark.radius / step)), 8)
+        t = np.linspace(mark.start, mark.end, n + 1)
+        return np.asarray(mark.centre + mark.radius * (np.cos(t) + 1j * np.sin(t)))
+    if isinstance(mark, Text):
+        return np.array([mark.at])
+    points = np.asarray(mark.points)
+    closed = isinstance(mark, Fill) or mark.closed
+    return np.append(points, points[:1]) if closed else points
+
+
+def bounds(marks: Iterable[Mark]) -> Box:
+    """Smallest rectangle round the lines of the marks (texts count with their start point only)."""
+    points = np.concatenate([flat(m) for m in marks])
+    return Box(points.real.min(), points.imag.min(), points.real.max(), points.imag.max())

@@ -1,0 +1,270 @@
+"""Pen paths of a drawing on a plotter: cut to its reach, doubles removed, strokes joined, put in a short order.
+
+From here on places are whole plotter steps (0.025 mm), so that 'the same point' and 'the same line' are exact.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from math import gcd, hypot
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.drawing.clipping import polyline_inside
+from tmm_sheets.drawing.ink import ink
+from tmm_sheets.drawing.marks import Box, Drawing, Points
+from tmm_sheets.drawing.passes import of_area, of_line
+from tmm_sheets.drawing.plotters import Pen, Plotter
+
+STEP = 0.025  # mm
+SWEEPS = 4  # times the order is gone through to shorten it
+Step = tuple[int, int]
+Path = tuple[Step, ...]
+
+
+@dataclass(frozen=True)
+class Layer:
+    """What one pen draws: paths in their order, and areas that the machine fills by itself (printers only)."""
+
+    pen: Pen
+    paths: tuple[Path, ...]
+    areas: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True)
+class PenPlan:
+    """What goes to a plotter, and what it costs. Lengths in mm.
+
+    ``travel_before`` is the way of the lifted pen if every stroke were drawn as it comes in the drawing, pen by pen;
+    ``doubled`` the length of lines that would have been drawn twice, ``lost`` that of lines beyond the reach.
+    """
+
+    plotter: Plotter
+    width: float
+    height: float
+    layers: tuple[Layer, ...]
+    strokes: int
+    drawn: float
+    travel_before: float
+    travel: float
+    doubled: float
+    lost: float
+
+    @property
+    def paths(self) -> int:
+        """Number of times the pen goes down."""
+        return sum(len(layer.paths) for layer in self.layers)
+
+
+def plan(drawing: Drawing, plotter: Plotter, window: Box | None = None) -> PenPlan:
+    """Pen paths of a drawing, or of a ``window`` of it in mm of the sheet, whose lower left corner is then the paper's.
+
+    Raises
+    ------
+    ValueError
+        When a mark has coordinates that are not finite or a letter is missing from the font.
+    """
+    view = window or Box(0.0, 0.0, drawing.width, drawing.height)
+    width, height = view.x1 - view.x0, view.y1 - view.y0
+    shift = complex(-view.x0, -view.y0) - (complex(width, height) / 2 if plotter.origin == "centre" else 0)
+    reach = Box(*(round(v, 6) for v in (
+        max(plotter.reach.x0, view.x0 + shift.real), max(plotter.reach.y0, view.y0 + shift.imag),
+        min(plotter.reach.x1, view.x1 + shift.real), min(plotter.reach.y1, view.y1 + shift.imag),
+    )))  # fmt: skip
+    lines: dict[Pen, list[Path]] = defaultdict(list)
+    areas: dict[Pen, list[Path]] = defaultdict(list)
+    lost, strokes = 0.0, 0
+    for stroke in ink(drawing.marks):
+        points = stroke.points + shift
+        if not _touches(reach, points):  # in a window: another will have it
+            lost += 0.0 if stroke.filled else _length(points)
+            continue
+        strokes += 1
+        if stroke.filled and not plotter.pens:
+            if _inside(reach, points):
+                areas[Pen(1, 0.2)].append(_steps(points))
+            continue
+        pen = plotter.finest if stroke.filled else plotter.pen(stroke.width)
+        for way in of_area(points, pen.width) if stroke.filled else of_line(points, stroke.width, pen.width):
+            parts = [way] if _inside(reach, way) else polyline_inside(reach, way)
+            lost += _length(way) - sum(map(_length, parts))
+            lines[pen] += [_steps(part) for part in parts]
+    order = plotter.pens or tuple(sorted({*lines, *areas}, key=lambda pen: pen.width))
+    layers, before, after, drawn, doubled, place = [], 0.0, 0.0, 0.0, 0.0, (0, 0)
+    last = (0, 0)
+    for pen in order:
+        if not lines[pen] and not areas[pen]:
+            continue
+        before += _travel(lines[pen], last)
+        last = lines[pen][-1][-1] if lines[pen] else last
+        single = list(without_doubles(lines[pen]))
+        paths = ordered(joined(single), place)
+        after += _travel(paths, place)
+        place = paths[-1][-1] if paths else place
+        ink_once = sum(map(_way, single))
+        doubled += sum(map(_way, lines[pen])) - ink_once
+        drawn += ink_once
+        layers.append(Layer(pen, tuple(paths), tuple(areas[pen])))
+    return PenPlan(plotter, width, height, tuple(layers), strokes, STEP * drawn, STEP * before, STEP * after, STEP * doubled,
+                   lost if window is None else 0.0)  # fmt: skip
+
+
+def without_doubles(paths: Iterable[Path]) -> Iterator[Path]:
+    """The straight pieces of the paths, what lies on one another once; places where a pen only dots stay as they are."""
+    lines: dict[tuple[int, int, int], list[tuple[int, Step, int, Step]]] = defaultdict(list)
+    dots = set()
+    for path in paths:
+        if len(path) == 1:
+            dots.add(path)
+        for a, b in pairwise(path):
+            dx, dy = b[0] - a[0], b[1] - a[1]
+            g = gcd(dx, dy)
+            u, v = dx // g, dy // g
+            if (u, v) < (0, 0):
+                a, b, u, v = b, a, -u, -v
+            lines[u, v, u * a[1] - v * a[0]].append((u * a[0] + v * a[1], a, u * b[0] + v * b[1], b))
+    for pieces in lines.values():
+        pieces.sort()
+        _, start, end, stop = pieces[0]
+        for s, a, e, b in pieces[1:]:
+            if s > end:
+                yield start, stop
+                start = a
+            if s > end or e > end:
+                end, stop = e, b
+        yield start, stop
+    yield from sorted(dots)
+
+
+def joined(pieces: Iterable[Path]) -> list[Path]:
+    """Straight pieces put together to paths, straight on where several meet."""
+    pieces = list(pieces)
+    at: dict[Step, list[int]] = defaultdict(list)
+    for i, piece in enumerate(pieces):
+        if len(piece) == 2:
+            at[piece[0]].append(i)
+            at[piece[1]].append(i)
+    out: list[Path] = [piece for piece in pieces if len(piece) == 1]
+
+    def follow(place: Step) -> None:
+        path = [place]
+        while (i := _next(path, at, pieces)) is not None:
+            a, b = pieces[i]
+            path.append(b if path[-1] == a else a)
+            at[path[-2]].remove(i)
+            at[path[-1]].remove(i)
+        out.append(tuple(path))
+
+    # A path that begins where an odd number of pieces meet ends at another such place; what is left then is closed.
+    for place, here in at.items():
+        if len(here) % 2:
+            follow(place)
+    for place, here in at.items():
+        while here:
+            follow(place)
+    return out
+
+
+def _next(path: list[Step], at: dict[Step, list[int]], pieces: list[Path]) -> int | None:
+    """The piece not yet drawn at the end of the path that turns least."""
+    x, y = path[-1]
+    candidates = at[x, y]
+    if len(candidates) < 2 or len(path) < 2:
+        return candidates[0] if candidates else None
+    dx, dy = x - path[-2][0], y - path[-2][1]
+
+    def straight(i: int) -> float:
+        a, b = pieces[i]
+        px, py = b if a == (x, y) else a
+        return (dx * (px - x) + dy * (py - y)) / hypot(px - x, py - y)
+
+    return max(candidates, key=straight)
+
+
+def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
+    """Paths in an order with little travel between, turned round where that helps.
+
+    First always the nearest end next, then stretches of the order are turned round as long as it pays (2-opt; Croes 1958).
+    """
+    if not paths:
+        return []
+    starts, ends = (np.array([complex(*p[k]) for p in paths]) for k in (0, -1))
+    order, turned = _nearest_next(starts, ends, complex(*start))
+    first, last = np.where(turned, ends, starts)[order], np.where(turned, starts, ends)[order]
+    turned = turned[order]
+    for _ in range(SWEEPS):
+        better = False
+        for i in range(len(order)):
+            before = last[i - 1] if i else complex(*start)
+            # Turning i .. j round joins what was before i to the end of j, and the beginning of i to what comes after j.
+            now = np.append(np.abs(first[i + 1 :] - last[i:-1]), 0.0)
+            then = np.append(np.abs(first[i + 1 :] - first[i]), 0.0)
+            gain = abs(first[i] - before) + now - np.abs(last[i:] - before) - then
+            j = i + int(np.argmax(gain))
+            if gain[j - i] > 1.0:  # a plotter step
+                part = slice(i, j + 1)
+                first[part], last[part] = last[part][::-1].copy(), first[part][::-1].copy()
+                order[part], turned[part] = order[part][::-1].copy(), ~turned[part][::-1]
+                better = True
+        if not better:
+            break
+    return [paths[k][::-1] if back else paths[k] for k, back in zip(order.tolist(), turned.tolist(), strict=True)]
+
+
+def _nearest_next(starts: Points, ends: Points, place: complex) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+    """Order of paths, each the one with an end nearest to where the one before stopped, and which of them go backwards."""
+    n = len(starts)
+    both = np.concatenate((starts, ends))
+    index = np.arange(2 * n)
+    alive, turned, order = np.ones(n, dtype=bool), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64)
+    for done in range(n):
+        if done % 256 == 0:
+            keep = alive[index % n]
+            index, both = index[keep], both[keep]
+        distance = np.abs(both - place)
+        distance[~alive[index % n]] = np.inf
+        j = int(index[np.argmin(distance)])
+        order[done] = j % n
+        turned[j % n] = j >= n
+        alive[j % n] = False
+        place = complex(starts[j % n] if j >= n else ends[j % n])
+    return order, turned
+
+
+def _steps(points: Points) -> Path:
+    """Points in plotter steps, those that fall on the one before left out."""
+    x, y = (np.rint(v / STEP).astype(int).tolist() for v in (points.real, points.imag))
+    steps = list(zip(x, y, strict=True))
+    return (steps[0], *(b for a, b in pairwise(steps) if a != b))
+
+
+def _inside(box: Box, points: Points) -> bool:
+    low, high = complex(box.x0 - 1e-6, box.y0 - 1e-6), complex(box.x1 + 1e-6, box.y1 + 1e-6)
+    x, y = points.real, points.imag
+    return bool(x.min() >= low.real and y.min() >= low.imag and x.max() <= high.real and y.max() <= high.imag)
+
+
+def _touches(box: Box, points: Points) -> bool:
+    x, y = points.real, points.imag
+    return bool(x.min() <= box.x1 and y.min() <= box.y1 and x.max() >= box.x0 and y.max() >= box.y0)
+
+
+def _length(points: Points) -> float:
+    return float(np.abs(np.diff(points)).sum())
+
+
+def _way(path: Path) -> float:
+    return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(path))
+
+
+def _travel(paths: Iterable[Path], start: Step) -> float:
+    """Way of the lifted pen, plotter steps."""
+    way, place = 0.0, start
+    for path in paths:
+        way += hypot(path[0][0] - place[0], path[0][1] - place[1])
+        place = path[-1]
+    return way

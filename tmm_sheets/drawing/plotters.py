@@ -1,0 +1,117 @@
+"""What a plotter can do, read from ``templates/plotters/*.toml`` or from a file of the user's own."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from math import isfinite
+from pathlib import Path
+from typing import Any, Literal
+
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.resources import template
+
+DEFAULT = "a1"
+NEAR = 0.05  # mm: a pen so much thinner or thicker than a line still draws it in one pass; its edges are then off by half of that
+LARGEST = 10_000.0  # mm
+
+
+@dataclass(frozen=True)
+class Pen:
+    """A pen of the carousel: its number there and the width of its line, mm."""
+
+    number: int
+    width: float
+
+
+@dataclass(frozen=True)
+class Plotter:
+    """A plotter. ``reach`` is in its own axes, mm; ``speed`` in cm/s, 0 for the machine's own.
+
+    A printer that makes lines of any width (``language`` hpgl2) has no pens.
+    """
+
+    name: str
+    language: Literal["hpgl", "hpgl2"]
+    origin: Literal["corner", "centre"]
+    reach: Box
+    speed: float
+    pens: tuple[Pen, ...]
+
+    def pen(self, width: float) -> Pen:
+        """The pen for lines of ``width`` mm: the nearest if it is near enough, or the thickest that is thinner, or the finest.
+
+        The ink of a thinner pen is brought to the width by parallel passes.
+        """
+        if not self.pens:
+            return Pen(1, round(width, 3))
+        nearest = min(self.pens, key=lambda p: abs(p.width - width))
+        if abs(nearest.width - width) <= NEAR + 1e-9:
+            return nearest
+        return max((p for p in self.pens if p.width < width), key=lambda p: p.width, default=self.finest)
+
+    @property
+    def finest(self) -> Pen:
+        """The thinnest pen."""
+        return min(self.pens, key=lambda p: p.width)
+
+
+def names() -> list[str]:
+    """Names of the shipped plotters."""
+    return sorted(p.stem for p in template("plotters").glob("*.toml"))
+
+
+@cache
+def plotter(name: str = DEFAULT) -> Plotter:
+    """The plotter of that name, or of the file at that path.
+
+    Raises
+    ------
+    ValueError
+        When there is none, or when its file does not say what it must; the message names file and key.
+    OSError
+        When the file cannot be read.
+    """
+    path = template(f"plotters/{name}.toml") if name in names() else Path(name)
+    if not path.is_file():
+        raise ValueError(f"no plotter '{name}': neither a file nor one of {', '.join(names())}")
+    try:
+        return _plotter(path.stem, tomllib.loads(path.read_text(encoding="utf-8")))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, ValueError) as e:
+        raise ValueError(f"{path}: {e}") from None
+
+
+def _plotter(name: str, row: dict[str, Any]) -> Plotter:
+    if unknown := sorted(set(row) - {"language", "origin", "reach", "speed", "pen"}):
+        raise ValueError(f"{unknown[0]}: unknown key")
+    language, origin, pens = row.get("language"), row.get("origin", "corner"), row.get("pen", [])
+    if language not in ("hpgl", "hpgl2"):
+        raise ValueError(f'language: expected "hpgl" or "hpgl2", not {language!r}')
+    if origin not in ("corner", "centre"):
+        raise ValueError(f'origin: expected "corner" or "centre", not {origin!r}')
+    reach = row.get("reach")
+    if not (isinstance(reach, list) and len(reach) == 4 and all(_number(v, -LARGEST, LARGEST) for v in reach)
+            and reach[0] < reach[2] and reach[1] < reach[3]):  # fmt: skip
+        raise ValueError(f"reach: expected [x0, y0, x1, y1] in mm, not {reach}")
+    speed = row.get("speed", 0)
+    if not _number(speed, 0, 1000):
+        raise ValueError(f"speed: expected cm/s, not {speed!r}")
+    if not isinstance(pens, list) or bool(pens) != (language == "hpgl"):
+        raise ValueError('pen: "hpgl" needs at least one [[pen]], "hpgl2" takes none')
+    return Plotter(name, language, origin, Box(*map(float, reach)), float(speed), tuple(_pen(i, p) for i, p in enumerate(pens, 1)))
+
+
+def _pen(i: int, row: Any) -> Pen:
+    if not isinstance(row, dict) or set(row) != {"number", "width"}:
+        raise ValueError(f"pen[{i}]: expected number and width")
+    number, width = row["number"], row["width"]
+    if not isinstance(number, int) or isinstance(number, bool) or not 1 <= number <= 8:
+        raise ValueError(f"pen[{i}].number: expected 1 to 8, not {number!r}")
+    if not _number(width, 0.05, 5):
+        raise ValueError(f"pen[{i}].width: expected 0.05 to 5 mm, not {width!r}")
+    return Pen(number, float(width))
+
+
+def _number(value: Any, low: float, high: float) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value) and low <= value <= high

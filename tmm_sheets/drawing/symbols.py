@@ -1,0 +1,94 @@
+"""Kinematic symbols of GOST 2.770, enlarged for A1: hinges, pivots, sliding blocks, guides."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+from tmm_sheets.drawing.canvas import Canvas
+
+HINGE = 1.6
+"""Radius of a hinge's circle, mm."""
+BLOCK = (10.0, 6.0)
+"""Length and width of a sliding block, mm."""
+
+
+def hinge(canvas: Canvas, at: complex, style: str = "main", radius: float = HINGE) -> None:
+    """Turning pair: a small circle; link lines end on it."""
+    canvas.circle(at, radius, style)
+
+
+def pivot(canvas: Canvas, at: complex, down: complex = -1j, style: str = "main") -> None:
+    """Turning pair on the frame: circle, two legs to a base line, hatched; ``down`` points to the base."""
+    r, u = HINGE, down / abs(down)
+    n = 1j * u
+    base = at + 8.0 * u
+    for s in (1, -1):
+        foot = base + s * 4.0 * n
+        leg = foot - at
+        canvas.line(at + r * leg / abs(leg), foot, style)
+    a, b = base + 7.5 * n, base - 7.5 * n
+    canvas.line(a, b, style)
+    canvas.hatch(a, b, -1 if (1j * (b - a) / abs(b - a) * u.conjugate()).real < 0 else 1)
+    hinge(canvas, at, style)
+
+
+def bar(canvas: Canvas, points: Iterable[complex], hinges: Iterable[complex], style: str = "main", radius: float = HINGE) -> None:
+    """Link line through points; it is interrupted inside every hinge circle it passes or ends at."""
+    p = list(points)
+    circles = list(hinges)
+    for a, b in pairwise(p):
+        length = abs(b - a)
+        if length < 1e-9:
+            continue
+        u = (b - a) / length
+        cuts = []
+        for c in circles:
+            t = ((c - a) * u.conjugate()).real
+            d = abs(((c - a) * u.conjugate()).imag)
+            if d < radius:
+                half = (radius**2 - d**2) ** 0.5
+                cuts.append((t - half, t + half))
+        start = 0.0
+        for lo, hi in sorted(cuts):
+            if lo > start:
+                canvas.line(a + start * u, a + lo * u, style)
+            start = max(start, hi)
+        if start < length:
+            canvas.line(a + start * u, b, style)
+
+
+def block(canvas: Canvas, at: complex, along: complex, style: str = "main", size: tuple[float, float] = BLOCK) -> None:
+    """Sliding block: a rectangle along its guide."""
+    u = along / abs(along)
+    dx, dy = size[0] / 2 * u, size[1] / 2 * 1j * u
+    canvas.polyline((at + dx + dy, at - dx + dy, at - dx - dy, at + dx - dy), style, closed=True)
+
+
+def fixed_guide(canvas: Canvas, a: complex, b: complex, side: int, style: str = "main") -> None:
+    """Fixed surface: a line hatched on one side (+1 left of a .. b)."""
+    canvas.line(a, b, style)
+    canvas.hatch(a, b, side)
+
+
+def centre_of_mass(canvas: Canvas, at: complex, radius: float = 1.6, style: str = "thin") -> None:
+    """Centre of mass: a circle with two opposite quarters filled."""
+    canvas.circle(at, radius, style)
+    for quarter in (1, -1):
+        arc = [at + radius * quarter * complex(c, s) for c, s in _QUARTER]
+        canvas.fill([at, *arc], style)
+
+
+_QUARTER = ((1.0, 0.0), (0.9239, 0.3827), (0.7071, 0.7071), (0.3827, 0.9239), (0.0, 1.0))
+
+
+def rotation_arrow(canvas: Canvas, about: complex, radius: float, towards: complex, sense: float, text: str) -> None:
+    """Curved arrow of an angular velocity or acceleration round ``about``, open towards the label's direction."""
+    from cmath import phase
+    from math import copysign, pi
+
+    middle = phase(towards)
+    half = min(0.35 * pi, 9.0 / radius)
+    s = copysign(1.0, sense)
+    canvas.arc_arrow(about, radius, middle - s * half, middle + s * half, "axis")
+    canvas.label(about + radius * towards / abs(towards), text, towards, gap=1.2)

@@ -1,0 +1,176 @@
+"""Frame (GOST 2.301), title block forms 1 and 2a and the turned designation (GOST 2.104) of an A1 sheet, landscape.
+
+The forms are data: ``templates/title_blocks.json``.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.drawing.lettering import letter, plain
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.resources import template
+
+if TYPE_CHECKING:
+    from tmm_sheets.drawing.canvas import Canvas
+
+PAPER = Box(0, 0, 841, 594)
+FRAME = Box(20, 5, 836, 589)
+TURNED = Box(20, 575, 90, 589)
+"""Field 26: the designation turned by 180 degrees, in the corner opposite the title block."""
+CAPTION = 2.5
+PITCH = 1.7  # between lines of type B lettering, in letter heights
+SIDE, ENDS = 1.0, 1.25  # least distance of lettering to the lines at its sides, above and below, mm
+NAME_WIDTH = 23 - 2 * SIDE
+
+FIELDS = frozenset({
+    "designation", "title", "project", "letter", "mass", "scale", "developed", "checked", "technical_control", "supervisor",
+    "norm_control", "approved", "institution", "group",
+})  # fmt: skip
+"""What :func:`draw_frame` understands."""
+ROLES = {
+    "Разраб.": "developed", "Пров.": "checked", "Т.контр.": "technical_control", "": "supervisor", "Н.контр.": "norm_control",
+    "Утв.": "approved",
+}  # fmt: skip
+"""Names (field 11) by the role printed in field 10; the row without one is left to the department."""
+
+
+@cache
+def _forms() -> dict[str, Any]:
+    forms: dict[str, Any] = json.loads(template("title_blocks.json").read_text(encoding="utf-8"))
+    return forms
+
+
+def block(form: str) -> Box:
+    """Place of a title block on the sheet.
+
+    Raises
+    ------
+    ValueError
+        When ``templates/title_blocks.json`` has no such form.
+    """
+    if form == "about" or form not in _forms():
+        known = ", ".join(f for f in _forms() if f != "about")
+        raise ValueError(f"title block form '{form}' is not in templates/title_blocks.json (it has {known})")
+    w, h = _forms()[form]["size"]
+    return Box(FRAME.x1 - w, FRAME.y0, FRAME.x1, FRAME.y0 + h)
+
+
+def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_number: int, sheet_count: int) -> tuple[Box, ...]:
+    """Draw the sheet's outline, frame, title block and turned designation.
+
+    Parameters
+    ----------
+    fields
+        Plain text by the names of :data:`FIELDS`; what is absent stays empty, mass and scale get a dash (a sheet of
+        plans has no mass and as many scales as views).
+    form
+        "1" or "2a".
+    sheet_number, sheet_count
+        Fields 7 and 8; a single sheet has no number.
+
+    Returns
+    -------
+    The boxes of the title block and of the turned designation, closed to anything else.
+    """
+    if unknown := sorted(set(fields) - FIELDS):
+        raise ValueError(f"title block fields unknown: {', '.join(unknown)}; known are {', '.join(sorted(FIELDS))}")
+    place = block(form)
+    data = _forms()[form]
+    canvas.of = "title block"
+    _rectangle(canvas, PAPER.inset(line_type("thin").width / 2), "thin")  # inside the paper, or half of it is cut off
+    _rectangle(canvas, FRAME, "main")
+    origin = complex(place.x0, place.y0)
+    for style, rows in (("main", data["thick"]), ("thin", data["thin"])):
+        for x0, y0, x1, y1 in rows:
+            canvas.line(origin + complex(x0, y0), origin + complex(x1, y1), style)
+    values = _values(fields, sheet_number, sheet_count)
+    # All names in one size: the larger only where all of them fit.
+    large = all(letter(plain(fields.get(role, "")), 3.5).width <= NAME_WIDTH for role in ROLES.values())
+    names: tuple[float, ...] = (3.5, 2.5) if large else (2.5,)
+    role = ""
+    for number, kind, word, *corners in data["cells"]:
+        x0, y0, x1, y1 = corners
+        cell = Box(place.x0 + x0, place.y0 + y0, place.x0 + x1, place.y0 + y1)
+        if kind == "caption":
+            _lines(canvas, cell, [word], (CAPTION,))
+        elif number == "10":
+            role = word
+            _left(canvas, cell, word or ("Рук." if fields.get("supervisor") else ""))
+        elif number == "11":
+            _lines(canvas, cell, [fields.get(ROLES[role], "")], names)
+        elif number in values:
+            width = _left(canvas, cell, word) if word else 0.0
+            lines, sizes = values[number]
+            _lines(canvas, cell.inset(width, 0, 0, 0), lines, sizes)
+    _rectangle(canvas, TURNED, "main")
+    _lines(canvas, TURNED, [fields.get("designation", "")], (7.0, 5.0, 3.5), turned=True)
+    for x, text in ((FRAME.x1 - 110, "Копировал"), (FRAME.x1 - 40, "Формат А1")):
+        canvas.text(complex(x, FRAME.y0 - 3.7), text, CAPTION)
+    canvas.of = ""
+    return place, TURNED
+
+
+def _values(fields: Mapping[str, str], number: int, count: int) -> dict[str, tuple[list[str], tuple[float, ...]]]:
+    """Lines and permitted letter heights by number of the field."""
+    return {
+        "1": ([fields.get("project", ""), fields.get("title", "")], (5.0, 3.5, 2.5)),
+        "2": ([fields.get("designation", "")], (7.0, 5.0, 3.5)),
+        "4a": ([fields.get("letter", "")], (3.5,)),
+        "5": ([fields.get("mass", "–")], (5.0, 3.5)),
+        "6": ([fields.get("scale", "–")], (5.0, 3.5)),
+        "7": ([str(number) if count > 1 else ""], (3.5, 2.5)),
+        "8": ([str(count)], (3.5, 2.5)),
+        "9": ([fields.get("institution", ""), fields.get("group", "")], (5.0, 3.5, 2.5)),
+    }
+
+
+def _rectangle(canvas: Canvas, box: Box, style: str) -> None:
+    corners = [complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)]
+    canvas.polyline(corners, style, closed=True)
+
+
+def _left(canvas: Canvas, cell: Box, text: str) -> float:
+    """A printed word at the left of its cell; returns the width it takes."""
+    if not text:
+        return 0.0
+    return canvas.text(complex(cell.x0 + SIDE, cell.centre.imag - CAPTION / 2), plain(text), CAPTION).width + SIDE
+
+
+def _wrap(text: str, height: float, width: float) -> list[str]:
+    """Break between words so that no line is wider than ``width``, unless a single word is."""
+    lines: list[str] = []
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and letter(plain(longer), height).width <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def _lines(canvas: Canvas, cell: Box, parts: list[str], sizes: tuple[float, ...], turned: bool = False) -> None:
+    """Lettering in the middle of a cell: the largest size at which it fits, in up to three lines, else squeezed into it."""
+    width, height = cell.width - 2 * SIDE, cell.height - (2 * ENDS if cell.height > 5 else 0.5)
+    for size in sizes:
+        room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
+        lines = [line for part in parts for line in (_wrap(part, size, width) if room > 1 else filter(None, [part]))]
+        if not lines:
+            return
+        widest = max(letter(plain(line), size).width for line in lines)
+        tall = size * (1 + PITCH * (len(lines) - 1))
+        # Three lines need some air between the rules of their cell.
+        if widest <= width and tall <= height - (1.0 if len(lines) == 3 else 0.0) and len(lines) <= 3:
+            break
+    else:
+        size *= min(width / widest, height / tall, 1.0)
+    sign, angle = (-1, pi) if turned else (1, 0.0)
+    y = size * (PITCH * (len(lines) - 1) - 1) / 2
+    for line in lines:
+        canvas.text(cell.centre + sign * 1j * y, plain(line), size, "centre", angle)
+        y -= PITCH * size

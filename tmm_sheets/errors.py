@@ -1,0 +1,50 @@
+"""What can be wrong with an input, told apart by the exit status of the commands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong: where it stands, what was expected there, what to try.
+
+    ``field`` is the path of the key in the file, e.g. ``crank.length`` or ``group[2].outer``, counted from 1.
+    """
+
+    message: str
+    file: str = ""
+    line: int | None = None
+    field: str = ""
+    hint: str = ""
+
+    def __str__(self) -> str:
+        place = self.file + (f":{self.line}" if self.line is not None else "")
+        text = ": ".join(part for part in (place, self.field, self.message) if part)
+        return f"{text}\n    {self.hint}" if self.hint else text
+
+
+class CannotBuild(Exception):
+    """The input is understood, but what it describes cannot be built; exit status 1.
+
+    The text says in the user's words what fails, at which positions, and by how much; ``hint`` says what to try.
+    """
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.hint = hint
+
+    def __str__(self) -> str:
+        message = str(self.args[0])
+        return f"{message}\n    {self.hint}" if self.hint else message
+
+
+class BadInput(Exception):
+    """Wrong usage or unreadable input; exit status 2. Holds every problem found, not the first one only."""
+
+    def __init__(self, problems: Iterable[Problem] | Problem | str, hint: str = "") -> None:
+        if isinstance(problems, str):
+            problems = Problem(problems, hint=hint)
+        self.problems = (problems,) if isinstance(problems, Problem) else tuple(problems)
+        super().__init__("\n".join(str(p) for p in self.problems))

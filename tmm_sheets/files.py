@@ -1,0 +1,58 @@
+"""Output files that appear whole or not at all, all of a set together."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+
+from tmm_sheets.errors import BadInput, Problem
+
+
+def write_all(files: Mapping[Path, bytes]) -> None:
+    """Write a set of files: each beside its place under a passing name; all are renamed at the end.
+
+    Raises
+    ------
+    BadInput
+        when a folder or a file cannot be written; nothing new is left behind then.
+    """
+    passing: dict[Path, Path] = {}
+    current = Path()
+    try:
+        for path, data in files.items():
+            current = path
+            check_folder(path.parent)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if path.is_dir():
+                raise IsADirectoryError(0, "expected a file, this is a folder")
+            if path.exists() and not path.is_file():  # a pipe or a device: nothing to rename onto
+                path.write_bytes(data)
+                continue
+            target = path.resolve()
+            passing[target] = target.with_name(f".{target.name}.{os.getpid()}.part")
+            passing[target].write_bytes(data)
+        for target, part in passing.items():
+            current = target
+            part.replace(target)
+    except OSError as e:
+        raise BadInput(_unwritable(current, e)) from None
+    finally:
+        for part in passing.values():
+            with suppress(OSError):
+                part.unlink(missing_ok=True)
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder that cannot be made or written into, before any work is done for it; nothing is made yet."""
+    nearest = next(p for p in (folder, *folder.absolute().parents) if p.exists())
+    if not nearest.is_dir():
+        raise BadInput(Problem("expected a folder, this is a file", str(nearest), hint="choose another with -o"))
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise BadInput(_unwritable(nearest, PermissionError(0, "permission denied")))
+
+
+def _unwritable(path: Path, e: OSError) -> Problem:
+    why = (e.strerror or str(e)).lower()
+    return Problem(f"cannot be written: {why}", str(path), hint="choose another place with -o, or make room; nothing was written")

@@ -1,0 +1,1 @@
+"""Structure of a mechanism: links, kinematic pairs, Assur groups, mobility."""

@@ -1,0 +1,1 @@
+"""The graphical methods of the manuals, one file each; they record steps and never know of drawings."""

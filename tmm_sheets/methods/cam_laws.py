@@ -1,0 +1,349 @@
+"""Laws of motion of a cam's follower: phases of a turn, displacement and both derivatives, exact.
+
+Source: manual 000, section 7.1 (sine, cosine, constant acceleration); manual 003, table 2.9, figure 2.13 (trapezoid with
+straight ramps of an eighth of the phase, linearly decreasing acceleration; both reconstructed).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from math import pi
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.errors import CannotBuild
+
+Reals = npt.NDArray[np.float64]
+Function = Callable[[Any], Any]
+
+
+@dataclass(frozen=True)
+class Law:
+    """Law of one phase for unit stroke and unit phase angle: ``s`` grows from 0 to 1 while ``x`` grows from 0 to 1.
+
+    ``ds`` and ``dds`` are its exact derivatives and ``peak`` the largest ``|dds|``. ``division``, where the law has an
+    auxiliary circle, gives the angles, rad, at which the points of the circle of radius ``peak`` stand as high as ``dds``.
+    ``jumps`` are the shares inside the phase where ``dds`` jumps. ``even`` means
+    that the second half of the phase is the first one read backwards.
+    """
+
+    name: str
+    title: str
+    s: Function
+    ds: Function
+    dds: Function
+    peak: float
+    division: Function | None = None
+    jumps: tuple[float, ...] = ()
+    even: bool = True
+
+    @property
+    def reverse(self) -> Law:
+        """The law of the mirror image: a fall that retraces the rise."""
+        if self.even:
+            return self
+        return replace(self, s=lambda x: 1 - self.s(1 - x), ds=lambda x: self.ds(1 - x), dds=lambda x: -self.dds(1 - x),
+                       jumps=tuple(1 - j for j in reversed(self.jumps)))
+
+
+SINE = Law(
+    "sine", "синусоидальный",
+    s=lambda x: x - np.sin(2 * pi * x) / (2 * pi),
+    ds=lambda x: 2 * np.sin(pi * x) ** 2,
+    dds=lambda x: 2 * pi * np.sin(2 * pi * x),
+    peak=2 * pi,
+    division=lambda x: 2 * pi * x,
+)
+COSINE = Law(
+    "cosine", "косинусоидальный",
+    s=lambda x: np.sin(pi / 2 * x) ** 2,
+    ds=lambda x: pi / 2 * np.sin(pi * x),
+    dds=lambda x: pi**2 / 2 * np.cos(pi * x),
+    peak=pi**2 / 2,
+    division=lambda x: pi / 2 - pi * x,
+)
+CONSTANT = Law(
+    "constant", "постоянного ускорения",
+    s=lambda x: np.where(x < 0.5, 2 * x**2, 1 - 2 * (1 - x) ** 2),
+    ds=lambda x: np.where(x < 0.5, 4 * x, 4 * (1 - x)),
+    dds=lambda x: np.where(x < 0.5, 4.0, -4.0),
+    peak=4.0,
+    jumps=(0.5,),
+)
+LINEAR = Law(
+    "linearly decreasing", "линейно убывающего ускорения",
+    s=lambda x: x**2 * (3 - 2 * x),
+    ds=lambda x: 6 * x * (1 - x),
+    dds=lambda x: 6 * (1 - 2 * x),
+    peak=6.0,
+)
+
+
+# --- any diagram of the acceleration ----------------------------------------------------------------------------------
+
+
+READING = 0.15
+"""Share by which the areas above and below the axis may differ: diagrams are read from paper and joined smoothly."""
+
+
+class _Pieces:
+    """A diagram of straight and smoothly curved pieces with its two integrals, all of them polynomials.
+
+    Between two corners the points are joined by monotone cubics (F. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5,
+    1984): no overshoot, straight lines stay straight. The diagram is multiplied by ``1 + slant (1/2 - x)``.
+    """
+
+    def __init__(self, x: Sequence[float], y: Sequence[float]) -> None:
+        borders, values = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+        pieces = []
+        corners = [0, *(k + 1 for k in range(len(borders) - 1) if borders[k] == borders[k + 1]), len(borders)]
+        for a, b in pairwise(corners):
+            if b - a > 1:
+                pieces.append((borders[a:b], values[a:b], _slopes(borders[a:b], values[a:b])))
+        self.starts = np.concatenate([at[:-1] for at, _, _ in pieces])
+        self.widths = np.concatenate([np.diff(at) for at, _, _ in pieces])
+        cubic = np.concatenate([_cubics(*piece) for piece in pieces])
+        self.jumps = tuple(float(q[0][0]) for p, q in pairwise(pieces) if p[1][-1] != q[1][0])
+        # With t = x - start: the slant makes a quartic of the cubic.
+        slanted = np.pad(cubic, ((0, 0), (0, 1)))
+        self.dds, self.ds, self.s = self._integrals(slanted)
+        end, way = float(self.at(self.ds, 1.0)), float(self.at(self.s, 1.0))
+        self.unequal = end
+        self.area = float(np.abs(np.diff(self.at(self.ds, np.linspace(0, 1, 2001)))).sum()) / 2
+        if self.area > 0 and way > 0 and abs(end) <= READING * self.area:
+            slant = -end / (way - end / 2)
+            slanted = slanted * (1 + slant * (0.5 - self.starts))[:, None]
+            slanted[:, 1:] -= slant * cubic
+            self.dds, self.ds, self.s = self._integrals(slanted)
+            scale = float(self.at(self.s, 1.0))
+            self.dds, self.ds, self.s = self.dds / scale, self.ds / scale, self.s / scale
+
+    def _integrals(self, dds: Reals) -> tuple[Reals, Reals, Reals]:
+        ds, s = _integral(dds), _integral(_integral(dds))
+        rise = np.concatenate(([0.0], np.cumsum(_value(ds, self.widths))))
+        ds[:, 0] = rise[:-1]
+        s = _integral(ds)
+        s[:, 0] = np.concatenate(([0.0], np.cumsum(_value(s, self.widths))))[:-1]
+        return dds, ds, s
+
+    def at(self, coefficients: Reals, x: Any) -> Any:
+        """Value of a diagram or of an integral; in a jump that of the later piece counts."""
+        x = np.asarray(x, dtype=float)
+        k = np.clip(np.searchsorted(self.starts, x, side="right") - 1, 0, len(self.starts) - 1)
+        t, c = x - self.starts[k], coefficients[k]
+        result = c[..., -1]
+        for power in range(c.shape[-1] - 2, -1, -1):
+            result = result * t + c[..., power]
+        return result
+
+
+def _slopes(x: Reals, y: Reals) -> Reals:
+    """Slopes of the monotone cubics in the points of one smooth piece."""
+    h, d = np.diff(x), np.diff(y) / np.diff(x)
+    if len(d) == 1:
+        return np.array([d[0], d[0]])
+    slopes = np.zeros(len(x))
+    same = d[:-1] * d[1:] > 0
+    w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slopes[1:-1] = np.where(same, (w1 + w2) / (w1 / d[:-1] + w2 / d[1:]), 0.0)
+    for end, (h0, h1), (d0, d1) in ((0, h[:2], d[:2]), (-1, h[:-3:-1], d[:-3:-1])):
+        # The parabola through three points, kept monotone.
+        slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
+        slopes[end] = 0.0 if slope * d0 <= 0 else min(abs(slope), 3 * abs(d0)) * np.sign(d0) if d0 * d1 <= 0 else slope
+    return slopes
+
+
+def _cubics(x: Reals, y: Reals, slopes: Reals) -> Reals:
+    """Coefficients by rising power of ``x - start``, shape (n - 1, 4)."""
+    h, d = np.diff(x), np.diff(y) / np.diff(x)
+    c2 = (3 * d - 2 * slopes[:-1] - slopes[1:]) / h
+    c3 = (slopes[:-1] + slopes[1:] - 2 * d) / h**2
+    return np.column_stack((y[:-1], slopes[:-1], c2, c3))
+
+
+def _integral(c: Reals) -> Reals:
+    return np.concatenate((np.zeros((len(c), 1)), c / np.arange(1, c.shape[1] + 1)), axis=1)
+
+
+def _value(c: Reals, t: Reals) -> Reals:
+    return np.asarray((c * t[:, None] ** np.arange(c.shape[1])).sum(axis=1))
+
+
+def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title: str = "по заданной диаграмме",
+              key: str = "cam.table") -> Law:
+    """Law from a diagram of the acceleration: shares ``x`` of the phase, 0 .. 1, and relative accelerations ``y``.
+
+    Two points with one share make a corner, or a jump where their accelerations differ; the others are joined smoothly.
+    The velocity must return to zero: areas above and below the axis that differ by up to 15 per cent are made equal by
+    tilting the diagram, its zeros kept.
+
+    Raises
+    ------
+    CannotBuild
+        when the areas differ by more, or when the follower would turn back inside the phase; ``key`` names the diagram.
+    """
+    p = _Pieces(x, y)
+    if not p.area > 0:
+        raise CannotBuild(f"{key}: the diagram of the acceleration is zero everywhere")
+    if abs(p.unequal) > READING * p.area:
+        share = 0.5 + p.unequal / p.area / 4
+        raise CannotBuild(
+            f"{key}: the areas above and below the axis are {share:.2f} and {1 - share:.2f} of the whole, "
+            "the follower would not come to rest", "make both areas equal: what speeds up must slow down again")
+    shares = np.union1d(np.linspace(0, 1, 4001), p.starts)
+    velocity = p.at(p.ds, shares)
+    if velocity.min() < -1e-9 * velocity.max():
+        raise CannotBuild(f"{key}: the follower turns back inside the phase, at the share {shares[velocity.argmin()]:.3f}",
+                          "speeding up comes first, slowing down after it")
+    values = np.concatenate((p.at(p.dds, shares), p.at(p.dds, np.append(p.starts[1:], 1.0) - 1e-12)))
+    return Law(name, title, lambda x: p.at(p.s, x), lambda x: p.at(p.ds, x), lambda x: p.at(p.dds, x),
+               peak=float(np.abs(values).max()), jumps=p.jumps, even=False)
+
+
+TRAPEZOID = replace(
+    table_law((0, 1 / 8, 1 / 8, 3 / 8, 3 / 8, 5 / 8, 5 / 8, 7 / 8, 7 / 8, 1), (0, 1, 1, 1, 1, -1, -1, -1, -1, 0),
+              "trapezoid", "трапецеидальный"), even=True)
+
+LAWS = {law.name: law for law in (SINE, COSINE, CONSTANT, TRAPEZOID, LINEAR)}
+"""Laws of motion by the name they have in project files."""
+
+
+# --- phases of a turn -----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A phase of the motion: ``angle`` rad from ``start`` on, the displacement going from ``first`` by ``travel``, m.
+
+    The functions take the share ``x`` of the phase, 0 .. 1, numbers or arrays.
+    """
+
+    symbol: str
+    start: float
+    angle: float
+    first: float
+    travel: float
+    law: Law
+
+    @property
+    def end(self) -> float:
+        """Cam angle at which the phase ends, rad."""
+        return self.start + self.angle
+
+    @property
+    def amplitude(self) -> float:
+        """Largest second derivative of the phase, m."""
+        return abs(self.travel) * self.law.peak / self.angle**2
+
+    def s(self, x: Any) -> Any:
+        """Displacement, m."""
+        return self.first + self.travel * self.law.s(x)
+
+    def ds(self, x: Any) -> Any:
+        """First derivative by the cam angle, m."""
+        return self.travel / self.angle * self.law.ds(x)
+
+    def dds(self, x: Any) -> Any:
+        """Second derivative by the cam angle, m."""
+        return self.travel / self.angle**2 * self.law.dds(x)
+
+    def phi(self, x: Any) -> Any:
+        """Cam angle, rad."""
+        return self.start + self.angle * x
+
+
+@dataclass(frozen=True)
+class PositionFunction:
+    """Displacement of the follower over a turn of the cam, with both derivatives, exact for the law.
+
+    Angles in rad, displacement in m (a rocker's in rad), numbers or arrays. Where the second derivative jumps, the value
+    of the later phase counts; the phases themselves give the values of either side.
+    """
+
+    rise: Phase
+    upper_dwell: Phase
+    fall: Phase
+    lower_dwell: Phase
+    parts: int = 8
+    symbol: str = "S"
+
+    @classmethod
+    def of(cls, rise: float, upper_dwell: float, fall: float, stroke: float, law: Law, fall_law: Law | None = None,
+           parts: int = 8, symbol: str = "S") -> PositionFunction:
+        """Law of motion from the phase angles (rad) and the stroke (m, or rad with the ``symbol`` of an angle).
+
+        Without a law of its own the fall is the mirror image of the rise; a dwell below 1e-9 rad is none. ``parts`` are
+        the equal parts of each phase.
+        """
+        upper_dwell = upper_dwell if upper_dwell > 1e-9 else 0.0
+        down = rise + upper_dwell
+        end = down + fall if 2 * pi - (down + fall) > 1e-9 else 2 * pi
+        return cls(
+            Phase("φ_у", 0.0, rise, 0.0, stroke, law),
+            Phase("φ_дс", rise, upper_dwell, stroke, 0.0, law),
+            Phase("φ_с", down, fall, stroke, -stroke, fall_law or law.reverse),
+            Phase("φ_бс", end, 2 * pi - end, 0.0, 0.0, law),
+            parts, symbol,
+        )
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """The phases that take part of the turn, in order."""
+        return tuple(p for p in (self.rise, self.upper_dwell, self.fall, self.lower_dwell) if p.angle > 0)
+
+    @property
+    def stroke(self) -> float:
+        """Stroke of the follower, m."""
+        return self.rise.travel
+
+    def s(self, phi: Any) -> Any:
+        """Displacement, m."""
+        return self._at(phi, Phase.s)
+
+    def ds(self, phi: Any) -> Any:
+        """First derivative, m."""
+        return self._at(phi, Phase.ds)
+
+    def dds(self, phi: Any) -> Any:
+        """Second derivative, m."""
+        return self._at(phi, Phase.dds)
+
+    def _at(self, phi: Any, function: Callable[[Phase, Any], Any]) -> Any:
+        phi = np.asarray(phi, dtype=float)
+        turn = np.where((phi >= 0) & (phi <= 2 * pi), phi, phi % (2 * pi))
+        values = [function(p, np.clip((turn - p.start) / p.angle, 0.0, 1.0)) for p in self.phases]
+        return np.select([turn < p.end for p in self.phases[:-1]], values[:-1], values[-1])
+
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """Position numbers: 0 .. 8 of the rise, 8' .. 16 of the fall (with 8 parts)."""
+        n = self.parts
+        return (*map(str, range(n + 1)), f"{n}'", *map(str, range(n + 1, 2 * n + 1)))
+
+    @cached_property
+    def shares(self) -> Reals:
+        """Shares of a phase at its numbered positions."""
+        return np.arange(self.parts + 1) / self.parts
+
+    @cached_property
+    def positions(self) -> Reals:
+        """Cam angles of the numbered positions, rad, shape (2 parts + 2,)."""
+        return np.concatenate((self.rise.phi(self.shares), self.fall.phi(self.shares)))
+
+    def at_positions(self, function: Callable[[Phase, Any], Any]) -> Reals:
+        """A function of the phases, such as ``Phase.dds``, at the numbered positions, shape (2 parts + 2,)."""
+        return np.concatenate((function(self.rise, self.shares), function(self.fall, self.shares)))
+
+    def divided(self, parts: int) -> Reals:
+        """Cam angles of a whole turn, each phase in equal parts, 0 and 2 pi included, rad.
+
+        The numbered positions are among them when ``parts`` is a multiple of theirs.
+        """
+        x = np.arange(parts) / parts
+        return np.concatenate((*(p.phi(x) for p in self.phases), [2 * pi]))

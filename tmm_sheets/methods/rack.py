@@ -1,0 +1,251 @@
+"""Generating engagement (станочное зацепление): the tooth of a wheel as the envelope of the positions of a rack.
+
+Basic rack of GOST 13755: straight flanks down to ``addendum`` modules below the reference line, then a tip radius
+c* m/(1 - sin alpha) that ends in the tip line. Manual 003, section 4, sheet 3.
+
+The wheel stands still, its centre in the origin; a tooth of the rack lies in the space over the centre, and the rack's
+rolling line rolls on the pitch circle. Where the perpendicular from the point of contact of line and circle meets the
+flank, flank and tooth touch. A complex point ``u + iy`` of the rack is ``u`` along its reference line from the middle of a
+tooth, ``y`` away from the wheel. Lengths in metres, angles in radians.
+"""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from dataclasses import dataclass
+from math import acos, cos, pi, sin, sqrt, tan
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH
+from tmm_sheets.construction.step import Helper, Rule, Step
+
+Points = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Rack:
+    """A rack with its reference line ``shift`` modules outside the pitch circle of a wheel of ``teeth`` teeth."""
+
+    module: float
+    alpha: float
+    addendum: float
+    clearance: float
+    teeth: int
+    shift: float
+
+    @property
+    def r(self) -> float:
+        """Radius of the wheel's pitch circle."""
+        return self.module * self.teeth / 2
+
+    @property
+    def rb(self) -> float:
+        """Radius of the base circle."""
+        return self.r * cos(self.alpha)
+
+    @property
+    def tip_radius(self) -> float:
+        """Radius between flank and tip line, c* m/(1 - sin alpha): 0.38 m for c* = 0.25, 0.304 m for 0.2."""
+        return self.clearance * self.module / (1 - sin(self.alpha))
+
+    @property
+    def half_width(self) -> float:
+        """Half of a tooth on the reference line."""
+        return pi * self.module / 4
+
+    @property
+    def depth(self) -> float:
+        """From the reference line to the tip line."""
+        return (self.addendum + self.clearance) * self.module
+
+    @property
+    def tip_centre(self) -> complex:
+        """Centre of the tip radius at the side of positive ``u``."""
+        u = self.half_width - self.addendum * self.module * tan(self.alpha) - self.tip_radius * cos(self.alpha)
+        return complex(u, self.tip_radius - self.depth)
+
+    @property
+    def rho_limit(self) -> float:
+        """Radius of curvature of the involute where the flank's end cuts it; negative when the tooth is undercut."""
+        return (self.shift - self.least_shift) * self.module / sin(self.alpha)
+
+    @property
+    def least_shift(self) -> float:
+        """Shift at which the flank's end just touches the involute at the base circle: ha* - z sin^2 alpha/2."""
+        return self.addendum - self.teeth * sin(self.alpha) ** 2 / 2
+
+    @property
+    def undercut(self) -> bool:
+        """True when the rack's tip cuts into the involute."""
+        return self.rho_limit < 0
+
+    @property
+    def tooth_half(self) -> float:
+        """Half of the wheel's tooth at the base circle as an angle."""
+        return (pi / 2 + 2 * self.shift * tan(self.alpha)) / self.teeth + tan(self.alpha) - self.alpha
+
+    def roll_of_flank(self, tangent: Any) -> Any:
+        """Angle of rolling at which the involute is touched where its radius of curvature is ``tangent``."""
+        along = (self.r + self.shift * self.module) * tan(self.alpha) - tangent / cos(self.alpha)
+        return (along - self.half_width) / self.r
+
+    def roll_of_tip(self, normal: Any) -> Any:
+        """Angle of rolling at which the tip radius cuts with its point under ``normal`` below the reference line."""
+        below = -self.tip_centre.imag - self.shift * self.module
+        return (below / np.tan(normal) - self.tip_centre.real) / self.r
+
+    def rolls(self, tip: float) -> tuple[float, float]:
+        """First and last angle of rolling at which the rack touches a flank that ends at the radius ``tip``."""
+        first = self.roll_of_flank(sqrt((tip - self.rb) * (tip + self.rb)))
+        return float(first), float(max(self.roll_of_tip(self.alpha), self.roll_of_tip(pi / 2)))
+
+    def tooth(self, top: float, chords: int = 8) -> Points:
+        """One tooth from ``top`` over the reference line down and up again, its tip radii cut into ``chords``."""
+        end = self.tip_centre
+        turn = np.linspace(-self.alpha, -pi / 2, chords + 1)
+        half = np.concatenate([[complex(self.half_width + top * tan(self.alpha), top)], end + self.tip_radius * np.exp(1j * turn)])
+        return np.concatenate([half, -np.conj(half[::-1])])
+
+    def outline(self, first: int, last: int, top: float) -> Points:
+        """Teeth ``first`` .. ``last`` one beside the other, right to left, with the bottoms of their spaces at ``top``."""
+        pitch = pi * self.module
+        return np.concatenate([self.tooth(top) + k * pitch for k in range(last, first - 1, -1)])
+
+    def placed(self, points: Any, roll: Any) -> Any:
+        """Points of the rack on the wheel when it has rolled through ``roll``."""
+        return (np.asarray(points) + self.r * roll + 1j * (self.r + self.shift * self.module)) * np.exp(1j * np.asarray(roll))
+
+    def _tip_cut(self, normal: float) -> complex:
+        """Point the tip radius cuts, seen from the axis of the tooth on the right."""
+        roll = float(self.roll_of_tip(normal))
+        point = complex(self.placed(self.tip_centre + rect(self.tip_radius, -normal), roll))
+        return point / rect(1, pi / 2 - pi / self.teeth)
+
+    def involute_from(self) -> float:
+        """Radius of curvature at which the tooth's involute really begins, above the undercut where there is one."""
+        if not self.undercut:
+            return self.rho_limit
+
+        def outside(normal: float) -> float:
+            """How far the cut lies beyond the involute, as an angle away from the tooth."""
+            point = self._tip_cut(normal)
+            ratio = min(self.rb / abs(point), 1.0)
+            return phase(point) - (self.tooth_half - tan(acos(ratio)) + acos(ratio))
+
+        # The cut begins outside the involute and goes down to the base circle: it crosses the involute between.
+        at_base = _bisect(lambda normal: self.rb - abs(self._tip_cut(normal)), self.alpha, pi / 2)
+        if outside(at_base) >= 0:
+            return 0.0
+        crossing = abs(self._tip_cut(_bisect(lambda normal: -outside(normal), self.alpha, at_base)))
+        return sqrt((crossing - self.rb) * (crossing + self.rb))
+
+    def last_normal(self, start: float) -> float:
+        """Normal of the tip radius' last cut, where the involute begins at ``start``; alpha unless there is undercut."""
+        if not self.undercut:
+            return self.alpha
+        radius = sqrt(self.rb**2 + start**2)
+        return _bisect(lambda normal: radius - abs(self._tip_cut(normal)), self.alpha, pi / 2)
+
+
+def _bisect(f: Any, low: float, high: float) -> float:
+    """Where an increasing sign change of ``f`` lies, to the last bit."""
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if f(middle) < 0 else (low, middle)
+    return high
+
+
+def _turned_down(u: Any, angle: Any) -> Any:
+    return u * np.exp(-1j * np.asarray(angle))
+
+
+def _within(point: Any, start: Any, u: Any, least: Any, most: Any) -> Any:
+    t = ar.dot(point - start, u)
+    return np.where((t >= least) & (t <= most), point, np.nan)
+
+
+ROLL = Rule(
+    "roll on the pitch circle", lambda o, r, roll: o + 1j * r * np.exp(1j * np.asarray(roll)), ("point", "length", "angle"),
+    "point",
+    "На делительной окружности с центром {0} и радиусом {1} отложим дугу, равную перемещению рейки: точка {name}.",
+    lambda a, v: (Helper("line", a[0], v),),
+)
+NORMAL = Rule("outward radius", ar.ray, ("point", "point"), "direction", "Проведём радиус {0}{1}.",
+              lambda a, v: (Helper("line", a[0], a[1]),))
+ROLLING_LINE = Rule("rolling line", lambda u: -1j * u, ("direction",), "direction",
+                    "Перпендикулярно радиусу проведём начальную прямую рейки {name}.")
+REFERENCE = Rule("shifted reference line", ar.along, ("point", "direction", "length"), "point",
+                 "От начальной прямой отложим смещение {2}: точка {name} делительной прямой рейки.")
+FLANK = Rule("flank of the rack", _turned_down, ("direction", "angle"), "direction",
+             "Под углом профиля {1} к оси зуба рейки проведём его боковую сторону.")
+TOUCH = Rule(
+    "perpendicular on the flank", lambda p, q, u: ar.foot(p, q, u), ("point", "point", "direction"), "point",
+    "Из точки {0} опустим перпендикуляр на боковую сторону зуба рейки через {1}: точка касания {name}.",
+    lambda a, v: (Helper("line", a[0], v),),
+)
+WITHIN = Rule(
+    "point within the straight flank", _within, ("point", "point", "direction", "length", "length"), "point",
+    "Точка {0} принадлежит профилю зуба, если лежит в пределах прямолинейной части рейки: точка {name}.",
+)
+
+
+def generating_plan(rack: Rack, rolls: Any) -> Plan:
+    """Positions of the rack at the angles of rolling ``rolls`` and what each of them touches of the tooth.
+
+    Steps: ``O`` centre, ``W`` point of contact of rolling line and pitch circle, ``M`` middle of the rack's tooth on the
+    reference line, ``F`` flank there, ``K`` foot of the perpendicular, ``E`` the same where the straight flank reaches
+    (NaN beyond), ``C`` centre of the tip radius.
+    """
+    rolls = np.atleast_1d(np.asarray(rolls, dtype=float))
+    plan = Plan("gear-rack", "Станочное зацепление", "m", tuple(str(k) for k in range(len(rolls))))
+    _positions(plan, rack, rolls)
+    flank = plan["flank"]
+    bottom = -rack.addendum * rack.module / cos(rack.alpha)
+    plan.add("K", TOUCH, plan["W"], plan["F"], flank)
+    plan.add("E", WITHIN, plan["K"], plan["F"], flank, bottom * (1 + 1e-12), np.inf)
+    return plan
+
+
+def _positions(plan: Plan, rack: Rack, rolls: Any) -> None:
+    m = rack.module
+    centre = plan.add("O", GIVEN, 0j)
+    radius = plan.add("r", GIVEN_LENGTH, rack.r)
+    contact = plan.add("W", ROLL, centre, radius, rolls)
+    axis = plan.add("OW", NORMAL, centre, contact)
+    line = plan.add("WT", ROLLING_LINE, axis)
+    travel = plan.add("s", GIVEN_LENGTH, rack.r * rolls, say="Переместим рейку на {value} от среднего положения.")
+    moved = plan.add("T", ALONG, contact, line, travel)
+    middle = plan.add("M", REFERENCE, moved, axis, rack.shift * m)
+    plan.add("F", ALONG, middle, line, rack.half_width)
+    plan.add("flank", FLANK, axis, rack.alpha)
+    end = plan.add("D", ALONG, middle, line, rack.tip_centre.real)
+    plan.add("C", ALONG, end, axis, rack.tip_centre.imag)
+
+
+def fillet_steps(rack: Rack, normals: Any) -> Step:
+    """Points of the fillet that the tip radius cuts with the points under ``normals`` below the rolling line."""
+    normals = np.atleast_1d(np.asarray(normals, dtype=float))
+    plan = Plan("gear-rack-fillet", "Переходная кривая", "m", tuple(str(k) for k in range(len(normals))))
+    _positions(plan, rack, rack.roll_of_tip(normals))
+    normal = plan.add("WC", FLANK, plan["WT"], normals, say="Через {0} и центр закругления рейки проведём прямую.")
+    return plan.add("G", ALONG, plan["C"], normal, rack.tip_radius)
+
+
+def flank(rack: Rack, tip: float, involute: int = 32, fillet: int = 48) -> Points:
+    """Flank of the tooth on the right from the root circle to the tip circle (radius ``tip``), relative to its axis.
+
+    The axis of the tooth is the real one and the flank lies on the side of positive angles; by the same steps as the
+    positions that are drawn, taken at as many more as the curve needs.
+    """
+    start = rack.involute_from()
+    lengths = np.sqrt(np.linspace(max(start, 0.0) ** 2, (tip - rack.rb) * (tip + rack.rb), involute))
+    touched = np.asarray(generating_plan(rack, rack.roll_of_flank(lengths))["K"].value)
+    low = rack.last_normal(max(start, 0.0))
+    normals = np.linspace(pi / 2, low, fillet)
+    cut = np.asarray(fillet_steps(rack, normals).value)
+    joined = cut[:-1] if start > 0 else cut
+    return np.asarray(np.concatenate([joined, touched]) * rect(1, pi / rack.teeth - pi / 2))

@@ -1,0 +1,75 @@
+"""Exact steady running (установившееся движение) of a machine with a given flywheel, from the energy integral.
+
+What every method of the flywheel is measured against: E = J omega^2/2 grows by the work done, and nothing is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.methods.energy_mass import highest
+from tmm_sheets.methods.integration import Floats, Quadrature
+
+Curve = Callable[[Any], Any]
+
+
+@dataclass(frozen=True)
+class Running:
+    """Steady running: the fastest and the slowest angular velocity, rad/s, and the angles where they are reached, rad."""
+
+    fastest: float
+    slowest: float
+    phi_fastest: float
+    phi_slowest: float
+
+    @property
+    def mean(self) -> float:
+        """Mean of the fastest and the slowest, rad/s."""
+        return (self.fastest + self.slowest) / 2
+
+    @property
+    def delta(self) -> float:
+        """Coefficient of non-uniformity."""
+        return (self.fastest - self.slowest) / self.mean
+
+
+def steady(moment: Curve, inertia: Curve, borders: Floats, first: float, omega: float) -> Running:
+    """Steady running whose extremes have the mean ``omega`` (rad/s), the constant moment balancing the cycle.
+
+    ``moment`` (without the constant one, N m) and ``inertia`` (kg m2, to which ``first`` is added) are vectorised functions of
+    the angle, smooth between the ``borders``. The level of the energy is found by Newton's method: a change of it moves both
+    extremes alike, but for the small change of the inertia. NaN where the inertia is too small to carry the crank round at
+    that mean: it would stop.
+    """
+    work = Quadrature(moment, borders, 8)
+    mean = work.total / (borders[-1] - borders[0])
+    samples = np.unique(np.concatenate((np.linspace(borders[0], borders[-1], 721), borders)))
+
+    def excess(phi: Floats) -> Floats:
+        return np.asarray(work(phi) - mean * (phi - borders[0]))
+
+    def square(phi: Floats, level: float) -> Floats:
+        return np.asarray(2 * (level + excess(phi)) / (first + np.asarray(inertia(phi))))
+
+    lowest = -float(excess(samples).min())
+    if np.sqrt(square(samples, lowest).clip(0).max()) >= 2 * omega:
+        return Running(np.nan, np.nan, np.nan, np.nan)
+    level = max((first + float(np.mean(inertia(samples)))) * omega**2 / 2, lowest * (1 + 1e-9))
+    at = np.zeros(2)
+    for _ in range(3):
+        at = np.array([highest(lambda phi, sign=sign, level=level: sign * square(phi, level), samples)  # type: ignore[misc]
+                       for sign in (1, -1)])
+        energy, mass = excess(at), first + np.asarray(inertia(at))
+        for _ in range(20):
+            speeds = np.sqrt(2 * (level + energy) / mass)
+            change = (omega - speeds.mean()) / float(np.mean(1 / (mass * speeds)))
+            change = max(change, (lowest - level) / 2)
+            level += change
+            if abs(change) <= 1e-16 * abs(level):
+                break
+    fastest, slowest = np.sqrt(square(at, level))
+    return Running(float(fastest), float(slowest), float(at[0]), float(at[1]))

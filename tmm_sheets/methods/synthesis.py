@@ -1,0 +1,208 @@
+"""Geometric synthesis: lengths from the conditions of a task (геометрический синтез).
+
+A quick-return mechanism (crank AB with a stone on the rocker CD) from the coefficient of travel time K, the stroke of the
+rocker's end and the distance of the pivots; a crank and slider of an engine from its speed, the mean velocity of the piston
+and the ratio of rod and crank. Source: manual 000, section 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import degrees, floor, inf, isfinite, nan, pi
+from typing import Any, Protocol
+
+import numpy as np
+
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.scale import number
+from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.errors import CannotBuild
+
+SWING = Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",), "angle",
+             "Угол между крайними положениями кулисы {name} = 180°·(K − 1)/(K + 1) = {value}.")
+HALF = Rule("half", lambda x: x / 2, ("angle",), "angle", "Половина угла: {name} = {value}.")
+UNDER = Rule("direction under an angle", lambda u, angle: u * (np.cos(angle) - 1j * np.sin(angle)), ("direction", "angle"),
+             "direction", "Под углом {1} к {0} проведём направление {name}.")
+PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", "Время оборота {name} = 2π/ω = {value} с.")
+STROKE = Rule("stroke of the piston", lambda v, t: v * t / 2, ("number", "number"), "length",
+              "Ход поршня {name} = V·T/2 = {value}.")
+CRANK = Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", "Радиус кривошипа {name} = H/2 = {value}.")
+TIMES = Rule("part or multiple of a length", lambda ratio, x: ratio * x, ("number", "length"), "length",
+             "Длина {name} = {0}·{1} = {value}.")
+
+
+def _nearest(x: Any, step: float) -> float:
+    # A decimal number of steps: 566 steps of 1 mm are 0.566 m and not a neighbour of it.
+    return float(f"{floor(x / step + 0.5) * step:.12g}") if isfinite(x / step) else nan
+
+
+ROUND = Rule("round a length", _nearest, ("length", "length"), "length", "Округлим до {1}: {name} = {value}.")
+
+
+class Conditions(Protocol):
+    """Section ``[synthesis]`` of the project file; what the other kind of mechanism needs is None."""
+
+    @property
+    def kind(self) -> str:
+        """``"quick return"`` or ``"engine"``."""
+        ...
+
+    @property
+    def coefficient(self) -> float | None:
+        """Coefficient of travel time K."""
+        ...
+
+    @property
+    def stroke(self) -> float | None:
+        """Stroke of the rocker's end across the line of the pivots, m."""
+        ...
+
+    @property
+    def centre_distance(self) -> float | None:
+        """Distance of the pivots of crank and rocker, m."""
+        ...
+
+    @property
+    def mean_velocity(self) -> float | None:
+        """Mean velocity of the piston, m/s."""
+        ...
+
+    @property
+    def rod_ratio(self) -> float | None:
+        """Length of the rod over the crank's."""
+        ...
+
+    @property
+    def centre_ratio(self) -> float | None:
+        """Distance of the centre of mass over the length of its link (rocker or rod)."""
+        ...
+
+    @property
+    def round(self) -> float | None:
+        """Length to which the results are rounded, m; None: not at all."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Synthesis:
+    """Lengths from conditions: ``plan`` has the steps, the found lengths under their names and rounded with a prime.
+
+    Raises :class:`CannotBuild` when a length is rounded to nothing.
+    """
+
+    conditions: Conditions
+    speed: float
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The construction, m."""
+        return _quick_return(self.conditions) if self.conditions.kind == "quick return" else _engine(self.conditions, self.speed)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the lengths found."""
+        return tuple(name for name in ("l_AC", "H", "l_AB", "l_BC", "l_CD", "l_CS", "l_BS") if name in self.plan)
+
+    @cached_property
+    def exact(self) -> dict[str, float]:
+        """Lengths as they follow from the conditions, m."""
+        return {name: float(self.plan[name].value) for name in self.names}
+
+    @cached_property
+    def lengths(self) -> dict[str, float]:
+        """Lengths as they are used, m: given ones as they are, found ones rounded."""
+        found = {}
+        for name, exact in self.exact.items():
+            found[name] = float(self.plan[f"{name}′"].value) if f"{name}′" in self.plan else exact
+            if not 0 < exact < inf:
+                raise CannotBuild(f"synthesis: no length {name} follows from these conditions", "check the conditions")
+            if not 0 < found[name] < inf:
+                raise CannotBuild(f"synthesis: {name} = {exact * 1000:.4g} mm is rounded to nothing", "round to a smaller length")
+        return found
+
+    @property
+    def derivation(self) -> list[str]:
+        """Formulas with their numbers in lettering markup, one a line."""
+        c, x = self.conditions, self.exact
+        if c.kind == "quick return":
+            theta = degrees(float(self.plan["θ"].value))
+            half = f"{number(theta / 2, 5)}°"
+            assert c.coefficient is not None
+            k = number(c.coefficient)
+            lines = [f"θ = 180°·(K − 1)/(K + 1) = 180°·({k} − 1)/({k} + 1) = {number(theta, 5)}°",
+                     f"l_AB = l_AC·sin(θ/2) = {number(x['l_AC'])}·sin {half} = {self._said('l_AB')}",
+                     f"l_CD = H/(2·sin(θ/2)) = {number(x['H'])}/(2·sin {half}) = {self._said('l_CD')}"]
+            if "l_CS" in x:
+                assert c.centre_ratio is not None
+                lines.append(f"l_CS = {number(c.centre_ratio)}·l_CD = {self._said('l_CS')}")
+            return lines
+        assert c.mean_velocity is not None
+        assert c.rod_ratio is not None
+        period = float(self.plan["T"].value)
+        lines = [f"ω_1 = {number(self.speed, 6)} рад/с;  T = 2π/ω_1 = {number(period)} с",
+                 f"H = V_ср·T/2 = {number(c.mean_velocity)}·{number(period)}/2 = {number(x['H'])} м",
+                 f"l_AB = H/2 = {self._said('l_AB')}",
+                 f"l_BC = λ·l_AB = {number(c.rod_ratio)}·{number(self.lengths['l_AB'])} = {self._said('l_BC')}"]
+        if "l_BS" in x:
+            assert c.centre_ratio is not None
+            lines.append(f"l_BS = {number(c.centre_ratio)}·l_BC = {self._said('l_BS')}")
+        return lines
+
+    def _said(self, name: str) -> str:
+        exact, used = self.exact[name], self.lengths[name]
+        return f"{number(exact, 5)} м" + ("" if abs(used - exact) < 1e-12 else f";  принято {number(used, 6)} м")
+
+
+def _rounded(plan: Plan, name: str, step: float | None) -> Step:
+    """The length as it is used further on."""
+    return plan[name] if step is None else plan.add(f"{name}′", ROUND, plan[name], step)
+
+
+def _quick_return(c: Conditions) -> Plan:
+    plan = Plan("synthesis", "Геометрический синтез кулисного механизма", "m")
+    a = plan.add("A", rules.GIVEN, 0j)
+    pivot = plan.add("C", rules.GIVEN, -1j * c.centre_distance)  # type: ignore[operator]
+    plan.add("l_AC", rules.DISTANCE, a, pivot)
+    theta = plan.add("θ", SWING, c.coefficient)
+    half = plan.add("θ/2", HALF, theta)
+    axis = plan.add("CA", rules.RAY, pivot, a)
+    rocker = plan.add("CB", UNDER, axis, half)
+    b = plan.add("B", rules.FOOT, a, pivot, rocker)
+    plan.add("l_AB", rules.DISTANCE, a, b)
+    _rounded(plan, "l_AB", c.round)
+    plan.add("H", rules.GIVEN_LENGTH, c.stroke)
+    across = plan.add("H/2", rules.SHIFT, a, c.stroke / 2,  # type: ignore[operator]
+                      say="От точки {0} перпендикулярно CA отложим половину хода H: точка {name}.")
+    d = plan.add("D", rules.LINE_LINE, pivot, rocker, across, axis)
+    plan.add("l_CD", rules.DISTANCE, pivot, d)
+    used = _rounded(plan, "l_CD", c.round)
+    if c.centre_ratio is not None:
+        plan.add("l_CS", TIMES, c.centre_ratio, used)
+        _rounded(plan, "l_CS", c.round)
+    return plan
+
+
+def _engine(c: Conditions, speed: float) -> Plan:
+    plan = Plan("synthesis", "Геометрический синтез кривошипно-ползунного механизма", "m")
+    a = plan.add("A", rules.GIVEN, 0j)
+    period = plan.add("T", PERIOD, speed)
+    stroke = plan.add("H", STROKE, c.mean_velocity, period)
+    plan.add("l_AB", CRANK, stroke)
+    crank = _rounded(plan, "l_AB", c.round)
+    plan.add("l_BC", TIMES, c.rod_ratio, crank)
+    rod = _rounded(plan, "l_BC", c.round)
+    if c.centre_ratio is not None:
+        plan.add("l_BS", TIMES, c.centre_ratio, rod)
+        _rounded(plan, "l_BS", c.round)
+    axis = plan.add("AC", rules.GIVEN_DIRECTION, 1j)
+    for prime, sign in (("′", 1), ("″", -1)):
+        pin = plan.add(f"B{prime}", DEAD, a, axis, crank, sign)
+        plan.add(f"C{prime}", rules.ALONG, pin, axis, rod)
+    return plan
+
+
+DEAD = Rule("dead position of the crank", lambda p, u, length, sign: p + sign * length * u, ("point", "direction", "length"),
+            "point", "На прямой {1} от точки {0} отложим кривошип {2}: крайнее положение {name}.",
+            lambda a, v: (Helper("line", a[0], v),))

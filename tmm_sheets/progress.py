@@ -1,0 +1,65 @@
+"""Progress of long work on a terminal; silent for short work, files and pipes."""
+
+from __future__ import annotations
+
+import sys
+from time import monotonic
+from types import TracebackType
+from typing import Self
+
+PATIENCE = 1.0
+"""Seconds of silence before the first message."""
+WIDTH = 30
+"""Characters of the bar."""
+
+
+class Progress:
+    """One line on stderr that tells what is going on; wiped at the end."""
+
+    def __init__(self) -> None:
+        self.start = monotonic()
+        self.shown = False
+
+    def say(self, what: str) -> None:
+        """Tell what comes next, if somebody watches and has waited long enough."""
+        if sys.stderr.isatty() and monotonic() - self.start > PATIENCE:
+            sys.stderr.write(f"\r\033[K{what}")
+            sys.stderr.flush()
+            self.shown = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, e: BaseException | None, trace: TracebackType | None) -> None:
+        if self.shown:
+            sys.stderr.write("\r\033[K")
+            sys.stderr.flush()
+
+
+class Bar(Progress):
+    """The same for many pieces of work: a bar with how many are done, how many a second, and the time left."""
+
+    def __init__(self, total: int) -> None:
+        super().__init__()
+        self.total = total
+        self.done = 0
+        self.failed = 0
+
+    def step(self, failed: bool = False) -> None:
+        """One more piece is done."""
+        self.done += 1
+        self.failed += failed
+        self.say(self.line(monotonic() - self.start))
+
+    def line(self, seconds: float) -> str:
+        """What the bar shows after so many seconds."""
+        full = WIDTH * self.done // self.total
+        rate = self.done / seconds
+        left = round((self.total - self.done) / rate)
+        told = f"[{'#' * full}{'.' * (WIDTH - full)}] {self.done}/{self.total}, {rate:.2g}/s, {_clock(left)} left"
+        return told + (f", {self.failed} failed" if self.failed else "")
+
+
+def _clock(seconds: int) -> str:
+    hours, rest = divmod(seconds, 3600)
+    return f"{hours}:{rest // 60:02}:{rest % 60:02}" if hours else f"{rest // 60}:{rest % 60:02}"

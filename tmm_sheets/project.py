@@ -1,0 +1,161 @@
+"""One student's project: every plan, diagram and profile as a lazy property; nothing is imported before it is asked for."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.variant import Variant
+
+if TYPE_CHECKING:
+    from tmm_sheets.mechanism.model import Mechanism
+    from tmm_sheets.methods.cam_profile import Cam
+    from tmm_sheets.methods.cycle import Cycle
+    from tmm_sheets.methods.flywheel import Flywheel
+    from tmm_sheets.methods.forces import GearForce
+    from tmm_sheets.methods.gears import GearPair
+    from tmm_sheets.methods.loads import Applied
+    from tmm_sheets.methods.reduced import Reduced
+    from tmm_sheets.methods.reducer import Reducer
+    from tmm_sheets.methods.study import Study
+    from tmm_sheets.methods.synthesis import Synthesis
+
+
+class Project:
+    """A task with its numbers; the methods are run when somebody reads their results."""
+
+    def __init__(self, variant: Variant) -> None:
+        self.variant = variant
+
+    @property
+    def sheets(self) -> tuple[str, ...]:
+        """Names of the sheets' arrangements, in order."""
+        return self.variant.project.sheets
+
+    def _section(self, name: str) -> Any:
+        section = getattr(self.variant, name)
+        if section is None:
+            raise CannotBuild(f"the project has no [{name}]", f"add the table [{name}] to the project file or leave its sheet out")
+        return section
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """Links, pairs and Assur groups."""
+        from tmm_sheets.assembly import mechanism_of
+
+        return mechanism_of(self.variant)
+
+    @cached_property
+    def synthesis(self) -> Synthesis:
+        """Lengths found from conditions."""
+        from tmm_sheets.methods.synthesis import Synthesis
+
+        crank = self.variant.crank
+        return Synthesis(self._section("synthesis"), crank.speed if crank is not None else 0.0)
+
+    @cached_property
+    def cycle(self) -> Cycle:
+        """Numbered positions of one turn."""
+        from tmm_sheets.methods.cycle import dead_cycle, even_cycle
+
+        c = self._section("cycle")
+        if c.start == "dead":
+            k = c.coefficient if c.division == "nominal" else None
+            return dead_cycle(self.mechanism, c.output, c.working_sense, c.working, c.idle, k)
+        return even_cycle(self.mechanism, c.start, c.positions, zero=c.zero, turns=c.turns, extra=c.extra, output=c.output,
+                          working_sense=c.working_sense)
+
+    @cached_property
+    def applied(self) -> tuple[Applied, ...]:
+        """Technological forces and moments."""
+        from tmm_sheets.assembly import applied_of
+
+        return applied_of(self.variant, self.mechanism, self.cycle)
+
+    @cached_property
+    def driver(self) -> GearForce | None:
+        """Gear force on the crank shaft; None when a pure moment balances the crank."""
+        from tmm_sheets.methods.forces import GearForce
+
+        b: Any = self.variant.balancing
+        if b is None or b.kind == "moment":
+            return None
+        return GearForce(b.name, b.module * b.teeth / 2, b.pressure_angle, b.mate)
+
+    @cached_property
+    def study(self) -> Study:
+        """Kinematics and forces at the numbered positions; raises :class:`CannotBuild` when they do not all assemble."""
+        self.check_assembly()
+        return self.study_at(self.cycle.turned, self.cycle.labels)
+
+    def study_at(self, turned: Any, labels: tuple[str, ...]) -> Study:
+        """Kinematics and forces at any crank angles (rad turned from position 0)."""
+        from tmm_sheets.methods.study import Study
+
+        crank = self.variant.crank
+        uneven = crank is not None and crank.angular_acceleration == "flywheel"
+        return Study(self.mechanism, self.cycle, turned, labels, self.variant.forces.gravity, lambda: self.applied, self.driver,
+                     (lambda: self.flywheel) if uneven else None)
+
+    @cached_property
+    def force_index(self) -> int:
+        """Number of the position of the force analysis, the highlighted plan."""
+        return self.cycle.index(self._section("cycle").force_position or self.cycle.labels[0])
+
+    @cached_property
+    def reduced(self) -> Reduced:
+        """Reduced moment and reduced moment of inertia."""
+        self.check_assembly()
+        from tmm_sheets.methods.reduced import Reduced
+
+        f = self.variant.flywheel
+        gravity = self.variant.forces.gravity if f is not None and f.weights else 0.0
+        return Reduced(self.mechanism, self.cycle, self.applied, gravity)
+
+    @cached_property
+    def flywheel(self) -> Flywheel:
+        """Flywheel by the energy-mass curve."""
+        from tmm_sheets.methods.flywheel import flywheel
+
+        return flywheel(self.reduced, self._section("flywheel"))
+
+    @cached_property
+    def gear(self) -> GearPair:
+        """Gear pair."""
+        from tmm_sheets.methods.gears import gear_pair, settled
+
+        section = self._section("gear")
+        return gear_pair(settled(section, self.reducer if section.teeth == "reducer" else None))
+
+    @cached_property
+    def reducer(self) -> Reducer:
+        """Planetary reducer: the chosen tooth numbers with everything that follows."""
+        from tmm_sheets.methods.reducer import reducer
+
+        return reducer(self._section("reducer"))
+
+    @cached_property
+    def cam(self) -> Cam:
+        """Cam and follower."""
+        from tmm_sheets.methods.cam_profile import cam
+
+        return cam(self._section("cam"))
+
+    def check(self) -> None:
+        """Assemble everything the project describes; raises :class:`CannotBuild` naming what fails, where and by how much."""
+        if self.variant.crank is not None:
+            self.check_assembly()
+            _ = self.force_index
+        if self.variant.gear is not None:
+            _ = self.gear
+        if self.variant.reducer is not None:
+            _ = self.reducer
+        if self.variant.cam is not None:
+            self.cam.check()
+
+    def check_assembly(self) -> None:
+        """Assemble the mechanism all round the turn."""
+        from tmm_sheets.methods.checks import check_assembly
+
+        check_assembly(self.mechanism, self.cycle)

@@ -1,0 +1,80 @@
+"""The protocol of a project: what was constructed on its sheets, plan by plan, with the millimetres of those sheets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from tmm_sheets.errors import BadInput
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.scale import Scale
+    from tmm_sheets.project import Project
+
+
+_UNITS = {"mm": "мм", "m": "м", "m/s": "м/с", "m/s2": "м/с²", "N": "Н"}
+"""Russian units for plans that no sheet draws."""
+
+
+def lines(project: Project, name: str | None) -> Iterator[str]:
+    """Sentences of every plan on the sheets, or of one; each plan under its title and scale factor.
+
+    Plans of many positions are told for the position of the force analysis, the one drawn in full.
+
+    Raises
+    ------
+    BadInput
+        when no sheet shows a plan of that name.
+    """
+    found = _drawn(project)
+    if name is not None:
+        if name not in found:
+            near = get_close_matches(name, found, n=1)
+            hint = f'did you mean "{near[0]}"?' if near else f"its plans are {', '.join(found)}"
+            raise BadInput(f'{project.variant.project.name} has no plan "{name}"', hint=hint)
+        found = {name: found[name]}
+    else:
+        # What lies between the numbered positions only smooths the curves.
+        found = {key: drawn for key, drawn in found.items() if not key.endswith("-between")}
+    for i, (plan, scale) in enumerate(found.values()):
+        if i:
+            yield ""
+        yield from _told(project, plan, scale)
+
+
+def _drawn(project: Project) -> dict[str, tuple[Plan, Scale | None]]:
+    """Plans by name with the scale factors they were drawn with, in the order in which the sheets show them."""
+    from tmm_sheets.explain import parts
+    from tmm_sheets.sheets import sheet
+
+    scales: dict[str, Scale] = {}
+    for n in range(1, len(project.variant.sheets) + 1):
+        scales |= sheet.composed(project, n).scales
+    plans = [plan for of_part in parts(project).values() if of_part for plan in of_part]
+    first: dict[str, tuple[Plan, Scale | None]] = {}
+    for plan in plans:
+        first.setdefault(plan.name, (plan, scales.get(plan.name)))
+    return first
+
+
+def _told(project: Project, plan: Plan, scale: Scale | None) -> Iterator[str]:
+    from tmm_sheets.construction.protocol import sentences
+
+    k = _position(project, plan)
+    place = f", положение {plan.labels[k]}" if len(plan.labels) > 1 else ""
+    factor = f"; {scale}" if scale is not None and scale.mu != 1 else ""
+    yield f"{plan.title} ({plan.name}){place}{factor}"
+    to_mm, unit = (scale.mm, "мм") if scale is not None else (float, _UNITS.get(plan.unit, plan.unit))
+    for i, said in enumerate(sentences(plan, k, to_mm, unit), 1):
+        yield f"{i:3}. {said}"
+
+
+def _position(project: Project, plan: Plan) -> int:
+    """Number of the position a plan is told for: that of the force analysis, or one where something has moved already."""
+    cycle = project.variant.cycle
+    label = cycle.force_position if cycle is not None else None
+    if label in plan.labels:
+        return plan.labels.index(label)
+    return min(2, len(plan.labels) - 1)

@@ -1,0 +1,308 @@
+"""Results of a project as numbers: the tree that ``solve`` writes as JSON. Nothing is drawn, only what is asked is computed.
+
+SI units; only ``gear`` and ``reducer`` in millimetres. World frame: x right, y up, origin at the crank pivot, angles
+counter-clockwise.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.errors import BadInput, CannotBuild
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.methods.study import Study
+    from tmm_sheets.project import Project
+
+SCHEMA = 1
+"""Version of the tree; raised when a key changes its meaning."""
+
+LINKAGE = ("positions", "velocities", "accelerations", "forces")
+
+
+def parts_of(project: Project) -> tuple[str, ...]:
+    """Parts a project has numbers for, by the sections of its file."""
+    v = project.variant
+    parts: tuple[str, ...] = ()
+    if v.crank is not None and v.cycle is not None:
+        parts += LINKAGE if v.balancing is not None else LINKAGE[:3]
+    return parts + tuple(name for name in ("flywheel", "gear", "reducer", "cam") if getattr(v, name) is not None)
+
+
+def assemble(
+    project: Project, parts: Iterable[str] | None, *, phi: tuple[float, ...] | None = None, positions: int | None = None
+) -> dict[str, Any]:
+    """The results tree.
+
+    Parameters
+    ----------
+    project
+        the project.
+    parts
+        names of its parts (see :func:`parts_of`); None for all it has.
+    phi
+        crank angles in the world frame, rad; by default the project's numbered positions.
+    positions
+        that many equal parts of the cycle instead, from position 0 on in the sense of rotation.
+
+    Raises
+    ------
+    BadInput
+        when a part is asked for that the project does not have.
+    """
+    there = parts_of(project)
+    asked = there if parts is None else tuple(parts)
+    for part in asked:
+        if part not in there:
+            raise BadInput(f'{project.variant.project.name} has no part "{part}"', hint=f"it has {', '.join(there)}")
+    tree: dict[str, Any] = {
+        "schema": SCHEMA, "project": project.variant.project.name, "variant": project.variant.project.variant,
+    }  # fmt: skip
+    if set(asked) & {*LINKAGE, "flywheel"}:
+        tree["structure"] = _structure(project)
+    if set(asked) & set(LINKAGE):
+        study, chosen = _study(project, phi, positions)
+        tree["cycle"] = _cycle(project, study)
+        for name in LINKAGE:
+            if name in asked:
+                tree[name] = _SECTIONS[name](project, study, chosen)
+    scales: dict[str, Any] = {}
+    plans = set(asked) & {"positions", "velocities", "accelerations"}
+    if plans:
+        scales |= _drawn_scales(project, plans, by_angle=phi is not None or positions is not None)
+    if "flywheel" in asked:
+        tree["flywheel"] = _flywheel(project, scales)
+    if "gear" in asked:
+        tree["gear"] = project.gear.results()
+    if "reducer" in asked:
+        tree["reducer"] = project.reducer.results()
+    if "cam" in asked:
+        tree["cam"] = project.cam.results()
+    if scales:
+        tree["scales"] = scales
+    return _plain(tree)  # type: ignore[no-any-return]
+
+
+def _drawn_scales(project: Project, plans: set[str], *, by_angle: bool) -> dict[str, Any]:
+    """Scale factors the sheets draw these plans with; none where a project asked angle by angle cannot be drawn."""
+    from tmm_sheets.sheets import kinematic_frames
+
+    try:
+        found = kinematic_frames.scales(project, plans)
+    except CannotBuild:
+        if by_angle:
+            return {}
+        raise
+    return {symbol: {"value": scale.mu, "unit": _latin(scale.unit), "where": f"sheet {sheet}"}
+            for symbol, (scale, sheet) in found.items()}
+
+
+def _latin(unit: str) -> str:
+    """Unit of a scale factor as the results write it: the sheets have it in Russian."""
+    for russian, latin in (("рад", "rad"), ("Дж", "J"), ("кг", "kg"), ("мм", "mm"), ("Н", "N"), ("м", "m"), ("с", "s"),
+                           ("²", "2"), ("·", "*")):  # fmt: skip
+        unit = unit.replace(russian, latin)
+    return unit
+
+
+def as_json(tree: dict[str, Any]) -> str:
+    """JSON text of a results tree, a line for every key down to the third level."""
+    return _lines(tree, 0)
+
+
+def _lines(value: Any, level: int) -> str:
+    if isinstance(value, dict) and value and level < 3:
+        indent = " " * (level + 1)
+        rows = (f"{indent}{json.dumps(k, ensure_ascii=False)}: {_lines(v, level + 1)}" for k, v in value.items())
+        return "{\n" + ",\n".join(rows) + "\n" + " " * level + "}"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def listing(tree: dict[str, Any]) -> str:
+    """The tree as plain text for people: a heading for each part, a line for each quantity, six significant digits."""
+    lines = []
+    for key, value in tree.items():
+        if isinstance(value, dict):
+            lines += ["", f"[{key}]", *_rows(value, "")]
+        else:
+            lines.append(f"{key}: {value}")
+    return "\n".join(lines)
+
+
+def _rows(table: dict[str, Any], prefix: str) -> Iterable[str]:
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _rows(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key} = {_short(_without_rounding(value))}"
+
+
+def _without_rounding(value: Any) -> Any:
+    """A row with zeros where its numbers are nothing but the rounding of its largest."""
+    def largest(v: Any) -> float:
+        return max(map(largest, v), default=0.0) if isinstance(v, list) else abs(v) if isinstance(v, float) else 0.0
+
+    def cleaned(v: Any) -> Any:
+        return [cleaned(x) for x in v] if isinstance(v, list) else 0.0 if isinstance(v, float) and abs(v) < least else v
+
+    least = 1e-13 * largest(value)
+    return cleaned(value) if isinstance(value, list) else value
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, list):
+        if value and isinstance(value[0], dict):
+            return "; ".join(map(_short, value))
+        inner = [_short(v) for v in (value if len(value) <= 24 else [*value[:12], "...", *value[-2:]])]
+        return f"({', '.join(inner)})" if value and isinstance(value[0], float) and len(value) == 2 else " ".join(inner)
+    if isinstance(value, dict):
+        return ", ".join(f"{k} {_short(v)}" for k, v in value.items())
+    if value is None:
+        return "-"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+# --- parts ----------------------------------------------------------------------------------------------------------
+
+
+def _structure(project: Project) -> dict[str, Any]:
+    m = project.mechanism
+    return {
+        "W": m.mobility,
+        "class": m.grade,
+        "groups": [{"links": list(g.links), "class": 2, "order": 2, "kind": g.kind} for g in m.groups],
+        "formula": m.structure,
+    }
+
+
+def _study(project: Project, phi: tuple[float, ...] | None, positions: int | None) -> tuple[Study, list[int]]:
+    """Linkage at the angles asked for, and the positions the forces are told for."""
+    import numpy as np
+
+    cycle = project.cycle
+    if phi is not None:
+        turned: Any = cycle.sense * (np.asarray(phi, dtype=float) - cycle.start)
+    elif positions is not None:
+        turned = cycle.period / positions * np.arange(positions)
+    else:
+        return project.study, [project.force_index]
+    labels = tuple(str(i) for i in range(len(turned)))
+    return project.study_at(turned, labels), list(range(len(turned)))
+
+
+def _cycle(project: Project, study: Study) -> dict[str, Any]:
+    crank = study.mechanism.crank
+    return {
+        "labels": list(study.labels),
+        "phi": study.positions.phi,
+        "omega1": crank.omega,
+        "epsilon1": crank.sense * crank.acceleration if study.running is None else study.accelerations.epsilon[crank.link].value,
+    }
+
+
+def _positions(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
+    import numpy as np
+
+    p = study.positions
+    return {
+        "points": {name: _vectors(step, study) for name, step in p.points.items()},
+        "angles": {link: np.angle(_spread(step.value, study)) for link, step in p.directions.items()},
+    }
+
+
+def _velocities(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
+    v, frame = study.velocities, study.mechanism.frame
+    return {
+        "points": {name: _vectors(step, study) for name, step in v.points.items()},
+        "omega": {link: _spread(step.value, study) for link, step in v.omega.items() if link != frame},
+    }
+
+
+def _accelerations(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
+    a, frame = study.accelerations, study.mechanism.frame
+    return {
+        "points": {name: _vectors(step, study) for name, step in a.points.items()},
+        "epsilon": {link: _spread(step.value, study) for link, step in a.epsilon.items() if link != frame},
+    }
+
+
+def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
+    import numpy as np
+
+    f, lever = study.forces, study.lever
+
+    def at(step: Step | None) -> Any:
+        return None if step is None else _spread(step.value, study)[chosen]
+
+    by_statics, by_lever = at(f.balancing), at(lever.balancing)
+    if lever.direction is not None:
+        # The force plan gives a vector along the line of action, the lever its signed size there.
+        by_statics = (by_statics * np.conj(lever.direction)).real
+    return {
+        "label": [study.labels[k] for k in chosen],
+        "reactions": {name: _pairs(at(step)) for name, step in f.reactions.items()},
+        "couples": {name: at(step) for name, step in f.couples.items()},
+        "arms": {name: abs(at(step)) for name, step in f.arms.items()},
+        "balancing": {
+            "kind": "moment" if study.driver is None else "force",
+            "name": project.variant.balancing.name if project.variant.balancing else "",
+            "kinetostatics": by_statics,
+            "lever": by_lever,
+            "difference_percent": _percent(by_statics, by_lever),
+        },
+    }
+
+
+def _percent(a: Any, b: Any) -> Any:
+    import numpy as np
+
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return 100 * abs(a - b) / abs(a)
+
+
+_SECTIONS: dict[str, Callable[[Project, Study, list[int]], dict[str, Any]]] = {
+    "positions": _positions, "velocities": _velocities, "accelerations": _accelerations, "forces": _forces,
+}  # fmt: skip
+
+
+def _flywheel(project: Project, scales: dict[str, Any]) -> dict[str, Any]:
+    f = project.flywheel
+    for symbol, scale in (("mu_phi", f.scales.angle), ("mu_F", f.scales.force), ("mu_M", f.scales.moment),
+                          ("mu_A", f.scales.work), ("mu_E", f.scales.energy), ("mu_J", f.scales.inertia)):  # fmt: skip
+        scales[symbol] = {"value": scale.mu, "unit": _latin(scale.unit), "where": "flywheel"}
+    return f.results()
+
+
+# --- from arrays to plain numbers -----------------------------------------------------------------------------------
+
+
+def _spread(value: Any, study: Study) -> Any:
+    """One entry per position, also for what does not depend on it."""
+    import numpy as np
+
+    return np.broadcast_to(value, (len(study.labels),))
+
+
+def _vectors(step: Step, study: Study) -> list[list[float]]:
+    return _pairs(_spread(step.value, study))
+
+
+def _pairs(values: Any) -> list[list[float]]:
+    return [[z.real, z.imag] for z in values.tolist()]
+
+
+def _plain(value: Any) -> Any:
+    """Lists, texts and numbers only; NaN and infinity become null."""
+    if isinstance(value, dict):
+        return {key: _plain(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    if isinstance(value, float):
+        return value + 0.0 if isfinite(value) else None  # -0.0 becomes 0.0
+    return value

@@ -1,0 +1,443 @@
+"""Views of the cam sheet: profile by inversion and envelope, radius of the roller."""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from itertools import pairwise
+from math import degrees, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import fixed, number
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.drawing.symbols import pivot
+from tmm_sheets.sheets.cam import for_cams, lines_of_text, standard
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.scale import Scale
+    from tmm_sheets.methods.cam_inversion import Inversion
+    from tmm_sheets.methods.cam_profile import Cam, RollerCam
+
+
+@for_cams
+def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
+    cam: Cam = project.cam
+    room = Box(box.x0 + 3, box.y0 + 4, box.x1 - 3, box.y1 - 24)
+    picture = _Picture(cam, room)
+    if not picture.corner(_table_size(cam)):
+        # No free corner: the figure leaves the foot of its place to the table.
+        picture = _Picture(cam, Box(room.x0, room.y0 + _table_size(cam)[1] + 6, room.x1, room.y1))
+    canvas.scales[cam.inversion.plan.name] = picture.scale
+    canvas.title(box, "Построение профиля кулачка", f"М {picture.drawn}:{picture.real}   {picture.scale}")
+    inv, at, r = cam.inversion, picture.at, picture.roller
+    _circles(canvas, picture)
+    _inverted(canvas, picture)
+    if "roller" in cam.traits:
+        canvas.polyline(at(cam.dense.centres.value[:-1]), "centre", closed=True)
+    labels = _joined(inv)
+    for k, p in enumerate(inv.centres.value):
+        if k not in labels:
+            continue
+        if r > 0:
+            canvas.circle(at(p), r, "main" if k == 0 else "construction")
+        if k == 0 and r > 8:
+            # On the side from which the cam turns: the arcs of the inversion lie on the other.
+            tip = rect(r, picture.first - cam.right * pi / 3)
+            canvas.arrow(at(p), at(p) + tip, "thin", 3.0)
+            canvas.label(at(p) + 0.6 * tip, "r_p", 1j * tip * -cam.right, 3.5, 0.6, leader=False)
+        canvas.dot(at(p), 0.6)
+        if k:
+            canvas.label(at(p), labels[k], complex(p) * picture.turn, 3.5, 0.8)
+    canvas.polyline(at(cam.dense.plan["F"].value[:-1]), "curve", closed=True)
+    if "F′" in inv.plan:
+        _second_disc(canvas, picture)
+    {"tappet": _tappet, "rocker": _rocker, "flat": _flat}[picture.kind](canvas, picture)
+    _phase_angles(canvas, picture)
+    size = _table_size(cam)
+    corner = picture.corner(size) or complex(room.x0, room.y0 + size[1])
+    canvas.table(corner, list(_WIDTHS), _given(cam), _ROW, 3.5)
+
+
+GUIDE = 22.0
+"""What the guide of a translating follower and the end of its rod take above the roller, mm of paper."""
+
+
+class _Picture:
+    """Where the figure of the profile stands on paper: ``at`` turns points of the cam's frame, m, into millimetres.
+
+    ``start`` is the direction from which the phases are laid off, ``first`` that of the roller in position 0, rad.
+
+    The figure of a rocker may be turned as a whole, with OA_0 by multiples of 15 degrees, when a larger standard scale fits
+    then.
+    """
+
+    def __init__(self, cam: Cam, room: Box) -> None:
+        self.cam, self.room = cam, room
+        self.kind = cam.kind
+        inv = cam.inversion
+        radius = float(getattr(cam, "roller", 0.0))
+        outline = [cam.dense.centres.value, *([cam.dense.plan["B′"].value] if "B′" in inv.plan else [])]
+        ring = radius * np.exp(2j * pi * np.arange(16) / 16)
+        every = [(p[::4, None] + ring).ravel() for p in outline] if radius else [cam.dense.plan["F"].value]
+        swept = [abs(p) * np.exp(1j * (phase(p) + cam.right * np.linspace(0, turn, 33))) for p, turn in _arcs(inv, cam.right)]
+        if self.kind == "rocker":
+            swept.append(complex(inv.plan["A_0"].value) * np.exp(1j * cam.right * np.linspace(0, cam.law.fall.end, 65)))
+        if self.kind == "flat":
+            swept += [np.array(ends) for ends in _plates(cam)]
+        points = np.concatenate([*every, *swept])
+        marks = inv.axis.value
+        # The guide of a translating follower stands clear of the roller in position 0.
+        self.guide = max(float(marks.imag.max()), float(marks[0].imag) + radius)
+        turns = [1.0 + 0j]
+        if self.kind == "rocker":
+            along = complex(np.exp(-1j * phase(complex(inv.plan["A_0"].value))))
+            turns += [1j, -1.0 + 0j, -1j, *(along * complex(np.exp(1j * k * pi / 12)) for k in np.argsort(np.arange(24) % 6))]
+        margin, over = (7.0, 0.0) if self.kind == "rocker" else (0.0, GUIDE)
+        self.turn = max(turns, key=lambda turn: self._fitted(points * turn, margin, over)[1])
+        self.points = points * self.turn
+        (self.real, self.drawn, self.scale), _ = self._fitted(self.points, margin, over)
+        x0, x1 = float(self.points.real.min()), float(self.points.real.max())
+        y0, y1 = float(self.points.imag.min()), float(self.points.imag.max())
+        top = max(self.scale.mm(y1), self.scale.mm(self.guide) + over) if over else self.scale.mm(y1)
+        middle = complex(self.scale.mm((x0 + x1) / 2), (self.scale.mm(y0) + top) / 2)
+        self.origin = complex(room.centre - middle)
+        self.roller = float(self.scale.mm(radius))
+        self.start = phase(complex(inv.plan["A_0" if self.kind == "rocker" else "B_0"].value) * self.turn)
+        self.first = phase(complex(inv.plan["B_0"].value) * self.turn)
+
+    def _fitted(self, points: Points, margin: float, over: float) -> tuple[tuple[int, int, Scale], float]:
+        """Largest standard scale at which the figure fits, and its enlargement."""
+        width, height = float(np.ptp(points.real)), float(np.ptp(points.imag))
+        found = standard(width, height, self.room.width - 2 * margin, self.room.height - 2 * margin)
+        if over:
+            tall = self.guide - float(points.imag.min())
+            with_guide = standard(width, tall, self.room.width, self.room.height - over)
+            found = min(found, with_guide, key=lambda s: s[1] / s[0])
+        return found, found[1] / found[0]
+
+    def at(self, p: Any) -> Any:
+        """Point of the cam's frame on paper."""
+        return self.origin + self.scale.mm(p * self.turn)
+
+    def ink(self) -> Points:
+        """Points that the figure takes, mm."""
+        found = list(self.origin + self.scale.mm(self.points))
+        found += [self.origin + (self.scale.mm(self.cam.r0) + 14.0) * rect(1, t) for t in np.arange(72) * pi / 36]
+        if self.kind == "rocker":
+            found += [self.at(complex(self.cam.inversion.plan["A_0"].value)) + 12.0 * rect(1, t) for t in np.arange(24) * pi / 12]
+        else:
+            top = self.at(self.cam.inversion.axis.value[0])
+            found += [top + side + 1j * up for side in (-8.0, 8.0) for up in np.arange(0.0, self.room.y1 - top.imag, 4.0)]
+        return np.array(found)
+
+    def corner(self, size: tuple[float, float]) -> complex | None:
+        """Upper left corner of a rectangle in a corner of the room that the figure leaves free; None when there is none."""
+        ink, room, (width, height) = self.ink(), self.room, size
+        for x in (room.x1 - width, room.x0):
+            for y in (room.y1, room.y0 + height):
+                inside = (ink.real > x - 4) & (ink.real < x + width + 4) & (ink.imag < y + 4) & (ink.imag > y - height - 4)
+                if not inside.any():
+                    return complex(x, y)
+        return None
+
+
+def _plates(cam: Any) -> list[tuple[complex, complex]]:
+    """Plates of the inverted positions, m: whole in position 0, in the others from the middle to beyond the contact."""
+    inv, beyond = cam.inversion, 0.2 * cam.r0
+    found = []
+    for k, (centre, line, contact) in enumerate(zip(inv.centres.value, inv.lines.value, inv.plan["F"].value, strict=True)):
+        along = 1j * complex(line)
+        if k == 0:
+            low, high = sorted(_plate_ends(cam))
+        else:
+            offset = float(((contact - centre) * np.conjugate(along)).real)
+            low, high = min(offset, 0.0) - beyond, max(offset, 0.0) + beyond
+        found.append((complex(centre + low * along), complex(centre + high * along)))
+    return found
+
+
+def _plate_ends(cam: Any) -> tuple[float, float]:
+    """Ends of the plate along the direction 90 degrees left of the follower's line, m."""
+    return (cam.plate.l1, -cam.plate.l2) if cam.right > 0 else (cam.plate.l2, -cam.plate.l1)
+
+
+def _joined(inv: Inversion) -> dict[int, str]:
+    """Numbers of the positions; where two points fall together, one label for both."""
+    found: dict[int, str] = {}
+    points = inv.centres.value
+    for k, p in enumerate(points):
+        near = next((j for j in found if abs(points[j] - p) < 1e-9), None)
+        if near is None:
+            found[k] = inv.plan.labels[k]
+        elif near == 0 or k - near > 1:
+            found[near] += f", {inv.plan.labels[k]}"
+    return found
+
+
+_WIDTHS, _ROW = (56.0, 34.0), 7.0
+
+
+def _table_size(cam: Cam) -> tuple[float, float]:
+    return sum(_WIDTHS), _ROW * len(_given(cam))
+
+
+def _given(cam: Any) -> list[list[str]]:
+    """Given numbers and main dimensions."""
+    d = cam.data
+    head = ["Параметр", "Значение"]
+    phases = ["φ_у / φ_дс / φ_с, град", " / ".join(number(degrees(v)) for v in (d.rise, d.upper_dwell, d.fall))]
+    if "flat" in cam.traits:
+        p = cam.plate
+        return [head, ["Ход толкателя S, мм", number(d.stroke * 1e3)], phases, ["r_{min}, мм", fixed(p.r_min * 1e3, 3)],
+                ["r_0, мм", number(p.r0 * 1e3)], ["l_1 / l_2, мм", f"{fixed(p.l1 * 1e3, 2)} / {fixed(p.l2 * 1e3, 2)}"]]
+    z = cam.zone
+    angle = ["[α] на удалении, град" if d.limit == "rise" else "[α], град", number(degrees(d.pressure_angle))]
+    if "rocker" in cam.traits:
+        rows = [head, ["Угол качания ψ, град", number(degrees(d.swing))], ["Длина коромысла AB, мм", number(d.arm * 1e3)],
+                phases, angle, ["r_0, мм", fixed(z.r0 * 1e3, 3)], ["l_0, мм", fixed(z.l0 * 1e3, 3)]]
+    else:
+        rows = [head, ["Ход толкателя S, мм", number(d.stroke * 1e3)], phases, angle, ["S_0, мм", fixed(z.s0 * 1e3, 3)],
+                ["e, мм", fixed(z.e * 1e3, 3)], ["r_0, мм", fixed(z.r0 * 1e3, 3)]]
+    rows.append(["r_p, мм", number(cam.roller * 1e3)])
+    if d.closure == "geometric":
+        rows.append(["Угол между плечами", f"{fixed(degrees(cam.spread), 2)}°"] if "rocker" in cam.traits
+                    else ["Между роликами L, мм", fixed(cam.distance * 1e3, 3)])
+    return rows
+
+
+def _circles(canvas: Canvas, picture: _Picture) -> None:
+    """Circles r0, e and l0 with their radii, drawn where the cam dwells: no follower line is there."""
+    cam, origin, scale = picture.cam, picture.origin, picture.scale
+    radii = [("r_0", cam.r0, 0.3)]
+    if picture.kind == "tappet":
+        radii.append(("e", abs(cam.zone.e), 0.17))  # type: ignore[attr-defined]
+    for _, radius, _ in radii:
+        canvas.circle(origin, scale.mm(radius), "thin")
+    reach = scale.mm(cam.r0) + 6.0
+    for way in (reach, 1j * reach):
+        shown = segment_inside(picture.room, origin - way, origin + way)
+        if shown:
+            canvas.line(*shown, "centre")
+    canvas.circle(origin, 3.0, "main")
+    idle = cam.law.lower_dwell
+    start = picture.first
+    for name, radius, share in radii:
+        if scale.mm(radius) > 8:
+            angle = start + cam.right * (idle.start + share * idle.angle)
+            tip = origin + rect(scale.mm(radius), angle)
+            canvas.arrow(origin + rect(3.0, angle), tip, "thin", 3.0)
+            back = max(scale.mm(radius) - 11.0, 0.6 * scale.mm(radius))
+            canvas.label(origin + rect(back, angle), name, 1j * rect(1, angle), 3.5, 0.6)
+    canvas.label(origin, "O", -1 - 1j, 5.0, 3.5)
+
+
+def _arcs(inv: Inversion, right: float) -> list[tuple[complex, float]]:
+    """Arcs about O: the mark each starts from and how far it goes round, rad; of equal radii the longest."""
+    furthest: dict[float, tuple[complex, float]] = {}
+    for centre, mark in zip(inv.centres.value, inv.axis.value, strict=True):
+        turn = float(right * np.angle(centre / mark)) % (2 * pi)
+        key = round(abs(mark) / abs(inv.axis.value[0]), 6)
+        if turn < 2 * pi - 1e-6 and (key not in furthest or turn > furthest[key][1]):
+            furthest[key] = (complex(mark), turn)
+    return list(furthest.values())
+
+
+def _inverted(canvas: Canvas, picture: _Picture) -> None:
+    """Follower lines or arms in the inverted motion, and arcs about O through the marks of the path."""
+    cam, at = picture.cam, picture.at
+    inv, right = cam.inversion, cam.right
+    if inv.feet is not None:
+        for centre, foot, line in zip(inv.centres.value, inv.feet.value, inv.lines.value, strict=True):
+            canvas.line(at(foot), at(centre) + 5.0 * line * picture.turn, "construction")
+    elif picture.kind == "rocker":
+        for k, (centre, end) in enumerate(zip(inv.centres.value, inv.ends.value, strict=True)):
+            if k:
+                canvas.line(at(end), at(centre), "construction")
+    else:
+        for centre, line in zip(inv.centres.value, inv.lines.value, strict=True):
+            canvas.line(picture.origin, at(centre) + 5.0 * line * picture.turn, "construction")
+    for mark, turn in _arcs(inv, right):
+        start = phase(mark * picture.turn)
+        ends = sorted((start, start + right * turn))
+        canvas.arc(picture.origin, abs(at(mark) - picture.origin), ends[0], ends[1], "construction")
+
+
+def _tappet(canvas: Canvas, picture: _Picture) -> None:
+    """Translating follower in position 0: roller, rod, guide, and the marks of its path."""
+    _rod(canvas, picture, min(1.8, 0.3 * picture.roller))
+
+
+def _rod(canvas: Canvas, picture: _Picture, hole: float) -> None:
+    inv, at = picture.cam.inversion, picture.at
+    marks = inv.axis.value
+    low = at(marks[0])
+    if hole:
+        canvas.circle(low, hole, "main")
+    stand = complex(low.real, picture.origin.imag + picture.scale.mm(picture.guide))
+    canvas.line(low + 1j * hole, stand + 1j * (GUIDE - 1.0), "main")
+    for side in (-1.0, 1.0):
+        a, b = stand + complex(2.2 * side, 5.0), stand + complex(2.2 * side, GUIDE - 5.0)
+        canvas.line(a, b, "main")
+        canvas.hatch(a, b, 1 if side < 0 else -1)
+    last, side = -10.0, 1.0
+    for k in range(len(marks) // 2):
+        p = at(marks[k])
+        canvas.line(p - 1.8, p + 1.8, "thin")
+        # Marks that lie close together are numbered on both sides in turn.
+        side = -side if p.imag - last < 5.0 else -1.0
+        last = p.imag
+        canvas.label(p + 1.8 * side, inv.plan.labels[k], side + 0j, 3.5, 0.4)
+
+
+def _rocker(canvas: Canvas, picture: _Picture) -> None:
+    """Rocker in position 0, circle l0 with the axes of the inverted positions, marks of the path, triangle OAB."""
+    cam, at = picture.cam, picture.at
+    inv = cam.inversion
+    a0, b0 = (complex(at(inv.plan[n].value)) for n in ("A_0", "B_0"))
+    radius = abs(a0 - picture.origin)
+    ends = sorted(picture.start + cam.right * v for v in (0.0, cam.law.fall.end))
+    canvas.arc(picture.origin, radius, ends[0], ends[1], "thin")
+    canvas.line(picture.origin, a0, "thin")
+    canvas.line(picture.origin, b0, "thin")
+    pivots = inv.ends.value
+    for k in range(1, len(pivots)):
+        if abs(pivots[k] - pivots[k - 1]) > 1e-9:
+            canvas.dot(at(pivots[k]), 0.6)
+            canvas.label(at(pivots[k]), f"A_{{{inv.plan.labels[k]}}}", complex(pivots[k]) * picture.turn, 2.5, 0.7)
+    marks = at(inv.axis.value[: len(inv.axis.value) // 2])
+    arm = abs(b0 - a0)
+    first = phase(complex(marks[0] - a0))
+    last = first + float(np.angle((marks[-1] - a0) / (marks[0] - a0)))
+    canvas.arc(a0, arm, min(first, last), max(first, last), "thin")
+    for k, p in enumerate(marks):
+        u = (p - a0) / arm
+        canvas.line(complex(p - 1.8 * u), complex(p + 1.8 * u), "thin")
+        if k:
+            canvas.label(complex(p + 1.8 * u), inv.plan.labels[k], complex(u), 2.5, 0.4)
+    hole = min(1.8, 0.3 * picture.roller)
+    u = (b0 - a0) / arm
+    pivot(canvas, a0, -1j if (b0 - a0).imag >= -1e-9 else 1j)
+    canvas.line(a0 + 1.6 * u, b0 - hole * u, "main")
+    canvas.circle(b0, hole, "main")
+    canvas.label(a0, "A_0", (a0 - b0) / arm, 3.5, 3.0)
+    canvas.label(b0, "B_0", -u + 1j, 3.5, 2.0)
+    canvas.label(picture.origin + 0.55 * (a0 - picture.origin), "l_0", 1j * (a0 - picture.origin), 3.5, 0.6)
+
+
+def _flat(canvas: Canvas, picture: _Picture) -> None:
+    """Flat follower in position 0 and the plates of the inverted positions, whose envelope is the profile."""
+    cam, at = picture.cam, picture.at
+    inv = cam.inversion
+    for k, (a, b) in enumerate(_plates(cam)):
+        canvas.line(complex(at(a)), complex(at(b)), "main" if k == 0 else "construction")
+    for p in inv.plan["F"].value:
+        canvas.dot(at(p), 0.5)
+    _rod(canvas, picture, 0.0)
+
+
+def _second_disc(canvas: Canvas, picture: _Picture) -> None:
+    """Centre profile and profile of the second disc, its roller, and what keeps both rollers at their distance."""
+    cam, at = picture.cam, picture.at
+    dense, inv = cam.dense, cam.inversion
+    canvas.polyline(at(dense.plan["B′"].value[:-1]), "twodot", closed=True)
+    outline = dense.plan["F′"].value
+    canvas.polyline(at(outline[:-1]), "hidden", closed=True)
+    for name, of in (("диск 1", dense.plan["F"].value), ("диск 2", outline)):
+        # Where this disc stands out furthest over the other one.
+        other = outline if name == "диск 1" else dense.plan["F"].value
+        k = int(np.argmax([float(np.abs(other - p).min()) for p in of[::4]])) * 4
+        canvas.label(complex(at(of[k])), name, complex(of[k]) * picture.turn, 3.5, 1.5)
+    points = at(inv.plan["B′"].value)
+    first, second = complex(at(inv.centres.value[0])), complex(points[0])
+    canvas.circle(second, picture.roller, "main")
+    canvas.circle(second, min(1.8, 0.3 * picture.roller), "main")
+    for p in points[1:]:
+        canvas.dot(complex(p), 0.4)
+    if picture.kind == "rocker":
+        a0 = complex(at(inv.plan["A_0"].value))
+        u = (second - a0) / abs(second - a0)
+        canvas.line(a0 + 1.6 * u, second - min(1.8, 0.3 * picture.roller) * u, "main")
+        canvas.label(second, "B′_0", 1j * u, 3.5, picture.roller + 1.0)
+    else:
+        u = (second - first) / abs(second - first)
+        canvas.line(first + picture.roller * u, second - picture.roller * u, "centre")
+        canvas.label(second, "B′_0", u + 0.6, 3.5, picture.roller + 1.0)
+
+
+def _phase_angles(canvas: Canvas, picture: _Picture) -> None:
+    """Angles of the phases from the line of position 0, the cam's and the inverted sense of rotation."""
+    cam, origin, scale, start = picture.cam, picture.origin, picture.scale, picture.start
+    reach = scale.mm(cam.r0)
+    inner = scale.mm(abs(cam.zone.e)) if picture.kind == "tappet" else 0.0  # type: ignore[attr-defined]
+    radius = 0.78 * inner if inner > 0.35 * reach else 0.42 * reach
+    for p in cam.law.phases:
+        ends = sorted(start + cam.right * v for v in (p.start, p.end))
+        canvas.line(origin, origin + rect(reach, start + cam.right * p.start), "thin")
+        canvas.angle_mark(origin, ends[0], ends[1], radius, p.symbol)
+    turn = 0.5 * radius
+    canvas.arc_arrow(origin, turn, start + cam.right * 0.3, start - cam.right * 1.3, "axis")
+    canvas.label(origin + rect(turn, start - cam.right * 0.6), "ω", rect(1, start - cam.right * 0.6), 5.0, 1.0)
+    idle = max(cam.law.phases, key=lambda p: p.angle if p.travel == 0 and p.first == 0 else 0.0)
+    # Nearer to the end of the fall: a rocker's arm lies over the beginning of the rise.
+    middle = picture.first + cam.right * (idle.start + 0.35 * idle.angle)
+    room, around = picture.room, reach + 9.0
+    if not all(room.contains(origin + rect(around + 2.0, middle + turned)) for turned in (-0.25, 0.0, 0.25)):
+        around = reach - 7.0
+    canvas.arc_arrow(origin, around, middle - 0.22 * cam.right, middle + 0.22 * cam.right, "axis")
+    canvas.label(origin + rect(around, middle), "−ω", rect(1, middle) * (1 if around > reach else -1), 5.0, 1.0)
+
+
+@for_cams
+def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Smallest radius of curvature by three points of the centre profile; the radius of the roller by both rules."""
+    cam: RollerCam = project.cam
+    plan, phi = cam.inversion.plan, float(cam.sharpest.three[1])
+    d, centre = complex(plan["D_ρ"].value), complex(plan["M"].value)
+    chords = [complex(plan[f"{n}_ρ"].value) for n in "EDG"]
+    course = cam.at(phi + np.linspace(-0.6, 0.6, 121)).centres.value
+    near = course[np.abs(course - d) < 0.75 * abs(centre - d)]
+    every = np.array([*near, centre])
+    text = 34.0
+    room = Box(box.x0 + 8, box.y0 + text, box.x1 - 8, box.y1 - 24)
+    real, drawn, scale = standard(float(np.ptp(every.real)), float(np.ptp(every.imag)), room.width, room.height)
+    canvas.title(box, "Выбор радиуса ролика", f"М {drawn}:{real}")
+    middle = complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2)
+    origin = room.centre - scale.mm(middle)
+
+    def at(p: Any) -> Any:
+        return origin + scale.mm(p)
+
+    canvas.polyline(at(near), "curve")
+    for a, b in pairwise(chords):
+        canvas.line(at(a), at(b), "thin")
+        canvas.ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
+    canvas.arrow(at(centre), at(d), "thin", 3.0)
+    canvas.dot(at(centre), 0.7)
+    outwards = (d - centre) / abs(d - centre)
+    for name, p in zip("EDG", chords, strict=True):
+        canvas.dot(at(p), 0.7)
+        canvas.label(at(p), name, outwards + 0.6 * (p - d) / max(abs(p - d), 1e-12), 3.5, 1.5)
+    canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
+    canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)
+    drawn_rho, rules = float(plan["ρ_min"].value), cam.roller_rules
+    lines = [f"ρ_{{min}} = |MD|·μ_l = {_mm(drawn_rho)} мм (точно {_mm(cam.sharpest.rho)} мм)"]
+    if cam.rho_min < cam.sharpest.rho * (1 - 1e-6):
+        lines[0] += f"; второго диска {_mm(cam.rho_min)} мм"
+    for rule in rules:
+        low, high = rule.limits
+        if low == high:
+            lines.append(f"r_p ≤ {number(rule.shares[0])} {rule.symbol} = {_mm(low)} мм")
+            continue
+        shares = f"({number(rule.shares[0])}…{number(rule.shares[1])})"
+        lines.append(f"r_p ≤ {shares} {rule.symbol} = {_mm(low)}…{_mm(high)} мм")
+    met = all(cam.roller <= rule.limits[1] * (1 + 1e-9) for rule in rules)
+    lines.append(f"Принято r_p = {number(cam.roller * 1e3)} мм" + ("" if met else " (больше рекомендуемого)"))
+    lines_of_text(canvas, box, lines)
+
+
+def _mm(length: float) -> str:
+    return fixed(length * 1e3, 2)

@@ -1,0 +1,279 @@
+"""Views of the cam sheet: main dimensions by the allowed zone of the axis, or by S + S'' under a flat follower."""
+
+from __future__ import annotations
+
+from math import degrees, pi, tan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import Scale, fixed, handy, number
+from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
+from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.symbols import bar, hinge
+from tmm_sheets.sheets.cam import distinct, for_cams, lines_of_text
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.cam_profile import FlatCam, RockerCam, TappetCam
+
+
+@for_cams
+def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """S(S') with the tangents under the permitted pressure angle, the allowed zone and the main dimensions."""
+    cam: TappetCam = project.cam
+    z = cam.zone
+    slope = tan(z.alpha)
+    curve, axis, apex = z.curve(), complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
+    stroke = cam.law.stroke
+    touches = [(complex(t.value), z.right * side) for t, side in zip(z.touching, (1.0, -1.0), strict=True)]
+    tops = [apex + (min(t.imag + 0.25 * stroke, 1.05 * stroke) - apex.imag) * complex(side * slope, 1.0) for t, side in touches]
+    room = box.inset(10, 27, 10, 34)
+
+    def fitted(share: float) -> tuple[float, float]:
+        """Scale factor, and the depth (m, negative) to which the zone is drawn: below the axis a share of the figure."""
+        depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + (apex - axis).imag
+        xs = [*curve.real, *(t.real for t in tops), apex.real - depth * slope, apex.real + depth * slope, 0.0]
+        return handy(max(float(np.ptp(xs)) / room.width, (stroke - apex.imag + depth) / room.height)), -depth
+
+    # The finest scale factor counts, then the deepest zone.
+    mu, lowest = min(fitted(share) for share in (0.3, 0.22, 0.15))
+    depth = -lowest
+    low = apex - 1j * depth
+    xs = np.array([*curve.real, *(t.real for t in tops), apex.real - depth * slope, apex.real + depth * slope, 0.0])
+    scale = Scale("μ_S", mu, "м/мм")
+    canvas.scales[z.plan.name] = scale
+    canvas.title(box, "Определение основных размеров", f"μ_S = μ_S' = {number(scale.mu)} м/мм")
+    origin = room.centre - scale.mm(complex((xs.max() + xs.min()) / 2, (stroke + low.imag) / 2))
+
+    def at(p: complex) -> complex:
+        return complex(origin + scale.mm(p))
+
+    v, o, b, c = at(apex), at(axis), at(0j), at(complex(z.plan["C"].value))
+    cone = np.array([v, at(low - depth * slope), at(low + depth * slope)])
+    hatch_polygon(canvas, cone, 4.0)
+    for (touch, side), top in zip(touches, tops, strict=True):
+        canvas.line(at(top), at(low - depth * slope * side), "axis")
+        if abs(touch) > 0:
+            canvas.dot(at(touch), 0.6)
+        canvas.label(at(touch), "K_1" if side == z.right else "K_2", side + 0j, 3.5, 1.0)
+    canvas.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
+    canvas.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
+    reach = float(curve.real[np.argmax(np.abs(curve.real))])
+    canvas.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
+    canvas.label(at(complex(reach)) + 8 * z.right, "S', м", -1j, 3.5, 1.5, leader=False)
+    canvas.polyline(origin + scale.mm(curve), "curve")
+    points, labels = np.asarray(z.points.value), z.plan.labels
+    for k in range(len(points)):
+        if k and abs(points[k] - points[k - 1]) < 1e-9:
+            continue
+        canvas.line(at(1j * points[k].imag), at(points[k]), "thin")
+        canvas.dot(at(points[k]), 0.5)
+        away = points[k] - 1j * stroke / 2
+        canvas.label(at(points[k]), labels[k], complex(away), 3.5, 0.8)
+    canvas.line(o, b, "main")
+    canvas.line(c, o, "thin")
+    canvas.line(v, v + 1j * scale.mm(0.75 * z.s0), "centre")
+    if abs(v - o) > 1:
+        canvas.line(o - 4j, at(complex(axis.real, 0.0)), "centre")
+    canvas.dot(o, 0.9)
+    canvas.label(o, "O", -1j + z.right, 5.0, 1.5)
+    canvas.label(b, "B", -z.right + 0j, 3.5, 1.0)
+    canvas.label(c, "C", -z.right - 1j, 3.5, 0.8)
+    radius = 0.5 * scale.mm(z.s0)
+    canvas.angle_mark(v, pi / 2, pi / 2 + z.alpha, radius, "[α]")
+    canvas.angle_mark(v, pi / 2 - z.alpha, pi / 2, radius, "[α]")
+    canvas.dimension(c, b, 9.0 * z.right, "S_0")
+    if abs(o - c) > 6:
+        canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8)
+    canvas.label((o + b) / 2, "r_0", z.right * 1 + 0.6j, 3.5, 0.6)
+    factor = number(scale.mu)
+    measured = [f"{name} = |{segment}|·μ_S = {fixed(scale.mm(abs(value)), 2)}·{factor} = {fixed(abs(value) * 1e3, 3)}·10^{{−3}} м"
+                for name, segment, value in (("S_0", "CB", z.s0), ("e", "CO", z.e), ("r_0", "OB", z.r0))]
+    if cam.data.eccentricity is not None:
+        measured[1] = f"e = {number(z.e * 1e3)} мм — по заданию"
+    lines_of_text(canvas, box, measured)
+
+
+@for_cams
+def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Positions of the rocker with the segments AB psi', rays under the permitted pressure angle, allowed zone, r0 and l0."""
+    cam: RockerCam = project.cam
+    z = cam.zone
+    pivot, apex = complex(z.plan["A"].value), complex(z.apex.value)
+    starts, tips, curve = np.asarray(z.axis.value), np.asarray(z.points.value), z.curve()
+    every = np.array([pivot, apex, 0j, *starts, *curve])
+    x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
+    measured = _rocker_lines(cam)
+    beside = box.width > 1.3 * box.height
+    text = max(letter(line, 3.5).width for line in measured) + 14.0
+    room = box.inset(14, 8, text + 6, 30) if beside else box.inset(12, 10 + 7.0 * len(measured), 12, 30)
+
+    def fitted(share: float) -> tuple[float, float]:
+        """Scale factor, and the depth (m, negative) to which the zone is drawn: below the axis a share of the arm."""
+        low = apex.imag - share * cam.arm
+        return handy(max((x1 - x0) / room.width, (y1 - low) / room.height)), low
+
+    mu, low = min(fitted(share) for share in (0.4, 0.3, 0.2, 0.12))
+    scale = Scale("μ_l", mu, "м/мм")
+    canvas.scales[z.plan.name] = scale
+    canvas.title(box, "Определение основных размеров", f"{scale}")
+    origin = room.centre - scale.mm(complex((x0 + x1) / 2, (y1 + low) / 2))
+
+    def at(p: complex) -> complex:
+        return complex(origin + scale.mm(p))
+
+    picture = Box(at(complex(x0)).real - 6, at(1j * low).imag, at(complex(x1)).real + 6, at(1j * y1).imag + 4)
+    corners = [complex(picture.x0, picture.y0), complex(picture.x1, picture.y0),
+               complex(picture.x1, picture.y1), complex(picture.x0, picture.y1)]
+    region = z.cones.region([complex(scale.real(p - origin)) for p in corners])
+    if len(region) > 2:
+        hatch_polygon(canvas, np.asarray(origin + scale.mm(region)), 5.0)
+    reach = picture.width + picture.height
+    for k, ray in enumerate(z.cones.rays(cam.law.parts)):
+        shown = segment_inside(picture, at(ray.tip), at(ray.tip) + reach * ray.direction)
+        if shown and (k < 2 or abs(ray.tip - z.cones.rays(cam.law.parts)[k - 2].tip) > 1e-9):
+            canvas.line(*shown, "construction")
+    for touch, border in zip(z.touching, z.borders, strict=True):
+        tip = complex(touch.value)
+        shown = segment_inside(picture, at(tip), at(tip) + reach * complex(border.value))
+        if shown:
+            canvas.line(*shown, "axis")
+        canvas.dot(at(tip), 0.7)
+    labels = z.plan.labels
+    numbered = [k for k in range(len(starts)) if k == 0 or abs(starts[k] - starts[k - 1]) > 1e-9]
+    rising = [k for k in numbered if k <= cam.law.parts]
+    a, o, b = at(pivot), at(apex), at(0j)
+    for k in rising[1:]:
+        canvas.line(a, at(starts[k]), "thin")
+    path = np.array([at(p) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))])
+    canvas.polyline(path, "thin")
+    for k in numbered:
+        canvas.line(at(starts[k]), at(tips[k]), "thin")
+        canvas.dot(at(tips[k]), 0.5)
+    for k in rising:
+        canvas.dot(at(starts[k]), 0.6)
+        canvas.label(at(starts[k]), labels[k], complex(starts[k] - pivot), 3.5, 0.8)
+    for k in numbered:
+        if abs(at(tips[k]) - at(starts[k])) > 6:
+            canvas.label(at(tips[k]), f"{labels[k]}_D", complex(tips[k] - starts[k]), 2.5, 0.6)
+    canvas.polyline(np.asarray(origin + scale.mm(curve)), "curve")
+    for p in (a, b):
+        hinge(canvas, p)
+    bar(canvas, (o, b, a, o), (a, b))
+    canvas.dot(o, 0.9)
+    canvas.label(o, "O", -1j, 5.0, 1.5)
+    canvas.label(a, "A", complex(pivot) - 0.5j * abs(pivot), 3.5, 2.2)
+    canvas.label(b, "B_0", -complex(pivot) - 0.6j * abs(pivot), 3.5, 2.2)
+    canvas.label((o + b) / 2, "r_0", 1j * (o - b), 3.5, 0.8)
+    canvas.label((o + a) / 2, "l_0", 1j * (o - a), 3.5, 0.8)
+    radius = 0.45 * min(abs(o - b), picture.height / 2)
+    canvas.line(b, b - 1.3j * radius, "centre")
+    for lo, hi in ((-pi / 2, -pi / 2 + z.alpha), (-pi / 2 - z.alpha, -pi / 2)):
+        canvas.angle_mark(b, lo, hi, radius, "[α]")
+    measured = _rocker_lines(cam, scale)
+    if not beside:
+        lines_of_text(canvas, box, measured)
+        return
+    for i, line in enumerate(measured):
+        canvas.text(complex(box.x1 - text + 6.0, box.y1 - 40.0 - 8.0 * i), line, 3.5)
+
+
+def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:
+    """Main dimensions in formulas and numbers, and the least cam where it is another one."""
+    z, mu = cam.zone, 1e-3 if scale is None else scale.mu
+    lines = [f"{name} = |{segment}|·μ_l = {fixed(value / mu, 2)}·{number(mu)} = {fixed(value * 1e3, 3)}·10^{{−3}} м"
+             for name, segment, value in (("r_0", "OB_0", z.r0), ("l_0", "OA", z.l0))]
+    lines.append(f"x_i = AB·ψ'_i — {'к оси A' if cam.data.rotation == 'same' else 'на продолжении AB'}")
+    least = z.least()
+    if least is not None and abs(least) < z.r0 * (1 - 1e-6):
+        away = abs(least - complex(z.cones.pivot or 0j))
+        lines += [f"Наименьший возможный r_0 = {fixed(abs(least) * 1e3, 2)} мм",
+                  f"при l_0 = {fixed(away * 1e3, 2)} мм (не в вершине зоны)"]
+    return lines
+
+
+@for_cams
+def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Graph of S + S'' over the cam angle with its lowest ordinate; radius r0 and sizes of the plate."""
+    cam: FlatCam = project.cam
+    law, plate = cam.law, cam.plate
+    pieces = []
+    for p in (law.phases[:-1] if law.lower_dwell.angle else law.phases):
+        for a, b in zip((0.0, *p.law.jumps), (*p.law.jumps, 1.0), strict=True):
+            x = np.linspace(a + 1e-12, b - 1e-12, 65)
+            pieces.append((p.phi(x), np.asarray(p.s(x)), np.asarray(p.s(x) + p.dds(x))))
+    phi, s, total = (np.concatenate([piece[i] for piece in pieces]) for i in range(3))
+    up, down = max(float(total.max()), law.stroke), max(float(-total.min()), 0.0)
+    room = box.inset(14, 44, 14, 34)
+    across = Scale("μ_φ", handy(degrees(law.fall.end) / room.width), "град/мм")
+    scale = Scale("μ_S", handy((up + down) / (room.height - 10)), "м/мм")
+    canvas.scales[plate.plan.name] = scale
+    canvas.title(box, "Определение r_0 и размеров тарелки", f"μ_S = μ_S'' = {number(scale.mu)} м/мм")
+    end = float(across.mm(degrees(law.fall.end)))
+    o = complex(room.x0 + (room.width - end) / 2, room.y0 + scale.mm(down) + (room.height - scale.mm(up + down)) / 2)
+
+    def at(angle: Any, y: Any) -> Any:
+        return o + across.mm(np.degrees(angle)) + 1j * scale.mm(y)
+
+    canvas.arrow(o - 1j * (scale.mm(down) + 3), o + 1j * (scale.mm(up) + 9), "axis", 3.0)
+    canvas.arrow(o, o + end + 9, "axis", 3.0)
+    canvas.text(o + complex(2.5, scale.mm(up) + 6.0), "S + S'', м", 3.5)
+    canvas.label(o + end + 6, "φ", 1j, 3.5, 1.5, leader=False)
+    canvas.polyline(at(phi, s), "centre")
+    k = int(np.argmax(s))
+    canvas.label(complex(at(phi[k], s[k])), "S", -1 + 1j, 3.5, 0.8)
+    k = int(np.argmax(total))
+    canvas.label(complex(at(phi[k], total[k])), "S + S''", 1 + 1j, 3.5, 0.8)
+    canvas.polyline(np.concatenate(([o], at(phi, total), [o + end])), "curve")
+    sums, base = np.asarray(plate.sums.value), law.at_positions(lambda p, x: p.s(x))
+    points, along = at(law.positions, sums), at(law.positions, 0.0)
+    kept = distinct(law.labels, along.real)
+    for k in kept:
+        canvas.line(complex(along[k]), complex(points[k]), "thin")
+        canvas.line(complex(at(law.positions[k], base[k])), complex(points[k]), "construction")
+        canvas.dot(complex(points[k]), 0.4)
+        canvas.label(complex(along[k]), law.labels[k], -1j if sums[k] > 0 else 1j, 2.5, 0.6, leader=False)
+    lowest = int(np.argmin(total))
+    if down > 0:
+        level = complex(at(phi[lowest], total[lowest]))
+        canvas.line(complex(o.real - 6.0, level.imag), level, "construction")
+        canvas.dimension(complex(o.real, o.imag), complex(o.real, level.imag), -7.0, "a")
+    r_min = max(plate.r_min, 0.0)
+    lines_of_text(canvas, box, [
+        f"r_{{min}} = a·μ_S = {fixed(scale.mm(r_min), 2)}·{number(scale.mu)} = {fixed(r_min * 1e3, 3)}·10^{{−3}} м",
+        f"r_0 = r_{{min}} + Δr = {number(plate.r0 * 1e3)} мм,  Δr = {fixed((plate.r0 - r_min) * 1e3, 2)} мм ≥ 0,1 r_{{min}}"
+        if plate.r0 >= 1.1 * r_min * (1 - 1e-9) else f"r_0 = {number(plate.r0 * 1e3)} мм — по заданию (запас меньше 0,1 r_{{min}})",
+        f"l_1 = S'_{{max}} = {fixed(plate.l1 * 1e3, 2)} мм (удаление)",
+        f"l_2 = |S'|_{{max}} = {fixed(plate.l2 * 1e3, 2)} мм (возвращение)",
+        f"ρ_{{min}} = r_0 + (S + S'')_{{min}} = {fixed(cam.rho_min * 1e3, 2)} мм",
+    ])
+
+
+@for_cams
+def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The flat follower with the sizes of its plate, to scale."""
+    from tmm_sheets.sheets.cam import standard
+
+    cam: FlatCam = project.cam
+    p = cam.plate
+    room = box.inset(12, 26, 12, 34)
+    real, drawn, scale = standard(p.l1 + p.l2, 0.3 * (p.l1 + p.l2), room.width, room.height - 24)
+    canvas.title(box, "Тарелка толкателя", f"М {drawn}:{real}")
+    left, right = (p.l1, p.l2) if cam.right > 0 else (p.l2, p.l1)
+    thick, high = 5.0, min(0.75 * room.height, 62.0)
+    axis = complex(room.centre.real - scale.mm(right - left) / 2, room.centre.imag - high / 2)
+    a, b = axis - scale.mm(left), axis + scale.mm(right)
+    canvas.polyline(np.array([a, b, b + 1j * thick, a + 1j * thick]), "main", closed=True)
+    rod = 4.0
+    for side in (-rod, rod):
+        canvas.line(axis + complex(side, thick), axis + complex(side, high), "main")
+        canvas.line(axis + complex(1.25 * side, 0.45 * high), axis + complex(1.25 * side, 0.85 * high), "main")
+        canvas.hatch(axis + complex(1.25 * side, 0.45 * high), axis + complex(1.25 * side, 0.85 * high), 1 if side < 0 else -1)
+    canvas.line(axis + complex(-rod, high), axis + complex(rod, high), "thin")
+    canvas.line(axis - 6j, axis + 1j * (high + 5.0), "centre")
+    names = ("l_1", "l_2") if cam.right > 0 else ("l_2", "l_1")
+    canvas.dimension(a, axis, -11.0, f"{names[0]} = {fixed(left * 1e3, 1)}")
+    canvas.dimension(axis, b, -11.0, f"{names[1]} = {fixed(right * 1e3, 1)}")
+    canvas.text(complex(box.centre.real, box.y0 + 4), "Точка касания не должна выходить за края тарелки", 3.5, "centre")

@@ -1,0 +1,285 @@
+"""Diagrams over the crank angle: motion of the output (S, V, a or psi, omega, epsilon), balancing moment over the cycle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import floor
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import Scale, fixed
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.sheets import graphs
+from tmm_sheets.sheets.frame import pick
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+SAMPLES = 15
+"""Points of a curve between two positions."""
+STRAIGHT = 1e-9
+"""Part of its way by which a point may leave a straight line."""
+_LEFT, _RIGHT = 24.0, 12.0
+"""Room beside the angle axis for the sign of the ordinate and for the arrow."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A quantity over the cycle: ``symbol`` in sheet markup, its values at the sampled angles and at the positions."""
+
+    symbol: str
+    turned: Any
+    values: Any
+    at: Any
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One graph: ``key`` of its scale factor in [scales], letter of the ordinate, unit, its curves."""
+
+    key: str
+    letter: str
+    unit: str
+    curves: tuple[Curve, ...]
+
+
+def _columns(project: Project, options: graphs.Options) -> list[tuple[Quantity, ...]]:
+    """What is drawn, points and links apart. Which: option ``of``, else ``cycle.diagrams``, else the output."""
+    cycle = project.variant.cycle
+    named = options.get("of") or (cycle.diagrams or ((cycle.output,) if cycle.output else ()) if cycle is not None else ())
+    if not named:
+        raise CannotBuild("nothing is named for the kinematic diagrams", 'add for example diagrams = ["C"] to [cycle]')
+    links = [name for name in named if name in project.mechanism.links]
+    points = [name for name in named if name not in links]
+    return [_of_points(project, points)] * bool(points) + [_of_links(project, links)] * bool(links)
+
+
+def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
+    """Kinematic diagrams of the outputs, one graph under another.
+
+    Points have S, V, a along their straight path, links psi, omega, epsilon; both count from position 0 and are positive in
+    the sense in which the motion begins there.
+    """
+    columns = _columns(project, options)
+    width = box.width / len(columns)
+    room = Box(0, 0, width, box.height)
+    angle = _angle(project, room)
+    left = canvas.title(box, "Кинематические диаграммы", str(angle))
+    for n, quantities in enumerate(columns):
+        x = box.x0 + n * width
+        height = left.height / len(quantities)
+        for i, q in enumerate(quantities):
+            top = left.y1 - i * height
+            _graph(project, canvas, Box(x, top - height, x + width, top), angle, q)
+
+
+def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
+    """The values of the kinematic diagrams at the positions, one row each."""
+    every = [(c.symbol, q.unit, c.at) for column in _columns(project, options) for q in column for c in q.curves]
+    # The same quantities of one output stand together.
+    every.sort(key=lambda row: row[0][1:])
+    left = canvas.title(box, "Кинематика выходного звена" if len(every) == 3 else "Кинематика выходных звеньев")
+    heads = ["№", *(f"{symbol}, {unit}" for symbol, unit, _ in every)]
+    columns = [graphs.column(values) for _, _, values in every]
+    rows = [heads, *([label, *(c[i] for c in columns)] for i, label in enumerate(project.cycle.labels))]
+    row = min(left.height / len(rows), 7.0)
+    first = 12.0
+    height = 3.5 if row >= 5.5 else 2.5
+    width = (left.width - first) / len(every)
+    canvas.table(complex(box.x0, left.y1), [first, *[width] * len(every)], rows, row, height)
+
+
+def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
+    """Balancing moment over the whole cycle by kinetostatics, positive in the sense of rotation; its mean drives the machine."""
+    if project.driver is not None:
+        raise CannotBuild(*_NO_MOMENT)
+    edges = [0.0, *(b for b in project.reduced.breaks if 0 < b < project.cycle.period), project.cycle.period]
+    turned = _samples(project)
+    # At a dead point the load is switched: the curve has two ends there, a hair to both sides.
+    pieces = [np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
+              for a, b in pairwise(edges)]
+    every = np.concatenate(pieces)
+    values = _balancing_moment(project, every)
+    at = _balancing_moment(project, project.cycle.turned)
+    angle = _angle(project, box)
+    left = canvas.title(box, "График уравновешивающего момента", str(angle))
+    # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
+    mean = project.flywheel.M_constant if project.variant.flywheel is not None else _mean(every, values, project.cycle.period)
+    _graph(project, canvas, left, angle, Quantity("graph-M", "M_{ур}", "Н·м", (Curve("", every, values, at),)), level=("M_д", mean))
+
+
+def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
+    """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever, in columns side by side."""
+    if project.driver is not None:
+        raise CannotBuild(*_NO_MOMENT)
+    study, sense = project.study, project.mechanism.crank.sense
+    assert study.forces.balancing is not None
+    assert study.lever.balancing is not None
+    labels = project.cycle.labels
+    both = (study.forces.balancing, study.lever.balancing)
+    by_statics, by_lever = (sense * np.broadcast_to(step.value, len(labels)) for step in both)
+    left = canvas.title(box, "Уравновешивающий момент, Н·м")
+    half = (len(labels) + 1) // 2
+    cells = [[label, *graphs.column([a, b, np.max(np.abs(by_statics))])[:2]]
+             for label, a, b in zip(labels, by_statics, by_lever, strict=True)]
+    cells += [["", "", ""]] * (2 * half - len(cells))
+    heads = ["№", "Силовой расчёт", "Рычаг"]
+    rows = [heads + heads, *(cells[i] + cells[half + i] for i in range(half))]
+    row = min(left.height / len(rows), 7.5)
+    width = box.width / 2 - 10.0
+    widths = [10.0, 0.58 * width, 0.42 * width]
+    canvas.table(complex(box.x0, left.y1), widths * 2, rows, row, 3.5 if row >= 5.5 else 2.5)
+
+
+_NO_MOMENT = ("the diagram of the balancing moment needs a crank driven by a moment", 'write kind = "moment" in [balancing]')
+
+
+def _balancing_moment(project: Project, turned: Any) -> Any:
+    study = project.study_at(turned, tuple("" for _ in turned))
+    assert study.forces.balancing is not None
+    return project.mechanism.crank.sense * np.broadcast_to(study.forces.balancing.value, np.shape(turned))
+
+
+def _mean(turned: Any, values: Any, period: float) -> float:
+    return float(np.sum(np.diff(turned) * (values[1:] + values[:-1])) / 2 / period)
+
+
+def _samples(project: Project) -> Any:
+    c = project.cycle
+    return np.linspace(0.0, c.period, SAMPLES * len(c.labels) + 1)
+
+
+def _of_points(project: Project, names: list[str]) -> tuple[Quantity, ...]:
+    turned = np.concatenate((_samples(project), project.cycle.turned))
+    study = project.study_at(turned, tuple("" for _ in turned))
+    curves: list[list[Curve]] = [[], [], []]
+    for name in names:
+        p, v, a = (np.asarray(plan.points[name].value) for plan in (study.positions, study.velocities, study.accelerations))
+        way = p - p[0]
+        u = _sense(name, way)
+        index = f"{name[0]}{name[1:]}"
+        for found, sign, z in zip(curves, "SVa", (way, v, a), strict=True):
+            found.append(_curve(project, f"{sign}_{{{index}}}", turned, (z * np.conj(u)).real))
+    units = ("м", "м/с", "м/с^2")
+    return tuple(_quantity(f"graph-{s}", s, unit, c) for s, unit, c in zip("SVa", units, curves, strict=True))
+
+
+def _sense(name: str, way: Any) -> complex:
+    """Unit vector of a straight path, in the sense in which the motion begins."""
+    far = complex(way[np.argmax(np.abs(way))])
+    size = abs(far)
+    u = far / size if size else 1 + 0j
+    if np.max(np.abs((way * np.conj(u)).imag)) > STRAIGHT * size:
+        raise CannotBuild(f"point {name} does not move along a straight line: it has no diagram S(φ)",
+                          "name a point of a slider in cycle.diagrams, or the number of a link for its angle")
+    return u * _begins((way * np.conj(u)).real)
+
+
+def _begins(way: Any) -> float:
+    """Sign of the first movement away from position 0."""
+    moved = way[np.abs(way) > 1e-6 * np.max(np.abs(way))]
+    return float(np.sign(moved[0])) if len(moved) else 1.0
+
+
+def _of_links(project: Project, names: list[str]) -> tuple[Quantity, ...]:
+    turned = np.concatenate((_samples(project), project.cycle.turned))
+    study = project.study_at(turned, tuple("" for _ in turned))
+    curves: list[list[Curve]] = [[], [], []]
+    n = len(turned) - len(project.cycle.turned)
+    for name in names:
+        turn = np.unwrap(np.angle(np.broadcast_to(study.positions.directions[name].value, turned.shape))[:n])
+        turn = turn - turn[0]
+        turn = np.concatenate((turn, np.interp(project.cycle.turned, turned[:n], turn)))
+        sign = _begins(turn)
+        both = (study.velocities.omega, study.accelerations.epsilon)
+        omega, eps = (np.broadcast_to(plan[name].value, turned.shape) for plan in both)
+        for found, letter_, y in zip(curves, "ψωε", (turn, omega, eps), strict=True):
+            found.append(_curve(project, f"{letter_}_{{{name}}}", turned, sign * y))
+    units = ("рад", "с^{−1}", "с^{−2}")
+    keys = ("graph-psi", "graph-omega", "graph-epsilon")
+    return tuple(_quantity(key, s, unit, c) for key, s, unit, c in zip(keys, "ψωε", units, curves, strict=True))
+
+
+def _curve(project: Project, symbol: str, turned: Any, values: Any) -> Curve:
+    n = len(turned) - len(project.cycle.turned)
+    return Curve(symbol, turned[:n], values[:n], values[n:])
+
+
+def _quantity(key: str, sign: str, unit: str, curves: list[Curve]) -> Quantity:
+    """A single curve gives the ordinate its name, several are named where they run."""
+    if len(curves) == 1:
+        return Quantity(key, curves[0].symbol, unit, tuple(curves))
+    return Quantity(key, sign, unit, tuple(curves))
+
+
+# --- drawing ----------------------------------------------------------------------------------------------------------
+
+
+def _angle(project: Project, box: Box) -> Scale:
+    """Scale of the angle axis: half millimetres between the positions, so that the division is handy."""
+    n = len(project.cycle.labels)
+    length = floor(2 * (box.width - _LEFT - _RIGHT) / n) / 2 * n
+    return Scale("μ_φ", project.cycle.period / length, "рад/мм")
+
+
+def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: Quantity, level: tuple[str, float] | None = None) -> None:
+    high = max(0.0, *(float(np.max(c.values)) for c in q.curves))
+    low = min(0.0, *(float(np.min(c.values)) for c in q.curves))
+    above, below = 10.0, 6.0
+    unit = f"({q.unit})/мм" if "/" in q.unit or "{" in q.unit else f"{q.unit}/мм"
+    scale = pick(project, canvas, q.key, f"μ_{q.letter[0]}", unit, (high - low) / (box.height - above - below))
+    length = angle.mm(project.cycle.period)
+    top, bottom = scale.mm(high), scale.mm(low)
+    spare = box.height - above - below - (top - bottom)
+    o = complex(box.x0 + _LEFT + max(box.width - _LEFT - _RIGHT - length, 0) / 2, box.y0 + below + spare / 2 - bottom)
+    canvas.of = q.key
+    canvas.arrow(o, o + length + graphs.OVER, "axis", 3.0)
+    canvas.text(o + length + graphs.OVER - 5.5j, "φ_1", 3.5, "right")
+    canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)
+    canvas.text(o + 1j * (top + graphs.OVER - 3.0) - 2.0, f"{q.letter}, {q.unit}", 3.5, "right")
+    canvas.text(o + length + 1j * (top + graphs.OVER - 4.0), str(scale), 3.5, "right")
+    x = angle.mm(project.cycle.turned)
+    drawn = [o + angle.mm(c.turned) + 1j * scale.mm(c.values) for c in q.curves]
+    for c, curve in zip(q.curves, drawn, strict=True):
+        canvas.polyline(curve, "curve")
+        for xi, y in zip(x, scale.mm(c.at), strict=True):
+            canvas.line(o + xi, o + xi + 1j * y, "thin")
+    if level is not None:
+        y = 1j * scale.mm(level[1])
+        canvas.line(o + y, o + y + length, "axis")
+        canvas.label(o + y + 0.9 * length, f"{level[0]} = {fixed(level[1], 1)} Н·м", 1j, 3.5, 0.8)
+    _numbers(project, canvas, o, x, length, q, drawn)
+    if len(q.curves) > 1:
+        for c in q.curves:
+            peak = int(np.argmax(np.abs(c.values)))
+            at = o + angle.mm(c.turned[peak]) + 1j * scale.mm(c.values[peak])
+            canvas.label(at, c.symbol, 1j * np.sign(c.values[peak]), 3.5, 0.8)
+
+
+def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: Quantity, curves: list[Any]) -> None:
+    """Numbers of the positions at the axis, on the side where the first graph is not; the end is position 0 again."""
+    labels = project.cycle.labels
+    pitch = length / len(labels)
+    height = 3.5 if pitch >= letter("00", 3.5).width + 2.0 else 2.5
+    ink = np.concatenate(curves)
+    first = q.curves[0]
+    for xi, label, y in zip([*x, length], [*labels, labels[0]], [*first.at, first.at[0]], strict=True):
+        at = o + xi
+        canvas.line(at - 0.8j, at + 0.8j, "axis")
+        width = letter(label, height).width
+        if xi == 0:
+            canvas.text(at - 2.0 - height / 2 * 1j, label, height, "right")
+            continue
+        for side in (-1, 1) if y > 0 else (1, -1):
+            low = at - width / 2 + (1.3j if side > 0 else -1j * (1.3 + height))
+            beside = (ink.real > low.real - 0.8) & (ink.real < low.real + width + 1.2)
+            if not (beside & (ink.imag > low.imag - 0.8) & (ink.imag < low.imag + height + 0.8)).any():
+                canvas.text(low, label, height)
+                break
+        else:
+            canvas.label(at, label, -1j, height, 1.0, leader=False)

@@ -1,0 +1,449 @@
+"""Views of sheet 2, the flywheel: graphs over the crank angle, energy-mass diagram, sketch of the wheel, results.
+
+The three graphs of the left column and the graph of dE share the ordinate axis given by the option ``axis`` (x of the
+axis, mm of the sheet), so their positions stand one under another. The energy-mass diagram stands at the level of the
+graph of dE and under the turned graph of J: its options ``energy`` and ``inertia`` repeat the places of those views.
+"""
+
+from __future__ import annotations
+
+from cmath import rect
+from itertools import pairwise
+from math import degrees, pi
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from tmm_sheets.construction.scale import fit_standard, fixed, number, times
+from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.sheets import graphs
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.flywheel import Flywheel
+    from tmm_sheets.methods.wittenbauer import Wittenbauer
+
+Options = dict[str, Any]
+_BELOW = 7.0  # room of position numbers beside an axis
+
+
+def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Technological forces over the crank angle; where one begins or ends the moment graph is cut off."""
+    fw: Flywheel = project.flywheel
+    s, r = fw.scales, fw.reduced
+    names = list(r.forces_at(fw.samples[:1]))
+    one, many, letter_of, unit = ("момента", "моментов", "M", "Н·м") if r.forces_are_moments else ("силы", "сил", "F", "Н")
+    shown = ", ".join(f"{n}(φ_1)" for n in names)
+    title = f"График {one} {shown}" if len(names) == 1 else f"Графики {many} {shown}"
+    graphs.heading(canvas, box, options, title, f"{s.force}")
+    g = graphs.Graph(complex(options["axis"], box.y0 + _BELOW))
+    top = 0.0
+    for name in names:
+        for line in _acting(fw, name):
+            curve = g(line)
+            axis = g.origin.imag
+            canvas.polyline(np.concatenate(([complex(curve[0].real, axis)], curve, [complex(curve[-1].real, axis)])))
+            highest = curve[int(np.argmax(line.imag))]
+            top = max(top, float(line.imag.max()))
+            if len(names) > 1 and line.imag.max() > 4.0:
+                canvas.label(highest, name, 1 + 0.3j, 3.5)
+    graphs.check_room(box, g.origin.imag + top, "flywheel.force_graph")
+    graphs.axes(canvas, g, s.angle.mm(r.period), 0.0, top, f"{names[0] if len(names) == 1 else letter_of}, {unit}")
+    graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.ones(len(fw.labels)))
+    for k, x in enumerate(s.angle.mm(r.phi)):
+        if top and k:
+            here = max(graphs.one(values) for values in r.forces_at(r.phi[k]).values())
+            canvas.line(g(x), g(x + 1j * s.force.mm(here)), "thin")
+
+
+def _acting(fw: Flywheel, name: str) -> list[Any]:
+    """Curves of one force where it acts, mm: each runs on through the kinks between its stretches."""
+    s, r = fw.scales, fw.reduced
+    runs: list[list[Any]] = []
+    on = False
+    for a, b in _stretches(fw):
+        phi = _inside(fw, a, b)
+        ends = (graphs.one(r.forces_at(a, side=1)[name]), graphs.one(r.forces_at(b, side=-1)[name]))
+        y = s.force.mm(np.concatenate((ends[:1], r.forces_at(phi[1:-1])[name], ends[1:])))
+        if y.any():
+            runs = runs if on else [*runs, []]
+            runs[-1].append(s.angle.mm(phi) + 1j * y)
+        on = bool(y.any())
+    return [np.concatenate(parts) for parts in runs]
+
+
+def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Reduced moments with the pole, the ordinates in the middles of the intervals, their rays and the constant moment."""
+    fw: Flywheel = project.flywheel
+    s, r, plan = fw.scales, fw.reduced, fw.work_plan
+    varying, constant = _indices(fw)
+    graphs.heading(canvas, box, options, "Графики приведённых моментов сил", f"{s.moment}, {s.angle}, H = {number(s.pole)} мм")
+    phi = [_inside(fw, a, b) for a, b in _stretches(fw)]
+    ordinates = []
+    for p in phi:
+        ends = [graphs.one(r.moment(p[0], side=1)), graphs.one(r.moment(p[-1], side=-1))]
+        ordinates.append(s.moment.mm(np.concatenate((ends[:1], r.moment(p[1:-1]), ends[1:]))))
+    level = s.moment.mm(fw.M_constant)
+    low = min(0.0, level, *(float(y.min()) for y in ordinates))
+    high = max(0.0, level, *(float(y.max()) for y in ordinates))
+    g = graphs.Graph(complex(options["axis"], box.y0 + 4.0 - low))
+    graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "flywheel.moments")
+    line = np.concatenate([s.angle.mm(p) + 1j * y for p, y in zip(phi, ordinates, strict=True)])
+    canvas.of = plan.name
+    canvas.polyline(g(np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))))
+    length = s.angle.mm(r.period)
+    canvas.line(g(1j * level), g(length + 1j * level), "curve")
+    graphs.axes(canvas, g, length, low, high, "M, Н·м")
+    points = fw.moment_plan["M"].value
+    # Where the curve runs along the axis its numbers stand on the side the graph leaves free.
+    body = line.imag[int(np.argmax(np.abs(line.imag)))]
+    graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.where(np.abs(points.imag) < 1.0, body, points.imag))
+    for p in points:
+        canvas.line(g(p.real), g(p), "thin")
+    shown: dict[float, list[str]] = {}
+    for name in fw.intervals:
+        middle = plan[f"m{name}"].value
+        if abs(middle.imag) > 0.05:
+            same = next((y for y in shown if abs(y - middle.imag) < 1e-6), middle.imag)
+            shown.setdefault(same, []).append(f"{name}{fw.mark}")
+            canvas.line(g(middle.real), g(middle), "construction")
+            canvas.line(g(middle), g(plan[f"{name}{fw.mark}"].value), "construction")
+    pole = plan["P"].value
+    canvas.line(g(pole), g(0j), "axis")
+    labelled: list[float] = []
+    for y, names in sorted(shown.items(), key=lambda item: -abs(item[0])):
+        canvas.line(g(pole), g(1j * y), "construction")
+        # Points of the ordinate axis that nearly coincide cannot all be lettered; the rays tell them apart.
+        if all(abs(y - other) >= 4.5 for other in labelled):
+            labelled.append(y)
+            canvas.label(g(1j * y), ", ".join(names), -1 - 0.6j if y < 0 else -1 + 0.6j)
+    cut = fw.driving_plan["K′"].value
+    canvas.line(g(pole), g(cut), "construction")
+    canvas.label(g(cut), "K′", -1 + 0.6j if level > 0 else -1 - 0.6j)
+    canvas.dot(g(pole), 0.6)
+    canvas.label(g(pole), "P", -1 + 1j)
+    canvas.dimension(g(pole.real + 1j * low), g(1j * low), -3.0 if low > -12 else 5.0, "H")
+    size = np.abs(line.imag)
+    peak = int(np.argmax(size))
+    falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
+    canvas.label(g(falling), f"M_{varying}^пр", 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
+    canvas.label(g(0.78 * length + 1j * level), f"M_{constant}^пр", -1j if level > 0 else 1j, height=5)
+
+
+def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Work of the varying moment by chords parallel to the rays, and the straight line that balances the cycle."""
+    fw: Flywheel = project.flywheel
+    s = fw.scales
+    varying, constant = _indices(fw)
+    graphs.heading(canvas, box, options, "Графики работ", f"{s.work}")
+    canvas.of = fw.work_plan.name
+    ends = np.array([e.value for e in fw.work_ends])
+    end = fw.driving_plan["K"].value
+    curve = s.angle.mm(fw.samples) + 1j * fw.work_curve(fw.samples)
+    low, high = min(0.0, end.imag, curve.imag.min()), max(0.0, end.imag, curve.imag.max())
+    g = graphs.Graph(complex(options["axis"], (box.y0 + box.y1 - (low + high)) / 2))
+    graphs.check_room(box, g.origin.imag + high, "flywheel.works")
+    canvas.polyline(g(curve))
+    canvas.line(g(0j), g(end), "curve")
+    for a, b in pairwise(ends):
+        canvas.line(g(a), g(b), "construction")
+    for k in fw.at_positions:
+        x = ends[k].real
+        heights = (0.0, ends[k].imag, x * end.imag / end.real)
+        canvas.line(g(complex(x, min(heights))), g(complex(x, max(heights))), "thin")
+    graphs.axes(canvas, g, end.real, low, high, "A, Дж")
+    graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, np.zeros(len(fw.labels)))
+    k = len(curve) // 2
+    canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
+    canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
+    canvas.label(g(end), "K", 1j if end.imag > 0 else -1j)
+
+
+def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Sum of the works, which is the change of kinetic energy, at the scale of the energy-mass diagram."""
+    fw = _with_tangents(project)
+    s = fw.scales
+    ratio = s.work.mu / s.energy.mu
+    graphs.heading(canvas, box, options, "График суммарной работы A_Σ(φ_1) = ΔE(φ_1)",
+             f"{s.energy}" if abs(ratio - 1) < 1e-9 else f"{s.energy} (ординаты увеличены в {times(ratio)})")
+    canvas.of = fw.total_plan.name
+    g = _energy_graph(fw, box, options)
+    points = s.angle.mm(fw.reduced.phi) + 1j * fw.total_plan["ΔE"].value
+    curve = s.angle.mm(fw.samples) + 1j * fw.energy_curve(fw.samples)
+    canvas.polyline(g(curve))
+    for p in points:
+        canvas.line(g(p.real), g(p), "thin")
+    graphs.axes(canvas, g, points[-1].real, curve.imag.min(), curve.imag.max(), "ΔE, Дж")
+    graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, points.imag)
+
+
+def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Reduced moment of inertia, turned clockwise: its J axis runs as that of the energy-mass diagram, phi downwards."""
+    fw: Flywheel = project.flywheel
+    s = fw.scales
+    angle, turn = fw.inertia_angle, fw.inertia_turn
+    left = canvas.title(box.inset(0, 0, 0, 2), "График приведённого момента инерции J^пр(φ_1)", f"{s.inertia}, {angle}")
+    canvas.of = fw.inertia_plan.name
+    g = _inertia_graph(fw, box, options)
+    length = angle.mm(turn)
+    graphs.check_room(Box(box.x0, 0, box.x1, left.y1), g.origin.imag + 3, "flywheel.inertia")
+    graphs.check_room(Box(0, -g.origin.imag, 0, -box.y0), length - g.origin.imag, "flywheel.inertia")
+    phi = fw.samples[fw.samples <= turn * (1 + 1e-12)]
+    curve = angle.mm(phi) + 1j * s.inertia.mm(fw.reduced.inertia(phi))
+    canvas.polyline(g(curve))
+    joint: dict[float, list[str]] = {}
+    for p, name in zip(fw.inertia_plan["points"].value, fw.labels, strict=True):
+        same = next((x for x in joint if abs(x - p.real) < 1e-6), p.real)
+        joint.setdefault(same, []).append(name)
+        if len(joint[same]) == 1:
+            canvas.line(g(p.real), g(p), "thin")
+    for x, names in joint.items():
+        # The first number stands above the axis of J, which begins to the left of the curve.
+        canvas.text(g(x) - 2.0 + (-1.2j if x > 0 else 0.8j), ", ".join(names), 3.5, "right")
+    canvas.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
+    canvas.text(g(length + graphs.OVER) - 2, "φ_1", 5, "right")
+    reach = curve.imag.max() + graphs.OVER
+    canvas.arrow(g(-4j), g(1j * reach), "axis", 3.0)
+    canvas.text(g(1j * reach) - 2 + 2j, "J^пр, кг·м^2", 3.5, "right")
+
+
+def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Energy-mass curve by projection from the graphs of dE and J, its two tangents and the segment ab."""
+    fw = _with_tangents(project)
+    s, plan = fw.scales, fw.energy_mass_plan
+    canvas.of = plan.name
+    energy = _energy_graph(fw, Box(*options["energy"]), {"axis": options["energy_axis"]})
+    turned = _inertia_graph(fw, Box(*options["inertia"]), options)
+    g = graphs.Graph(complex(options["axis"], energy.origin.imag))
+    points = plan["points"].value
+    # The title stands in the widest gap between the lines that come down from the graph of J.
+    cuts = np.unique(np.append(g(points).real, (g.origin.real, box.x1)))
+    widest = int(np.argmax(np.diff(cuts)))
+    title = _narrow_title(canvas, Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), f"{s.energy}", f"{s.inertia}")
+    curve = fw.energy_mass_curve(fw.samples)
+    canvas.polyline(g(curve))
+    middle = complex(np.mean(curve.real), np.mean(curve.imag))
+    x, masses = s.angle.mm(fw.reduced.phi), fw.inertia_plan["points"].value
+    seen: dict[complex, list[str]] = {}
+    for k, p in enumerate(points[:-1]):
+        canvas.line(energy(complex(x[k], p.imag)), g(p), "construction")
+        canvas.line(turned(masses[k]), g(p), "construction")
+        canvas.dot(g(p), 0.7)
+        near = next((q for q in seen if abs(q - p) < 1.0), p)
+        seen.setdefault(near, []).append(fw.labels[k])
+    for p, names in seen.items():
+        canvas.label(g(p), ", ".join(names), (p - middle) / abs(p - middle))
+    reach = curve.real.max() + graphs.OVER
+    low, high = min(curve.imag.min(), plan["b"].value.imag, 0), max(curve.imag.max(), plan["a"].value.imag, 0)
+    canvas.arrow(g(-12.0), g(reach), "axis", 3.0)
+    canvas.label(g(reach), "J^пр, кг·м^2", -1 + 1j, 3.5, 1.5, leader=False)
+    canvas.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
+    canvas.text(g(1j * (high + graphs.OVER)) + 2, "ΔE, Дж", 3.5)
+    for name, end in (("max", "a"), ("min", "b")):
+        contact, cut, u = plan[f"T_{name}"].value, plan[end].value, plan[f"t_{name}"].value
+        room = (curve.real.max() - cut.real) / u.real
+        for bound in (title.y1, box.y0 + 2):
+            t = (bound - g.origin.imag - cut.imag) / u.imag
+            room = min(room, t) if t > 0 else room
+        canvas.line(g(cut - 6 * u), g(cut + room * u), "axis")
+        vertex = cut + 0.45 * room * u
+        canvas.line(g(vertex), g(vertex + 45), "thin")
+        canvas.angle_mark(complex(g(vertex)), 0.0, float(plan[f"ψ_{name}"].value), 40.0,
+                          f"ψ_{name} = {fixed(degrees(plan[f'ψ_{name}'].value), 2)}°")
+        canvas.dot(g(contact), 0.7)
+        canvas.label(g(cut), end, -1 + (1j if end == "a" else -1j), height=5)
+    _segment(canvas, g, plan["a"].value, plan["b"].value, [p.imag for p in points], f"|ab| = {fixed(fw.ab_mm, 1)}")
+
+
+def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
+    """Title of the diagram with its scale factors on as few lines as the gap allows; returns what is left below."""
+    name = "Диаграмма энергомасс"
+    if letter(name, 5.0).width <= gap.width - 2 >= letter(", ".join(factors), 5.0).width:
+        return canvas.title(gap, name, ", ".join(factors))
+    lines = [name, *factors] if letter(name, 5.0).width <= gap.width - 2 else [*name.split(), *factors]
+    height = max(min(5.0, *(5.0 * (gap.width - 2) / letter(line, 5.0).width for line in lines)), 2.5)
+    y = gap.y1
+    for line in lines:
+        y -= 1.6 * height
+        canvas.text(complex(gap.centre.real, y), line, height, "centre")
+    return Box(gap.x0, gap.y0, gap.x1, y - 3.0)
+
+
+def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Sketch of the wheel to a standard scale: front view and section through the axis, with dimensions in mm."""
+    fw: Flywheel = project.flywheel
+    w = fw.wheel
+    rim = w.form == "rim"
+    d, b, h = 1000 * w.diameter, 1000 * w.width, 1000 * w.thickness if rim else 0.0
+    outer = d + h
+    scales = (fit_standard(outer + b, box.width - 56), fit_standard(outer, box.height - 36))
+    real, drawn = max(scales, key=lambda x: x[0] / x[1])
+    left = canvas.title(box, "Эскиз маховика", f"М {drawn}:{real}")
+    k = drawn / real
+    gap = (box.width - (outer + b) * k - 20) / 3
+    centre = complex(box.x0 + gap + outer * k / 2, (left.y0 + left.y1) / 2 - 2)
+    side = complex(box.x1 - gap - 20 - b * k / 2, centre.imag)
+    hub, bore = 0.24 * d * k / 2, 0.12 * d * k / 2
+    r = outer * k / 2
+    for radius in ({r, r - h * k, hub, bore} if rim else {r, bore}):
+        canvas.circle(centre, radius, "main")
+    if rim:
+        canvas.circle(centre, d * k / 2, "centre")
+        for i in range(6):
+            _spoke(canvas, centre, rect(1, pi / 2 + i * pi / 3), hub, r - h * k, 0.05 * d * k)
+    canvas.line(centre - r - 4, centre + r + 4, "centre")
+    canvas.line(centre - 1j * (r + 4), centre + 1j * (r + 4), "centre")
+    half = b * k / 2
+    canvas.line(side - half - 4, side + half + 4, "centre")
+    for sign in (1, -1):
+        low = r - h * k if rim else bore
+        _cut(canvas, side, half, sign * low, sign * r)
+        if rim:
+            _cut(canvas, side, half, sign * bore, sign * hub)
+            for x in (-1.0, 1.0):
+                canvas.line(side + x * 0.3 * half + 1j * sign * hub, side + x * 0.22 * half + 1j * sign * low, "main")
+            middle = side + 1j * sign * d * k / 2
+            canvas.line(middle - half - 3, middle + half + 3, "centre")
+    for x in (-half, half):
+        canvas.line(side + x - 1j * bore, side + x + 1j * bore, "main")
+    at = (d if rim else 2 * r / k) * k / 2
+    canvas.dimension(side + half - 1j * at, side + half + 1j * at, -12.0, f"D = {d:.0f}")
+    width = f"B = {b:.0f}"
+    inside = letter(width, 3.5).width <= 2 * half - 1
+    canvas.dimension(side - half - 1j * r, side + half - 1j * r, -9.0, width if inside else "")
+    if not inside:
+        canvas.text(side - half - 8.5 - 1j * (r + 8.0), width, 3.5, "right")
+    if rim:
+        canvas.dimension(side - half + 1j * (r - h * k), side - half + 1j * r, 7.0, "")
+        canvas.text(side - half - 8.5 + 1j * (r - h * k / 2 - 1.75), f"H = {h:.0f}", 3.5, "right")
+
+
+def inertia_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Table of the terms of the reduced moment of inertia at the positions."""
+    fw: Flywheel = project.flywheel
+    rows = [["Положение", *fw.labels]]
+    for name, values in fw.reduced.inertia_terms.items():
+        # A square over an index; terms without a unit are doubled energies. The position that closes the cycle may be left out.
+        caption = name.replace("²", "^2")
+        rows.append(graphs.row(caption if "," in caption else f"{caption}, Дж", np.resize(values, len(fw.labels))))
+    rows.append(graphs.row("J^пр, кг·м^2", fw.J_reduced))
+    graphs.table(canvas, box, "Приведённый момент инерции", rows)
+
+
+def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Table of moment, works and change of energy at the positions."""
+    fw: Flywheel = project.flywheel
+    varying, constant = _indices(fw)
+    rows = [
+        ["Положение", *fw.labels],
+        graphs.row(f"M_{varying}^пр, Н·м", fw.M_reduced),
+        graphs.row(f"A_{varying}, Дж", fw.work),
+        graphs.row(f"A_{constant}, Дж", fw.M_constant * fw.reduced.phi),
+        graphs.row("ΔE, Дж", fw.delta_E),
+    ]
+    graphs.table(canvas, box, f"Работы за цикл, M_{constant}^пр = {fixed(fw.M_constant, 1)} Н·м", rows)
+
+
+def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Formulas with their numbers: tangents, segment, moment of inertia drawn and in the limit, sizes, mass."""
+    fw = _with_tangents(project)
+    s, w, d = fw.scales, fw.wheel, fw.data
+    omega, psi = fw.reduced.omega1, fw.psi
+    rim = w.form == "rim"
+    rows = [
+        f"ω_1 = {fixed(omega, 3)} с^{{−1}};  δ = {number(d.delta)};  ρ = {number(d.density)} кг/м^3",
+        *(f"tg ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {fixed(float(np.tan(a)), 4)};  ψ_{name} = {fixed(degrees(a), 2)}°"
+          for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
+        f"|ab| = {fixed(fw.ab_mm, 2)} мм",
+        f"J_м = |ab|·μ_E/(δ·ω_1^2) = {fixed(fw.ab_mm, 2)}·{number(s.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2) = "
+        f"{number(fw.J_flywheel, 5)} кг·м^2",
+        f"При n → ∞ положений: J_м = {number(fw.J_flywheel_converged, 7)} кг·м^2 (отличие {fixed(fw.difference_percent, 2)} %)",
+        f"{'Обод со спицами' if rim else 'Диск'}:  κ = B/D = {number(d.width_ratio)}"
+        + (f";  c = H/D = {number(d.thickness_ratio)}" if rim else ""),
+        f"D = ({'4J_м/(πρκc)' if rim else '32J_м/(πρκ)'})^{{1/5}} = {fixed(w.diameter, 3)} м",
+        f"B = κD = {fixed(w.width, 3)} м" + (f";  H = cD = {fixed(w.thickness, 3)} м" if rim else ""),
+        f"m = {4 if rim else 8}J_м/D^2 = {number(w.mass, 4)} кг",
+        f"V = ω_1·D/2 = {fixed(w.speed, 2)} м/с {'<' if w.speed < 30 else '≥'} 30 м/с",
+    ]
+    left = canvas.title(box, "Расчёт маховика")
+    step = min(left.height / len(rows), 13.0)
+    widest = max(letter(row, 5.0).width for row in rows)
+    height = 5.0 if step >= 8 and widest <= box.width else 3.5
+    for i, row in enumerate(rows):
+        canvas.text(complex(box.x0, left.y1 - (i + 1) * step + 3), row, height)
+
+
+# --- parts shared by the views --------------------------------------------------------------------------
+
+
+def _with_tangents(project: Any) -> Wittenbauer:
+    fw = project.flywheel
+    if fw.method != "wittenbauer":
+        raise CannotBuild(f'the energy-mass diagram belongs to flywheel.method = "wittenbauer", not "{fw.method}"',
+                          "take the views of mertsalov in the arrangement of the sheet")
+    return cast("Wittenbauer", fw)
+
+
+def _indices(fw: Flywheel) -> tuple[str, str]:
+    """Indices of the varying moment and of the constant one: resistance and drive, for an engine exchanged."""
+    return ("с", "д") if fw.reduced.resisting else ("д", "с")
+
+
+def _stretches(fw: Flywheel) -> list[tuple[float, float]]:
+    """Stretches of the cycle between the jumps of the force."""
+    ends = [0.0, *(b for b in fw.reduced.breaks if 0 < b < fw.reduced.period), fw.reduced.period]
+    return list(pairwise(ends))
+
+
+def _inside(fw: Flywheel, a: float, b: float) -> Any:
+    """Angles for a curve from ``a`` to ``b``, both included."""
+    return np.concatenate(([a], fw.samples[(fw.samples > a) & (fw.samples < b)], [b]))
+
+
+def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
+    """Axes of the graph of dE, and the level of the energy-mass diagram: room for ``b`` below, for the tangent above."""
+    low = min(float(fw.energy_curve(fw.samples).min()), fw.energy_mass_plan["b"].value.imag, 0.0)
+    high = max(float(fw.energy_curve(fw.samples).max()), fw.energy_mass_plan["a"].value.imag, 0.0)
+    spare = box.height - (8.0 + high - low + graphs.HEAD + graphs.OVER)
+    graphs.check_room(box, box.y1 - spare, "flywheel.total_work")
+    return graphs.Graph(complex(options["axis"], box.y0 + 8.0 - low + max(spare, 0.0) / 2))
+
+
+def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:
+    length = fw.inertia_angle.mm(fw.inertia_turn)
+    spare = box.height - 16 - length - graphs.OVER
+    return graphs.Graph(complex(options["axis"], box.y1 - 16 - max(spare / 2, 3.0)), -1j)
+
+
+def _segment(canvas: Canvas, g: graphs.Graph, a: complex, b: complex, levels: list[float], text: str) -> None:
+    """Dimension of ab on the energy axis; its number stands in the widest gap between the projection lines."""
+    x = -14.0
+    p, q = complex(g(b + x)), complex(g(a + x))
+    canvas.line(g(a), q - 2, "thin")
+    canvas.line(g(b), p - 2, "thin")
+    canvas.line(p, q, "thin")
+    for tip, u in ((p, 1j), (q, -1j)):
+        canvas.fill((tip, tip + 3.5 * u + 0.6, tip + 3.5 * u - 0.6), "thin")
+    cuts = sorted({b.imag, a.imag, *(v for v in levels if b.imag < v < a.imag)})
+    gap = max(pairwise(cuts), key=lambda c: c[1] - c[0])
+    middle = complex(g(x + 1j * sum(gap) / 2))
+    if gap[1] - gap[0] > letter(text, 3.5).width + 2:
+        canvas.text(middle - 1, text, 3.5, "centre", pi / 2)
+    else:
+        canvas.label(middle, text, -1)
+
+
+def _spoke(canvas: Canvas, centre: complex, u: complex, inner: float, outer: float, half: float) -> None:
+    for sign in (1, -1):
+        a, b = sign * half, sign * 0.75 * half
+        p = complex((inner**2 - a**2) ** 0.5, a)
+        q = complex((outer**2 - b**2) ** 0.5, b)
+        canvas.line(centre + u * p, centre + u * q, "main")
+
+
+def _cut(canvas: Canvas, at: complex, half: float, low: float, top: float) -> None:
+    outline = at + np.array([complex(-half, low), complex(half, low), complex(half, top), complex(-half, top)])
+    canvas.polyline(outline, "main", closed=True)
+    hatch_polygon(canvas, outline)

@@ -1,0 +1,615 @@
+"""Views of the gear sheet: engagement picture, sliding curves, tables (manual 000, section 6)."""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from math import cos, degrees, pi, radians
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import Scale, fit, fixed, number
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.sheets.gear_marks import (
+    CIRCLES,
+    arrow_head,
+    hatch_between,
+    in_degrees,
+    ratio,
+    ruled_table,
+    spread,
+    standard,
+)
+
+EDGE = 24.0
+"""Least distance of a wheel's centre from the edge of the picture, mm."""
+STRIP = 2.5
+"""Depth of the hatched strip along the working part of a flank, mm."""
+DIMENSION = 8.0
+"""Distance of the dimension lines of the teeth from the root circle, mm."""
+DEEPEST = 10.0
+"""Specific sliding down to which the curves are followed on their way to minus infinity."""
+
+
+def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Engagement picture to a standard scale with the line of centres vertical."""
+    picture = _Picture(project.gear, canvas, box)
+    canvas.of = "gear.engagement"
+    picture.circles()
+    picture.line_of_action()
+    picture.radii()
+    for wheel in picture.gear.wheels:
+        picture.unrolling(wheel)
+        picture.teeth(wheel)
+        picture.overlap(wheel)
+        picture.dimensions(wheel)
+        picture.rotation(wheel)
+    canvas.of = ""
+
+
+class _Picture:
+    """The engagement picture in its place: turns metres of the plans into millimetres of the sheet."""
+
+    def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
+        self.gear, self.canvas = gear, canvas
+        # Two thirds of the height for the centre distance, and most of the smaller wheel across the width.
+        smaller = 1.45 * min(w.ra for w in gear.wheels)
+        room = min(2 / 3 * (box.height - 16), (box.width - 12) / smaller * gear.a_w)
+        self.mu: Scale = gear.picture_scale(room)
+        for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
+            canvas.scales[f"gear-{name}"] = self.mu
+        self.box = canvas.title(box, "Картина зацепления", f"М {ratio(self.mu)}")
+        one, two = (w.ra / self.mu.mu + 4 for w in gear.wheels)
+        spare = self.box.height - gear.a_w / self.mu.mu
+        # The smaller wheel is shown whole, if that leaves room beyond the other's centre; both are cut alike otherwise.
+        above = one if one <= two else spare - two
+        if not EDGE <= above <= spare - EDGE or min(one, two) > 0.7 * spare:
+            above = spare / 2
+        self.pole = complex((self.box.x0 + self.box.x1) / 2, self.box.y1 - above - gear.wheels[0].rw / self.mu.mu)
+
+    def at(self, p: Any) -> Any:
+        """Point of a plan on the sheet."""
+        return self.pole + np.asarray(p) / self.mu.mu
+
+    def of(self, name: str) -> complex:
+        """Point of the engagement plan on the sheet."""
+        return complex(self.at(self.gear.engagement[name].value))
+
+    def mm(self, real: float) -> float:
+        return real / self.mu.mu
+
+    def away(self, wheel: Any) -> int:
+        """+1 when the wheel's far side is up."""
+        return 1 if wheel.number == 1 else -1
+
+    def line(self, a: complex, b: complex, style: str = "thin") -> None:
+        inside = segment_inside(self.box, a, b)
+        if inside:
+            self.canvas.line(*inside, style)
+
+    def spoke(self, wheel: Any, end: complex, style: str) -> None:
+        """Line from a wheel's centre, interrupted where the dimensions of its teeth are written."""
+        centre = self.of(f"O{wheel.number}")
+        u = (end - centre) / abs(end - centre)
+        root = self.mm(wheel.rf)
+        self.line(centre, centre + u * (root - DIMENSION - 9), style)
+        self.line(centre + u * (root - 1), end, style)
+
+    def circles(self) -> None:
+        top, bottom = self.of("O1"), self.of("O2")
+        reach = [self.mm(w.ra) + 6 for w in self.gear.wheels]
+        self.line(top + 1j * reach[0], top, "centre")
+        self.line(bottom - 1j * reach[1], bottom, "centre")
+        self.spoke(self.gear.wheels[0], self.pole, "centre")
+        self.spoke(self.gear.wheels[1], self.pole, "centre")
+        for wheel in self.gear.wheels:
+            centre = self.of(f"O{wheel.number}")
+            for key, _, style in CIRCLES:
+                for start, end in arcs_inside(self.box, centre, self.mm(getattr(wheel, key))):
+                    self.canvas.arc(centre, self.mm(getattr(wheel, key)), start, end, style)
+            self.line(centre - 12, centre + 12, "centre")
+            self.canvas.circle(centre, 2.0, "main")
+            self.canvas.label(centre, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
+
+    def radii(self) -> None:
+        """Radii of the circles as arrows from the centre, where the picture has most room."""
+        for wheel in self.gear.wheels:
+            centre = self.of(f"O{wheel.number}")
+            for (key, symbol, _), direction in zip(CIRCLES, self.directions(wheel), strict=True):
+                radius = self.mm(getattr(wheel, key))
+                if direction is None:
+                    self.name_on_arc(centre, radius, symbol % wheel.number)
+                    continue
+                tip = centre + rect(radius, direction)
+                self.canvas.line(centre + rect(2.0, direction), tip - rect(2.5, direction), "thin")
+                arrow_head(self.canvas, tip, rect(1, direction))
+                text = f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}"
+                laid = letter(text, 3.5)
+                outer = self.mm(wheel.rf) - 4
+                back = cos(direction) < -1e-9
+                start = outer if back else outer - laid.width
+                turned = direction + pi if back else direction
+                self.canvas.put(laid, centre + rect(start, direction) + rect(1.2, turned + pi / 2), turned)
+
+    def name_on_arc(self, centre: complex, radius: float, symbol: str) -> None:
+        """Name of a circle on the longest arc that is seen, where its radius does not fit in."""
+        arcs = arcs_inside(self.box, centre, radius)
+        if arcs:
+            start, end = max(arcs, key=lambda arc: arc[1] - arc[0])
+            out = rect(1, end - 0.05 * (end - start))  # beside the left edge, away from teeth and dimensions
+            self.canvas.label(centre + radius * out, symbol, away=-out)
+
+    def directions(self, wheel: Any) -> list[float | None]:
+        """Directions in which a wheel's circles lie inside the picture, away from the teeth in mesh; None without room."""
+        centre, far = self.of(f"O{wheel.number}"), self.away(wheel) * pi / 2
+        busy = max(2.2 * wheel.tau, radians(15)) + radians(14)
+        place = self.box.inset(3)
+        chosen: list[float | None] = []
+        for side, count in ((1, 3), (-1, 2)):
+            free = [a for a in np.radians(np.arange(14.0, 180.0 - degrees(busy), 1.0))
+                    if place.contains(centre + rect(self.mm(wheel.ra), far + side * a))]
+            # The radii are named beside one another a little inside the root circle.
+            room = (free[-1] - free[0]) * 0.7 * self.mm(wheel.rf) if free else 0.0
+            apart = min(count, 1 + int(room / 7)) if free else 0
+            chosen += [far + side * free[round((k + 0.5) / apart * (len(free) - 1))] for k in range(apart)]
+            chosen += [None] * (count - apart)
+        return chosen
+
+    def line_of_action(self) -> None:
+        c, plan = self.canvas, self.gear.engagement
+        n1, n2, a, b, pole = (self.of(k) for k in ("N1", "N2", "A", "B", "Pw"))
+        u = complex(plan["N1N2"].value)
+        reach = 1.25 * max(abs(n1 - pole), abs(n2 - pole))
+        h = self.gear.hand
+        self.line(pole - h * reach, pole + h * reach, "thin")
+        for end in (pole - h * reach, pole + h * reach):
+            c.label(end, "t", away=end - pole, height=5, leader=False)
+        c.line(a, b, "main")
+        for name, point in (("A", a), ("B", b)):
+            c.dot(point, 0.9)
+            c.label(point, name, away=1j * u, height=5, gap=1.5)
+        c.dot(pole, 0.9)
+        self.pole_letter(u)
+        for i, foot in ((1, n1), (2, n2)):
+            centre = self.of(f"O{i}")
+            c.line(centre, foot, "thin")
+            away = (foot - centre) / abs(foot - centre)
+            inward = (pole - foot) / abs(pole - foot)
+            corner = foot - 3 * away
+            c.line(corner, corner + 3 * inward, "thin")
+            c.line(corner + 3 * inward, foot + 3 * inward, "thin")
+            c.dot(foot, 0.8)
+            c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
+        alpha = f"α_w = {in_degrees(self.gear.alpha_w)}"
+        radius = (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2
+        start, end = (pi, pi + self.gear.alpha_w) if h < 0 else (-self.gear.alpha_w, 0.0)
+        c.angle_mark(pole, start, end, radius, "α_w")
+        o1 = self.of("O1")
+        self.angle(o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
+        self.dimension_of_centres()
+
+    def pole_letter(self, action: complex) -> None:
+        """Letter of the pole beyond the root circle of wheel 1, its leader on the free side of the line of centres."""
+        foot = self.pole - self.of("O1")
+        centres = -foot / abs(foot)
+        # The profile at the pole is square to the line of action; a little beyond its mirror image in the line of centres
+        # nothing but circles is met.
+        profile = 1j * action if (np.conj(1j * action) * centres).real > 0 else -1j * action
+        way = centres * rect(1, 1.35 * phase(centres / profile))
+        along = (np.conj(way) * foot).real
+        inside = max((self.mm(self.gear.wheels[0].rf) - 1.5) ** 2 - (abs(foot) ** 2 - along**2), 0.0)
+        end = self.pole - (along + inside**0.5) * way
+        self.canvas.line(self.pole, end, "thin")
+        self.canvas.label(end, "P_w", away=way, height=5, gap=0.5, leader=False)
+
+    def angle(self, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
+        """Dimension arc between two rays, its sign outside beside the end at ``start`` where no ray crosses it."""
+        lo, hi = sorted((start % (2 * pi), end % (2 * pi)))
+        if hi - lo > pi:
+            lo, hi = hi, lo + 2 * pi
+        c = self.canvas
+        c.arc(vertex, radius, lo, hi, "thin")
+        if (hi - lo) * radius > 8:
+            for tip, sense in ((lo, -1), (hi, 1)):
+                arrow_head(c, vertex + rect(radius, tip), rect(1, tip + sense * (pi / 2 - 1.75 / radius)))
+        ray = rect(1, start)
+        away = 1j * ray if (np.conj(ray) * rect(1, end)).imag < 0 else -1j * ray
+        c.label(vertex + radius * ray, markup, away=away, gap=2)
+
+    def dimension_of_centres(self) -> None:
+        """Centre distance at the edge of the picture."""
+        top, bottom = self.of("O1"), self.of("O2")
+        reach = self.box.x1 - 6 - top.real
+        self.canvas.dimension(bottom + 12, top + 12, 12 - reach, f"a_w = {fixed(self.gear.a_w * 1e3, 2)}", 5.0)
+
+    def unrolling(self, wheel: Any) -> None:
+        """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""
+        c = self.canvas
+        c.of = f"gear-involute-{wheel.number}"
+        plan = self.gear.involute(wheel, self.mu)
+        parts = self.gear.parts(wheel, self.mu)
+        numbers = self.gear.divisions(wheel, self.mu)
+        division, base, point = (self.at([plan[f"{a}{k}{b}"].value for k in numbers]) for a, b in (("", ""), ("", "′"), ("E", "")))
+        centre, foot, pole = self.of(f"O{wheel.number}"), self.of(f"N{wheel.number}"), self.pole
+        u = (foot - pole) / abs(foot - pole)
+        self.line(pole, complex(division[-1]) + 4 * u)
+        for k, d, t, p in zip(numbers, division, base, point, strict=True):
+            if k:
+                c.line(d - 1.2j * u, d + 1.2j * u, "thin")
+            if k != parts:
+                c.line(t, p, "construction")
+                out = (t - centre) / abs(t - centre)
+                c.line(t - 10 * out, t, "construction")
+            c.dot(p, 0.5, "thin")
+            if 0 < k != parts:
+                c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
+            if k != parts:
+                c.label(t, f"{k}′", away=centre - t, height=2.5, gap=0.8)
+        c.polyline(self.at(self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)),
+                   "construction")
+        c.of = "gear.engagement"
+
+    def teeth(self, wheel: Any) -> None:
+        c = self.canvas
+        shape = self.gear.shape(wheel)
+        c.polyline(self.at(shape.outline(step=self.mu.mu)), "main")
+        centre = self.of(f"O{wheel.number}")
+        for k in (-1, 0, 1):
+            axis = shape.axis_of(k)
+            c.line(centre + axis * (self.mm(wheel.rf) - 3), centre + axis * (self.mm(wheel.ra) + 5), "centre")
+        k = self.strip_tooth(wheel)
+        outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
+        half = len(outline) // 2
+        c.polyline(outline[half:], "thin")
+        hatch_between(c, outline[:half], outline[half:][::-1])
+        ends = outline[0], outline[half - 1]
+        names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
+        for name, p in zip(names, ends, strict=True):
+            c.label(complex(p), f"{name}_{wheel.number}", away=p - centre - axis * abs(p - centre), height=3.5, gap=1.5)
+
+    def strip_tooth(self, wheel: Any) -> int:
+        """The tooth whose working flank is hatched: the neighbour that stands clear of the mesh."""
+        return 1 if wheel.number == 1 else -1
+
+    def overlap(self, wheel: Any) -> None:
+        """The wheel's profile in contact at A and at B, and the angle between."""
+        c, i = self.canvas, wheel.number
+        centre, flank = self.of(f"O{i}"), self.gear.shape(wheel).flank
+        u = self.gear.engagement["N1N2"].value
+        ends = []
+        for name in "ab":
+            travel = (np.conj(u) * self.gear.engagement[name.upper()].value).real
+            c.polyline(self.at(self.gear.rolled(wheel, flank, travel)), "thin")
+            p = self.of(f"{name}{i}")
+            self.spoke(wheel, p, "construction")
+            ends.append(phase(p - centre))
+        if i == 1:
+            ends.reverse()
+        first, last = ends
+        drawn = float(self.gear.engagement[f"phi{i}"].value)
+        self.angle(centre, first, last, self.mm(wheel.rf) * 0.66, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
+
+    def dimensions(self, wheel: Any) -> None:
+        """Chordal thickness on an outer tooth, chordal pitch between the axes of the other two."""
+        c, i = self.canvas, wheel.number
+        shape, tooth = self.gear.shape(wheel), self.gear.tooth(wheel)
+        k = -self.strip_tooth(wheel)
+        centre = self.of(f"O{i}")
+        e, f = (complex(self.at(shape.copied(tooth[name].value, k))) for name in "EF")
+        radius = self.mm(wheel.r)
+        p, q = (centre + radius * shape.axis_of(j) for j in (0, -k))
+        inside = radius - self.mm(wheel.rf)
+        thickness, step = (fixed(v * 1e3, 2) for v in (wheel.s_chord, wheel.p_chord))
+        for a, b, text in ((e, f, f"s̅_{i} = {thickness}"), (p, q, f"p̅_{i} = {step}")):
+            # the side of the centre is the left of a .. b
+            a, b = (a, b) if (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
+            c.dimension(a, b, inside + DIMENSION, text)
+
+    def rotation(self, wheel: Any) -> None:
+        """Arrow of the angular velocity."""
+        first = -1 if self.gear.sense == "clockwise" else 1
+        sense = first if wheel.number == 1 else -first
+        centre = self.of(f"O{wheel.number}")
+        middle = pi / 2 * self.away(wheel)
+        half = radians(50)
+        self.canvas.arc_arrow(centre, 12, middle - sense * half, middle + sense * half)
+        tip = rect(1, middle + sense * half)
+        self.canvas.label(centre + 12 * tip, f"ω_{wheel.number}", away=tip, height=5)
+
+
+def mesh(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The teeth at the pole once more, enlarged: circles, clearances, distance of the pitch circles, fillets."""
+    canvas.of = "gear.mesh"
+    _Detail(project.gear, canvas, box).draw()
+    canvas.of = ""
+
+
+class _Detail:
+    """Surroundings of the pole to the largest standard scale that shows a pitch and a quarter."""
+
+    def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
+        self.gear, self.canvas = gear, canvas
+        margin = 18.0
+        self.mu = standard(1.25 * gear.p, box.width - margin)
+        inner = canvas.title(box, "Зона зацепления", f"М {ratio(self.mu)}")
+        self.window = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
+        self.pole = self.window.centre
+        tall = max(w.ra - w.rw + gear.clearance * gear.m for w in gear.wheels) / self.mu.mu + 8
+        low, high = self.pole.imag - tall, self.pole.imag + tall
+        self.window = Box(self.window.x0, max(inner.y0, low), self.window.x1, min(inner.y1, high))
+
+    def at(self, p: Any) -> Any:
+        return self.pole + np.asarray(p) / self.mu.mu
+
+    def line(self, a: complex, b: complex, style: str = "thin") -> None:
+        inside = segment_inside(self.window, a, b)
+        if inside:
+            self.canvas.line(*inside, style)
+
+    def draw(self) -> None:
+        c, gear, plan = self.canvas, self.gear, self.gear.engagement
+        o1, o2 = (complex(self.at(plan[k].value)) for k in ("O1", "O2"))
+        self.line(o1, o2, "centre")
+        self.line(self.pole - self.window.width, self.pole + self.window.width, "thin")
+        u = complex(plan["N1N2"].value)
+        self.line(self.pole - self.window.width * u, self.pole + self.window.width * u, "thin")
+        entry, leave = (complex(self.at(plan[k].value)) for k in "AB")
+        self.line(entry, leave, "axis")
+        w = self.window
+        corners = (complex(w.x0, w.y0), complex(w.x1, w.y0), complex(w.x1, w.y1), complex(w.x0, w.y1))
+        c.polyline(corners, "thin", closed=True)
+        self.circles()
+        for wheel in gear.wheels:
+            shape = gear.shape(wheel)
+            for part in polyline_inside(self.window, self.at(shape.outline(-2, 2, step=0.5 * self.mu.mu))):
+                c.polyline(part, "main")
+            if gear.profile == "rack":
+                continue  # a trochoid has no radius to show
+            fillet, touch = (complex(self.at(gear.tooth(wheel)[name].value)) for name in "CR")
+            c.dot(fillet, 0.5, "thin")
+            c.line(fillet, touch, "thin")
+            arrow_head(c, touch, (touch - fillet) / abs(touch - fillet), 2.5)
+            c.label(fillet, f"ρ_{{f{wheel.number}}} = {fixed(wheel.fillet * 1e3, 2)}", away=fillet - self.pole, gap=1.5)
+        c.dot(self.pole, 1.0)
+        c.label(self.pole, "P_w", away=complex(-gear.hand, 1), height=5, gap=1.5)
+        h = gear.hand
+        start, end = (pi, pi + gear.alpha_w) if h < 0 else (-gear.alpha_w, 0.0)
+        c.angle_mark(self.pole, start, end, 0.4 * self.window.width, "α_w")
+        self.gaps()
+
+    def circles(self) -> None:
+        """Arcs through the window, named beside its right edge, the names spread to keep apart; others where they run."""
+        c, ends = self.canvas, []
+        for wheel in self.gear.wheels:
+            centre = complex(self.at(self.gear.engagement[f"O{wheel.number}"].value))
+            for key, symbol, style in CIRCLES:
+                radius = getattr(wheel, key) / self.mu.mu
+                spans = arcs_inside(self.window, centre, radius)
+                for start, end in spans:
+                    c.arc(centre, radius, start, end, style)
+                tips = [centre + rect(radius, angle) for span in spans for angle in span]
+                at_edge = [p.imag for p in tips if abs(p.real - self.window.x1) < 1e-6]
+                if at_edge:
+                    ends += [(y, symbol % wheel.number) for y in at_edge]
+                elif spans:
+                    start, end = max(spans, key=lambda span: span[1] - span[0])
+                    middle = rect(1, (start + end) / 2)
+                    c.label(centre + radius * middle, symbol % wheel.number, away=-middle)
+        ends.sort()
+        heights = spread([y for y, _ in ends], 6.0)
+        for (y, symbol), at in zip(ends, heights, strict=True):
+            c.line(complex(self.window.x1, y), complex(self.window.x1 + 4, at), "thin")
+            c.text(complex(self.window.x1 + 5, at - 1.75), symbol, 3.5)
+
+    def gaps(self) -> None:
+        """Radial clearances and the distance between the pitch circles, on the line of centres."""
+        c, gear = self.canvas, self.gear
+        one, two = gear.wheels
+        h = gear.hand
+        clearance = f"c^{{*}}m = {number(gear.clearance * gear.m * 1e3, 3)}"
+        for low, high, text, side in (
+            (-(two.rw - two.rf), -(one.ra - one.rw), clearance, -h), (two.ra - two.rw, one.rw - one.rf, clearance, h),
+            (-(two.rw - two.r), one.rw - one.r, f"ym = {fixed(gear.y * gear.m * 1e3, 2)}", h),
+        ):
+            if abs(high - low) < 1e-9:
+                continue
+            a, b = (self.pole + 1j * v / self.mu.mu for v in sorted((low, high)))
+            for tip, way in ((a, 1j), (b, -1j)):
+                arrow_head(c, tip, way, 2.5)
+                c.line(tip, tip - 6 * way, "thin")
+            c.line(a, b, "thin")
+            c.label((a + b) / 2, text, away=complex(side, 0), gap=4)
+
+
+def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Speeds of the contact point along both profiles and the specific sliding, on one line of action N1N2."""
+    gear = project.gear
+    canvas.of = "gear-sliding"
+    one, two = gear.wheels
+    room = box.width - 34
+    scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
+    if not room / 2 < scale.mm(one.t_pole + two.t_pole) <= room:
+        scale = standard(one.t_pole + two.t_pole, room)
+    canvas.scales["gear-sliding"] = scale
+    whole = scale.mm(one.t_pole + two.t_pole)
+    plan = gear.sliding
+    first = one.t_pole / scale.mu
+    upper = canvas.title(box, "Графики скоростей", f"М {ratio(scale)}")
+    left = (box.x0 + box.x1 - whole) / 2
+    y1, y2 = plan["yV1"].value, plan["yV2"].value
+    highest = float(max(y1.max(), y2.max()))
+    share = np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value)) / scale.mu
+    xs = left + first + share
+    axis = upper.y1 - highest - 8
+    _axis_line(canvas, gear, complex(left, axis), whole, first, scale)
+    ordinate = float(y1[np.argmin(np.abs(share))])
+    canvas.line(complex(left, axis), complex(left + whole, axis + y1[-1]), "curve")
+    canvas.line(complex(left, axis + y2[0]), complex(left + whole, axis), "curve")
+    canvas.label(complex(left + whole, axis + y1[-1]), "V_1", away=-1 + 0.3j, height=5)
+    canvas.label(complex(left, axis + y2[0]), "V_2", away=1 + 0.5j, height=5)
+
+    lower = canvas.title(Box(box.x0, box.y0, box.x1, axis - 16), "Удельные скольжения")
+    worst = -min(gear.greatest_sliding)
+    mu, top = _sliding_scale(worst, lower.height - 12)
+    canvas.text(complex((box.x0 + box.x1) / 2, lower.y1 - 5), str(mu), 5.0, "centre")
+    zero = lower.y1 - 14 - top
+    deepest = zero - (lower.y0 + 2)
+    _theta(canvas, gear, left, first, whole, zero, mu, deepest)
+    origin = complex(left, zero)
+    canvas.line(origin - 6, origin + whole + 8, "axis")
+    canvas.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
+    for theta in range(1, -int(deepest * mu.mu) - 1, -1):
+        if theta:
+            y = zero + theta / mu.mu
+            canvas.line(complex(left - 1.2, y), complex(left + 1.2, y), "axis")
+            canvas.text(complex(left - 2.5, y - 1.25), number(theta), 2.5, "right")
+    canvas.label(complex(left, zero + top + 6), "θ", away=1 + 1j, height=5)
+    for k, x in enumerate(xs):
+        values = [plan[f"theta{i}"].value[k] for i in (1, 2)]
+        low = min([v for v in values if np.isfinite(v) and v > -deepest * mu.mu] or [0.0])
+        # Projection lines leave the title between the graphs free.
+        canvas.line(complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
+        canvas.line(complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
+        canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
+    canvas.label(complex(left + first, axis + ordinate), f"{number(ordinate)} мм", away=1 - 0.2j, height=3.5)
+    canvas.of = ""
+
+
+def _axis_line(canvas: Canvas, gear: Any, origin: complex, whole: float, first: float, scale: Scale) -> None:
+    """The line of action as an abscissa with its points."""
+    canvas.line(origin - 6, origin + whole + 8, "axis")
+    one, two = gear.wheels
+    ends = [first + (one.t_low - one.t_pole) / scale.mu, first + (two.t_pole - two.t_low) / scale.mu]
+    names = ("A", "B") if gear.driver == 1 else ("B", "A")
+    canvas.line(origin + ends[0], origin + ends[1], "main")
+    for name, x in (("N_1", 0.0), ("P_w", first), ("N_2", whole), *zip(names, ends, strict=True)):
+        canvas.dot(origin + x, 0.8)
+        canvas.label(origin + x, name, away=-1j, height=3.5)
+
+
+def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
+    """Scale factor of the sliding with which the worst value of the engagement is seen, and the height of 1 in mm."""
+    mu = fit("μ_θ", "1/мм", 1 + min(max(1.15 * worst, 2.0), DEEPEST), height)
+    return mu, 1 / mu.mu
+
+
+def _theta(canvas: Canvas, gear: Any, left: float, first: float, whole: float, zero: float, mu: Scale, deepest: float) -> None:
+    """Both curves, cut where they leave the place on their way to minus infinity."""
+    share = np.concatenate([np.linspace(-1, 0, 241)[:-1], np.linspace(0, 1, 241)])
+    x = left + first + np.where(share < 0, share * first, share * (whole - first))
+    curve = gear.sliding_curve(share)
+    for i in (1, 2):
+        y = np.asarray(curve[f"theta{i}"].value) / mu.mu
+        inside = y >= -deepest
+        k = int(np.argmax(inside)) if i == 1 else int(len(y) - 1 - np.argmax(inside[::-1]))
+        beyond = k - 1 if i == 1 else k + 1
+        px, py = x[inside], y[inside]
+        if 0 <= beyond < len(y) and np.isfinite(y[beyond]):
+            t = (-deepest - y[k]) / (y[beyond] - y[k])
+            cut = x[k] + t * (x[beyond] - x[k])
+            px, py = (np.append(cut, px), np.append(-deepest, py)) if i == 1 else (np.append(px, cut), np.append(py, -deepest))
+        canvas.polyline(px + 1j * (zero + py), "curve")
+        end = 0 if i == 1 else -1
+        canvas.label(complex(px[end], zero + 0.6 * py[end]), f"θ_{i}", away=complex(1 if i == 1 else -1, 0), height=5, gap=3)
+
+
+def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Ordinates of the speeds and specific sliding at the divisions of N1N2."""
+    plan = project.gear.sliding
+    rows = [["", *plan.labels]]
+    for name, symbol, decimals in (("yV1", "y_{V1}, мм", 2), ("yV2", "y_{V2}, мм", 2), ("theta1", "θ_1", 2), ("theta2", "θ_2", 2)):
+        rows.append([symbol, *(_cell(v, decimals) for v in plan[name].value)])
+    inner = canvas.title(box, "Скорости и удельные скольжения")
+    head = 24.0
+    widths = [head] + [(box.width - head) / len(plan.labels)] * len(plan.labels)
+    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(14.0, (inner.y1 - box.y0) / len(rows)), height=3.5)
+
+
+def _cell(value: float, decimals: int) -> str:
+    return fixed(value, decimals) if np.isfinite(value) else "−∞"
+
+
+def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Table of the pair's parameters after GOST 2.403: name, sign, wheel 1, wheel 2; common values span both."""
+    gear = project.gear
+
+    def both(key: str, decimals: int = 2) -> tuple[str, str]:
+        one, two = (fixed(getattr(w, key) * 1e3, decimals) for w in gear.wheels)
+        return one, two
+
+    one, two = gear.wheels
+    rows: list[tuple[str, ...]] = [
+        ("Параметр", "Знак", "Колесо 1", "Колесо 2"),
+        ("Число зубьев", "z", str(one.teeth), str(two.teeth)),
+        ("Модуль, мм", "m", number(gear.m * 1e3)),
+        ("Угол профиля исходного контура", "α", in_degrees(gear.alpha)),
+        ("Коэффициент высоты головки", "h_a^{*}", number(gear.addendum)),
+        ("Коэффициент радиального зазора", "c^{*}", number(gear.clearance)),
+        ("Коэффициент смещения", "x", number(one.shift), number(two.shift)),
+        ("Угол зацепления", "α_w", in_degrees(gear.alpha_w)),
+        ("Межосевое расстояние, мм", "a_w", fixed(gear.a_w * 1e3, 2)),
+        ("Коэф. воспринимаемого смещения", "y", fixed(gear.y, 4)),
+        ("Коэф. уравнительного смещения", "Δy", fixed(gear.dy, 4)),
+        ("Радиус делительный, мм", "r", *both("r")),
+        ("Радиус основной, мм", "r_b", *both("rb")),
+        ("Радиус начальный, мм", "r_w", *both("rw")),
+        ("Радиус вершин, мм", "r_a", *both("ra")),
+        ("Радиус впадин, мм", "r_f", *both("rf")),
+        ("Толщина зуба делительная, мм", "s", *both("s")),
+        ("Толщина зуба по хорде, мм", "s̅", *both("s_chord")),
+        ("Толщина зуба у вершины, мм", "s_a", *both("sa")),
+        ("Шаг делительный, мм", "p", fixed(gear.p * 1e3, 2)),
+        ("Шаг по хорде, мм", "p̅", *both("p_chord")),
+        ("Угловой шаг", "τ", in_degrees(one.tau), in_degrees(two.tau)),
+        ("Радиус переходной кривой, мм", "ρ_f", *both("fillet")) if gear.profile == "fillet" else (
+            "Радиус закругления рейки, мм", "ρ_f", fixed(one.fillet * 1e3, 2)),
+    ]
+    inner = canvas.title(box, "Основные параметры передачи")
+    ruled_table(canvas, Box(box.x0, box.y0, box.x1, inner.y1), rows, (18.0, 30.0, 30.0), 12.0)
+
+
+def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Contact ratio from the drawn overlap angles and by the formula, greatest sliding, what was chosen."""
+    gear = project.gear
+    plan = gear.engagement
+    drawn = [float(plan[f"eps{i}"].value) for i in (1, 2)]
+    mean = sum(drawn) / 2
+    difference = abs(mean - gear.eps_alpha) / gear.eps_alpha * 100
+    entry, leave = ("A", "B") if gear.driver == 1 else ("B", "A")
+    rows: list[tuple[str, ...]] = [
+        ("Показатель", "Знак", "Значение"),
+        ("Угол перекрытия колеса 1 (чертёж)", "φ_{α1}", f"{fixed(degrees(float(plan['phi1'].value)), 2)}°"),
+        ("Угол перекрытия колеса 2 (чертёж)", "φ_{α2}", f"{fixed(degrees(float(plan['phi2'].value)), 2)}°"),
+        ("Коэффициент перекрытия φ_{α1}/τ_1", "ε_α", fixed(drawn[0], 3)),
+        ("Коэффициент перекрытия φ_{α2}/τ_2", "ε_α", fixed(drawn[1], 3)),
+        ("Коэффициент перекрытия по формуле", "ε_α", fixed(gear.eps_alpha, 3)),
+        ("Расхождение, %", "Δ", fixed(difference, 2)),
+        ("Активная линия AB, мм", "g_α", fixed(gear.g_alpha * 1e3, 2)),
+        ("Основной шаг, мм", "p_b", fixed(gear.pb * 1e3, 2)),
+        (f"Скольжение на ножке колеса 1 (точка {entry})", "θ_1", fixed(gear.greatest_sliding[0], 2)),
+        (f"Скольжение на ножке колеса 2 (точка {leave})", "θ_2", fixed(gear.greatest_sliding[1], 2)),
+    ]
+    if gear.profile == "rack":
+        rows += [(f"ρ на колесе {w.number}: граничная ≤ нижняя, мм", f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
+                  f"{fixed(w.rack.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
+        rows += [("Толщина зубьев у вершины, модулей (≥ 0,2)", "s_{a1}; s_{a2}",
+                  "; ".join(fixed(w.sa / gear.m, 2) for w in gear.wheels))]
+    inner = canvas.title(box, "Качественные показатели")
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 46, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
+    one, two = gear.wheels
+    scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
+    notes = [
+        f"Принято: масштаб картины зацепления {ratio(scale)};",
+        f"отрезки P_{{w}}N_1 и P_{{w}}N_2 разделены на {gear.parts(one, scale)} и {gear.parts(two, scale)} части;",
+        *([f"ордината скоростей в полюсе {number(float(gear.sliding['yV1'].value[3]))} мм;"]
+          if "gear-sliding" in canvas.scales or gear.profile == "fillet" else []),
+        f"ведущее колесо {gear.driver}.",
+        *(f"{text[0].upper()}{text[1:]}." for text in gear.warnings),
+    ]
+    for k, text in enumerate(notes):
+        y = end - 8 - 7 * k
+        if y > box.y0:
+            canvas.text(complex(box.x0, y), text, 3.5)

@@ -1,0 +1,94 @@
+"""View of the given position: speeds and accelerations of its points and links, inertia loads, technological loads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import number
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.errors import CannotBuild
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+ROW = 7.0
+"""Highest row of the tables, mm."""
+
+
+def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Tables of the values at the given position (manual 003, section 4, works 3-6)."""
+    label = project.cycle.labels[project.force_index]
+    tables = [
+        (f"Скорости и ускорения (положение {label})", _points(project)),
+        ("Звенья: угловые величины и инерционная нагрузка", _links(project)),
+    ]
+    loads = _loads(project)
+    if len(loads) > 1:
+        tables.append(("Технологические нагрузки", loads))
+    title = 8.0
+    row = min((box.height - title * len(tables)) / sum(len(rows) for _, rows in tables), ROW)
+    if row < 4.0:
+        raise CannotBuild(f"the tables of the given position need more room: {row:.1f} mm for a row",
+                          "make the place of given_position.values higher in templates/sheets")
+    height = min(3.5, 0.55 * row)
+    y = box.y1
+    for text, rows in tables:
+        canvas.text(complex(box.centre.real, y - 5.5), text, 3.5, "centre")
+        columns = len(rows[0])
+        first = 0.12 if columns > 3 else 0.3
+        widths = [first] + [(1 - first) / (columns - 1)] * (columns - 1)
+        drawn = canvas.table(complex(box.x0, y - title), [w * box.width for w in widths], rows, row, height)
+        y = drawn.y0
+
+
+def _points(project: Project) -> list[list[str]]:
+    """Moving points side by side: name, speed, acceleration."""
+    study, m, k = project.study, project.mechanism, project.force_index
+    names = [name for name in study.positions.points if name not in m.fixed and name in study.velocities.points]
+    speed, acceleration = study.velocities.points, study.accelerations.points
+    cells = [[_indexed(name), _size(speed[name], k), _size(acceleration[name], k)] for name in names]
+    half = (len(cells) + 1) // 2
+    head = ["Точка", "V, м/с", "a, м/с²"]
+    return [head * 2, *([*left, *right] for left, right in zip(cells[:half], [*cells[half:], ["", "", ""]], strict=False))]
+
+
+def _links(project: Project) -> list[list[str]]:
+    """Angular velocity, angular acceleration, force and couple of inertia of each link."""
+    study, m, k = project.study, project.mechanism, project.force_index
+    loads, couples, _ = study.loads
+    rows = [["Звено", "ω, 1/с", "ε, 1/с²", "F_и, Н", "M_и, Н·м"]]
+    for name, link in m.links.items():
+        inertia = next((load.vector for load in loads.get(name, ()) if load.role == "inertia"), None)
+        couple = next((c for c in couples.get(name, ()) if link.inertia), None)
+        rows.append([name, _signed(study.velocities.omega.get(name), k), _signed(study.accelerations.epsilon.get(name), k),
+                     _size(inertia, k), _size(couple, k)])
+    return rows
+
+
+def _loads(project: Project) -> list[list[str]]:
+    """Technological forces and moments with what is our own assumption among them."""
+    turned = project.cycle.turned[project.force_index]
+    written: dict[str, Any] = {load.name: load for load in project.variant.force}
+    written |= {load.name: load for load in project.variant.moment}
+    rows = [["Нагрузка", "Величина", "Данные"]]
+    for load in project.applied:
+        unit = "Н" if load.point is not None else "Н·м"
+        value = float(np.ravel(load.magnitude(turned))[0])
+        rows.append([_indexed(load.name), f"{number(value)} {unit}", "принято" if written[load.name].accepted else "задано"])
+    return rows
+
+
+def _indexed(name: str) -> str:
+    return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
+
+
+def _size(step: Any, k: int) -> str:
+    return "−" if step is None else number(float(abs(step.at(k))))
+
+
+def _signed(step: Any, k: int) -> str:
+    """A number with its sign, counter-clockwise positive."""
+    return "−" if step is None else number(float(np.real(step.at(k))))

@@ -1,0 +1,112 @@
+"""Diagrams over an axis on a sheet: axes, headings, numbers of positions, and the tables beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import floor, log10
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import fixed
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.errors import CannotBuild
+
+Options = dict[str, Any]
+OVER = 8.0
+"""How far an axis runs beyond its graph, mm."""
+HEAD = 9.0
+"""Room of a heading on one line, mm."""
+
+
+@dataclass(frozen=True)
+class Graph:
+    """A diagram on the sheet: ``origin`` of its axes and their direction (1, or -1j when turned clockwise)."""
+
+    origin: complex
+    turn: complex = 1
+
+    def __call__(self, p: Any) -> Any:
+        """Point of the sheet of a point of the diagram, mm."""
+        return self.origin + self.turn * np.asarray(p)
+
+
+def one(values: Any) -> float:
+    """The only number of an array."""
+    return float(np.asarray(values).reshape(-1)[0])
+
+
+def check_room(box: Box, top: float, view: str) -> None:
+    """Refuse a place that ends below what has to be drawn."""
+    if top > box.y1 + 0.5:
+        raise CannotBuild(f"view {view} needs {top - box.y1:.0f} mm more height than its place has",
+                          "make its box in the arrangement larger; for a four-stroke engine take the arrangement engine_2")
+
+
+def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str) -> None:
+    """Title and scale factor on one line over the angle axis: the left column has no height to give away."""
+    x0 = options["axis"]
+    name, scale = letter(title, 5.0), letter(factor, 5.0)
+    height = 5.0
+    if x0 + name.width + scale.width + 8 > box.x1:
+        height = 3.5
+        scale = letter(factor, 3.5)
+    start = (x0 + box.x1 - name.width - scale.width - 8) / 2
+    canvas.put(name, complex(start, box.y1 - 6.0))
+    canvas.text(complex(start + name.width + 8, box.y1 - 6.0), factor, height)
+
+
+def axes(canvas: Canvas, g: Graph, length: float, low: float, high: float, ordinate: str) -> None:
+    """Angle axis of a length and ordinate axis over a range, mm, with their signs."""
+    canvas.arrow(g(0j), g(length + OVER), "axis", 3.0)
+    canvas.text(complex(g(length + OVER)) - 5.5j, "φ_1", 3.5, "right")
+    canvas.arrow(g(1j * (low - 3 if low else 0)), g(1j * (high + OVER)), "axis", 3.0)
+    canvas.text(complex(g(1j * (high + OVER))) - 2.0 - 2.5j, ordinate, 3.5, "right")
+
+
+def numbers(canvas: Canvas, g: Graph, x: Any, labels: Sequence[str], heights: Any) -> None:
+    """Numbers of the positions along the angle axis, on the side where the graph is not."""
+    for abscissa, name, height in zip(x, labels, heights, strict=True):
+        at = complex(g(abscissa))
+        canvas.line(at - 0.8j, at + 0.8j, "axis")
+        if abscissa == 0:
+            canvas.text(at - 1.5 - 5.0j, name, 3.5, "right")
+        elif height > 1e-9:
+            canvas.text(at - 5.0j, name, 3.5, "centre")
+        else:
+            canvas.text(at + 1.2 + 1.3j, name, 3.5)
+
+
+def column(values: Any, digits: int = 4) -> list[str]:
+    """Numbers of a column, all with the same decimals: ``digits`` significant ones for the largest."""
+    largest = float(np.max(np.abs(values)))
+    decimals = max(0, digits - 1 - floor(log10(largest))) if largest > 0 else 0
+    return [fixed(float(v), decimals) for v in values]
+
+
+def row(name: str, values: Any) -> list[str]:
+    """One row of a table, all numbers with the same decimals: four significant digits for the largest, three in a long row.
+
+    Small numbers are written enlarged, the power of ten stands in the name before its unit.
+    """
+    largest = float(np.max(np.abs(values)))
+    order = floor(log10(largest)) if largest > 0 else 0
+    if order < -1:
+        power = 3 * -(order // 3)
+        name, values, order = name.replace(",", f"·10^{{{power}}},", 1), np.asarray(values) * 10.0**power, order + power
+    decimals = max(0, (3 if len(values) <= 13 else 2) - order)
+    return [name, *(fixed(float(v), decimals) for v in values)]
+
+
+def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
+    """Table with the quantities in the first column, under its title, as large as its place lets it be."""
+    left = canvas.title(box.inset(0, 0, 0, 2), title)
+    first = max(letter(row[0], 3.5).width for row in rows) + 3.0
+    columns = len(rows[0]) - 1
+    high = min(left.height / len(rows), 11.0)
+    width = (box.width - first) / columns
+    height = 3.5 if high >= 6 and max(letter(cell, 3.5).width for line in rows for cell in line[1:]) <= width - 1 else 2.5
+    canvas.table(complex(box.x0, left.y1), [first, *[width] * columns], rows, high, height)

@@ -1,0 +1,133 @@
+"""Diagrams of forces beside the paths of the pistons and sliders they act on (индикаторные диаграммы).
+
+The abscissa is the path itself at the scale of the positions, moved aside; the marks of the path are carried over to it
+parallel, and over each mark stands the ordinate of its stroke. Source: manual 000, 3.1 ex. 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import Scale
+from tmm_sheets.sheets.frame import Frame, Scales, pick
+
+if TYPE_CHECKING:
+    from tmm_sheets.drawing.canvas import Canvas
+    from tmm_sheets.project import Project
+
+GAP = 25.0
+"""Distance of a diagram's abscissa from the path: room for position numbers, mm."""
+HEIGHT = 40.0
+"""Greatest ordinate, mm."""
+SAMPLES = 361
+"""Angles per turn at which the curve is drawn."""
+
+
+@dataclass(frozen=True)
+class Indicator:
+    """A diagram beside a path: its force, unit vectors of the path and of the ordinates, and what one unit of ordinate is.
+
+    ``area`` m2 turns the force into a pressure; 1 where the ordinate is the force itself.
+    """
+
+    force: Any
+    along: complex
+    side: complex
+    area: float
+
+    @property
+    def text(self) -> str:
+        """Sign of the ordinate in lettering markup, with its unit."""
+        name = f"{'p' if self.area != 1 else self.force.name[0]}_{{{self.force.name[1:]}}}"
+        return f"{name}, {'МПа' if self.area != 1 else 'Н'}"
+
+    def ordinate(self, turned: Any, side: int = 0) -> Any:
+        """Pressure, MPa, or force, N."""
+        value = self.force.magnitude(turned, side) / self.area
+        return value * 1e-6 if self.area != 1 else value
+
+
+def indicators(project: Project) -> list[Indicator]:
+    """Diagrams of the forces on sliders of fixed guides that are given as pressures in a cylinder.
+
+    The diagrams of one guide stand on its two sides in turn; a single one stands on the side away from the crank.
+    """
+    m = project.mechanism
+    areas = {f.name: pi * f.bore**2 / 4 for f in project.variant.force if f.bore is not None}
+    found: list[Indicator] = []
+    taken: list[str] = []
+    for force in project.applied:
+        group = next((g for g in m.groups if g.inner == force.point and g.kind in (2, 4, 5)), None)
+        if force.name not in areas or group is None:
+            continue
+        guide = m.guides[group.guides[-1]]
+        if guide.link != m.frame or isinstance(guide.through, str):
+            continue
+        u = complex(np.cos(guide.direction), np.sin(guide.direction))
+        lateral = ((guide.through - m.fixed[m.crank.pivot]) * np.conj(u)).imag
+        n = 1j * u if lateral > 1e-9 or (abs(lateral) <= 1e-9 and u.imag < 0) else -1j * u
+        found.append(Indicator(force, u, n * (-1) ** taken.count(guide.name), areas[force.name]))
+        taken.append(guide.name)
+    return found
+
+
+def reach(project: Project) -> tuple[list[complex], list[complex]]:
+    """Points of the paths and what the diagrams stick out of them on paper, mm: for the frame of the position plans."""
+    z: list[complex] = []
+    d: list[complex] = []
+    for one in indicators(project):
+        at = np.ravel(project.study.positions.points[str(one.force.point)].value)
+        for p in (at[np.argmin((at * np.conj(one.along)).real)], at[np.argmax((at * np.conj(one.along)).real)]):
+            z.append(complex(p))
+            d.append(one.side * (GAP + HEIGHT + 10.0))
+    return z, d
+
+
+def scale_of(project: Project, canvas: Scales, shown: list[Indicator]) -> Scale:
+    """One scale factor for all diagrams of a project."""
+    turned = _angles(project)
+    top = max(float(np.max(one.ordinate(turned))) for one in shown)
+    pressure = shown[0].area != 1
+    return pick(project, canvas, "indicator", "μ_p" if pressure else "μ_F", "МПа/мм" if pressure else "Н/мм", top / HEIGHT)
+
+
+def _angles(project: Project) -> Any:
+    cycle = project.cycle
+    turns = round(cycle.period / (2 * pi))
+    return np.unique(np.concatenate((np.linspace(0, cycle.period, turns * (SAMPLES - 1) + 1), cycle.turned)))
+
+
+def draw(project: Project, canvas: Canvas, frame: Frame) -> None:
+    """The diagrams of a project beside the paths of its position plans."""
+    shown = indicators(project)
+    if not shown:
+        return
+    scale = scale_of(project, canvas, shown)
+    turned = _angles(project)
+    pos = project.study_at(turned, tuple("" for _ in turned)).positions
+    cycle = project.cycle
+    for one in shown:
+        name = str(one.force.point)
+        path = frame(np.asarray(pos.points[name].value))
+        curve = path + one.side * (GAP + one.ordinate(turned) / scale.mu)
+        canvas.of = f"indicator {one.force.name}"
+        canvas.polyline(curve, "curve")
+        ways = (path * np.conj(one.along)).real
+        low, high = path[int(np.argmin(ways))] + one.side * GAP, path[int(np.argmax(ways))] + one.side * GAP
+        canvas.line(low, high, "axis")
+        top = float(np.max(one.ordinate(turned))) / scale.mu
+        outer = low if (low - frame(0j)).imag * one.along.imag < 0 else high
+        canvas.arrow(outer, outer + one.side * (top + 9.0), "axis", 3.0)
+        away = one.along * (1 if outer == high else -1)
+        canvas.label(outer + one.side * (top + 4.0), one.text, away, 3.5, 1.2, leader=False)
+        if one is shown[0]:
+            canvas.label(outer + one.side * (top + 4.0) + 7.0 * away, str(scale), away, 3.5, 1.2)
+        marks = frame(np.asarray(project.study.positions.points[name].value))
+        for mark in np.unique(np.round(marks, 6)):
+            here = np.flatnonzero(np.abs(marks - mark) < 1e-5)
+            y = max(float(one.ordinate(cycle.turned[i])) for i in here) / scale.mu
+            canvas.line(mark, mark + one.side * (GAP + max(y, 0.0)), "thin")

@@ -1,0 +1,157 @@
+"""Scale factors and poles of the kinematic plans, found from their places alone: nothing of drawing is needed for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.scale import Scale, handy
+from tmm_sheets.sheets import indicator
+from tmm_sheets.sheets.frame import Frame, Scales, extent, fit_frame, pick
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.project import Project
+
+GRAPH = 48.0
+"""Height kept free over the position plans for the force graph, mm."""
+MARGIN = 22.0
+"""Room for letters round a velocity plan, mm."""
+
+
+def graph_force(project: Project) -> Any:
+    """The force whose diagram can stand over the path: on the output, along a horizontal path."""
+    strokes = project.cycle.strokes
+    if strokes is None or abs(strokes.path.imag) > 1e-9:
+        return None
+    return next((f for f in project.applied if f.point == strokes.output and f.motion is not None), None)
+
+
+def graph_height(project: Project, options: dict[str, Any]) -> float:
+    """Height kept free over the position plans for the force graph, mm; 0 where there is none."""
+    return GRAPH if options.get("graph", True) and graph_force(project) is not None else 0.0
+
+
+def graph_below(project: Project) -> bool:
+    """True when the path of the output lies in the lower half of the mechanism: its graph then stands below."""
+    strokes = project.cycle.strokes
+    assert strokes is not None
+    real = extent([p.value for p in project.study.positions.points.values()])
+    return strokes.origin.imag < real.centre.imag
+
+
+def positions(project: Project, canvas: Scales, box: Box, options: dict[str, Any]) -> Frame:
+    """Frame of the position plans: all positions, the crank circle and what sticks out of them on paper.
+
+    ``graph`` = false leaves the force graph over them out.
+    """
+    pos = project.study.positions
+    m, c = pos.mechanism, pos.mechanism.crank
+    graph = graph_height(project, options)
+    below = bool(graph) and graph_below(project)
+    inside = box.inset(8.0, 4.0 + (graph if below else 0.0), 8.0, 20.0 + (0.0 if below else graph))
+    centre = m.fixed[c.pivot]
+    z = [np.asarray([centre + c.length * u for u in (1, -1, 1j, -1j)])]
+    d = [np.asarray([16.0 + 0j, -16.0, 9.0j, -9.0j])]
+    for name, step in pos.points.items():
+        at = np.ravel(step.value)
+        # What sticks out of a point whatever the scale: a pivot's base, a ram's body, numbers and letters.
+        wide = 32.0 if any(g.kind == 5 and g.inner == name for g in m.groups) else 14.0
+        for offset in (wide, -wide, 8.0j, -11.0j if name in m.fixed else -9.0j):
+            z.append(at)
+            d.append(np.full(len(at), offset))
+    beside, reach = indicator.reach(project)
+    z.append(np.asarray(beside))
+    d.append(np.asarray(reach))
+    return fit_frame(project, canvas, "positions", "μ_l", "м/мм", np.concatenate(z), np.concatenate(d), inside)
+
+
+def plan_points(plan: Plan, i: int) -> dict[str, complex]:
+    """Points of a velocity or acceleration plan at one position."""
+    return {step.name: complex(step.at(i)) for step in plan if step.rule.gives in ("point", "vector")}
+
+
+def plan_extent(plan: Plan, i: int) -> Box:
+    """Rectangle round the points of a plan at one position, in its unit."""
+    return extent([np.array(list(plan_points(plan, i).values()))])
+
+
+@dataclass(frozen=True)
+class VelocityLayout:
+    """Velocity plans in rows: index and label of each, its extent, the common scale."""
+
+    shown: list[tuple[int, str]]
+    spans: list[Box]
+    rows: int
+    per_row: int
+    inside: Box
+    scale: Scale
+
+
+def velocities(project: Project, canvas: Scales, box: Box, options: dict[str, Any]) -> VelocityLayout:
+    """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone."""
+    vel, cycle, k = project.study.velocities, project.cycle, project.force_index
+    inside = box.inset(0, 2.0, 0, 20.0)
+    shown = [(k, cycle.labels[k])] if options.get("only") == "force" else list(cycle.drawn)
+    rows = min(int(options.get("rows", 2)), len(shown))
+    per_row = -(-len(shown) // rows)
+    spans = [plan_extent(vel.plan, i) for i, _ in shown]
+
+    def fits(mu: float) -> bool:
+        heights = 0.0
+        for r in range(rows):
+            row = spans[r * per_row:(r + 1) * per_row]
+            if sum(s.width / mu + MARGIN for s in row) > inside.width:
+                return False
+            heights += max(s.height for s in row) / mu + 16.0
+        return heights <= inside.height
+
+    scale = pick(project, canvas, "velocities", "μ_V", "(м/с)/мм", _least(max(s.width for s in spans), fits))
+    return VelocityLayout(shown, spans, rows, per_row, inside, scale)
+
+
+def _least(span: float, fits: Callable[[float], bool]) -> float:
+    """Smallest handy scale factor with which a layout fits."""
+    mu = handy(span / 400.0)
+    for _ in range(60):
+        if fits(mu):
+            break
+        mu = handy(mu * 1.0001)
+    return mu
+
+
+def accelerations(project: Project, canvas: Scales, box: Box) -> Frame:
+    """Frame of the acceleration plan at the analysed position."""
+    real = plan_extent(project.study.accelerations.plan, project.force_index)
+    inside = box.inset(9.0, 8.0, 9.0, 24.0)
+    need = max(real.width / inside.width, real.height / inside.height)
+    scale = pick(project, canvas, "accelerations", "μ_a", "(м/с²)/мм", need)
+    return Frame(scale, inside.centre - scale.mm(real.centre))
+
+
+def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
+    """Scale factors of the kinematic plans of a project as its sheets have them, with the sheet's number; draws nothing.
+
+    ``parts`` are the plans asked for: positions, velocities, accelerations.
+    """
+    from types import SimpleNamespace
+
+    from tmm_sheets.sheets.arrangement import arrangement
+
+    found: dict[str, tuple[Scale, int]] = {}
+    for n, name in enumerate(project.sheets, 1):
+        kept = SimpleNamespace(scales={})
+        for view in arrangement(name).views:
+            if view.draw == "kinematics.position_plans" and "positions" in parts:
+                positions(project, kept, view.box, view.options)
+            elif view.draw == "kinematics.velocity_plans" and "velocities" in parts:
+                velocities(project, kept, view.box, view.options)
+            elif view.draw == "kinematics.acceleration_plan" and "accelerations" in parts:
+                accelerations(project, kept, view.box)
+        for scale in kept.scales.values():
+            found.setdefault(scale.symbol.replace("μ", "mu"), (scale, n))
+    return found

@@ -1,0 +1,431 @@
+"""Views of the kinematic study: position plans, velocity plans, acceleration plan, tables."""
+
+from __future__ import annotations
+
+from math import degrees, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import fixed, number
+from tmm_sheets.construction.step import Step
+from tmm_sheets.drawing import symbols
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.sheets import indicator, kinematic_frames, linkage
+from tmm_sheets.sheets.frame import Frame, pick
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan, Segment
+    from tmm_sheets.project import Project
+
+
+def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Combined position plans with path marks and the force graph over the path."""
+    study, cycle, k = project.study, project.cycle, project.force_index
+    pos = study.positions
+    m = pos.mechanism
+    graph = kinematic_frames.graph_height(project, options)
+    frame = kinematic_frames.positions(project, canvas, box, options)
+    c = m.crank
+    centre = m.fixed[c.pivot]
+    canvas.title(box, "Планы положений механизма", str(frame.scale))
+    canvas.scales["dead-positions"] = frame.scale
+    canvas.circle(frame(centre), c.length / frame.scale.mu, "thin")
+    _paths(canvas, project, frame, box.y1 - 18.0)
+    for i, _ in cycle.drawn:
+        if i != k:
+            linkage.draw(canvas, pos, i, frame, "thin")
+    linkage.draw_guides(canvas, pos, k, frame)
+    linkage.draw(canvas, pos, k, frame, "main")
+    indicator.draw(project, canvas, frame)
+    _position_numbers(canvas, project, frame)
+    _letters(canvas, project, frame)
+    if cycle.strokes is not None and project.variant.cycle is not None and project.variant.cycle.working:
+        _strokes(canvas, project, frame)
+    if graph:
+        below = kinematic_frames.graph_below(project)
+        y = box.y0 if below else box.y1 - 20.0 - graph
+        _force_graph(canvas, project, frame, Box(box.x0, y, box.x1, y + graph), below)
+
+
+def _paths(canvas: Canvas, project: Project, frame: Frame, top: float) -> None:
+    """Paths of the hinges and of the centres of mass, thin, through many positions."""
+    turned = np.linspace(0, 2 * pi, 181)
+    pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
+    m = pos.mechanism
+    shown = [p.name for p in m.points] + [g.inner for g in m.groups if g.kind == 1 and g.inner]
+    for name in shown:
+        z = np.asarray(pos.points[name].value)
+        if np.ndim(z):
+            canvas.polyline(frame(z), "thin")
+    for name in pos.guide_directions:
+        if m.guides[name].link == m.frame:
+            _guide_line(canvas, project, frame, name, top)
+
+
+def _guide_line(canvas: Canvas, project: Project, frame: Frame, name: str, top: float) -> None:
+    """Centre line of a fixed guide over the path of its slider, not beyond the height ``top`` where the title stands."""
+    pos = project.study.positions
+    u = complex(pos.guide_directions[name].at(0))
+    q = complex(pos.guide_points[name].at(0))
+    on = [g.inner for g in pos.mechanism.groups if name in g.guides and g.inner]
+    z = np.concatenate([np.atleast_1d(pos.points[p].value) for p in on])
+    t = ((z - q) * np.conj(u)).real
+    a, b = frame(q + u * np.nanmin(t)), frame(q + u * np.nanmax(t))
+    over = min(24.0, (top - b.imag) / u.imag if u.imag > 1e-9 else 24.0)
+    canvas.line(a - 24.0 * u, b + max(over, 0.0) * u, "centre")
+
+
+def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
+    """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
+    study, cycle, k = project.study, project.cycle, project.force_index
+    pos = study.positions
+    m = pos.mechanism
+    centre = frame(m.fixed[m.crank.pivot])
+    # A point on a fixed guide has its marks there; one that slides on a moving link is told by the marks of others.
+    sliding = {str(g.inner): guide for g in m.groups for guide in g.guides if m.guides[guide].link == m.frame}
+    carried = {g.inner for g in m.groups if g.kind == 2 and m.guides[g.guides[0]].link != m.frame}
+    hinges = [m.crank.pin, *(p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))]
+    hinges += [g.inner for g in m.groups if g.inner and g.inner not in sliding and g.inner not in carried and g.kind in (1, 2, 4)]
+    for name in dict.fromkeys(hinges):
+        z = np.asarray(frame(pos.points[name].value))
+        middle = centre if name == m.crank.pin else z.mean() - 40j
+        for i, _ in cycle.drawn:
+            if i != k:
+                symbols.hinge(canvas, z[i], "thin", 0.7)
+                canvas.label(z[i], cycle.labels[i], z[i] - middle, 2.5, 0.9, leader=False)
+    shown = list(sliding.values())
+    for name, guide in sliding.items():
+        z = np.asarray(frame(pos.points[name].value))
+        u = complex(pos.guide_directions[guide].at(0))
+        n = 1j * u if (1j * u).imag > 1e-9 or ((1j * u).imag > -1e-9 and u.imag < 0) else -1j * u
+        if shown.count(guide) > 1:
+            _shared_path(canvas, project, z, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
+            continue
+        speed = (np.asarray(study.velocities.points[name].value) * np.conj(u)).real
+        working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
+        forth = np.sign(working)
+        for i, _ in cycle.drawn:
+            canvas.line(z[i] - 2.0 * n, z[i] + 2.0 * n, "axis")
+        shown_marks = [i for i, _ in cycle.drawn if i != k]
+        ahead = speed * (forth or 1.0) > -1e-9 * np.abs(speed).max()
+        for side, there in ((n, [i for i in shown_marks if ahead[i]]), (-n, [i for i in shown_marks if not ahead[i]])):
+            for crowd in _crowds(there, z):
+                at = complex(sum(z[i] for i in crowd)) / len(crowd)
+                canvas.label(at + 2.0 * side, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, leader=False)
+
+
+def _crowds(marks: list[int], z: Any) -> list[list[int]]:
+    """Marks in turn along a path, those that stand too close for numbers of their own together."""
+    found: list[list[int]] = []
+    for i in marks:
+        if found and abs(z[i] - z[found[-1][-1]]) < CROWDED:
+            found[-1].append(i)
+        else:
+            found.append([i])
+    return found
+
+
+CROWDED = 2.8
+"""Distance of two marks, mm, below which their numbers do not fit side by side."""
+
+
+def _range(labels: list[str]) -> str:
+    """Numbers of neighbouring positions: 7, 8 or 7–10."""
+    return f"{labels[0]}–{labels[-1]}" if len(labels) > 2 else ", ".join(labels)
+
+
+def _shared_path(canvas: Canvas, project: Project, z: Any, n: complex) -> None:
+    """Marks of one of several sliders on one path: all its numbers on its own side, those of one place together."""
+    cycle, k = project.cycle, project.force_index
+    places: list[list[int]] = []
+    for i, _ in cycle.drawn:
+        same = next((p for p in places if abs(z[p[0]] - z[i]) < 1.0), None)
+        if same is None:
+            places.append([i])
+        else:
+            same.append(i)
+    for place in places:
+        at = complex(z[place[0]])
+        canvas.line(at - 2.0 * n, at + 2.0 * n, "axis")
+        text = ", ".join(cycle.labels[i] for i in place)
+        canvas.label(at + (2.0 if k not in place else 5.5) * n, text, n, 2.5, 0.6, leader=False)
+
+
+def _letters(canvas: Canvas, project: Project, frame: Frame) -> None:
+    """Letters of pairs, numbers of links, centres of mass and arrows at the highlighted plan."""
+    study, k, label = project.study, project.force_index, project.cycle.labels[project.force_index]
+    pos = study.positions
+    m = pos.mechanism
+    at = {name: frame(complex(p.at(k))) for name, p in pos.points.items()}
+    masses = {link.centre for link in m.links.values() if link.mass}
+    for name, z in at.items():
+        moving = name not in m.fixed
+        away = 0j if moving else 1 - 0.5j
+        if name in masses and name in {p.name for p in m.points} and not any(name in g.outer for g in m.groups):
+            symbols.centre_of_mass(canvas, z)
+        text = f"{linkage.indexed(name)}({label})" if moving and not name[1:] else linkage.indexed(name)
+        canvas.label(z, text, away, 3.5, symbols.HINGE + 1.2)
+    for s in linkage.shapes(pos):
+        if s.bar:
+            p = [frame(z) for z in linkage.bar_points(pos, s, k)]
+            a, b = p[0], p[1] if len(p) == 2 else p[-1]
+            mid = a + 0.62 * (b - a) if len(p) > 2 else (a + b) / 2
+            canvas.label(mid, s.link, 1j * (b - a), 5.0, 1.4)
+        elif s.block is not None:
+            canvas.label(at[s.block], s.link, complex(s.along.at(k)) if s.along else 0j, 5.0, 6.0)
+    c = m.crank
+    pivot = at[c.pivot]
+    radius = c.length / frame.scale.mu
+    symbols.rotation_arrow(canvas, pivot, max(0.5 * radius, 7.0), linkage.clear_of_crank(pos, k), c.omega, f"ω_{c.link}")
+    for link, w in study.velocities.omega.items():
+        shape = next((s for s in linkage.shapes(pos) if s.link == link and s.bar), None)
+        if link in (m.frame, c.link) or shape is None or abs(w.at(k)) < 1e-9 * c.speed:
+            continue
+        base, tip = (at[name] for name in shape.ends)
+        u = (tip - base) / abs(tip - base)
+        places = [(base, 20.0, u), (base, 28.0, u)]
+        if shape.bar[0] not in m.fixed:
+            # On a moving link: one arrow on each side of it, outwards first.
+            n = 1j * u if (np.conj(1j * u) * (base - pivot)).real > 0 else -1j * u
+            middle = base + 0.38 * (tip - base)
+            places = [(middle, 6.0, n), (middle, 6.0, -n)]
+        eps = study.accelerations.epsilon[link].at(k)
+        symbols.rotation_arrow(canvas, *places[0], float(w.at(k)), f"ω_{link}")
+        if abs(eps) > 1e-9 * c.speed**2:
+            symbols.rotation_arrow(canvas, *places[1], float(eps), f"ε_{link}")
+
+
+def _strokes(canvas: Canvas, project: Project, frame: Frame) -> None:
+    """Working and idle angles of the crank between its dead positions."""
+    cycle, m = project.cycle, project.mechanism
+    assert cycle.strokes is not None
+    centre = frame(m.fixed[m.crank.pivot])
+    radius = m.crank.length / frame.scale.mu + 7.0
+    count = project.variant.cycle.working if project.variant.cycle else None
+    first = cycle.world(cycle.turned[0])
+    last = cycle.world(cycle.turned[count] if count else cycle.strokes.end)
+    for text, a, b, at in (("φ_п", first, last, 0.5), ("φ_о", last, first + cycle.sense * 2 * pi, 0.2)):
+        # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
+        lo, hi = min(a, b), max(a, b)
+        share = at if b > a else 1 - at
+        canvas.angle_mark(centre, lo, hi, radius, f"{text} = {number(round(degrees(hi - lo), 6))}°", 3.5, share)
+
+
+def _force_graph(canvas: Canvas, project: Project, frame: Frame, box: Box, below: bool) -> None:
+    """Force over the path: the path marks carried over onto the abscissa, ordinates over every mark."""
+    cycle, study = project.cycle, project.study
+    strokes, force = cycle.strokes, kinematic_frames.graph_force(project)
+    assert strokes is not None
+    inner = [j for j in force.jumps if strokes.begin < j < strokes.end]
+    nodes = [*np.linspace(strokes.begin, strokes.end, 241), *(j + s * 1e-9 for j in inner for s in (-1, 1))]
+    turned = np.sort(np.asarray(nodes))[1:-1]
+    out = np.asarray(study.positions.points[strokes.output].value)
+    magnitude = np.asarray(force.magnitude(turned, 0))
+    top = float(magnitude.max())
+    y0 = box.y0 + 5.0
+    scale = pick(project, canvas, "force-graph", "μ_F", "Н/мм", top / (box.height - 18.0))
+    a, b = frame(strokes.origin), frame(strokes.origin + strokes.path * strokes.length)
+    left, right = sorted((a.real, b.real))
+    canvas.arrow(complex(left, y0), complex(left, y0 + top / scale.mu + 9.0), "axis", 3.5)
+    canvas.arrow(complex(left, y0), complex(right + 14.0, y0), "axis", 3.5)
+    canvas.text(complex(left - 2.0, y0 + top / scale.mu + 5.0), f"{linkage.indexed(force.name)}, Н", 3.5, "right")
+    way = linkage.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
+    canvas.text(complex(right + 15.5, y0 - 1.2), f"{way}, м", 3.5)
+    canvas.text(complex(right + 3.0, y0 + top / scale.mu), str(scale), 3.5)
+    acting = np.flatnonzero(magnitude > 0)
+    xs = np.real(frame(study_points(project, strokes.output, turned)))
+    curve = xs[acting] + 1j * (y0 + magnitude[acting] / scale.mu)
+    canvas.polyline([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)], "curve")
+    count = project.variant.cycle.working if project.variant.cycle else None
+    lettered: list[float] = []
+    for i, label in cycle.drawn:
+        z = frame(complex(out[i]))
+        acts = max(float(force.magnitude(cycle.turned[i], side)) for side in (-1, 1))
+        if acts > 0 or i in (0, count):
+            foot, head = complex(z.real, y0), complex(z.real, y0 + acts / scale.mu)
+            canvas.line(z, foot if below else head, "thin")
+            if below:
+                canvas.line(foot, head, "thin")
+            if all(abs(z.real - x) > 4.5 for x in lettered):
+                lettered.append(z.real)
+                canvas.text(complex(z.real + 0.8, y0 + 1.0), label, 2.5)
+
+
+def study_points(project: Project, name: str, turned: Any) -> Any:
+    """Points of the mechanism at further crank angles."""
+    t = np.asarray(turned, dtype=float)
+    return project.study_at(t, tuple("" for _ in t)).positions.points[name].value
+
+
+def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Velocity plans of all positions with one scale factor, packed into rows."""
+    vel = project.study.velocities
+    layout = kinematic_frames.velocities(project, canvas, box, options)
+    shown, spans, rows, per_row, scale = layout.shown, layout.spans, layout.rows, layout.per_row, layout.scale
+    inside, count, margin = layout.inside, len(layout.shown), kinematic_frames.MARGIN
+    canvas.title(box, "Планы скоростей" if count > 1 else "План скоростей", str(scale))
+    heights = [max(s.height for s in spans[r * per_row:(r + 1) * per_row]) / scale.mu + 16.0 for r in range(rows)]
+    spare = (inside.height - sum(heights)) / rows
+    y = inside.y1
+    for r in range(rows):
+        row = range(r * per_row, min((r + 1) * per_row, count))
+        used = sum(spans[i].width / scale.mu + margin for i in row)
+        gap = (inside.width - used) / len(row)
+        x = inside.x0
+        for i in row:
+            s = spans[i]
+            w = s.width / scale.mu + margin + gap
+            middle = complex(x + w / 2, y - (heights[r] + spare) / 2 + 4.0)
+            frame = Frame(scale, middle - scale.mm(s.centre))
+            index, label = shown[i]
+            canvas.of = f"velocity plan {label}"
+            _draw_plan(canvas, vel.plan, index, frame, "p", symbols_at=count == 1)
+            canvas.text(complex(middle.real, y - heights[r] - spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
+            x += w
+        y -= heights[r] + spare
+
+
+def _draw_plan(canvas: Canvas, plan: Plan, i: int, frame: Frame, pole: str, symbols_at: bool = False) -> None:
+    """One velocity or acceleration plan: helper lines, vectors with arrow heads, letters of the points."""
+    points = kinematic_frames.plan_points(plan, i)
+    for step in plan:
+        if step.rule.helpers is None:
+            continue
+        args = tuple(_at(a, i) for a in step.args)
+        for h in step.rule.helpers(args, complex(step.at(i))):
+            if h.kind == "line":
+                canvas.ray_line(frame(h.a), frame(h.b), "construction", over=4.0)
+    size = max(abs(z) for z in points.values())
+    for seg in plan.segments:
+        a, b = complex(seg.tail.at(i)), complex(seg.head.at(i))
+        if abs(b - a) > 1e-9 * size:
+            canvas.arrow(frame(a), frame(b), "vector")
+            if symbols_at:
+                canvas.label(frame(_place_of_sign(plan, seg, i)), seg.symbol, 1j * (b - a), 3.5, 1.0)
+    centre = frame(np.mean(list(points.values())))
+    joint: dict[tuple[int, int], list[str]] = {}
+    for name, z in points.items():
+        q = frame(z)
+        joint.setdefault((round(q.real * 5), round(q.imag * 5)), []).append(name)
+    for names in joint.values():
+        z = points[names[0]]
+        q = frame(z)
+        shown = [n for n in names if n != pole]
+        text = ", ".join(([pole] if pole in names else []) + [plan_letter(n) for n in shown])
+        canvas.dot(q, 0.6, "vector")
+        canvas.label(q, text, q - centre if abs(q - centre) > 1 else 0j, 3.5, 1.0)
+
+
+def _place_of_sign(plan: Plan, seg: Segment, i: int) -> complex:
+    """Where the sign of a vector stands: where no shorter vector from the same point covers it, off the vectors it crosses."""
+    a, b = complex(seg.tail.at(i)), complex(seg.head.at(i))
+    others = [(complex(s.tail.at(i)), complex(s.head.at(i))) for s in plan.segments if s is not seg]
+    along = [(p, q) for p, q in others if abs(((q - p) * np.conj(b - a)).imag) < 1e-6 * abs(b - a) * abs(q - p)]
+    size = abs(b - a)
+    covered = [q for p, q in along if abs(p - a) < 1e-9 * size and 0 < ((q - a) * np.conj(b - a)).real < 0.95 * size**2]
+    begin = max(covered, key=lambda z: abs(z - a), default=a)
+    across = [line for line in others if line not in along]
+
+    def room(t: float) -> float:
+        z = begin + t * (b - begin)
+        return min((_distance(z, p, q) for p, q in across), default=size)
+
+    best = max((0.5, 0.42, 0.58, 0.34, 0.66), key=lambda t: min(room(t), 0.08 * size))
+    return begin + best * (b - begin)
+
+
+def _distance(z: complex, p: complex, q: complex) -> float:
+    """Distance of a point from the segment p .. q."""
+    t = ((z - p) * np.conj(q - p)).real / abs(q - p) ** 2 if q != p else 0.0
+    return abs(z - p - min(max(t, 0.0), 1.0) * (q - p))
+
+
+def plan_letter(name: str) -> str:
+    """Small letter of a plan point with its index: b3 -> b with index 3."""
+    return linkage.indexed(name)
+
+
+def _at(a: Any, i: int) -> Any:
+    value = a.value if isinstance(a, Step) else a
+    return value if np.ndim(value) == 0 else value[i]
+
+
+def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Acceleration plan of the chosen position with normal and Coriolis segments."""
+    acc, k = project.study.accelerations, project.force_index
+    frame = kinematic_frames.accelerations(project, canvas, box)
+    canvas.title(box, f"План ускорений (положение {project.cycle.labels[k]})", str(frame.scale))
+    _draw_plan(canvas, acc.plan, k, frame, "π", symbols_at=True)
+
+
+COLUMNS = 7
+"""Most segments the table of lengths shows where the mechanism has segments of its own to tell."""
+
+
+def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Tables of measured segments and of velocities over all positions (manual 000, tables 3.2 and 3.3)."""
+    vel, cycle = project.study.velocities, project.cycle
+    pos = vel.positions
+    mu_v, mu_l = canvas.scales["velocities"], canvas.scales["positions"]
+    lengths: list[tuple[str, Any]] = []
+    hinges = {name for g in pos.mechanism.groups for name in g.outer}
+    for g in pos.mechanism.groups:
+        if g.kind == 3:
+            (p, q), j = g.outer, g.links[1]
+            lengths.append((f"|p{plan_letter(p.lower() + j)}|", np.abs(vel.coincident[p + j].value) / mu_v.mu))
+            lengths.append((f"{q}{p}", np.abs(pos.points[p].value - pos.points[q].value) / mu_l.mu))
+            carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
+            lengths += [(f"|{q.lower()}{plan_letter(x.lower())}|", np.abs(vel.points[x].value) / mu_v.mu) for x in carried]
+    seen: dict[str, Any] = {}
+    drawn: dict[str, Any] = {}
+    for seg in vel.plan.segments:
+        value = np.abs(np.broadcast_to(seg.head.value - seg.tail.value, (len(cycle.labels),)))
+        if not np.allclose(value, value[0]):
+            seen.setdefault(seg.symbol.replace("\u0305", ""), value)
+            drawn.setdefault(f"|{plan_letter(seg.tail.name)}{plan_letter(seg.head.name)}|", value / mu_v.mu)
+    if not lengths and len(drawn) <= 8:
+        lengths = list(drawn.items())
+    elif len(lengths) < COLUMNS:
+        others = [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
+        lengths += others[:COLUMNS - len(lengths)]
+    turning = [(f"ω_{link}", np.abs(w.value)) for link, w in vel.omega.items()
+               if np.ndim(w.value) and link in vel.reference]
+    rows = len(cycle.drawn) + 2
+    left = right = box
+    if lengths and options.get("stacked"):
+        middle = (box.y0 + box.y1) / 2
+        left, right = Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
+    elif lengths:
+        one = min(19.0, (0.45 * box.width - 10.0) / len(lengths))
+        left = Box(box.x0, box.y0, box.x0 + 10.0 + one * len(lengths), box.y1)
+        right = Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
+    tables = [(left, "Длины отрезков, мм", lengths, 1)] if lengths else []
+    speeds = [*seen.items(), *turning]
+    if speeds:
+        tables.append((right, "Линейные, м/с, и угловые, рад/с, скорости" if turning else "Линейные скорости, м/с", speeds, 3))
+    for place, title, columns, decimals in tables:
+        row = min((place.height - 15.0) / rows, 7.5)
+        canvas.text(complex(place.centre.real, place.y1 - 5.0), title, 3.5, "centre")
+        cells = [["№", *(name for name, _ in columns)]]
+        cells += [[label, *(fixed(float(v[i]), decimals) for _, v in columns)] for i, label in cycle.drawn]
+        widths = [10.0] + [(place.width - 10.0) / len(columns)] * len(columns)
+        canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, min(3.5, row * 0.5))
+
+
+def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Structure of the mechanism: mobility by Chebyshev, formula of structure, Assur groups."""
+    m = project.mechanism
+    moving, pairs = len(m.links), len(m.pairs)
+    inside = canvas.title(box, "Структура механизма")
+    y = inside.y1 - 6.0
+    for line in (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure):
+        canvas.text(complex(box.x0 + 2.0, y), line, 3.5)
+        y -= 7.0
+    rows = [["Группа", "Класс", "Порядок", "Вид", "Пары"]]
+    for g, found in zip(reversed(m.groups), m.decompose(), strict=True):
+        outer_i, outer_j = found.outer
+        rows.append([g.name, "II", "2", f"{found.kind} ({found.form})", f"{outer_i}, {found.inner}, {outer_j}"])
+    widths = [0.17, 0.15, 0.2, 0.22, 0.26]
+    canvas.table(complex(box.x0, y + 3.5), [w * box.width for w in widths], rows, 7.0, 3.5)

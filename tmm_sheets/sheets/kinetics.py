@@ -1,0 +1,532 @@
+"""Views of the force study: loaded groups with their force plans, the crank, Zhukovsky's lever, the comparison."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.scale import Scale, fixed, number, times
+from tmm_sheets.drawing import symbols
+from tmm_sheets.drawing.canvas import Align, Canvas
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.sheets import linkage
+from tmm_sheets.sheets.frame import Frame, extent, fit_frame, pick
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.mechanism.model import StructuralGroup
+    from tmm_sheets.methods.forces import ForcePlan, Kinetostatics
+    from tmm_sheets.project import Project
+
+BAR = "\u0305"
+LONG, SHORT = 26.0, 13.0
+"""Longest and shortest force arrow on a loaded scheme, mm (schemes show directions, plans show magnitudes)."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A force on a scheme: sheet markup, the point in the plan's unit, the vector, N."""
+
+    symbol: str
+    at: complex
+    vector: complex
+
+
+GAP = 4.0
+"""Distance of groups that share a place, mm."""
+STACKED = 90.0
+"""Height from which on the plans of a group stand one over another, mm; in lower places side by side."""
+
+
+def groups(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """All Assur groups of a mechanism, the farthest on top, in equal parts of the place.
+
+    ``scheme`` is the share of the width for the loaded schemes, one number or one for each group.
+    """
+    count = len(project.mechanism.groups)
+    if not count:
+        return
+    shares = options.get("scheme", 0.42)
+    height = (box.height - GAP * (count - 1)) / count
+    for i in range(count):
+        top = box.y1 - i * (height + GAP)
+        share = shares[min(i, len(shares) - 1)] if isinstance(shares, list) else shares
+        group(project, canvas, Box(box.x0, top - height, box.x1, top), {"group": i + 1, "scheme": share})
+
+
+def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Loaded scheme of one Assur group beside the force plans of its links; ``group`` counts from the farthest.
+
+    ``scheme`` is the scheme's share of the place, ``stacked`` puts it above its plans.
+    """
+    k, forces = project.force_index, project.study.forces
+    m = project.mechanism
+    nth = int(options.get("group", 1))
+    if not 1 <= nth <= len(m.groups):
+        raise CannotBuild(f"the mechanism has no group {nth} to draw, it has {len(m.groups)}",
+                          "take an arrangement with the view kinetics.groups, or leave kinetics.group out of it")
+    g = tuple(reversed(m.groups))[nth - 1]
+    share = float(options.get("scheme", 0.42))
+    left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
+    right = Box(left.x1 + 6.0, box.y0, box.x1, box.y1)
+    if options.get("stacked"):
+        left = Box(box.x0, box.y1 - share * box.height, box.x1, box.y1)
+        right = Box(box.x0, box.y0, box.x1, left.y0 - 2.0)
+    _scheme(project, canvas, left, g, k)
+    names = [name for name in (*reversed(g.links), g.name) if name in forces.plans]
+    if g.kind == 3:
+        names.reverse()
+    if right.height / len(names) < STACKED and len(names) > 1:
+        width = (right.width + GAP) / len(names)
+        places = [Box(right.x0 + i * width, right.y0, right.x0 + (i + 1) * width - GAP, right.y1) for i in range(len(names))]
+    else:
+        places = _stacked(right, [forces.plans[name] for name in names], k)
+    for name, place in zip(names, places, strict=True):
+        _force_plan(project, canvas, place, forces.plans[name], k)
+
+
+def _stacked(box: Box, plans: list[ForcePlan], k: int) -> list[Box]:
+    """Places of force plans one under another: as high as each polygon is when it fills the width, the rest in equal parts."""
+    left, below, right, above = AROUND
+    width = box.width - left - right
+    wanted = []
+    for fp in plans:
+        real = _polygon(fp, k)[1]
+        wanted.append(width * real.height / real.width if real.width > 0 else box.height)
+    free = box.height - len(plans) * (below + above)
+    spare = (free - sum(wanted)) / len(plans)
+    heights = [h + spare for h in wanted] if spare > 0 else [free / len(plans)] * len(plans)
+    places, y = [], box.y1
+    for h in heights:
+        places.append(Box(box.x0, y - h - below - above + 2.0, box.x1, y))
+        y -= h + below + above
+    return places
+
+
+@dataclass(frozen=True)
+class Couple:
+    """A couple on a scheme: sheet markup, the point it is drawn at, N m."""
+
+    symbol: str
+    at: complex
+    value: float
+
+
+FAR = 0.75
+"""Largest distance of a guide's reaction from its block, in sizes of the mechanism; beyond it a force and a couple are shown."""
+
+
+def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Shown], list[Couple]]:
+    """External and inertia forces of a group's links and the reactions of the links outside it."""
+    forces, pos = project.study.forces, project.study.positions
+    m = project.mechanism
+    internal = {f"F{a}{b}" for a in g.links for b in g.links}
+    shown: list[Shown] = []
+    couples: list[Couple] = []
+    largest = max((abs(complex(load.vector.at(k))) for link in g.links for load in forces.loads[link]), default=0.0)
+    members = [complex(step.at(k)) for step in pos.points.values()]
+    size = max(abs(a - b) for a in members for b in members)
+    for link in g.links:
+        for load in forces.loads[link]:
+            name = next((n for n, step in forces.reactions.items() if step is load.vector), "")
+            if name in internal:
+                continue
+            shown.append(Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))))
+    i, j = g.links
+
+    def hinge(link: str, point: str, parts: tuple[Step, Step] | None = None) -> None:
+        """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
+        name = f"{link}{m.owner(point)}"
+        at = complex(pos.points[point].at(k))
+        total = complex(forces.reactions[f"F{name}"].at(k))
+        if parts is None:
+            shown.append(Shown(f"F̅_{{{name}}}", at, total))
+            return
+        tangential = complex(parts[1].at(k)) - complex(parts[0].at(k))
+        shown.append(Shown(f"F̅_{{{name}}}^n", at, total - tangential))
+        shown.append(Shown(f"F̅_{{{name}}}^τ", at, tangential))
+
+    def guided(link: str, guide: str, about: str) -> None:
+        """Reaction of a guide, at the point of the guide line where it balances the moments about ``about``."""
+        name = f"{link}{m.guides[guide].link}"
+        f = complex(forces.reactions[f"F{name}"].at(k))
+        u = complex(pos.guide_directions[guide].at(k))
+        foot, origin = (complex(pos.points[p].at(k)) for p in (str(g.inner), about))
+        couple = float(np.real(forces.couples[f"F{name}"].at(k)))
+        across = (np.conj(u) * f).imag
+        foot -= u * ((foot - origin) * np.conj(u)).real
+        offset = couple / across if across else 0.0
+        acts = abs(f) > 1e-9 * largest
+        if abs(couple) > 1e-9 * largest * size and (not acts or abs(offset) > FAR * size):
+            # The line of action lies off the sheet, or there is none: the force in the block and the couple of its walls.
+            couples.append(Couple(f"M_{{{name}}}", foot, couple))
+            offset = 0.0
+        shown.append(Shown(f"F̅_{{{name}}}", foot + u * offset, f if acts else 0j))
+
+    plan = forces.plans[i if g.kind in (3, 5) else g.name].plan
+    if g.kind in (1, 2):
+        hinge(i, g.outer[0], (plan["2"], plan["3"]))
+    if g.kind == 1:
+        last = max(int(n) for n in plan.steps if n.isdigit())
+        hinge(j, g.outer[1], (plan[str(last - 1)], plan[str(last)]))
+    if g.kind == 2:
+        guided(j, g.guides[0], str(g.inner))
+    if g.kind == 3:
+        hinge(i, g.outer[0], (plan["2"], plan["3"]))
+        hinge(j, g.outer[1])
+    if g.kind == 4:
+        guided(i, g.guides[0], str(g.inner))
+        guided(j, g.guides[1], str(g.inner))
+    if g.kind == 5:
+        hinge(i, g.outer[0])
+        guided(j, g.guides[0], g.outer[0])
+    return [s for s in shown if abs(s.vector) > 0], couples
+
+
+def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int) -> None:
+    pos, forces = project.study.positions, project.study.forces
+    shown, couples = _outer_forces(project, g, k)
+    names = [n for s in linkage.shapes(pos) if s.link in g.links for n in (*s.bar, s.block or "") if n]
+    centres = [str(c) for c in (project.mechanism.links[link].centre for link in g.links) if c and c not in names]
+    names += centres
+    at = [complex(pos.points[n].at(k)) for n in dict.fromkeys(names)] + [s.at for s in shown]
+    place = box.inset(3.0, 5.0, 3.0, 19.0)
+    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", *_reach(at, shown), place)
+    canvas.title(box, f"Группа Ассура {g.name} ({g.kind}-й вид)", str(frame.scale))
+    if g.kind != 5:
+        linkage.draw_guides(canvas, pos, k, frame, g.links)
+    linkage.draw(canvas, pos, k, frame, "main", g.links)
+    for name in dict.fromkeys(names):
+        away = 1 - 0.5j if name in project.mechanism.fixed else 0j
+        canvas.label(frame(complex(pos.points[name].at(k))), linkage.indexed(name), away, 3.5, 2.8)
+    for s in linkage.shapes(pos):
+        if s.link in g.links:
+            z = frame(complex(pos.points[s.block or s.bar[-1]].at(k)))
+            if s.bar:
+                a, b = (frame(z) for z in (linkage.bar_points(pos, s, k)[0], linkage.bar_points(pos, s, k)[-1]))
+                z = a + 0.3 * (b - a)
+            canvas.label(z, s.link, 1 + 0.3j, 5.0, 2.0 if s.bar else 6.5)
+    for name in centres:
+        symbols.centre_of_mass(canvas, frame(complex(pos.points[name].at(k))))
+    _arms(canvas, project, frame, g, k, shown)
+    draw_forces(canvas, frame, shown)
+    _from_moments(project, canvas, box, g, k, frame.scale)
+    for c in couples:
+        symbols.rotation_arrow(canvas, frame(c.at), 10.0, -1 - 0.4j, c.value, c.symbol)
+    for link in g.links:
+        for n, couple in enumerate(forces.link_couples.get(link, ())):
+            value = float(np.real(couple.at(k)))
+            shape = next(shape for shape in linkage.shapes(pos) if shape.link == link)
+            centre = project.mechanism.links[link].centre or shape.block or shape.bar[0]
+            if abs(value) > 0:
+                z = frame(complex(pos.points[centre].at(k)))
+                symbols.rotation_arrow(canvas, z, 7.0 + 4.0 * n, -1 + 0.2j, value, symbol(couple.name).replace(BAR, ""))
+
+
+def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:
+    """What the moment equations of a group gave: tangential parts of its reactions, arms of its outer guides' reactions."""
+    forces, m = project.study.forces, project.mechanism
+    said = []
+    for step in forces.plan:
+        if step.rule.name == "component from moments" and step.name[1:2] in g.links:
+            sign = f"F_{{{step.name[1:-1]}}}^τ"
+            said.append(f"ΣM_{step.args[1].name} = 0: {sign} = {newtons(abs(complex(step.at(k))))} Н")
+    about = g.outer[0] if g.kind == 5 else g.inner
+    for pair in (f"{link}{m.guides[guide].link}" for guide in g.guides for link in g.links):
+        arm = forces.arms.get(f"h{pair}")
+        length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
+        if 0.05 < length < max(box.width, box.height):
+            said.append(f"ΣM_{about} = 0: h_{{{pair}}} = {fixed(length, 1)} мм")
+    if said:
+        _fitted(canvas, complex(box.x0 + 2.0, box.y0), "; ".join(said), 3.5, box.width - 4.0, "left")
+
+
+def _arrows(shown: Iterable[Shown]) -> list[tuple[Shown, complex]]:
+    """Arrow of each force in mm; forces along one ray from one point get different lengths."""
+    forces = [s for s in shown if abs(s.vector) > 0]
+    largest = max((abs(s.vector) for s in forces), default=1.0)
+    size = max((abs(a.at - b.at) for a in forces for b in forces), default=0.0)
+    taken: list[tuple[complex, complex, float]] = []
+    found = []
+    for s in sorted(forces, key=lambda s: abs(s.vector)):
+        u = s.vector / abs(s.vector)
+        length = SHORT + (LONG - SHORT) * (abs(s.vector) / largest) ** 0.5
+        for at, v, used in taken:
+            if abs(at - s.at) <= 0.01 * size and abs(u - v) < 0.2 and length < used + 9.0:
+                length = used + 9.0
+        taken.append((s.at, u, length))
+        found.append((s, length * u))
+    return found
+
+
+def _reach(points: Iterable[complex], shown: Iterable[Shown]) -> tuple[list[complex], list[complex]]:
+    """Points and what sticks out of them on paper: arrows with their labels, symbols of pairs."""
+    z, d = [], []
+    for s, arrow in _arrows(shown):
+        z.append(s.at)
+        d.append(arrow * (1 + 7.0 / abs(arrow)))
+    for p in points:
+        z += [p, p, p, p]
+        d += [11.0 + 0j, -11.0 + 0j, 8.0j, -11.0j]
+    return z, d
+
+
+def draw_forces(canvas: Canvas, frame: Frame, shown: Iterable[Shown]) -> None:
+    """Arrows with their tails at the points they act at."""
+    for s, arrow in _arrows(shown):
+        tail = frame(s.at)
+        canvas.arrow(tail, tail + arrow, "vector")
+        u = arrow / abs(arrow)
+        canvas.label(tail + arrow - 2.0 * u, s.symbol, u + 0.35j * u, 3.5, 2.0)
+
+
+def _arms(canvas: Canvas, project: Project, frame: Frame, g: StructuralGroup, k: int, shown: list[Shown]) -> None:
+    """Arms of the forces about the point of the moment equations: middle hinge, rocker's pivot, or pin of the block."""
+    pos = project.study.positions
+    about = str(g.inner) if g.kind in (1, 2, 4) else g.outer[-1]
+    draw_arms(canvas, frame, complex(pos.points[about].at(k)), shown)
+
+
+def _foot(s: Shown, about: complex) -> complex:
+    """Foot of the perpendicular from a point on the line of action of a force, in the plan's unit."""
+    u = s.vector / abs(s.vector)
+    return s.at + float(((about - s.at) * np.conj(u)).real) * u
+
+
+def draw_arms(canvas: Canvas, frame: Frame, about: complex, shown: Iterable[Shown], prefix: str = "h",
+              points: Iterable[complex] = ()) -> None:
+    """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
+    shown = list(shown)
+    seen: list[complex] = []
+    centre = frame(about)
+    busy = [centre, *points, *(frame(s.at) for s in shown), *(frame(_foot(s, about)) for s in shown)]
+    for s in sorted(shown, key=lambda s: -abs(s.vector)):  # forces on one line share the arm of the largest
+        u = s.vector / abs(s.vector)
+        tail = frame(s.at)
+        foot = tail + ((centre - tail) * np.conj(u)).real * u
+        if abs(foot - centre) < 1.5 or "^" in s.symbol:
+            continue
+        if any(abs(foot - f) < 0.6 for f in seen):
+            continue
+        seen.append(foot)
+        if abs(foot - tail) > 0.5:
+            canvas.line(tail, foot + 2.0 * (foot - tail) / abs(foot - tail), "thin")
+        canvas.line(centre, foot, "thin")
+        canvas.dot(foot, 0.35, "thin")
+        index = s.symbol.replace(BAR, "").replace("F_", "").replace("_", "").strip("{}").replace("{", "").replace("}", "")
+        places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
+        at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
+        canvas.label(at, f"{prefix}_{{{index}}}", 1j * (foot - centre), 2.5, 0.8)
+        busy.append(at)
+
+
+AROUND = (12.0, 19.0, 12.0, 24.0)
+"""Room round a force polygon at its left, below (equation and values), right and above (title and scale factor), mm."""
+
+
+def _polygon(fp: ForcePlan, k: int) -> tuple[dict[str, complex], Box]:
+    """Vertices of a force polygon and the rectangle round them, N."""
+    points = {n: complex(step.at(k)) for n, step in fp.plan.steps.items() if step.rule.gives == "point"}
+    return points, extent([np.array(list(points.values()))])
+
+
+def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
+    """Force polygon with numbered vertices, its equation and the values found."""
+    points, real = _polygon(fp, k)
+    inside = box.inset(*AROUND)
+    need = max(real.width / inside.width, real.height / inside.height)
+    scale = pick(project, canvas, fp.plan.name, "μ_F", "Н/мм", need)
+    frame = Frame(scale, inside.centre - scale.mm(real.centre))
+    canvas.of = fp.plan.name
+    canvas.title(box, fp.plan.title, str(scale), 5.0)
+    sides = [s for s in fp.sides if abs(complex(s[2].at(k)) - complex(s[1].at(k))) > 0]
+    for sign, tail, head, _ in sides:
+        a, b = frame(complex(tail.at(k))), frame(complex(head.at(k)))
+        canvas.arrow(a, b, "vector")
+        centre = frame(real.centre)
+        middle = (a + b) / 2
+        n = 1j * (b - a)
+        if (np.conj(n) * (middle - centre)).real < 0:
+            n = -n
+        canvas.label(middle, sign, n, 3.5, 1.0)
+    extra = [seg for seg in fp.plan.segments if not any(seg.symbol == s[0] for s in fp.sides)]
+    for seg in extra:
+        canvas.arrow(frame(complex(seg.tail.at(k))), frame(complex(seg.head.at(k))), "vector")
+        canvas.label(frame((complex(seg.tail.at(k)) + complex(seg.head.at(k))) / 2), seg.symbol, 0j, 3.5, 1.0)
+    placed: dict[tuple[int, int], list[str]] = {}
+    for name, z in points.items():
+        q = frame(z)
+        placed.setdefault((round(q.real * 2), round(q.imag * 2)), []).append(name)
+    for names in placed.values():
+        q = frame(points[names[0]])
+        canvas.label(q, ", ".join(sorted(names, key=int)), q - frame(real.centre), 2.5, 0.8)
+    number_of = {id(step): n for n, step in fp.plan.steps.items()}
+    terms = [f"{s}({number_of[id(t)]}–{number_of[id(h)]})" for s, t, h, _ in sides]
+    _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
+    asked = [(s, t, h) for s, t, h, unknown in sides if unknown] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
+    sizes = [abs(complex(h.at(k)) - complex(t.at(k))) for _, t, h in asked]
+    rounding = 1e-9 * max(real.width, real.height)
+    found = [f"{s.replace(BAR, '')} = {newtons(f if f > rounding else 0.0)} Н" for (s, _, _), f in zip(asked, sizes, strict=True)]
+    _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
+
+
+def newtons(force: float) -> str:
+    """A force for the sheet: tenths of a newton, small ones with four figures."""
+    return fixed(force, 1) if force >= 10 else number(force, 4)
+
+
+def balancing_sign(project: Project) -> str:
+    """Sign of the balancing force or moment in lettering markup, from its name in the project file."""
+    name = project.variant.balancing.name if project.variant.balancing else "Mур"
+    return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
+
+
+def _equation(canvas: Canvas, at: complex, terms: list[str], width: float) -> None:
+    """Vector equation of a force plan; one that would become unreadably small in its width goes on two lines."""
+    from tmm_sheets.drawing.lettering import letter
+
+    if letter(" + ".join(terms) + " = 0", 2.5).width > width:
+        half = (len(terms) + 1) // 2
+        _fitted(canvas, at + 6.0j, " + ".join(terms[:half]) + " +", 3.5, width)
+        terms = terms[half:]
+    _fitted(canvas, at, " + ".join(terms) + " = 0", 3.5, width)
+
+
+def _fitted(canvas: Canvas, at: complex, text: str, height: float, width: float, align: Align = "centre") -> None:
+    from tmm_sheets.drawing.lettering import letter
+
+    w = letter(text, height).width
+    canvas.text(at, text, height if w <= width else max(height * width / w, 2.5), align)
+
+
+def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The initial link with its forces and arms beside its force plan."""
+    k, study = project.force_index, project.study
+    forces, pos, m = study.forces, study.positions, project.mechanism
+    c = m.crank
+    share = float(options.get("scheme", 0.5))
+    left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
+    right = Box(left.x1 + 4.0, box.y0, box.x1, box.y1)
+    shown = [Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))) for load in forces.loads[c.link]]
+    frame_force = complex(forces.reactions[f"F{c.link}{m.frame}"].at(k))
+    pivot = complex(pos.points[c.pivot].at(k))
+    shown.append(Shown(f"F̅_{{{c.link}{m.frame}}}", pivot, frame_force))
+    pins = linkage.crank_pins(pos)
+    at = [pivot, *(complex(pos.points[name].at(k)) for name in pins), *(s.at for s in shown)]
+    driver = project.driver
+    if driver is not None:
+        at += [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
+    away = _clear(pivot, [complex(pos.points[name].at(k)) for name in pins], shown)
+    z, d = _reach(at, shown)
+    # The arrows of rotation, with their signs.
+    z.append(pivot)
+    d.append((18.0 if driver is not None else 32.0) * away)
+    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", "м/мм", z, d, left.inset(3.0, 3.0, 3.0, 19.0))
+    canvas.title(left, "Начальное звено", str(frame.scale))
+    if driver is not None:
+        canvas.circle(frame(pivot), driver.radius / frame.scale.mu, "centre")
+        contact = frame(pivot + driver.radius * np.exp(1j * driver.mate))
+        canvas.dot(contact, 0.6, "thin")
+        canvas.label(contact, "P", 1j * np.exp(1j * driver.mate), 3.5, 1.5)
+    linkage.draw(canvas, pos, k, frame, "main", [c.link])
+    for name in (c.pivot, *pins):
+        canvas.label(frame(complex(pos.points[name].at(k))), linkage.indexed(name), 0j, 3.5, 2.8)
+    draw_arms(canvas, frame, pivot, [s for s in shown if s.at != pivot])
+    draw_forces(canvas, frame, shown)
+    symbols.rotation_arrow(canvas, frame(pivot), 14.0, away, c.omega, f"ω_{c.link}")
+    if driver is None and forces.balancing is not None:
+        symbols.rotation_arrow(canvas, frame(pivot), 24.0, away, float(forces.balancing.at(k)), balancing_sign(project))
+    _crank_couples(project, canvas, left, frame(pivot), away)
+    _force_plan(project, canvas, right, forces.plans[c.link], k)
+
+
+def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:
+    """Direction from the crank's pivot into the widest angle between its arms, base, forces and their arms."""
+    lines = [*(z - pivot for z in pins), -1j]
+    for s in shown:
+        if abs(s.vector) > 0:
+            foot = _foot(s, pivot)
+            lines.append(s.vector if s.at == pivot else foot - pivot)
+    angles = sorted({round(float(np.angle(z)), 6) for z in lines if abs(z) > 0})
+    gaps = [(b - a, (a + b) / 2) for a, b in zip(angles, [*angles[1:], angles[0] + 2 * np.pi], strict=True)]
+    middle = max(gaps, key=lambda gap: round(gap[0], 9))[1]
+    return complex(np.cos(middle), np.sin(middle))
+
+
+def _crank_couples(project: Project, canvas: Canvas, box: Box, at: complex, away: complex) -> None:
+    """Couples on the crank, its inertia couple among them, as arrows and with their values."""
+    k, forces, c = project.force_index, project.study.forces, project.mechanism.crank
+    said = []
+    for n, couple in enumerate(forces.link_couples.get(c.link, ())):
+        sign, value = symbol(couple.name).replace(BAR, ""), float(np.real(couple.at(k)))
+        if value:
+            symbols.rotation_arrow(canvas, at, 34.0 + 10.0 * n, away, value, sign)
+            said.append(f"{sign} = {number(abs(value), 5)} Н·м")
+    if said and project.driver is None and forces.balancing is not None:
+        said.append(f"{balancing_sign(project)} = {number(abs(float(forces.balancing.at(k))), 5)} Н·м")
+    if said:
+        _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
+
+
+def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
+    k, lv = project.force_index, project.study.lever
+    points = {name: complex(step.at(k)) for name, step in lv.points.items()}
+    shown = [Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k))) for h in lv.hung]
+    place = box.inset(2.0, 2.0, 2.0, 19.0)
+    at, around = _reach([0j, *points.values()], shown)
+    arms = [z for s in shown if abs(s.vector) > 0 for z in (s.at, _foot(s, 0j))]
+    frame = fit_frame(project, canvas, "lever", "μ_V", "(м/с)/мм", [*at, *arms], [*around, *(0j for _ in arms)], place)
+    scale = frame.scale
+    plain: Scale | None = canvas.scales.get("velocities")
+    text = str(scale)
+    if plain is not None and plain.mu > scale.mu * 1.01:
+        text += f" (увеличен в {times(plain.mu / scale.mu)})"
+    canvas.title(box, f"Рычаг Жуковского (положение {project.cycle.labels[k]})", text)
+    pole = frame(0j)
+    for seg in lv.velocities.plan.segments:
+        a, b = (1j * complex(s.at(k)) for s in (seg.tail, seg.head))
+        canvas.line(frame(a), frame(b), "axis")
+    canvas.dot(pole, 0.9, "vector")
+    canvas.label(pole, "p", 0j, 3.5, 1.2)
+    joint: dict[tuple[int, int], list[str]] = {}
+    for name, z in points.items():
+        q = frame(z)
+        joint.setdefault((round(q.real * 2), round(q.imag * 2)), []).append(name)
+    for names in joint.values():
+        q = frame(points[names[0]])
+        canvas.dot(q, 0.6, "vector")
+        canvas.label(q, ", ".join(f"{n[0]}_{{{n[1:]}}}′" if n[1:] else f"{n}′" for n in names), q - pole, 3.5, 1.2)
+    if lv.contact is not None and project.driver is not None:
+        z = frame(complex(lv.contact.at(k)))
+        canvas.line(pole, z, "axis")
+        canvas.label(z, "f′", 0j, 3.5, 1.2)
+    draw_arms(canvas, frame, 0j, [s for s in shown if abs(s.vector) > 0], points=[frame(z) for z in points.values()])
+    draw_forces(canvas, frame, shown)
+
+
+def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The balancing force by both methods and their difference."""
+    k, study = project.force_index, project.study
+    forces: Kinetostatics = study.forces
+    assert forces.balancing is not None
+    assert study.lever.balancing is not None
+    kinetic, hung = abs(forces.balancing.at(k)), abs(study.lever.balancing.at(k))
+    force, sign = project.driver is not None, balancing_sign(project)
+    unit = "Н" if force else "Н·м"
+    difference = abs(kinetic - hung) / hung * 100 if hung else 0.0
+    exponent = f"{difference:.0e}".split("e") if difference else ["0", "0"]
+    shown = "0" if difference == 0 else f"{exponent[0]}·10^{{{int(exponent[1])}}}".replace("-", "−")
+    rows = [["Уравновешивающая сила" if force else "Уравновешивающий момент", "Значение"],
+            [f"Силовой расчёт: {sign}, {unit}", fixed(kinetic, 2)],
+            [f"Рычаг Жуковского: {sign}, {unit}", fixed(hung, 2)],
+            ["Расхождение, %", shown]]
+    row = min(box.height / len(rows), 9.0)
+    canvas.table(complex(box.x0, box.y1), [box.width * 0.66, box.width * 0.34], rows, row, 3.5)
+
+

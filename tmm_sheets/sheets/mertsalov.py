@@ -1,0 +1,267 @@
+"""Views of the flywheel by Mertsalov's procedure: energies, angular velocity, inertia of the second group, tables.
+
+The graphs of the moments and of the works are those of :mod:`~tmm_sheets.sheets.flywheel`; the graphs here stand on the same angle
+axis: their option ``axis`` is the x of the ordinate axis, mm of the sheet. The manuals name the quantities differently: the
+options ``energies`` (change, second group, first group) and ``inertia`` are the signs on the sheet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import degrees
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from tmm_sheets.construction.scale import Scale, fixed, number
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.sheets import flywheel, graphs
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.mertsalov import Mertsalov
+
+Options = dict[str, Any]
+ENERGIES = ("ΔT", "T_{II}", "T_I")
+INERTIA = "I_{II}"
+NAMED = 3
+"""So many terms of the inertia are lettered at their curves; more are numbered, with a legend under the heading."""
+LEGEND = 6.0
+"""Room of the legend, mm."""
+
+
+def _procedure(project: Any) -> Mertsalov:
+    fw = project.flywheel
+    if fw.method != "mertsalov":
+        raise CannotBuild(f'this view belongs to flywheel.method = "mertsalov", not "{fw.method}"',
+                          "take the arrangement flywheel among the project's sheets")
+    return cast("Mertsalov", fw)
+
+
+def _signs(options: Options) -> tuple[str, str, str, str]:
+    change, second, first = options.get("energies", ENERGIES)
+    return change, second, first, options.get("inertia", INERTIA)
+
+
+def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """All graphs one under another: moments, works, energies, inertia; each as high as it is, the room left over between them."""
+    fw = _procedure(project)
+    s = fw.scales
+    work = np.append(fw.work_curve(fw.samples), (0.0, fw.driving_plan["K"].value.imag))
+    moment = np.concatenate(([0.0, fw.M_constant], fw.reduced.moment(fw.samples, side=1), fw.reduced.moment(fw.samples, side=-1)))
+    energy = np.concatenate(([0.0], fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))))
+    views: list[tuple[Callable[..., None], float, float]] = [
+        # The constant moment is lettered above its line.
+        (flywheel.moments, float(np.ptp(s.moment.mm(moment))) + 6.0, 4.0), (flywheel.works, float(np.ptp(work)), 4.0),
+        (energies, float(np.ptp(energy)), 8.0),
+        (inertia, float(s.inertia.mm(fw.inertia(fw.samples)).max()) + (LEGEND if len(_terms(fw)) > NAMED else 0.0), 8.0)]
+    over = graphs.OVER + graphs.HEAD
+    spare = (box.height - sum(height + below + over for _, height, below in views)) / (len(views) - 1)
+    graphs.check_room(box, box.y1 - min(spare, 0.0) * (len(views) - 1), "mertsalov.column")
+    top = box.y1
+    for view, height, below in views:
+        low = top - height - below - over
+        # The works stand in the middle of their place, which so reaches as far below them as above.
+        view(project, canvas, Box(box.x0, low - (over - below if view is flywheel.works else 0.0), box.x1, top), options)
+        top = low - spare
+
+
+def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Reduced moment of inertia of the second group with its terms, read as its energy too; the tangent at the chosen position."""
+    fw = _procedure(project)
+    s = fw.scales
+    _, second, _, sign = _signs(options)
+    mu_t = Scale("μ_T", s.inertia.mu * fw.reduced.omega1**2 / 2, "Дж/мм")
+    graphs.heading(canvas, box, options, f"Графики {sign}(φ_1) и {second}(φ_1)", f"{s.inertia}, {mu_t}")
+    canvas.of = fw.inertia_plan.name
+    g = graphs.Graph(complex(options["axis"], box.y0 + 8.0))
+    x = s.angle.mm(fw.samples)
+    curve = s.inertia.mm(fw.inertia(fw.samples))
+    graphs.check_room(box, g.origin.imag + float(curve.max()) + graphs.HEAD, "mertsalov.inertia")
+    canvas.polyline(g(x + 1j * curve))
+    parts = _terms(fw)
+    for n, (name, part) in enumerate(parts, 1):
+        canvas.polyline(g(x + 1j * part), "main")
+        # A narrow peak is named at its left flank, where there is room.
+        k = int(np.argmax(part[: len(part) // 2] > 0.7 * part[: len(part) // 2].max()))
+        canvas.label(g(x[k] + 1j * part[k]), name if len(parts) <= NAMED else str(n), -1 if k else 1 - 1j, 3.5)
+    if len(parts) > NAMED:
+        legend = ";  ".join(f"{n} – {name}" for n, (name, _) in enumerate(parts, 1))
+        canvas.text(complex((box.x0 + box.x1) / 2, box.y1 - 13.0), legend, _height(legend, box.width), "centre")
+    at = s.angle.mm(fw.reduced.phi)
+    points = fw.inertia_plan["points"].value
+    for p in points:
+        canvas.line(g(p.real), g(p), "thin")
+    length = s.angle.mm(fw.reduced.period)
+    graphs.axes(canvas, g, length, 0.0, float(curve.max()), f"{sign}, кг·м^2")
+    graphs.numbers(canvas, g, at, fw.labels, np.ones(len(at)))
+    k = int(np.argmax(curve))
+    canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
+    _tangent(canvas, project, fw, g, points)
+
+
+def _terms(fw: Mertsalov) -> list[tuple[str, Any]]:
+    """Terms of the reduced moment of inertia with their ordinates at the samples, mm; what would run along the axis is left out."""
+    found = [(f"{name.removesuffix('²')}^2/ω_1^2", fw.scales.inertia.mm(values))
+             for name, values in fw.reduced.inertia_parts(fw.samples).items()]
+    return [(name, part) for name, part in found if part.max() > 4.0]
+
+
+def _tangent(canvas: Canvas, project: Any, fw: Mertsalov, g: graphs.Graph, points: Any) -> None:
+    """Tangent of the graph of inertia at the position of the force analysis, which gives the acceleration of the crank there."""
+    k = project.force_index
+    plan = fw.position_acceleration
+    psi = float(plan["ψ"].value[k])
+    at, u = complex(g(points[k])), complex(np.cos(psi), np.sin(psi))
+    reach = 26.0
+    canvas.line(at - reach * u, at + reach * u, "axis")
+    canvas.dot(at, 0.7)
+    # The vertex of the angle lies on the tangent, away from the curve's own label.
+    vertex = at - 0.8 * reach * u if psi > 0 else at + 0.8 * reach * u
+    side = 1 if psi > 0 else -1
+    canvas.line(vertex, vertex + side * 20, "thin")
+    start, end = (0.0, psi) if psi > 0 else (np.pi + psi, np.pi)
+    if abs(psi) > 0.02:
+        canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {fixed(degrees(psi), 2)}°")
+
+
+def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Change of kinetic energy, the second group's energy laid off below it, the first group's curve with the segment ab.
+
+    The same curve measured from the axis through the middle of ab is the angular velocity of the crank.
+    """
+    fw = _procedure(project)
+    s, plan = fw.scales, fw.energy_plan
+    change, second, first, _ = _signs(options)
+    omega = _omega_scale(fw)
+    ratio = s.work.mu / s.energy.mu
+    against = "" if abs(ratio - 1) < 1e-9 else f" (μ_A/{number(ratio)})" if ratio > 1 else f" ({number(1 / ratio)}μ_A)"
+    graphs.heading(canvas, box, options, f"Графики {change}(φ_1), {first}(φ_1), ω_1(φ_1)",
+                   f"{Scale('μ_T', s.energy.mu, s.energy.unit)}" + f"{against}, {omega}")
+    x = s.angle.mm(fw.samples)
+    total, own = fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))
+    low, high = min(0.0, float(own.min())), max(0.0, float(total.max()), float(own.max()))
+    g = graphs.Graph(complex(options["axis"], box.y0 + 8.0 - low))
+    graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "mertsalov.energies")
+    canvas.of = fw.total_plan.name
+    canvas.polyline(g(x + 1j * total))
+    canvas.of = plan.name
+    canvas.polyline(g(x + 1j * own))
+    points, upper = plan["points"].value, fw.total_plan["ΔE"].value
+    for p, top in zip(points, upper, strict=True):
+        canvas.line(g(complex(p.real, min(0.0, p.imag, top))), g(complex(p.real, max(0.0, p.imag, top))), "thin")
+    length = s.angle.mm(fw.reduced.period)
+    graphs.axes(canvas, g, length, low, high, f"{change}, {first}, Дж")
+    graphs.numbers(canvas, g, points.real, fw.labels, np.where(upper > 1e-6, 1.0, -1.0))
+    for name, end in (("max", "a"), ("min", "b")):
+        contact, cut = plan[f"M_{name}"].value, plan[end].value
+        canvas.line(g(cut), g(contact + 10), "construction")
+        canvas.dot(g(contact), 0.7)
+        canvas.label(g(cut), end, -1 + (1j if end == "a" else -1j), height=5)
+    p, q = g(plan["b"].value), g(plan["a"].value)
+    canvas.dimension(p, q, 9.0, f"|ab| = {fixed(fw.ab_mm, 1)}")
+    axis = fw.speed_plan["O"].value
+    canvas.line(g(axis - 5), g(axis + length + graphs.OVER), "centre")
+    canvas.label(g(axis + length + 2), "ω_{1ср}", 1j, height=5)
+    k = int(np.argmax(total))
+    canvas.label(g(x[k] + 1j * total[k]), change, 1 + 1j, height=5)
+    k = int(np.argmax(np.abs(np.gradient(own))))
+    canvas.label(g(x[k] + 1j * own[k]), f"{first}, ω_1", 1 - 1j, height=5)
+    k = int(np.argmax(fw.energy_plan["T_II"].value[1:])) + 1
+    middle = complex(points[k].real, (points[k].imag + upper[k]) / 2)
+    canvas.label(g(middle), second, 1, height=3.5)
+
+
+def _omega_scale(fw: Mertsalov) -> Scale:
+    mu = fw.speed_scale
+    return Scale(mu.symbol, float(f"{mu.mu:.4g}"), mu.unit)
+
+
+def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """What was found at every position: moment, work, energies, inertia, angular velocity and acceleration of the crank."""
+    fw = _procedure(project)
+    varying = "с" if fw.reduced.resisting else "д"
+    change, second, first, sign = _signs(options)
+    columns = [
+        (f"M_{varying}^{{пр}}", "Н·м", fw.M_reduced), (f"A_{varying}", "Дж", fw.work), (change, "Дж", fw.delta_E),
+        (sign, "кг·м^2", fw.J_reduced), (second, "Дж", fw.T_second), (first, "Дж", fw.T_first),
+        ("y_ω", "мм", fw.speed_plan["y"].value), ("ω_1", "рад/с", fw.omega),
+        ("ε_1", "рад/с^2", fw.position_acceleration["ε1"].value),
+    ]
+    # The angular velocity hardly changes: a digit more shows it.
+    cells = [graphs.column(values, 5 if name == "ω_1" else 4) for name, _, values in columns]
+    rows = [["№", *(name for name, _, _ in columns)], ["", *(unit for _, unit, _ in columns)]]
+    rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(fw.labels)]
+    left = canvas.title(box.inset(0, 0, 0, 2), "Результаты по положениям")
+    high = min(left.height / len(rows), 7.0)
+    width = (box.width - 9.0) / len(columns)
+    canvas.table(complex(box.x0, left.y1), [9.0, *[width] * len(columns)], rows, high, 3.5 if high >= 5.5 else 2.5, header=2)
+
+
+def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Formulas with their numbers: segment, moment of inertia, scale factor and check of omega, acceleration, motor, sizes."""
+    fw = _procedure(project)
+    d, omega, k = fw.data, fw.reduced.omega1, project.force_index
+    _, _, _, sign = _signs(options)
+    varying, constant = ("с", "д") if fw.reduced.resisting else ("д", "с")
+    taken = " (принято)" if d.accepted else ""
+    fast, slow = fw.extremes
+    plan = fw.position_acceleration
+    label = fw.labels[k]
+    at = {name: float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1")}
+    mu = _omega_scale(fw)
+    rows = [
+        f"ω_{{1ср}} = {fixed(omega, 4)} рад/с;  δ = {number(d.delta)}{taken};  M_{constant} = {fixed(fw.M_constant, 1)} Н·м",
+        f"I_I = |ab|·μ_T/(δ·ω_1^2) = {fixed(fw.ab_mm, 2)}·{number(fw.scales.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2) = "
+        f"{number(fw.J_first, 5)} кг·м^2",
+        f"I_м = I_I − (I_{{кр}} + I_р·u^2) = {number(fw.J_first, 5)} − {number(fw.J_first - fw.J_flywheel, 4)} = "
+        f"{number(fw.J_flywheel, 5)} кг·м^2",
+        f"μ_ω = μ_T/(I_I·ω_{{1ср}}) = {number(mu.mu)} {mu.unit}",
+        f"ω_{{max}} = {fixed(fast, 4)};  ω_{{ср}}(1 + δ/2) = {fixed(omega * (1 + d.delta / 2), 4)} рад/с",
+        f"ω_{{min}} = {fixed(slow, 4)};  ω_{{ср}}(1 − δ/2) = {fixed(omega * (1 - d.delta / 2), 4)} рад/с",
+        f"Положение {label}:  ψ = {fixed(degrees(at['ψ']), 2)}°;  d{sign}/dφ = tg ψ·μ_J/μ_φ = {number(at['dJ/dφ'])} кг·м^2",
+        f"M = M_{constant} + M_{varying} = {fixed(at['M'], 1)} Н·м;  I_I + {sign} = {fixed(at['J'], 2)} кг·м^2",
+        f"ε_1 = (M − ω_1^2/2·d{sign}/dφ)/(I_I + {sign}) = {fixed(at['ε1'], 3)} рад/с^2",
+    ]
+    motor, data = fw.motor, d.motor
+    if motor is not None and data is not None:
+        taken = " (η принято)" if data.accepted else ""
+        rows += [
+            f"P = M_{constant}·ω_1/η = {fixed(motor.power / 1000, 2)} кВт {'≤' if motor.strong else '>'} "
+            f"{number(motor.rated_power / 1000)} кВт ({data.name});  η = {number(data.efficiency)}{taken}",
+            f"[δ] = 2(n_с − n_н)/n_н = {fixed(motor.permitted, 4)} {'≥' if motor.steady else '<'} δ: "
+            + ("генераторного режима нет" if motor.steady else "двигатель переходит в генераторный режим"),
+        ]
+    w = fw.wheel
+    share = f"{number(d.rim_share)}·" if w.form == "rim" and d.rim_share < 1 else ""
+    form = f"D = (4·{share}I_м/(πρκc))^{{1/5}}" if w.form == "rim" else "D = (32I_м/(πρκ))^{1/5}"
+    rows.append(f"{'Обод' if w.form == 'rim' else 'Диск'}:  {form} = {fixed(w.diameter, 3)} м;  B = {fixed(w.width, 3)} м;"
+                + (f"  H = {fixed(w.thickness, 3)} м;" if w.form == "rim" else "") + f"  m = {number(w.mass, 4)} кг")
+    left = canvas.title(box, "Расчёт маховика по методу Мерцалова")
+    step = min(left.height / len(rows), 11.0)
+    for i, line in enumerate(rows):
+        canvas.text(complex(box.x0, left.y1 - (i + 1) * step + 0.35 * step), line, _height(line, box.width))
+
+
+def _height(text: str, width: float, height: float = 3.5) -> float:
+    """Height of lettering that fits the width: the wanted one, or a little less."""
+    return min(height, max(2.5, height * width / letter(text, height).width))
+
+
+def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
+    fw = _procedure(project)
+    rows = [["Маховик", "I_I, кг·м^2", "ω_{max}, рад/с", "ω_{min}, рад/с", "δ"]]
+    rows += [[c.name, fixed(c.first, 2), fixed(c.running.fastest, 4), fixed(c.running.slowest, 4), fixed(c.running.delta, 5)]
+             for c in fw.compared]
+    left = canvas.title(box.inset(0, 0, 0, 2), "Сравнение методов с точным движением")
+    high = min((left.height - 12.0) / len(rows), 8.0)
+    first = max(letter(line[0], 3.5).width for line in rows) + 3.0
+    place = canvas.table(complex(box.x0, left.y1), [first, *[(box.width - first) / 4] * 4], rows, high, 3.5)
+    _, _, _, sign = _signs(options)
+    *_, ours, theirs = fw.compared
+    text = (f"n → ∞: разность {fixed(ours.first - theirs.first, 3)} кг·м^2; теория: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = "
+            f"{fixed(fw.excess, 3)} кг·м^2")
+    canvas.text(complex(box.x0, place.y0 - 6.5), text, _height(text, box.width))

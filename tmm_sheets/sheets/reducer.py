@@ -1,0 +1,406 @@
+"""Views of the reducer: scheme in two views with the picture of velocities, plan of speeds, tables of the choice."""
+
+from __future__ import annotations
+
+from cmath import rect
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import Scale, fit_standard, fixed, handy, number
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.sheets.gear_marks import arrow_head, ratio, ruled_table, spread
+
+COLUMN = 19.0
+"""Distance of two columns of wheels of the axial view, mm."""
+FACE = 7.0
+"""Width of a wheel's rim in the axial view, mm."""
+STUB = 15.0
+"""Length of the shafts that lead in and out, mm."""
+HUB = 2.0
+"""Distance of a free wheel's hub from the line of its shaft, mm."""
+NAME = 30.0
+"""Room for a link's speed of rotation on its plan, mm."""
+NARROWEST, WIDEST = 75.0, 100.0
+"""Least width left for the picture of velocities and greatest of its velocities, mm: flat lines are hard to compare."""
+
+
+def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Axial view, picture of velocities and front view side by side on one main axis, to one scale."""
+    canvas.of = "reducer-velocities"
+    _Scheme(project.reducer, canvas, box).draw()
+    canvas.of = ""
+
+
+class _Scheme:
+    """The three views; heights in metres over the main axis become millimetres of the sheet."""
+
+    def __init__(self, reducer: Any, canvas: Canvas, box: Box) -> None:
+        self.reducer, self.canvas = reducer, canvas
+        self.stages, self.pair = reducer.stages, reducer.simple
+        self.before = reducer.data.simple == "before"
+        stage = self.stages[0]
+        self.reach = stage.axis + max(stage.wheels[1].diameter, stage.wheels[2].diameter) / 2
+        one, two = (w.diameter / 2 for w in self.pair)
+        self.offset = (one + two) * (1 if self.before else -1)
+        self.top = max(self.reach, two + 2 * one if self.before else one)
+        self.bottom = max(self.reach, two if self.before else one + 2 * two)
+        self.side = max(self.reach, one, two)
+        self.width = self.columns() * COLUMN + 2 * STUB
+        inner = box.inset(0, 0, 0, 18)
+        real, drawn = fit_standard(max(
+            (self.top + self.bottom) * 1e3 * 1.0 / (inner.height - 16),
+            2 * self.side * 1e3 / (inner.width - self.width - NARROWEST - 24)), 1.0)
+        self.mu = Scale("μ_l", real / drawn * 1e-3, "м/мм")
+        canvas.scales["reducer-scheme"] = self.mu
+        self.box = canvas.title(box, "Схема редуктора, картина скоростей и вид с торца", f"М {ratio(self.mu)}")
+        spare = self.box.height - (self.top + self.bottom) / self.mu.mu
+        self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
+        self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
+        left = self.box.x0 + self.width + 12
+        right = self.front.real - self.side / self.mu.mu - 12
+        self.picture = Box(left, self.box.y0, right, self.box.y1)
+
+    def columns(self) -> int:
+        """Columns of the axial view between the shafts that lead in and out."""
+        each = 2 if self.stages[0].single else 3
+        return len(self.stages) * each
+
+    def y(self, height: float) -> float:
+        """Ordinate on the sheet of a height over the main axis."""
+        return float(self.axis + height / self.mu.mu)
+
+    def draw(self) -> None:
+        self.axial()
+        self.end_view()
+        self.velocities()
+
+    # --- axial view ---------------------------------------------------------------------------------------------
+
+    def axial(self) -> None:
+        c = self.canvas
+        x = self.box.x0 + 3.0
+        end = self.box.x0 + self.width
+        c.line(complex(x - 2, self.axis), complex(end + 2, self.axis), "centre")
+        other = self.y(self.offset)
+        if self.before:
+            one, two = self.pair
+            at = x + STUB
+            c.line(complex(x, other), complex(at + FACE, other), "main")
+            self.wheel(one, at, self.offset)
+            self.wheel(two, at, 0.0, label=-1)
+            self.bearing(x + 6, other)
+            self.arrow(complex(x, other), "n_{вх}", -1)
+            c.line(complex(at - 11, self.axis), complex(at, self.axis), "main")
+            self.bearing(at - 8, self.axis)
+            x = at
+        else:
+            c.line(complex(x, self.axis), complex(x + STUB, self.axis), "main")
+            self.bearing(x + 6, self.axis)
+            self.arrow(complex(x, self.axis), "n_{вх}", -1)
+            x += STUB
+        for k, stage in enumerate(self.stages):
+            x = self.stage(stage, x, first=k == 0)
+        if self.before:
+            c.line(complex(x, self.axis), complex(x + STUB, self.axis), "main")
+            self.bearing(x + STUB - 6, self.axis)
+            self.arrow(complex(x + STUB, self.axis), "n_{вых}", 1)
+            return
+        one, two = self.pair
+        at = x + COLUMN * 0.6
+        c.line(complex(x, self.axis), complex(at + STUB, self.axis), "main")
+        self.bearing(at + STUB - 5, self.axis)
+        self.wheel(one, at, 0.0)
+        self.wheel(two, at, self.offset, label=-1)
+        c.line(complex(at - FACE, other), complex(at + STUB, other), "main")
+        self.bearing(at + STUB - 5, other)
+        self.arrow(complex(at + STUB, other), "n_{вых}", 1)
+
+    def arrow(self, at: complex, text: str, side: int) -> None:
+        """Name of a shaft's speed at its free end."""
+        self.canvas.label(at, text, away=complex(side, 1), height=5, gap=1.5)
+
+    def wheel(self, wheel: Any, x: float, height: float, label: int = 1, free: bool = False) -> None:
+        """A wheel edge on: its disc with the rim at both ends; a ``free`` one turns on its shaft with a hub of its own."""
+        c, r = self.canvas, wheel.diameter / 2
+        low, high = complex(x, self.y(height - r)), complex(x, self.y(height + r))
+        if free:
+            hub = [complex(x, self.y(height) + side * HUB) for side in (-1, 1)]
+            c.line(low, hub[0], "main")
+            c.line(hub[1], high, "main")
+            for end in hub:
+                c.line(end - FACE / 2, end + FACE / 2, "main")
+        else:
+            c.line(low, high, "main")
+        for end in (low, high):
+            c.line(end - FACE / 2, end + FACE / 2, "main")
+        at = high if label > 0 else low
+        c.label(at + FACE / 2, wheel.number, away=complex(1, label), height=5, gap=1.2)
+
+    def ring(self, wheel: Any, x: float) -> None:
+        """A ring that stands still: its rim above and below, held in the frame."""
+        c, r = self.canvas, wheel.diameter / 2
+        for side in (1, -1):
+            rim = complex(x, self.y(side * r))
+            out = rim + 6j * side
+            c.line(rim - FACE / 2, rim + FACE / 2, "main")
+            c.line(rim, out, "main")
+            a, b = out - 5, out + 5
+            c.line(a, b, "main")
+            c.hatch(a, b, side)
+        c.label(complex(x - FACE / 2, self.y(r)), wheel.number, away=-1 + 0.3j, height=5, gap=1.2)
+
+    def bell(self, wheel: Any, x: float, web: float) -> None:
+        """A ring that turns: its rims joined by a disc at ``web``."""
+        c, r = self.canvas, wheel.diameter / 2
+        for side in (1, -1):
+            rim = complex(x, self.y(side * r))
+            c.line(rim + FACE / 2 * np.sign(x - web), complex(web, rim.imag), "main")
+        c.line(complex(web, self.y(-r)), complex(web, self.y(r)), "main")
+        c.label(complex(x, self.y(r)), wheel.number, away=1j, height=5, gap=1.2)
+
+    def ground(self, x: float, towards: int) -> None:
+        """The hub of a sun that stands still, held in the frame beside it."""
+        c = self.canvas
+        at = complex(x + 6 * towards, self.axis)
+        c.line(complex(x, self.axis), at, "main")
+        a, b = at - 5j, at + 5j
+        c.line(a, b, "main")
+        c.hatch(a, b, -towards)
+
+    def stage(self, stage: Any, x: float, first: bool) -> float:
+        """One planetary stage beginning at ``x``, where the driving shaft ends; gives the end of its output shaft."""
+        c = self.canvas
+        one, two, three, four = stage.wheels
+        height = self.y(stage.axis)
+        if stage.driver == "carrier":
+            self.arm(stage, x)
+            inner, outer = x + COLUMN, x + 2 * COLUMN  # the fixed pair 3-4 stands next to the carrier
+            c.line(complex(x, height), complex(outer + FACE, height), "main")
+            self.block(three, inner, two, outer, stage.axis)
+            if stage.signs[1] > 0:
+                self.wheel(four, inner, 0.0, label=-1)
+                self.ground(inner, -1)
+            else:
+                self.ring(four, inner)
+            if stage.signs[0] > 0:
+                self.wheel(one, outer, 0.0, label=-1)
+                out = outer
+            else:
+                out = outer + FACE + 3
+                self.bell(one, outer, out)
+            c.line(complex(out, self.axis), complex(outer + COLUMN, self.axis), "main")
+            return outer + COLUMN
+        at = x if first and not self.before else x + COLUMN
+        if at > x:
+            c.line(complex(x, self.axis), complex(at, self.axis), "main")
+        if stage.single:
+            self.wheel(two, at, stage.axis, free=True)
+            last = at
+        else:
+            last = at + COLUMN
+            self.block(two, at, three, last, stage.axis)
+        if stage.driver == "sun":
+            self.wheel(one, at, 0.0, label=-1)
+            self.ring(four, last)
+        else:
+            self.wheel(one, at, 0.0, label=-1)
+            self.ground(at, 1)
+            self.bell(four, at, at - FACE - 1)
+        out = last + COLUMN * (1.0 if stage.driver == "ring" else 0.75)
+        c.line(complex(at - FACE, height), complex(out, height), "main")
+        self.arm(stage, out)
+        return out
+
+    def block(self, first: Any, x: float, second: Any, end: float, height: float) -> None:
+        """Two satellites joined by a sleeve."""
+        self.wheel(first, x, height, free=True)
+        self.wheel(second, end, height, free=True)
+        for side in (-1, 1):
+            y = self.y(height) + side * HUB
+            self.canvas.line(complex(x, y), complex(end, y), "main")
+
+    def bearing(self, x: float, y: float) -> None:
+        """A shaft's bearing in the frame: a hatched stroke on each side of it."""
+        for side in (-1, 1):
+            a, b = complex(x - 3, y + side * HUB), complex(x + 3, y + side * HUB)
+            self.canvas.line(a, b, "main")
+            self.canvas.hatch(a, b, side, depth=2.0, step=2.0)
+
+    def arm(self, stage: Any, x: float) -> None:
+        """The carrier's arm from the main axis to the satellite's."""
+        self.canvas.line(complex(x, self.axis), complex(x, self.y(stage.axis)), "main")
+        name = f"H_{stage.carrier[1:]}" if len(stage.carrier) > 1 else "H"
+        self.canvas.label(complex(x, self.y(stage.axis / 2)), name, away=1, height=5, gap=1.2)
+
+    # --- view along the axis ------------------------------------------------------------------------------------
+
+    def end_view(self) -> None:
+        """Pitch circles of one stage and of the simple one, the carrier with its satellites."""
+        c, o = self.canvas, self.front
+        stage = self.stages[0]
+        one, two, three, four = stage.wheels
+        mm = self.mu.mm
+        reach = mm(self.side) + 4
+        c.line(o - reach, o + reach, "centre")
+        c.line(complex(o.real, self.y(-self.bottom) - 4), complex(o.real, self.y(self.top) + 4), "centre")
+        other = complex(o.real, self.y(self.offset))
+        c.line(other - mm(max(w.diameter for w in self.pair)) / 2 * 0.35, other + mm(max(w.diameter for w in self.pair)) / 2 * 0.35,
+               "centre")
+        for wheel in (one, four):
+            c.circle(o, mm(wheel.diameter / 2), "main" if wheel is stage.fixed else "axis")
+        count = self.reducer.data.satellites
+        spokes = [rect(mm(stage.axis), pi / 2 + 2 * pi * k / count) for k in range(count)]
+        for spoke in spokes:
+            c.line(o, o + spoke, "main")
+            for wheel in ((two,) if stage.single else (two, three)):
+                c.circle(o + spoke, mm(wheel.diameter / 2), "axis")
+            c.dot(o + spoke, 1.0)
+        c.dot(o, 1.2)
+        c.dot(other, 1.2)
+        driving, driven = self.pair
+        near, far = (driven, driving) if self.before else (driving, driven)
+        c.circle(o, mm(near.diameter / 2), "thin")
+        c.circle(other, mm(far.diameter / 2), "axis")
+        side = spokes[-1] / abs(spokes[-1])
+        gap = pi / 2 - pi / count  # between two satellites
+        named = [(o, one, rect(1, gap + 0.05)), (o, four, rect(1, gap - 0.12)), (o, near, rect(1, -0.45)),
+                 (other, far, rect(1, 0.5 if self.before else -0.5))]
+        named += [(o + spokes[-1], wheel, side * rect(1, 0.6 + 0.9 * k))
+                  for k, wheel in enumerate((two,) if stage.single else (two, three))]
+        for centre, wheel, way in named:
+            here = [s.wheels[stage.wheels.index(wheel)].number for s in self.stages] if wheel in stage.wheels else [wheel.number]
+            c.label(centre + mm(wheel.diameter / 2) * way, ", ".join(here), away=way, height=3.5, gap=1.0)
+
+    # --- picture of velocities ----------------------------------------------------------------------------------
+
+    def velocities(self) -> None:
+        """Lines of the links over the heights of their points."""
+        c, plan = self.canvas, self.reducer.velocities
+        lines = {step.name: step for step in plan if step.rule.gives == "direction"}
+        velocity = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
+        low, high = (f([v.real for v in velocity.values()]) for f in (min, max))
+        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, WIDEST)), "(м/с)/мм")
+        c.scales["reducer-velocities"] = mu
+        whole = mu.mm(high - low)
+        zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
+        c.text(complex((self.picture.x0 + self.picture.x1) / 2, self.picture.y1 - 3.0), str(mu), 3.5, "centre")
+
+        def at(z: complex) -> complex:
+            return complex(zero + mu.mm(z.real), self.y(z.imag))
+
+        heights = [v.imag for v in velocity.values()]
+        c.line(complex(zero, self.y(min(heights)) - 6), complex(zero, self.y(max(heights)) + 6), "axis")
+        names: dict[float, list[str]] = {}
+        for name, value in velocity.items():
+            if name[0].isupper():
+                names.setdefault(round(self.y(value.imag), 1), []).append(name if len(name) == 1 else f"{name[0]}_{name[1:]}")
+        for y, group in names.items():
+            c.line(complex(self.box.x0 + STUB, y), complex(zero, y), "construction")
+            c.dot(complex(zero, y), 0.7)
+            c.label(complex(zero, y), ", ".join(group), away=-1 + 0.6j, height=3.5, gap=1.2)
+        for name, value in velocity.items():
+            if name[0].islower():
+                point = complex(zero, self.y(value.imag))
+                c.arrow(point, at(value), "vector")
+                way = 1 if value.real > 0 else -1
+                c.label(at(value), name, away=complex(way, 0.4), height=3.5, gap=1.2)
+        for link, step in lines.items():
+            on = [complex(a.value) for a in step.args]
+            on += [complex(other.value) for other in plan if other.rule.gives == "point" and step in other.args]
+            on.sort(key=lambda z: z.imag)
+            a, b = at(on[0]), at(on[-1])
+            c.ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
+            c.label(a + 0.62 * (b - a), _link(link), away=1j * (b - a) * (-1 if (b - a).real > 0 else 1), height=5, gap=1.2)
+
+
+def _link(name: str) -> str:
+    """A link's name as it is written: carriers with an index, blocks of satellites with a dash."""
+    return f"H_{name[1:]}" if name.startswith("H") and len(name) > 1 else name.replace("-", "–")
+
+
+def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Plan of the speeds of rotation: rays through the pole parallel to the lines of the picture of velocities."""
+    reducer = project.reducer
+    canvas.of = "reducer-speeds"
+    picture: Scale = canvas.scales["reducer-velocities"]
+    heights: Scale = canvas.scales["reducer-scheme"]
+    unit = reducer.speeds(1.0)
+    values = [float(step.value) for step in unit if step.rule.gives == "number"]
+    low, high = min(0.0, *values), max(0.0, *values)
+    room, tall = box.width - 30, box.height - 44
+    # A speed n takes n/mu_n mm, and with the picture's scale factors H = 30 mu_V/(pi mu_l mu_n).
+    least = max((high - low) / room, 30 / pi * picture.mu / (heights.mu * tall))
+    mu = Scale("μ_n", handy(least), "(об/мин)/мм")
+    distance = 30 / pi * picture.mu / (heights.mu * mu.mu)
+    inner = canvas.title(box, "План частот вращения", f"{mu};  H = {fixed(distance, 1)} мм")
+    canvas.scales["reducer-speeds"] = picture
+    plan = reducer.speeds(distance * heights.mu)
+    zero = (inner.x0 + inner.x1) / 2 - mu.mm(low + high) / 2
+    y = inner.y1 - max(14.0, (inner.height - distance) * 0.5)
+    origin, pole = complex(zero, y), complex(zero, y - distance)
+    canvas.line(complex(zero + mu.mm(low) - 10, y), complex(zero + mu.mm(high) + 10, y), "axis")
+    arrow_head(canvas, complex(zero + mu.mm(high) + 12, y), 1)
+    canvas.label(complex(zero + mu.mm(high) + 12, y), "n, об/мин", away=-1j, height=3.5, gap=1.5)
+    canvas.line(origin, pole, "thin")
+    canvas.dot(pole, 0.9)
+    canvas.label(pole, "P", away=-1j, height=5)
+    canvas.dot(origin, 0.8)
+    canvas.label(origin, "0", away=complex(-1, 1), height=3.5, gap=1.0)
+    ends = [(origin + picture.mm(complex(step.value).real), step.name) for step in plan
+            if step.name not in ("P", "0") and step.rule.gives == "point"]
+    ends.sort(key=lambda pair: pair[0].real)
+    places = spread([end.real for end, _ in ends], NAME)
+    for i in range(len(places)):
+        places[i] = max(places[i], box.x0 + NAME * (i + 0.5))
+    for i in range(len(places)):
+        places[-1 - i] = min(places[-1 - i], box.x1 - NAME * (i + 0.5))
+    for (end, link), x in zip(ends, places, strict=True):
+        canvas.line(pole, end, "main")
+        canvas.dot(end, 0.8)
+        canvas.line(end, complex(x, y + 7), "thin")
+        canvas.text(complex(x, y + 9), f"n_{{{_link(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
+    canvas.of = ""
+
+
+def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Table of the chosen tooth set and the runners-up."""
+    reducer = project.reducer
+    sets = (reducer.chosen, *reducer.runners_up)
+    names = list(reducer.teeth_of(reducer.chosen))
+    head = ["№", *(f"z_{n[1:]}" for n in names), "u", "Δu, %", "η"]
+    rows = [head]
+    for i, teeth in enumerate(sets):
+        rows.append([str(i + 1), *(str(z) for z in reducer.teeth_of(teeth).values()), fixed(teeth.ratio, 3),
+                     fixed(teeth.deviation * 100, 2), fixed(teeth.efficiency, 3)])
+    inner = canvas.title(box, "Подбор чисел зубьев (1 — принято)")
+    wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
+    widths = [w * box.width / sum(wide) for w in wide]
+    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(8.0, inner.height / len(rows)), height=3.5)
+
+
+def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Split of the ratio, conditions, efficiency, speeds."""
+    r = project.reducer
+    left, right = r.coaxiality
+    near, need = r.neighbourhood
+    rows: list[tuple[str, ...]] = [
+        ("Показатель", "Значение"),
+        ("Требуемое передаточное отношение", fixed(r.asked, 3)),
+        ("Простая ступень × планетарная", f"{fixed(r.simple_ratio, 3)} × {fixed(r.planetary_ratio, 3)}"),
+        ("Полученное; отклонение", f"{fixed(r.chosen.ratio, 3)}; {fixed(r.chosen.deviation * 100, 2)} %"),
+        ("Соосность, зубьев", f"{left} = {right}"),
+        (f"Сборка при q = {r.data.satellites} (целое)", number(r.assembly, 6)),
+        ("Соседство, модулей", f"{fixed(near, 2)} > {fixed(need, 2)}"),
+        ("КПД: пара; планетарная; весь", f"{number(r.data.pair_efficiency)}; {fixed(r.stage_efficiency ** r.data.stages, 3)}; "
+         f"{fixed(r.chosen.efficiency, 3)}"),
+    ]
+    first, second = r.simple
+    rows += [("Колёса 1 и 2 картины зацепления",
+              f"{first.number} (z = {first.teeth}) и {second.number} (z = {second.teeth})")]
+    inner = canvas.title(box, "Условия и показатели редуктора")
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), 8.0)
+    for k, text in enumerate(r.warnings):
+        canvas.text(complex(box.x0, end - 6 - 6 * k), f"{text[0].upper()}{text[1:]}.", 3.5)

@@ -1,0 +1,83 @@
+"""A sheet: frame, title block, the views its arrangement names, labels in free places; one Drawing comes out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from tmm_sheets.box import Box
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import Crowded, place
+from tmm_sheets.drawing.marks import Drawing
+from tmm_sheets.drawing.title_block import draw_frame
+from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.resources import template
+from tmm_sheets.sheets.arrangement import arrangement as arrange
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.scale import Scale
+    from tmm_sheets.project import Project
+
+WIDTH, HEIGHT = 841.0, 594.0
+"""A1 landscape, mm."""
+INSIDE = Box(20.0, 5.0, WIDTH - 5.0, HEIGHT - 5.0)
+"""Inside of the frame: 20 mm at the left for filing, 5 mm elsewhere (GOST 2.301)."""
+
+
+@dataclass(frozen=True)
+class Composed:
+    """A finished sheet with what is worth telling about it."""
+
+    drawing: Drawing
+    scales: dict[str, Scale]
+    crowded: tuple[Crowded, ...]
+
+
+def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
+    """The function a view names: module.function of tmm_sheets.sheets."""
+    module, _, function = draw.partition(".")
+    try:
+        if find_spec(f"tmm_sheets.sheets.{module}") is None:
+            raise AttributeError(module)
+        found: Callable[..., None] = getattr(import_module(f"tmm_sheets.sheets.{module}"), function)
+    except (AttributeError, ValueError):
+        path = template(f"sheets/{arrangement}.toml")
+        raise BadInput(Problem(f'there is no view "{draw}"', str(path), field="view.draw",
+                               hint="a view is named module.function, as in the shipped arrangements")) from None
+    return found
+
+
+def compose(project: Project, n: int) -> Drawing:
+    """Draw sheet ``n`` (from 1) of a project."""
+    return composed(project, n).drawing
+
+
+def composed(project: Project, n: int) -> Composed:
+    """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
+    sheets = project.variant.sheets
+    plan = arrange(sheets[n - 1])
+    canvas = Canvas()
+    block = project.variant.title_block
+    canvas.of = "title block"
+    fields = {
+        "designation": f"{block.designation} {plan.code}".strip(),
+        "title": plan.title,
+        "project": project.variant.project.title,
+        "letter": block.letter,
+        "developed": block.student,
+        "checked": block.checker,
+        "supervisor": block.supervisor,
+        "institution": block.institution,
+        "group": block.group,
+    }
+    draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(sheets))
+    for view in plan.views:
+        canvas.of = view.draw
+        _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
+    crowded = place(canvas, INSIDE)
+    title = f"{project.variant.project.title}. {plan.title}"
+    drawing = Drawing(WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets")
+    return Composed(drawing, dict(canvas.scales), tuple(crowded))

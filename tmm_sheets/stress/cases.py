@@ -1,0 +1,240 @@
+"""The cases of a stress run, one scene after another, and what each invariant came to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import inf, isnan, pi
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
+from tmm_sheets.stress import truth
+from tmm_sheets.stress.draw import chain, crank_of, loaded
+from tmm_sheets.stress.invariants import Residual, State, assembled, balancing, derivatives, geometry, rigidity, statics
+
+ANGLES = 24
+"""Crank angles of a case."""
+
+BOUNDS = {
+    "link lengths": (2e-15, "of the size"),
+    "closure on guides": (2e-15, "of the size and the way to the guide's point"),
+    "assembly side": (2e-15, "of the size"),
+    "NaN exactly where it cannot assemble": (2e-15, "of the size: what the pin's rounding may decide"),
+    "velocity closure": (1e-13, "of the fastest point"),
+    "acceleration closure": (1e-13, "of the greatest acceleration"),
+    "derivative of position = velocity": (1e-9, "of the fastest point; differences of order 8, condition under 100"),
+    "derivative of velocity = acceleration": (1e-8, "of the greatest acceleration; the same, pins 10^4 lengths from the origin"),
+    "power = change of energy": (1e-8, "of all powers; the same"),
+    "polygon closure": (1e-13, "of the largest force"),
+    "equilibrium of every link": (1e-13, "of the largest force"),
+    "moments on every link": (1e-13, "of the largest moment about the crank pivot"),
+    "lever = kinetostatics": (1e-13, "of the largest moment, times the condition"),
+    "energy over the turn": (1e-9, "of the work done to and fro"),
+    "velocity at a dead position": (2e-14, "of itself or of the pin's, against 60 digits"),
+    "acceleration at a dead position": (2e-14, "of itself or of the pin's, against 60 digits"),
+    "memory of a million positions, MB": (64.0, "plans drawn in chunks"),
+}
+"""Bound of each invariant and what it is a share of."""
+
+
+@dataclass
+class Worst:
+    """An invariant over all cases: how many tell of it, the largest value, the case it is from."""
+
+    cases: int = 0
+    value: float = 0.0
+    case: int = -1
+    scene: str = ""
+
+    def take(self, value: float, case: int, scene: str) -> None:
+        """One more case."""
+        self.cases += 1
+        if self.case < 0 or not (value <= self.value or isnan(self.value)):
+            self.value, self.case, self.scene = value, case, scene
+
+
+Scene = Callable[[np.random.Generator], Iterator[Residual]]
+
+
+def _everything(m: Mechanism, phi: Any, gravity: float) -> Iterator[Residual]:
+    s = State(m, phi)
+    yield from geometry(s)
+    yield from rigidity(s)
+    yield from assembled(s)
+    yield from derivatives(s, gravity)
+    yield from statics(s, gravity)
+
+
+def _gravity(rng: np.random.Generator, m: Mechanism) -> float:
+    """None, or of the order of the inertia forces."""
+    return 0.0 if rng.random() < 0.3 else m.crank.speed**2 * m.crank.length * float(rng.uniform(0.1, 2))
+
+
+def _around(rng: np.random.Generator, phi: float) -> Any:
+    """Crank angles about one where the mechanism assembles, and anywhere."""
+    near = phi + np.concatenate(([0.0], 10.0 ** rng.uniform(-12, 0, ANGLES // 2) * rng.choice((1, -1), ANGLES // 2)))
+    return np.concatenate((near, rng.uniform(-pi, pi, ANGLES - len(near))))
+
+
+def _chain(hard: str, spread: float = 0.3, empty: float = 0.2) -> Scene:
+    def scene(rng: np.random.Generator) -> Iterator[Residual]:
+        m, phi = chain(rng, hard)
+        m = loaded(rng, m, spread, empty)
+        yield from _everything(m, _around(rng, phi), _gravity(rng, m))
+
+    return scene
+
+
+def _turns(rng: np.random.Generator) -> Iterator[Residual]:
+    m, phi = chain(rng)
+    m = loaded(rng, m)
+    turns = 2 * pi * rng.integers(-(10**6), 10**6, ANGLES)
+    s = State(m, phi + turns + rng.uniform(-1e-3, 1e-3, ANGLES))
+    for invariants in (geometry, rigidity, assembled):
+        yield from invariants(s)
+    yield from statics(s, _gravity(rng, m))
+
+
+def _round(rng: np.random.Generator) -> Iterator[Residual]:
+    """Mechanisms that turn all the way: what weights and inertia forces ask of the crank adds up to nothing over a turn."""
+    phi = np.linspace(0, 2 * pi, 2048, endpoint=False)
+    for _ in range(200):
+        m, _ = chain(rng)
+        s = State(m, phi)
+        # Where links are nearly in line in one place the sum over equal parts has not converged yet.
+        if s.built.all() and float(s.condition.max()) < 30:
+            break
+    else:
+        return
+    m = loaded(rng, replace(m, crank=replace(m.crank, acceleration=0.0)), 0.3, 0.0)
+    s = State(m, phi)
+    moment = balancing(s, _gravity(rng, m))
+    yield "energy over the turn", np.abs([moment.sum() / np.abs(moment).sum()])
+
+
+def _limited(rng: np.random.Generator) -> tuple[Mechanism, float]:
+    """A crank that cannot turn round, with one group to the frame, and the crank angle of its dead position."""
+    crank = crank_of(rng, 10.0 ** float(rng.uniform(-3, 3)))
+    while True:
+        r, psi = crank.length, float(rng.uniform(-pi, pi))
+        l2, l3, l0 = (r * float(x) for x in rng.uniform(0.3, 3, 3))
+        side, side_of_limit = (int(rng.choice((1, -1))) for _ in range(2))
+        if rng.random() < 0.5:
+            cos = (r * r + l0 * l0 - (l2 + l3) ** 2) / (2 * r * l0)
+            if abs(cos) < 0.98:
+                g = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (l2, l3), (), side)
+                m = Mechanism(crank, {"A": 0j, "D": l0 * np.exp(1j * psi)}, {}, (g,), (), {n: Link(n) for n in "123"})
+                return m, psi + side_of_limit * float(np.arccos(cos))
+        else:
+            e = float(rng.uniform(-0.3, 0.3)) * r
+            sin = (l2 - e) / r
+            if abs(sin) < 0.98:
+                through = complex(-1j * np.exp(1j * psi) * e + np.exp(1j * psi) * rng.uniform(-1, 1) * r)
+                g = StructuralGroup(2, ("2", "3"), ("B",), "C", (l2,), ("x",), side)
+                m = Mechanism(crank, {"A": 0j}, {"x": Guide("x", "0", through, psi)}, (g,), (), {n: Link(n) for n in "123"})
+                at = float(np.arcsin(sin))
+                return m, psi + (at if side_of_limit > 0 else pi - at)
+
+
+def _sharpened(m: Mechanism, angle: float) -> float:
+    """The double next to the dead position on the side where the group assembles."""
+    low, high = angle - 1e-6, angle + 1e-6
+    inside = truth.motion(m, low) is not None
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (truth.motion(m, middle) is not None) == inside else (low, middle)
+    return low if inside else high
+
+
+def _dead(rng: np.random.Generator) -> Iterator[Residual]:
+    m, angle = _limited(rng)
+    m = loaded(rng, m)
+    limit = _sharpened(m, angle)
+    sense = 1 if truth.motion(m, limit + 1e-3) is not None else -1
+    gaps = np.concatenate(([0.0], 10.0 ** rng.uniform(-15, 0, 6)))
+    phi = limit + sense * gaps
+    true = [truth.motion(m, float(x)) for x in phi]
+    beyond = np.array([truth.motion(m, float(x)) is None for x in limit - sense * gaps[1:]])
+    s = State(m, np.concatenate((phi, limit - sense * gaps[1:])))
+    known = np.array([t is not None for t in true])
+    # Against exact arithmetic: here even the last bit of the crank angle decides rightly.
+    expected = np.concatenate((known, ~beyond))
+    yield "NaN exactly where it cannot assemble", np.where(s.built != expected, 1.0, 0.0)
+    # From 1e-15 rad on: the double next to the limit may be nearer to it than two doubles can tell.
+    for k, t in enumerate(true[1:], 1):
+        if t is not None:
+            pin = m.crank.speed * m.crank.length
+            yield "velocity at a dead position", [abs(s.v["C"][k] - t.v) / max(abs(t.v), pin)]
+            yield "acceleration at a dead position", [abs(s.a["C"][k] - t.a) / max(abs(t.a), pin * m.crank.speed)]
+    yield from geometry(s)
+    yield from rigidity(s)
+    yield from statics(s, 0.0)
+
+
+def _change_points(rng: np.random.Generator) -> Iterator[Residual]:
+    """Parallelograms, kites and four-bars that fold flat, or miss it by some 1e-15; about their change points."""
+    size = 2.0 ** int(rng.integers(-9, 10))
+    a, b = size * float(rng.integers(1, 64)) / 16, size * float(rng.integers(1, 64)) / 16
+    crank, rod, rocker, frame = ((a, b, a, b), (a, a, b, b), (a, b, a + b, 2 * max(a, b)))[int(rng.integers(3))]
+    if frame == 2 * max(a, b):
+        rocker = frame + crank - rod  # crank + frame = rod + rocker
+    rod *= 1 + float(rng.choice((0.0, 0.0, 1e-15, -1e-15, 1e-9)))
+    g = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (rod, rocker), (), int(rng.choice((1, -1))))
+    links = {n: Link(n) for n in "123"}
+    m = Mechanism(replace(crank_of(rng, size), length=crank), {"A": 0j, "D": complex(frame)}, {}, (g,), (), links)
+    near = 10.0 ** rng.uniform(-15, -1, ANGLES // 2)
+    s = State(m, np.concatenate((near, pi - near, [0.0, pi])))
+    yield from geometry(s)
+    yield from assembled(s)
+
+
+SCENES: dict[str, Scene] = {
+    "chain": _chain(""),
+    "turns all the way": _round,
+    "dead position": _dead,
+    "narrow crossing": _chain("narrow"),
+    "collinear": _chain("collinear"),
+    "change point": _change_points,
+    "guide by the vertical": _chain("guide"),
+    "guide point far away": _chain("far"),
+    "far from the origin": _chain("away"),
+    "million turns": _turns,
+    "huge and zero masses": _chain("", 6.0, 0.5),
+    "no forces": _chain("", 0.0, 1.0),
+}
+"""Scenes by name, run in turn."""
+
+
+def run_case(seed: int, case: int) -> tuple[str, list[tuple[str, float]]]:
+    """Scene of a case and the worst value of each invariant in it."""
+    scene = list(SCENES)[case % len(SCENES)]
+    found: dict[str, float] = {}
+    with np.errstate(all="ignore"):
+        for name, residual in SCENES[scene](np.random.default_rng((seed, case))):
+            values = np.asarray(residual, dtype=float)
+            values = values[~np.isnan(values)]
+            if len(values):
+                found[name] = max(found.get(name, 0.0), float(values.max()))
+    return scene, list(found.items())
+
+
+CHUNK = 20_000
+"""Positions drawn at once when there are very many."""
+
+
+def memory(positions: int = 1_000_000) -> float:
+    """Most memory, MB, that plans of a six-bar at very many positions take when they are drawn in chunks."""
+    import tracemalloc
+
+    rng = np.random.default_rng(0)
+    m = chain(rng, kinds=(1, 2))[0]
+    tracemalloc.start()
+    total = 0.0
+    for first in range(0, positions, CHUNK):
+        s = State(m, 2 * pi / positions * np.arange(first, min(first + CHUNK, positions)))
+        total = max(total, float(np.nanmax(s.size, initial=-inf)))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return peak / 1e6

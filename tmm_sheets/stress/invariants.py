@@ -1,0 +1,312 @@
+"""What holds for every mechanism, each as a residual that rounding alone keeps from being zero.
+
+A residual is divided by what it is a small difference of, and, where errors of the data grow on the way, by the condition of
+the position: the product of 1/sine of the angle under which the lines of each group cross, and of size over the shortest length
+they are measured on. What is left is some units of 1.1e-16 whatever the mechanism.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.methods.accelerations import Accelerations, acceleration_plan
+from tmm_sheets.methods.forces import external_loads, kinetostatics
+from tmm_sheets.methods.positions import Positions, position_plan
+from tmm_sheets.methods.velocities import Velocities, velocity_plan
+from tmm_sheets.methods.zhukovsky import lever
+
+Residual = tuple[str, Any]
+"""Name of the invariant and its residuals, one a position; NaN where there is nothing to say."""
+
+STENCIL = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
+"""Central difference of order 8: steps and weights."""
+
+
+def cross(u: Any, v: Any) -> Any:
+    """Cross product, in the plainest way."""
+    return (np.conj(u) * v).imag
+
+
+def dot(u: Any, v: Any) -> Any:
+    """Scalar product, in the plainest way."""
+    return (np.conj(u) * v).real
+
+
+class State:
+    """Plans of a mechanism at some crank angles as plain arrays, with their scales."""
+
+    def __init__(self, m: Mechanism, phi: Any) -> None:
+        self.m = m
+        self.phi = np.asarray(phi, dtype=float)
+        self.positions: Positions = position_plan(m, self.phi)
+        self.velocities: Velocities = velocity_plan(self.positions)
+        self.accelerations: Accelerations = acceleration_plan(self.velocities)
+        self.z = {name: self.spread(step) for name, step in self.positions.points.items()}
+        self.v = {name: self.spread(step) for name, step in self.velocities.points.items()}
+        self.a = {name: self.spread(step) for name, step in self.accelerations.points.items()}
+        self.u = {name: self.spread(step) for name, step in self.positions.directions.items()}
+        self.omega = {name: self.spread(step) for name, step in self.velocities.omega.items()}
+        self.epsilon = {name: self.spread(step) for name, step in self.accelerations.epsilon.items()}
+        self.size = self.largest(self.z) + m.crank.length
+        self.built = ~np.isnan(sum(self.z.values()))
+
+    def spread(self, step: Any) -> Any:
+        """Values of a step, one a position."""
+        return np.broadcast_to(step.value, self.phi.shape)
+
+    def largest(self, values: dict[str, Any]) -> Any:
+        """Largest magnitude a position, of what there is."""
+        return np.nanmax(np.abs(np.array([np.zeros(self.phi.shape), *values.values()])), axis=0)
+
+    @property
+    def fastest(self) -> Any:
+        """Scale of the velocities: points, and points carried with links."""
+        return self.largest(self.v) + self.m.crank.speed * self.m.crank.length + self.largest(self.omega) * self.size
+
+    @property
+    def sharpest(self) -> Any:
+        """Scale of the accelerations."""
+        turning = (self.largest(self.omega) ** 2 + self.largest(self.epsilon)) * self.size
+        return self.largest(self.a) + self.m.crank.speed**2 * self.m.crank.length + turning
+
+    def guide(self, name: str) -> tuple[Any, Any]:
+        """Point and direction of a guide."""
+        return self.spread(self.positions.guide_points[name]), self.spread(self.positions.guide_directions[name])
+
+    @property
+    def condition(self) -> Any:
+        """By how much errors of the data may have grown at each position."""
+        total: Any = np.ones(self.phi.shape)
+        for g in self.m.groups:
+            total = total * np.maximum(1.0, self._condition(g))
+        return total
+
+    def _condition(self, g: StructuralGroup) -> Any:
+        size = self.size
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if g.kind == 1:
+                (p, q), c = g.outer, str(g.inner)
+                r, t = self.z[c] - self.z[p], self.z[c] - self.z[q]
+                return size / min(g.lengths) * size / np.abs(self.z[p] - self.z[q]) / np.abs(cross(r, t) / np.abs(r * t))
+            if g.kind == 2:
+                r = self.z[str(g.inner)] - self.z[g.outer[0]]
+                return size / g.lengths[0] / np.abs(dot(r, self.guide(g.guides[0])[1]) / np.abs(r))
+            if g.kind == 3:
+                r = self.z[g.outer[0]] - self.z[g.outer[1]]
+                return size / np.abs(r) / np.abs(dot(r, self.u[g.links[1]]) / np.abs(r))
+            u = self.guide(g.guides[0])[1]
+            v = self.guide(g.guides[1])[1] if g.kind == 4 else self.u[g.links[0]]
+            return 1 / np.abs(cross(u, v))
+
+
+def geometry(s: State) -> Iterator[Residual]:
+    """Lengths of links, closures on guides, sides of assembly, points fixed on links."""
+    for g in s.m.groups:
+        at = [s.z[name] for name in g.outer]
+        if g.kind in (1, 2):
+            c = s.z[str(g.inner)]
+            # The direction of a guide is rounded: a turn of 1e-16 about a point far away.
+            reach = s.size if g.kind == 1 else s.size + np.abs(s.guide(g.guides[0])[0] - c)
+            for p, length in zip(at, g.lengths, strict=True):
+                yield "link lengths", np.abs(np.abs(c - p) - length) / reach
+        if g.kind == 1:
+            yield "assembly side", np.maximum(0, -g.side * cross(at[1] - at[0], c - at[0])) / s.size**2
+        if g.kind == 2:
+            u = s.guide(g.guides[0])[1]
+            yield "assembly side", np.maximum(0, -g.side * dot(u, c - at[0])) / s.size
+        if g.kind == 3:
+            yield "closure on guides", np.abs(cross(s.u[g.links[1]], at[0] - at[1]) + g.side * g.offset) / s.size
+            # The stone stays on its side of the rocker's pivot.
+            yield "assembly side", np.maximum(0, -dot(s.u[g.links[1]], at[0] - at[1])) / s.size
+        if g.inner:
+            for name in g.guides:
+                p, u = s.guide(name)
+                reach = s.size + np.abs(s.z[g.inner] - p)
+                yield "closure on guides", np.abs(cross(u, s.z[g.inner] - p)) / reach
+        if g.kind == 5:
+            yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - at[0])) / s.size
+        for link in g.links:
+            yield "link lengths", np.abs(np.abs(s.u[link]) - 1)
+    for point in s.m.points:
+        yield "link lengths", np.abs(np.abs(s.z[point.name] - s.z[point.start]) - abs(point.distance)) / s.size
+
+
+def rigidity(s: State) -> Iterator[Residual]:
+    """Velocities and accelerations of points on one link, and of points that slide on another."""
+    fastest, sharpest = s.fastest, s.sharpest
+    for link in s.m.links:
+        names = [p.name for p in s.m.pairs if link in p.links and p.motion == "rotation"]
+        names += [p.name for p in s.m.points if p.link == link]
+        w, e = s.omega[link], s.epsilon[link]
+        for p in names[1:]:
+            r = s.z[p] - s.z[names[0]]
+            yield "velocity closure", np.abs(s.v[p] - s.v[names[0]] - 1j * w * r) / fastest
+            yield "acceleration closure", np.abs(s.a[p] - s.a[names[0]] - (1j * e - w * w) * r) / sharpest
+    for g in s.m.groups:
+        for name in g.guides if g.kind in (2, 4) else ():
+            guide = s.m.guides[name]
+            at, (through, u) = s.z[str(g.inner)], s.guide(name)
+            carried: Any = 0j if guide.link == s.m.frame else s.velocities.coincident.get(
+                str(g.inner) + guide.link, s.velocities.points[str(guide.through)])
+            if guide.link != s.m.frame:
+                start = str(guide.through)
+                base = s.velocities.coincident.get(start + guide.link, s.velocities.points[start])
+                carried = s.spread(base) + 1j * s.omega[guide.link] * (at - through)
+            yield "velocity closure", np.abs(cross(u, s.v[str(g.inner)] - carried)) / fastest
+
+
+def assembled(s: State) -> Iterator[Residual]:
+    """NaN exactly where a group cannot assemble: how far from its limit it is where the plan says otherwise."""
+    for g in s.m.groups:
+        at = [s.z[name] for name in g.outer]
+        there = ~np.isnan(sum(at)) if at else np.ones(s.phi.shape, dtype=bool)
+        reach = s.size
+        if g.kind == 1:
+            d = np.abs(at[1] - at[0])
+            margin = np.minimum(sum(g.lengths) - d, d - abs(g.lengths[0] - g.lengths[1]))
+            built = ~np.isnan(s.z[str(g.inner)])
+            reach = s.size + sum(g.lengths)
+        elif g.kind == 2:
+            p, u = s.guide(g.guides[0])
+            margin = g.lengths[0] - np.abs(cross(u, p - at[0]))
+            there = there & ~np.isnan(p * u)
+            built = ~np.isnan(s.z[str(g.inner)])
+            reach = s.size + np.abs(p - at[0]) + g.lengths[0]
+        elif g.kind == 3:
+            margin = np.abs(at[1] - at[0]) - g.offset
+            built = ~np.isnan(s.u[g.links[1]])
+            reach = s.size + g.offset
+        else:
+            continue
+        yield "NaN exactly where it cannot assemble", np.where(there & (built != (margin >= 0)), np.abs(margin) / reach, 0.0)
+    # Nor may a velocity or acceleration be missing where the lines cross.
+    missing = np.isnan(sum(s.v.values()) + sum(s.a.values()))
+    yield "NaN exactly where it cannot assemble", np.where(s.built & missing & (s.condition < CROSSING), 1.0, 0.0)
+
+
+CROSSING = 1e8
+"""Condition up to which lines surely cross, in doubles."""
+
+TELLING = 100.0
+"""Condition up to which differences of positions can tell anything about velocities."""
+
+
+def derivatives(s: State, gravity: float) -> Iterator[Residual]:
+    """Differences of positions against velocities, of velocities against accelerations, of energy against the crank's power."""
+    condition = np.where(s.built, s.condition, np.inf)
+    k = np.flatnonzero(condition < TELLING)
+    if not len(k):
+        return
+    # Lines that cross under a sine are parallel about so far away, links in line its square: the steps stay well within.
+    h = 0.02 / condition[k] * np.minimum(1.0, s.m.crank.speed / np.sqrt((s.largest(s.omega) ** 2 + s.largest(s.epsilon))[k]))
+    around = s.phi[k] + np.multiply.outer([n * sign for n, _ in STENCIL for sign in (1, -1)], h)
+    step = (around[0::2] - around[1::2]) / (2 * np.array([[n] for n, _ in STENCIL]))  # as it is after rounding
+    other = State(s.m, around.ravel())
+    w = s.m.crank.omega
+    e = s.m.crank.sense * s.m.crank.acceleration
+
+    def slope(values: Any) -> Any:
+        """Derivative over the crank angle."""
+        values = values.reshape(around.shape)
+        return sum(weight * (values[2 * i] - values[2 * i + 1]) / step[i] for i, (_, weight) in enumerate(STENCIL))
+
+    for name in s.z:
+        yield "derivative of position = velocity", np.abs(slope(other.z[name]) * w - s.v[name][k]) / s.fastest[k]
+        # The plan's velocities belong to one speed of the crank.
+        rate = slope(other.v[name]) * w + s.v[name][k] * e / w
+        yield "derivative of velocity = acceleration", np.abs(rate - s.a[name][k]) / s.sharpest[k]
+    kinetic, potential = (a[k] for a in _energy(s, gravity))
+    change = slope(sum(_energy(other, gravity))) * w + 2 * kinetic * e / w
+    scale = (kinetic + np.abs(potential)) * (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k] + _powers(s, gravity)[k]
+    yield "power = change of energy", np.where(scale > 0, np.abs(balancing(s, gravity)[k] * w - change) / scale, 0.0)
+
+
+def _energy(s: State, gravity: float) -> tuple[Any, Any]:
+    """Kinetic energy of all links, J, and potential energy about the crank pivot."""
+    kinetic, potential = np.zeros(s.phi.shape), np.zeros(s.phi.shape)
+    for link in s.m.links.values():
+        kinetic = kinetic + link.inertia * s.omega[link.name] ** 2 / 2
+        if link.centre is not None:
+            kinetic = kinetic + link.mass * np.abs(s.v[link.centre]) ** 2 / 2
+            potential = potential + link.mass * gravity * (s.z[link.centre] - s.m.fixed[s.m.crank.pivot]).imag
+    return kinetic, potential
+
+
+def _powers(s: State, gravity: float) -> Any:
+    """Sum of the magnitudes of all powers, W."""
+    total = np.zeros(s.phi.shape)
+    for link in s.m.links.values():
+        total = total + link.inertia * np.abs(s.omega[link.name] * s.epsilon[link.name])
+        if link.centre is not None:
+            total = total + link.mass * (gravity + np.abs(s.a[link.centre])) * np.abs(s.v[link.centre])
+    return total
+
+
+def statics(s: State, gravity: float) -> Iterator[Residual]:
+    """Forces of every polygon, forces and moments on every link; balancing moment from the reactions and from the lever."""
+    m = s.m
+    loads, link_couples, _ = external_loads(s.positions, s.accelerations, gravity, ())
+    forces = kinetostatics(s.positions, s.accelerations, loads, link_couples, None)
+    balance = lever(s.velocities, forces.external, link_couples, None).balancing
+    reactions = {name: s.spread(step) for name, step in forces.reactions.items()}
+    outer = [s.spread(load.vector) for load in forces.external]
+    strongest = s.largest({str(i): f for i, f in enumerate([*reactions.values(), *outer])})
+    couples = {str(i): s.spread(c) for i, c in enumerate(c for of in forces.link_couples.values() for c in of)}
+    couples |= {name: s.spread(c) for name, c in forces.couples.items()}
+    # Far from the origin the pin's own coordinates are that much worse than the crank.
+    total = strongest * s.size + s.largest(couples) * s.size / m.crank.length
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for link in m.links:
+            pull: Any = sum((s.spread(load.vector) for load in loads[link]), np.zeros(s.phi.shape, dtype=complex))
+            for name, f in reactions.items():
+                if name[1] == link:
+                    pull = pull + f
+            yield "equilibrium of every link", np.where(strongest > 0, np.abs(pull) / strongest, 0.0)
+        for plan in forces.plans.values():
+            pull = np.zeros(s.phi.shape, dtype=complex)
+            for name, f in reactions.items():
+                if name[1] in plan.links and name[2] not in plan.links:
+                    pull = pull + f
+            for link in plan.links:
+                pull = sum((s.spread(load.vector) for load in loads[link]), pull)
+            yield "polygon closure", np.where(strongest > 0, np.abs(pull) / strongest, 0.0)
+        assert forces.balancing is not None
+        assert balance is not None
+        for turn in _moments(s, loads, link_couples, forces, reactions).values():
+            yield "moments on every link", np.where(total > 0, np.abs(turn) / total, 0.0)
+        by_statics, by_lever = s.spread(forces.balancing), s.spread(balance)
+        scale = (total + strongest * s.fastest / m.crank.speed) * s.condition
+        yield "lever = kinetostatics", np.where(total > 0, np.abs(by_statics - by_lever) / scale, 0.0)
+
+
+def _moments(s: State, loads: Any, link_couples: Any, forces: Any, reactions: dict[str, Any]) -> dict[str, Any]:
+    """Sum of moments about the crank pivot of everything that acts on each link, from the pairs alone, N m."""
+    pivot = s.z[s.m.crank.pivot]
+    turn: dict[str, Any] = {link: np.zeros(s.phi.shape) for link in s.m.links}
+    for link, total in turn.items():
+        for load in loads[link]:
+            total += cross(s.spread(load.at) - pivot, s.spread(load.vector))
+        for couple in link_couples.get(link, ()):
+            total += s.spread(couple)
+    turn[s.m.crank.link] += s.spread(forces.balancing)
+    for pair in s.m.pairs:
+        at = s.z[pair.name.rstrip("′″")]
+        for me, other in (pair.links, pair.links[::-1]):
+            if me in turn:
+                turn[me] += cross(at - pivot, reactions[f"F{me}{other}"])
+                if pair.motion == "translation":
+                    mine = forces.couples.get(f"F{me}{other}")
+                    turn[me] += s.spread(mine) if mine is not None else -s.spread(forces.couples[f"F{other}{me}"])
+    return turn
+
+
+def balancing(s: State, gravity: float) -> Any:
+    """Balancing moment of the lever, N m."""
+    loads, couples, _ = external_loads(s.positions, s.accelerations, gravity, ())
+    step = lever(s.velocities, [load for of_link in loads.values() for load in of_link], couples, None).balancing
+    assert step is not None
+    return s.spread(step)

@@ -1,0 +1,149 @@
+"""Numbers with their units, as people write them: ``"0.26 m"``, ``"260 мм"``, ``"72 rpm"``, ``"0,15 kg m2"``.
+
+A field fixes the quantity, so a unit is looked up among the few of that quantity; the result is always SI (m, rad,
+s, kg, N, N m, Pa ...). Conversion is exact up to the last rounding: decimal factors are rational numbers.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from difflib import get_close_matches
+from fractions import Fraction
+from types import MappingProxyType
+from typing import Any
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
+_LONGEST = 60  # characters; an exact fraction of a longer text would only burn time
+
+
+@dataclass(frozen=True)
+class Factor:
+    """SI value of one unit: ``rational``, times pi when ``pi`` is set."""
+
+    rational: Fraction
+    pi: bool = False
+
+    def si(self, number: str) -> float:
+        """SI value of a decimal number written in this unit."""
+        try:
+            value = float(Fraction(number) * self.rational)
+        except OverflowError:
+            return math.inf
+        return value * math.pi if self.pi else value
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A kind of quantity: its name in messages, an example, and the units it may be written in."""
+
+    name: str
+    example: str
+    units: MappingProxyType[str, Factor]
+
+
+def _quantity(name: str, example: str, units: dict[str, str | tuple[str, str]]) -> Quantity:
+    table = {}
+    for names, factor in units.items():
+        rational, pi = (factor, False) if isinstance(factor, str) else (factor[0], True)
+        for unit in names.split(" | "):
+            table[_plain(unit)] = Factor(Fraction(rational), pi)
+    return Quantity(name, example, MappingProxyType(table))
+
+
+def _plain(unit: str) -> str:
+    """One spelling for ``kg m2``, ``kg*m^2``, ``kg·m²``, ``кг⋅м2``: no signs of product and power, no spaces."""
+    unit = unit.replace("²", "2").replace("³", "3").replace("⁻¹", "-1")
+    return re.sub(r"[\s*·⋅×^]+", "", unit)
+
+
+NUMBER = _quantity("number", "0.025", {"": "1", "%": "1/100"})
+LENGTH = _quantity("length", "0.26 m", {"m | м": "1", "mm | мм": "1/1000", "cm | см": "1/100"})
+ANGLE = _quantity("angle", "30 deg", {"deg | ° | град": ("1/180", "pi"), "rad | рад": "1"})
+ANGULAR_VELOCITY = _quantity(
+    "speed of rotation",
+    "72 rpm",
+    {
+        "rad/s | рад/с": "1",
+        # A frequency of rotation is in 1/s (revolutions), an angular velocity in rad/s; GOST 8.417.
+        "1/s | s-1 | rev/s | об/с | 1/с | с-1": ("2", "pi"),
+        "rpm | rev/min | 1/min | min-1 | об/мин | 1/мин | мин-1": ("2/60", "pi"),
+    },
+)
+VELOCITY = _quantity("velocity", "8.64 m/s", {"m/s | м/с": "1"})
+ANGULAR_ACCELERATION = _quantity("angular acceleration", "1.7 rad/s2", {"rad/s2 | рад/с2": "1"})
+ACCELERATION = _quantity("acceleration", "9.81 m/s2", {"m/s2 | м/с2": "1"})
+MASS = _quantity("mass", "5.66 kg", {"kg | кг": "1", "g | г": "1/1000", "t | т": "1000"})
+INERTIA = _quantity("moment of inertia", "0.15 kg m2", {"kg m2 | кг м2": "1", "g m2 | г м2": "1/1000"})
+FORCE = _quantity("force", "2800 N", {"N | Н": "1", "kN | кН": "1000"})
+MOMENT = _quantity("moment", "612 N m", {"N m | Nm | Н м": "1", "kN m | кН м": "1000", "N mm | Н мм": "1/1000"})
+POWER = _quantity("power", "15 kW", {"W | Вт": "1", "kW | кВт": "1000"})
+PRESSURE = _quantity("pressure", "6 MPa", {"Pa | Па": "1", "kPa | кПа": "1000", "MPa | МПа | N/mm2": "1000000"})
+DENSITY = _quantity("density", "7300 kg/m3", {"kg/m3 | кг/м3": "1", "g/cm3 | г/см3": "1000"})
+STIFFNESS = _quantity("spring rate", "12 N/mm", {"N/m | Н/м": "1", "N/mm | Н/мм": "1000"})
+QUANTITIES = (
+    NUMBER, LENGTH, ANGLE, ANGULAR_VELOCITY, ANGULAR_ACCELERATION, ACCELERATION, MASS, INERTIA, FORCE, MOMENT, PRESSURE,
+    DENSITY, STIFFNESS, POWER, VELOCITY,
+)  # fmt: skip
+
+
+def parse(value: Any, quantity: Quantity) -> float:
+    """SI value of a number written with its unit.
+
+    Parameters
+    ----------
+    value
+        string of a number and a unit; for a pure number also a TOML number.
+    quantity
+        what the number must be.
+
+    Raises
+    ------
+    ValueError
+        what was expected and what to write instead; also for NaN and infinity.
+    """
+    expected = f"expected a {quantity.name}" if quantity.name[0] not in "aeiou" else f"expected an {quantity.name}"
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise ValueError(f"{expected}, not {_shown(value)}; write for example {_quoted(quantity)}")
+    if not isinstance(value, str):
+        if not math.isfinite(value):
+            raise ValueError(f"{expected}, not {value}; the number must be finite")
+        if quantity is not NUMBER:
+            raise ValueError(f"{expected} with its unit, not the bare number {value}; write for example "
+                             f"{_quoted(quantity)}")  # fmt: skip
+        return float(value)
+    text = value.strip().replace("−", "-")
+    match = _NUMBER.match(text)
+    if match is None or len(text) > _LONGEST:
+        raise ValueError(f"{expected}, not {value!r}; write for example {_quoted(quantity)}")
+    unit = _plain(text[match.end() :])
+    factor = quantity.units.get(unit)
+    if factor is None:
+        raise ValueError(f"{expected}, not {value!r}; {_about_unit(unit, text[match.end() :].strip(), quantity)}")
+    result = factor.si(match.group().replace(",", "."))
+    if not math.isfinite(result):
+        raise ValueError(f"{expected}, not {value!r}; the number must be finite")
+    return result
+
+
+def _about_unit(plain: str, written: str, quantity: Quantity) -> str:
+    if not plain:
+        return f"the unit is missing, write for example {_quoted(quantity)}"
+    if quantity is NUMBER:
+        return "a pure number has no unit"
+    others = [q.name for q in QUANTITIES if plain in q.units]
+    if others:
+        return f"{written!r} is a unit of {others[0]}; write for example {_quoted(quantity)}"
+    near = get_close_matches(plain, list(quantity.units), n=1)
+    known = ", ".join(u for u in quantity.units if u.isascii())
+    return f"unknown unit {written!r}" + (f", did you mean {near[0]!r}?" if near else f", known are {known}")
+
+
+def _quoted(quantity: Quantity) -> str:
+    return quantity.example if quantity is NUMBER else f'"{quantity.example}"'
+
+
+def _shown(value: Any) -> str:
+    names = {bool: "true or false", list: "a list", dict: "a table"}
+    return names.get(type(value), repr(value))
