@@ -20,12 +20,13 @@ MAY = {
     "bench": {"bench", "catalogue", "variant", "project", "results", "building", "explain", "methods", "construction", "mechanism",
               "drawing", "sheets"},
     "stress": {"stress", "methods", "construction", "mechanism"},
+    "compare": {"compare", "project", "explain", "files", "sheets", "methods", "construction", "mechanism", "drawing", "backends"},
 }
 """Parts of the package a folder may import at run time, besides NEUTRAL."""
 
-ALONE = {"ezdxf": {"backends.dxf"}, "reportlab": {"backends.pdf"}, "matplotlib": {"backends.png", "bench.plots"},
-         "pydantic": {"variant"}}
-"""Libraries that belong to one module each."""
+ALONE = {"ezdxf": {"backends.dxf", "compare.cad_file"}, "reportlab": {"backends.pdf"}, "matplotlib": {"backends.png", "bench.plots"},
+         "pydantic": {"variant"}, "cv2": {"compare"}}
+"""Libraries and the modules or folders they belong to."""
 
 
 def imports(path):
@@ -64,10 +65,10 @@ def test_imports(module):
             if folder in MAY and not typing and part not in NEUTRAL | {""}:
                 assert part in MAY[folder], f"{module} imports {name}"
         elif top in ALONE and not typing:
-            assert module in ALONE[top], f"{module} imports {name}"
+            assert {module, folder} & ALONE[top], f"{module} imports {name}"
         elif top == "shapely":
             assert inside or typing, f"{module} imports shapely at its top"
-            assert folder in ("drawing", "sheets", "methods", "bench"), f"{module} imports shapely"
+            assert folder in ("drawing", "sheets", "methods", "bench", "compare"), f"{module} imports shapely"
         if top == "numpy" and folder not in MAY:
             assert inside or typing or module == "project", f"{module} imports numpy at its top: the command line waits for it"
 

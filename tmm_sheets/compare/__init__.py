@@ -1,0 +1,1 @@
+"""Comparing hand drawings with the exact construction: measured lengths, photographs, CAD drawings."""
