@@ -6,7 +6,7 @@ from cmath import phase, rect
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from math import ceil, cos, pi, sin
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,7 @@ class Label:
 
     ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
     with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
+    ``of`` and ``part`` (its number) are those of the canvas when the label was asked for.
     """
 
     anchor: complex
@@ -34,6 +35,34 @@ class Label:
     away: complex = 0j
     gap: float = 1.0
     leader: bool = True
+    of: str = ""
+    part: int = -1
+
+
+class Part(NamedTuple):
+    """A view, or a titled part of one: its marks are those from ``first`` to where the next part begins.
+
+    ``draw`` is the view's name in the arrangement, ``title`` what stands over it on the sheet (lettering markup, may be empty).
+    """
+
+    first: int
+    draw: str
+    title: str
+    box: Box
+
+
+class Group(NamedTuple):
+    """Marks ``first`` .. ``end`` - 1, which whoever looks at the sheet sees as one thing.
+
+    ``text`` is the markup of lettering; ``part`` and ``anchor`` are those of a label, set when all views were drawn.
+    """
+
+    kind: Literal["arrow", "dot", "hatch", "lettering"]
+    first: int
+    end: int
+    text: str = ""
+    part: int = -1
+    anchor: complex | None = None
 
 
 @dataclass
@@ -42,12 +71,23 @@ class Canvas:
 
     ``of`` names the construction step or view the following marks belong to; it ends up on each mark.
     ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results.
+    ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again.
     """
 
     marks: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     scales: dict[str, Any] = field(default_factory=dict)
     of: str = ""
+    parts: list[Part] = field(default_factory=list)
+    groups: list[Group] = field(default_factory=list)
+
+    def begin(self, box: Box, title: str = "", draw: str = "") -> None:
+        """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
+        self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box))
+
+    def _one(self, kind: Literal["arrow", "dot", "hatch", "lettering"], first: int, text: str = "") -> None:
+        if len(self.marks) > first:
+            self.groups.append(Group(kind, first, len(self.marks), text))
 
     def line(self, a: complex, b: complex, style: str = "thin") -> None:
         """Straight stroke; nothing is drawn for a zero length or a NaN end."""
@@ -97,6 +137,7 @@ class Canvas:
         """Filled dot."""
         t = np.linspace(0, 2 * pi, 13)[:-1]
         self.fill(at + radius * (np.cos(t) + 1j * np.sin(t)), style)
+        self._one("dot", len(self.marks) - 1)
 
     def arrow(self, a: complex, b: complex, style: str = "main", head: float | None = None) -> None:
         """Arrow from ``a`` to ``b``; the head shrinks with short arrows and is left out below half a millimetre."""
@@ -106,20 +147,24 @@ class Canvas:
         u = (b - a) / length
         size = min(ARROW[0] if head is None else head, 0.6 * length)
         half = size * ARROW[1] / ARROW[0]
+        first = len(self.marks)
         self.line(a, b - 0.9 * size * u, style)
         self.fill((b, b - size * u + 1j * half * u, b - size * u - 1j * half * u), style)
+        self._one("arrow", first)
 
     def arc_arrow(self, centre: complex, radius: float, start: float, end: float, style: str = "axis", head: float = 3.0) -> None:
         """Curved arrow from angle ``start`` to ``end`` (rad; clockwise when ``end`` < ``start``)."""
         sense = 1 if end > start else -1
         lo, hi = min(start, end), max(start, end)
         cut = 0.8 * head / radius
+        first = len(self.marks)
         self.arc(centre, radius, lo + (cut if sense < 0 else 0), hi - (cut if sense > 0 else 0), style)
         tip = centre + rect(radius, end)
         # The head lies along the chord of its own length, so it seems to sit on the arc.
         u = rect(1, end + sense * (pi / 2 - 0.5 * head / radius))
         half = head * ARROW[1] / ARROW[0]
         self.fill((tip, tip - head * u + 1j * half * u, tip - head * u - 1j * half * u), style)
+        self._one("arrow", first)
 
     def hatch(self, a: complex, b: complex, side: int = 1, depth: float = 2.5, step: float = 2.5) -> None:
         """Short strokes at 45 degrees along ``a`` .. ``b``, on its left (``side`` +1) or right: a fixed surface."""
@@ -128,20 +173,22 @@ class Canvas:
             return
         u = (b - a) / length
         n = max(round(length / step), 1)
+        first = len(self.marks)
         for i in range(n):
             p = a + u * (i + 0.5) * length / n
             self.line(p, p + depth * u * (-1 + 1j * side), "hatch")
+        self._one("hatch", first)
 
     def text(self, at: complex, markup: str, height: float = 3.5, align: Align = "left", angle: float = 0.0) -> Lettering:
         """Lettering at a fixed place: ``at`` is the left end, middle or right end of the baseline."""
         laid = letter(markup, height)
         shift = {"left": 0.0, "centre": -laid.width / 2, "right": -laid.width}[align]
-        self.put(laid, at + rect(1, angle) * shift, angle)
+        self.put(laid, at + rect(1, angle) * shift, angle, markup)
         return laid
 
-    def put(self, laid: Lettering, at: complex, angle: float = 0.0) -> None:
+    def put(self, laid: Lettering, at: complex, angle: float = 0.0, markup: str = "") -> None:
         """Set laid out lettering with the left end of its baseline at ``at``."""
-        u = rect(1, angle)
+        u, first = rect(1, angle), len(self.marks)
         # Programs that read a PDF back know upright rectangles only: those of slanting letters and indices overlap sooner.
         loose = LOOSE if abs(sin(2 * angle)) > 1e-6 else 0.0
         for run in laid.runs:
@@ -149,15 +196,18 @@ class Canvas:
             self.marks.append(Text(at + u * (run.at + shift), run.text, run.height, angle, self.of))
         for bar in laid.bars:
             self.marks.append(Line(at + u * bar.a, at + u * bar.b, "text", self.of))
+        self._one("lettering", first, markup)
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
               leader: bool = True) -> None:
         """Ask for lettering near a point; see :class:`Label`."""
         if anchor == anchor:
-            self.labels.append(Label(complex(anchor), markup, height, complex(away), gap, leader))
+            self.labels.append(
+                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
         """Title of a view centred at the top of its place, the scale factor under it; returns what is left below."""
+        self.begin(box, text)
         x = (box.x0 + box.x1) / 2
         y = box.y1 - height
         self.text(complex(x, y), text, height, "centre")
@@ -176,6 +226,7 @@ class Canvas:
         past = 2.0 if offset > 0 else -2.0
         self.line(a, p + past * n, "thin")
         self.line(b, q + past * n, "thin")
+        first = len(self.marks)
         self.line(p, q, "thin")
         size, half = 3.5, 0.6
         inside = abs(b - a) > 3 * size
@@ -184,6 +235,7 @@ class Canvas:
             self.fill((tip, tip + size * w + 1j * half * w, tip + size * w - 1j * half * w), "thin")
             if not inside:
                 self.line(tip, tip + 2 * size * w, "thin")
+        self._one("arrow", first)
         angle = phase(u)
         if angle > pi / 2 + 1e-6 or angle <= -pi / 2 + 1e-6:
             u, angle = -u, phase(-u)
@@ -208,19 +260,21 @@ class Canvas:
                 laid = letter(cell, height)
                 if laid.width > w - 1.0:
                     laid = letter(cell, height * (w - 1.0) / laid.width)
-                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - height / 2))
+                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - height / 2), 0.0, cell)
                 x += w
         return Box(x0, y0, x0 + total, y1)
 
     def angle_mark(self, vertex: complex, start: float, end: float, radius: float, markup: str, height: float = 3.5,
                    share: float = 0.5) -> None:
         """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its sign at ``share`` of it."""
+        first = len(self.marks)
         self.arc(vertex, radius, start, end, "thin")
         for tip, sense in ((start, 1), (end, -1)):
             if (end - start) * radius > 8:
                 u = rect(1, tip + sense * (pi / 2 + 1.5 / radius))
                 p = vertex + rect(radius, tip)
                 self.fill((p, p + 3 * u + 0.5j * u, p + 3 * u - 0.5j * u), "thin")
+        self._one("arrow", first)
         mid = rect(1, start + share * (end - start))
         self.label(vertex + radius * mid, markup, mid, height)
 
@@ -234,7 +288,7 @@ def hatch_polygon(canvas: Canvas, outline: Points, step: float = 3.0, angle: flo
     reach, u = abs(complex(x1 - x0, y1 - y0)), complex(cos(angle), sin(angle))
     middle = complex((x0 + x1) / 2, (y0 + y1) / 2)
     n = ceil(reach / step / 2)
-    lines = []
+    lines, first = [], len(canvas.marks)
     for i in range(-n, n + 1):
         p = middle + 1j * u * i * step
         a, b = p - u * reach, p + u * reach
@@ -244,5 +298,5 @@ def hatch_polygon(canvas: Canvas, outline: Points, step: float = 3.0, angle: flo
         if part.geom_type == "LineString" and part.length > 0.2:
             (ax, ay), (bx, by) = part.coords[0], part.coords[-1]
             canvas.line(complex(ax, ay), complex(bx, by), "hatch")
-
-
+    if len(canvas.marks) > first:
+        canvas.groups.append(Group("hatch", first, len(canvas.marks)))

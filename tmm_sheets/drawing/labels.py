@@ -34,8 +34,13 @@ FAR = 1e3
 BESIDE = 1.2
 """Clear distance, mm, between a symbol, such as a hinge, and its letter."""
 
-_DISTANCES = (0.0, 0.6, 1.4, 2.5, 4.0, 6.0, 8.5, 11.0, 14.0, 18.0, 23.0)
+_DISTANCES = np.array([0.0, 0.6, 1.4, 2.5, 4.0, 6.0, 8.5, 11.0, 14.0, 18.0, 23.0])
 _DIRECTIONS = np.exp(1j * np.linspace(0, 2 * pi, 24, endpoint=False))
+_TURNING = 4.0 * np.abs(np.angle(_DIRECTIONS)) / pi
+"""Cost of each direction, the first being the one asked for."""
+_MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
+_FIRST_BEYOND = np.array([0, 0, 1, 1])[:, None]
+"""A rectangle's cells: from the one its lower left corner is in to the one after that of its upper right corner."""
 
 
 @dataclass(frozen=True)
@@ -76,17 +81,16 @@ class _Grid:
         for mark in marks:
             if isinstance(mark, Text):
                 self._box(heavy, text_box(mark))
-                continue
-            if isinstance(mark, Fill):
+            elif isinstance(mark, Line):
+                runs[mark.style in HEAVY].append(np.array([mark.a, mark.b]))
+            else:
                 points = flat(mark)
-                runs[True].append(_sampled(points))
-                self._box(heavy, points)
-                continue
-            runs[mark.style in HEAVY].append(
-                _sampled(np.array([mark.a, mark.b])) if isinstance(mark, Line) else _sampled(flat(mark)))
+                if isinstance(mark, Fill):
+                    self._box(heavy, points)
+                runs[isinstance(mark, Fill) or mark.style in HEAVY].append(points)
         for kind, target in ((True, heavy), (False, light)):
             if runs[kind]:
-                self._ink(target, np.concatenate(runs[kind]))
+                self._ink(target, _sampled(runs[kind]))
         # Main lines are up to a millimetre wide: their neighbours count as inked too.
         wide = heavy.copy()
         wide[1:] |= heavy[:-1]
@@ -94,49 +98,50 @@ class _Grid:
         wide[:, 1:] |= heavy[:, :-1]
         wide[:, :-1] |= heavy[:, 1:]
         self.heavy, self.light = _summed(wide), _summed(light)
+        self._corner = np.array([area.x0, area.y0] * 2)[:, None]
+        self.inside = np.array([area.x0 + 1, area.y0 + 1, area.x1 - 1, area.y1 - 1])[:, None]
+        self._last = np.array([shape[1], shape[0]] * 2)[:, None]
         self.boxes: npt.NDArray[np.float64] = np.empty((0, 4))
 
-    def _cells(self, p: Points) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-        return ((p.imag - self.area.y0) / CELL).astype(int), ((p.real - self.area.x0) / CELL).astype(int)
-
     def _ink(self, target: npt.NDArray[np.uint8], p: Points) -> None:
-        i, j = self._cells(p)
+        i, j = ((p.imag - self.area.y0) / CELL).astype(int), ((p.real - self.area.x0) / CELL).astype(int)
         ok = (i >= 0) & (i < target.shape[0]) & (j >= 0) & (j < target.shape[1])
         target[i[ok], j[ok]] = 1
 
     def _box(self, target: npt.NDArray[np.uint8], corners: Points) -> None:
-        i0, j0 = (max(int(v), 0) for v in ((corners.imag.min() - self.area.y0) / CELL, (corners.real.min() - self.area.x0) / CELL))
-        i1, j1 = (int(v) + 1 for v in ((corners.imag.max() - self.area.y0) / CELL, (corners.real.max() - self.area.x0) / CELL))
+        x, y = corners.real.tolist(), corners.imag.tolist()  # four numbers: quicker without arrays
+        i0, j0 = max(int((min(y) - self.area.y0) / CELL), 0), max(int((min(x) - self.area.x0) / CELL), 0)
+        i1, j1 = int((max(y) - self.area.y0) / CELL) + 1, int((max(x) - self.area.x0) / CELL) + 1
         target[i0:max(i1, 0), j0:max(j1, 0)] = 1
 
-    def under(self, table: npt.NDArray[np.int32], x0: Points, y0: Points, x1: Points, y1: Points) -> npt.NDArray[np.int32]:
-        """Inked cells under each rectangle."""
-        n, m = table.shape
-        i0 = np.clip(((y0 - self.area.y0) / CELL).astype(int), 0, n - 1)
-        i1 = np.clip(((y1 - self.area.y0) / CELL).astype(int) + 1, 0, n - 1)
-        j0 = np.clip(((x0 - self.area.x0) / CELL).astype(int), 0, m - 1)
-        j1 = np.clip(((x1 - self.area.x0) / CELL).astype(int) + 1, 0, m - 1)
+    def under(self, table: npt.NDArray[np.int32], sides: npt.NDArray[np.float64]) -> npt.NDArray[np.int32]:
+        """Inked cells under rectangles; ``sides`` are their x0, y0, x1, y1, shape (4, n)."""
+        cells = ((sides - self._corner) / CELL).astype(int) + _FIRST_BEYOND
+        j0, i0, j1, i1 = np.minimum(np.maximum(cells, 0), self._last)
         return np.asarray(table[i1, j1] - table[i0, j1] - table[i1, j0] + table[i0, j0])
 
 
 def _summed(cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32]:
-    # Along rows first: that way both passes run through memory in order (2 million cells a sheet).
     table = np.zeros((cells.shape[0] + 1, cells.shape[1] + 1), np.int32)
-    inner = table[1:, 1:]
-    np.cumsum(cells, axis=1, dtype=np.int32, out=inner)
-    np.cumsum(inner, axis=0, out=inner)
+    np.cumsum(cells, axis=1, dtype=np.int32, out=table[1:, 1:])
+    for i in range(1, len(table)):  # row upon row: three times quicker than another cumsum, which walks down columns
+        table[i] += table[i - 1]
     return table
 
 
-def _sampled(p: Points) -> Points:
-    """Points along a polyline no further apart than half a cell."""
-    lengths = np.abs(np.diff(p))
-    total = float(lengths.sum())
-    if not total > 0:
-        return p
-    n = int(total / (CELL / 2)) + 2
-    along = np.concatenate(([0.0], np.cumsum(lengths)))
-    t = np.linspace(0, total, n)
+def _sampled(lines: list[Points]) -> Points:
+    """Points along polylines no further apart than half a cell, all lines in one go."""
+    counts = np.array([len(p) for p in lines])
+    p = np.concatenate(lines)
+    first = np.cumsum(counts) - counts
+    steps = np.abs(np.diff(p, prepend=p[:1]))
+    steps[first] = 1.0  # a gap between one line and the next: only their own points are looked up
+    along = np.cumsum(steps)
+    start, total = along[first], along[first + counts - 1] - along[first]
+    n = (total / (CELL / 2)).astype(int) + 2
+    line = np.repeat(np.arange(len(lines)), n)
+    k = np.arange(n.sum()) - np.repeat(np.cumsum(n) - n, n)
+    t = start[line] + total[line] * (k / (n - 1)[line])
     return np.asarray(np.interp(t, along, p.real) + 1j * np.interp(t, along, p.imag))
 
 
@@ -144,35 +149,38 @@ def _set(canvas: Canvas, grid: _Grid, label: Label) -> bool:
     laid = letter(label.text, label.height)
     w, h = laid.width + 0.15 * label.height, laid.ascent + laid.descent
     units = _DIRECTIONS if not label.away else _DIRECTIONS * (label.away / abs(label.away))
-    turn = np.abs(np.angle(units / units[0])) / pi if label.away else np.zeros(len(units))
-    distances = np.array(_DISTANCES) + label.gap
+    distances = _DISTANCES + label.gap
     # The rectangle's support along the direction keeps its nearest corner or side at the asked distance.
     support = np.minimum(w / 2 / np.maximum(np.abs(units.real), 1e-9), h / 2 / np.maximum(np.abs(units.imag), 1e-9))
     centres = (label.anchor + units[None, :] * (distances[:, None] + support[None, :])).ravel()
     # A label that should do without a leader line gets one only when nothing near is free.
-    far = 0.0 if label.leader else FAR * (distances - label.gap > NEAR)
-    cost = ((distances * 1.2 + far)[:, None] + 4.0 * turn[None, :]).ravel()
-    x0, x1 = centres.real - w / 2, centres.real + w / 2
-    y0, y1 = centres.imag - h / 2, centres.imag + h / 2
-    cost = cost + LIGHT * grid.under(grid.light, x0, y0, x1, y1)
-    m = CLEAR
-    blocked = grid.under(grid.heavy, x0 - m, y0 - m, x1 + m, y1 + m) > 0
-    blocked |= (x0 < grid.area.x0 + 1) | (y0 < grid.area.y0 + 1) | (x1 > grid.area.x1 - 1) | (y1 > grid.area.y1 - 1)
+    far = 0.0 if label.leader else FAR * (_DISTANCES > NEAR)
+    cost = (distances * 1.2 + far)[:, None]
+    cost = (cost + _TURNING if label.away else np.repeat(cost, len(units), axis=1)).ravel()
+    sides = np.array([centres.real - w / 2, centres.imag - h / 2, centres.real + w / 2, centres.imag + h / 2])
+    cost = cost + LIGHT * grid.under(grid.light, sides)
+    clear = x0, y0, x1, y1 = sides + _MARGIN
+    blocked = grid.under(grid.heavy, clear) > 0
+    blocked |= (sides[:2] < grid.inside[:2]).any(axis=0) | (sides[2:] > grid.inside[2:]).any(axis=0)
     b = grid.boxes
     if len(b):
-        beside = (x0[:, None] - m < b[:, 2]) & (x1[:, None] + m > b[:, 0])
-        hit = beside & (y0[:, None] - m < b[:, 3]) & (y1[:, None] + m > b[:, 1])
+        beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
+        hit = beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])
         blocked |= hit.any(axis=1)
     free = ~blocked
     choice = int(np.argmin(np.where(free, cost, cost + 1e6)))
     centre, found = centres[choice], bool(free[choice])
     if not found:
-        return_cost = cost + 20.0 * grid.under(grid.heavy, x0, y0, x1, y1)
+        return_cost = cost + 20.0 * grid.under(grid.heavy, sides)
         centre = centres[int(np.argmin(return_cost))]
     lower_left = centre - complex(w / 2, h / 2)
-    canvas.put(laid, lower_left + 1j * laid.descent)
+    canvas.of, first = label.of, len(canvas.marks)
+    canvas.put(laid, lower_left + 1j * laid.descent, 0.0, label.text)
     grid.boxes = np.vstack((grid.boxes, (lower_left.real, lower_left.imag, lower_left.real + w, lower_left.imag + h)))
     _leader(canvas, label, lower_left, w, h)
+    if len(canvas.marks) > first:
+        # The leader line belongs to its label.
+        canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
     return found
 
 

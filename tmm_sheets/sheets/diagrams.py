@@ -238,6 +238,8 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: Quantity
     spare = box.height - above - below - (top - bottom)
     o = complex(box.x0 + _LEFT + max(box.width - _LEFT - _RIGHT - length, 0) / 2, box.y0 + below + spare / 2 - bottom)
     canvas.of = q.key
+    if level is None:
+        canvas.begin(box, f"График {q.letter}")
     canvas.arrow(o, o + length + graphs.OVER, "axis", 3.0)
     canvas.text(o + length + graphs.OVER - 5.5j, "φ_1", 3.5, "right")
     canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)

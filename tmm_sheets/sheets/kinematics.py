@@ -33,11 +33,15 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     canvas.scales["dead-positions"] = frame.scale
     canvas.circle(frame(centre), c.length / frame.scale.mu, "thin")
     _paths(canvas, project, frame, box.y1 - 18.0)
-    for i, _ in cycle.drawn:
+    of = canvas.of
+    for i, label in cycle.drawn:
         if i != k:
+            canvas.of = f"position plan {label}"
             linkage.draw(canvas, pos, i, frame, "thin")
+    canvas.of = f"position plan {cycle.labels[k]}"
     linkage.draw_guides(canvas, pos, k, frame)
     linkage.draw(canvas, pos, k, frame, "main")
+    canvas.of = of
     indicator.draw(project, canvas, frame)
     _position_numbers(canvas, project, frame)
     _letters(canvas, project, frame)
@@ -281,6 +285,8 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
             frame = Frame(scale, middle - scale.mm(s.centre))
             index, label = shown[i]
             canvas.of = f"velocity plan {label}"
+            if count > 1:
+                canvas.begin(Box(x, y - heights[r] - spare, x + w, y), f"План скоростей, положение {label}")
             _draw_plan(canvas, vel.plan, index, frame, "p", symbols_at=count == 1)
             canvas.text(complex(middle.real, y - heights[r] - spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
             x += w

@@ -197,6 +197,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     at = [complex(pos.points[n].at(k)) for n in dict.fromkeys(names)] + [s.at for s in shown]
     place = box.inset(3.0, 5.0, 3.0, 19.0)
     frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", *_reach(at, shown), place)
+    canvas.of = f"group {g.name}"
     canvas.title(box, f"Группа Ассура {g.name} ({g.kind}-й вид)", str(frame.scale))
     if g.kind != 5:
         linkage.draw_guides(canvas, pos, k, frame, g.links)

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import Canvas, Group, Part
 from tmm_sheets.drawing.labels import Crowded, place
 from tmm_sheets.drawing.marks import Drawing
 from tmm_sheets.drawing.title_block import draw_frame
@@ -29,11 +29,17 @@ INSIDE = Box(20.0, 5.0, WIDTH - 5.0, HEIGHT - 5.0)
 
 @dataclass(frozen=True)
 class Composed:
-    """A finished sheet with what is worth telling about it."""
+    """A finished sheet with what is worth telling about it.
+
+    ``parts`` are the views, from the mark each begins with, the last one stands for all labels; ``groups`` the marks that are one
+    thing (arrows, lettering).
+    """
 
     drawing: Drawing
     scales: dict[str, Scale]
     crowded: tuple[Crowded, ...]
+    parts: tuple[Part, ...] = ()
+    groups: tuple[Group, ...] = ()
 
 
 def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
@@ -62,6 +68,7 @@ def composed(project: Project, n: int) -> Composed:
     canvas = Canvas()
     block = project.variant.title_block
     canvas.of = "title block"
+    canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", "title block")
     fields = {
         "designation": f"{block.designation} {plan.code}".strip(),
         "title": plan.title,
@@ -76,8 +83,10 @@ def composed(project: Project, n: int) -> Composed:
     draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(sheets))
     for view in plan.views:
         canvas.of = view.draw
+        canvas.begin(view.box, "", view.draw)
         _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
+    canvas.begin(INSIDE, "", "labels")
     crowded = place(canvas, INSIDE)
     title = f"{project.variant.project.title}. {plan.title}"
     drawing = Drawing(WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets")
-    return Composed(drawing, dict(canvas.scales), tuple(crowded))
+    return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups))
