@@ -347,14 +347,15 @@ def plot(
 @click.option("--plot", "folder", type=click.Path(path_type=Path), metavar="DIR", help="Also draw log-log diagrams, SVG.")
 @click.option("--quick", is_flag=True, help="A few small runs only: tries the benchmark out.")
 @click.option("--summary", is_flag=True, help="The first and the last run of each method only, in Markdown.")
+@click.option("--peers", is_flag=True, help="Instead: the same linkages by other programs, those of the extra [peers].")
 @click.option("--cost", metavar="PROJECT", help="Instead: what one sheet or one number of PROJECT costs against the whole.")
-def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, cost: str | None) -> None:
+def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None) -> None:
     """Measure every method: error against a truth of 30 digits or more, and time."""
     from tmm_sheets import files
     from tmm_sheets.progress import Progress
 
     if cost is not None:
-        if target or folder or quick or summary:
+        if target or folder or quick or summary or peers:
             raise click.UsageError("--cost goes alone")
         from tmm_sheets.bench import costs
 
@@ -363,13 +364,20 @@ def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, c
         click.echo(told)
         return
     from tmm_sheets.bench import records
-    from tmm_sheets.bench.run import run
+    from tmm_sheets.bench import run as benchmark
 
     if folder is not None:
         files.check_folder(folder)
     with Progress() as progress:
-        found = run(quick, lambda what: progress.say(f"{what} ..."))
-    click.echo((records.summary if summary else records.table)(found), err=target == "-")
+        measure = benchmark.compare if peers else benchmark.run
+        found = measure(quick, lambda what: progress.say(f"{what} ..."))
+    if peers:
+        from tmm_sheets.bench import peers as by_others
+
+        text = (by_others.summary if summary else by_others.table)(found)
+    else:
+        text = (records.summary if summary else records.table)(found)
+    click.echo(text, err=target == "-")
     made: dict[Path, bytes] = {}
     if target == "-":
         click.echo(records.as_json(found))

@@ -118,7 +118,7 @@ def table(records: Iterable[Record]) -> str:
         named = f"{r.value:g} {r.parameter}"
         error = "-" if r.error is None else f"{r.error:.1e}"
         note = f"  {r.note}" if r.note else ""
-        lines.append(f"  {r.method:56}{named:>22}{error:>10}{_time(r.seconds):>11}{_time(r.each):>10}{note}")
+        lines.append(f"  {r.method:56}{named:>22}{error:>10}{told(r.seconds):>11}{told(r.each):>10}{note}")
     return "\n".join(lines[1:])
 
 
@@ -132,12 +132,13 @@ def summary(records: Iterable[Record]) -> str:
         ends = [rows[0], rows[-1]] if len(rows) > 1 else rows
         values = " .. ".join(f"{r.value:,.0f}" for r in ends)
         errors = " .. ".join("-" if r.error is None else f"{r.error:.0e}" for r in ends)
-        times = " .. ".join(_time(r.seconds) for r in ends)
+        times = " .. ".join(told(r.seconds) for r in ends)
         lines.append(f"| {name} | {method} | {values} {rows[0].parameter} | {errors} | {times} |")
     return "\n".join(lines)
 
 
-def _time(seconds: float | None) -> str:
+def told(seconds: float | None) -> str:
+    """Seconds with three digits in the unit that suits them."""
     if seconds is None:
         return "failed"
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):

@@ -1,0 +1,219 @@
+"""Other programs from PyPI on the same mechanisms, at the same positions, judged by the same truth.
+
+Every program has its mechanisms ready before the clock starts and gives, for all positions of a turn, the points of all hinges as
+arrays: positions alone; velocities with the positions they need; accelerations with both. Run by its own fastest way, warmed up.
+What a program has no way to say is null with the reason, and so is what fails.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import warnings
+from collections.abc import Callable, Iterable
+from functools import partial
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets import __version__
+from tmm_sheets.bench import peer_programs, truth
+from tmm_sheets.bench.linkages import BLOCK, shaper, study_of
+from tmm_sheets.bench.peer_programs import Points, Program, Turn
+from tmm_sheets.bench.records import Bench, Record, told
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
+
+COUNTS = (12, 360, 10_000)
+QUANTITIES = ("positions", "velocities", "accelerations")
+CHECKED = 12
+"""Positions compared with the truth, spread over the turn from its first to its last."""
+
+_CRANK = Crank("1", "A", "B", 0.1, 10.0, 1)
+_FOUR_BAR = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), 1)
+
+
+def _links(n: int) -> dict[str, Link]:
+    return {str(k): Link(str(k)) for k in range(1, n + 1)}
+
+
+def four_bar() -> Mechanism:
+    """Crank 0.1, coupler 0.35, rocker 0.25, frame 0.4 m."""
+    return Mechanism(_CRANK, {"A": 0j, "D": 0.4 + 0j}, {}, (_FOUR_BAR,), (), _links(3))
+
+
+def slider_crank() -> Mechanism:
+    """Crank 0.1, rod 0.35 m, guide 0.02 m below the crank's axis."""
+    return Mechanism(_CRANK, {"A": 0j}, {"x": Guide("x", "0", -0.02j, 0.0)},
+                     (StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",), 1),), (), _links(3))
+
+
+def six_bar() -> Mechanism:
+    """The four-bar, its rocker lengthened to 0.4 m, with a rod of 0.5 m that drives a slider on a fixed guide."""
+    return Mechanism(_CRANK, {"A": 0j, "D": 0.4 + 0j}, {"x": Guide("x", "0", 0.3j, 0.0)},
+                     (_FOUR_BAR, StructuralGroup(2, ("4", "5"), ("E",), "F", (0.5,), ("x",), 1)),
+                     (LinkPoint("E", "3", "D", "C", 0.4),), _links(5))
+
+
+def turning_guide() -> Mechanism:
+    """The four-bar with a slider along its rocker, held by a rod of 0.25 m from the frame: Coriolis on a turning guide."""
+    return Mechanism(_CRANK, {"A": 0j, "D": 0.4 + 0j, "E": 0.55 + 0j}, {"r": Guide("r", "3", "D", 0.0, "C")},
+                     (_FOUR_BAR, StructuralGroup(2, ("4", "5"), ("E",), "F", (0.25,), ("r",), 1)), (), _links(5))
+
+
+MECHANISMS: tuple[tuple[str, Callable[[], Mechanism]], ...] = (
+    ("four-bar", four_bar), ("slider-crank", slider_crank), ("six-bar", six_bar), ("six-bar shaper", shaper),
+    ("six-bar with a turning guide", turning_guide),
+)
+
+
+def _moving(m: Mechanism, points: Iterable[str]) -> list[str]:
+    """Hinges compared: what moves, without the centres of mass that other programs need not know."""
+    centres = {link.centre for link in m.links.values()} - {g.inner for g in m.groups} - {m.crank.pin}
+    return [name for name in points if name not in m.fixed and name not in centres]
+
+
+class Ours(Program):
+    """The program itself, its plans recorded anew at every run."""
+
+    name = f"tmm-sheets {__version__}"
+
+    def prepare(self, mechanism: str, m: Mechanism, turn: Turn) -> dict[str, Callable[[], Points]]:
+        """A run for each quantity."""
+        return {quantity: partial(self._run, m, turn, quantity) for quantity in QUANTITIES}
+
+    @staticmethod
+    def _run(m: Mechanism, turn: Turn, quantity: str) -> Points:
+        found: dict[str, list[Any]] = {}
+        for start in range(0, turn.n, BLOCK):
+            study = study_of(m, turn.angles[start:start + BLOCK])
+            for name, step in getattr(study, quantity).points.items():
+                found.setdefault(name, []).append(step.value)
+        return {name: parts[0] if len(parts) == 1 else np.concatenate([np.atleast_1d(p) for p in parts])
+                for name, parts in found.items()}
+
+
+PROGRAMS: tuple[type[Program], ...] = (Ours, *peer_programs.PROGRAMS)
+
+
+class _Judge:
+    """Truth at some positions of a turn; error of what a program gives there."""
+
+    def __init__(self, m: Mechanism, turn: Turn) -> None:
+        self.keep = np.unique(np.linspace(0, turn.n - 1, CHECKED).round().astype(int))
+        moved = [truth.motion(m, m.crank.sense * float(turn.angles[k])) for k in self.keep]
+        names = _moving(m, moved[0].z)
+        self.goals = {quantity: [{k: complex(getattr(at, letter)[k]) for k in names} for at in moved]
+                      for quantity, letter in zip(QUANTITIES, "zva", strict=True)}
+
+    def error(self, quantity: str, found: Points) -> float:
+        """Largest error of any hinge, relative to the largest value of any hinge; every hinge must be there."""
+        goals = self.goals[quantity]
+        missing = [k for k in goals[0] if k not in found]
+        if missing:
+            raise CannotBuild(f"does not give {', '.join(missing)}")
+        off = max(abs(complex(found[k][n]) - goal[k]) for n, goal in zip(self.keep, goals, strict=True) for k in goal)
+        return off / max(abs(value) for goal in goals for value in goal.values())
+
+
+def rows(bench: Bench, programs: Iterable[type[Program]] = PROGRAMS) -> None:
+    """Every program on every mechanism, for each quantity and count of positions."""
+    programs = tuple(programs)
+    for mechanism, build in MECHANISMS:
+        m = build()
+        for n in bench.upto(COUNTS, 12):
+            turn = Turn(n, np.asarray(2 * pi / n * np.arange(n), dtype=np.float64))
+            judge = _Judge(m, turn)
+            for program in programs:
+                _rows_of(bench, program, mechanism, m, turn, judge)
+
+
+def _rows_of(bench: Bench, program: type[Program], mechanism: str, m: Mechanism, turn: Turn, judge: _Judge) -> None:
+    # They print, and warn of what their libraries no longer like: neither is ours to show.
+    with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            entrant = program()
+            runs, reason = entrant.prepare(mechanism, m, turn), ""
+        except Exception as e:
+            runs, reason = {}, _said(e)
+        for quantity in QUANTITIES:
+            what = (f"peers: {mechanism}", f"{quantity}, {program.name if reason else entrant.name}", "positions")
+            if quantity in runs:
+                bench.row(what, turn.n, partial(_guarded, runs[quantity]), partial(judge.error, quantity))
+            else:
+                bench.records.append(Record(*what, turn.n, None, None, reason or "it does not give them"))
+
+
+def _guarded(run: Callable[[], Points]) -> Points:
+    try:
+        return run()
+    except Exception as e:
+        raise CannotBuild(_said(e)) from e
+
+
+def _said(e: Exception) -> str:
+    text = str(e).splitlines()[0] if str(e) else ""
+    return text if isinstance(e, CannotBuild) else f"{type(e).__name__}: {text}"
+
+
+def _side_by_side(records: Iterable[Record]) -> tuple[list[str], dict[tuple[str, str, float], dict[str, Record]]]:
+    """Programs in order, and the records of each mechanism, quantity and count by program."""
+    programs: dict[str, None] = {}
+    found: dict[tuple[str, str, float], dict[str, Record]] = {}
+    for r in records:
+        quantity, program = r.method.split(", ", 1)
+        programs[program] = None
+        found.setdefault((r.field.removeprefix("peers: "), quantity, r.value), {})[program] = r
+    return list(programs), found
+
+
+def _cells(r: Record | None) -> tuple[str, str]:
+    if r is None or r.seconds is None:
+        return "-", "-"
+    return told(r.each), f"{r.error:.0e}"
+
+
+def _reasons(records: Iterable[Record]) -> list[str]:
+    reasons: dict[tuple[str, str], list[str]] = {}
+    for r in records:
+        if r.note:
+            reasons.setdefault((r.method.split(", ", 1)[1], r.note), []).append(r.field.removeprefix("peers: "))
+    return [f"{program}, {', '.join(dict.fromkeys(fields))}: {note}" for (program, note), fields in reasons.items()]
+
+
+def table(records: Iterable[Record]) -> str:
+    """Time for each position and error, the programs side by side, as plain text."""
+    records = list(records)
+    programs, found = _side_by_side(records)
+    lines: list[str] = []
+    shown = ""
+    for (mechanism, quantity, n), by_program in found.items():
+        if mechanism != shown:
+            shown = mechanism
+            lines += ["", f"{mechanism:30}" + "".join(f"{p:>24}" for p in programs)]
+        cells = ["{:>14}{:>10}".format(*_cells(by_program.get(p))) for p in programs]
+        lines.append(f"  {quantity:16}{n:>10g}  {''.join(cells)}")
+    return "\n".join([*lines[1:], *(["", *_reasons(records)] if _reasons(records) else [])])
+
+
+def summary(records: Iterable[Record]) -> str:
+    """Time for each position and error, the programs side by side, in Markdown; one row for all counts of positions."""
+    records = list(records)
+    programs, found = _side_by_side(records)
+    rows: dict[tuple[str, str], list[dict[str, Record]]] = {}
+    counts: dict[str, None] = {}
+    for (mechanism, quantity, n), by_program in found.items():
+        rows.setdefault((mechanism, quantity), []).append(by_program)
+        counts[f"{n:,.0f}"] = None
+    heads = ["mechanism", f"{' / '.join(counts)} positions", *programs]
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    for (mechanism, quantity), several in rows.items():
+        cells = []
+        for p in programs:
+            pairs = [_cells(by_program.get(p)) for by_program in several]
+            times, errors = (" / ".join(part) for part in zip(*pairs, strict=True))
+            cells.append("-" if all(pair[0] == "-" for pair in pairs) else f"{times}; error {errors}")
+        lines.append(f"| {mechanism} | {quantity} | {' | '.join(cells)} |")
+    return "\n".join([*lines, "", *(f"- {reason}" for reason in _reasons(records))])
