@@ -177,12 +177,12 @@ class Kinepy(Program):
             goal = {k: complex(z) for k, z in truth.state(m, mp.mpf(0)).points.items()}
         off: dict[tuple[int, ...], float] = {}
         count: int = len(system._object.signs)
-        for tried in product((1, -1), repeat=count):
-            signs = tuple(tried)
+        for signs in product((1, -1), repeat=count):
             system.change_signs(list(signs))
             system.solve_kinematics(np.zeros(1))
             off[signs] = sum(abs(complex(*point()[:, 0]) - goal[k]) for k, point in points.items())
-        system.change_signs(list(min(off, key=lambda s: (off[s] != off[s], off[s]))))
+        best = min(off, key=lambda tried: (off[tried] != off[tried], off[tried]))  # what does not assemble is NaN
+        system.change_signs(list(best))
 
     @staticmethod
     def _solids(mechanism: str, m: Mechanism, s: Any) -> tuple[Any, dict[str, Callable[[], Any]]]:
