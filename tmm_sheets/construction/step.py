@@ -52,6 +52,8 @@ class Rule:
         Russian sentence with ``{0}``, ``{1}`` ... for the arguments, ``{name}`` and ``{value}`` for the result.
     helpers
         ``helpers(args, value)`` at one position gives the helper lines; None when the move leaves none.
+    beyond_paper
+        True for a number that only spares rounding: no pencil knows it, and the error analysis replays the moves without it.
     """
 
     name: str
@@ -60,6 +62,7 @@ class Rule:
     gives: Kind
     wording: str
     helpers: Callable[[tuple[Any, ...], Any], tuple[Helper, ...]] | None = None
+    beyond_paper: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -19,7 +19,7 @@ from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, angle_of, d
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 
-OF_ANGLE = Rule("length from the crank angle", lambda f, phi: f(phi), (), "length", "{name} = {value}.")
+OF_ANGLE = Rule("length from the crank angle", lambda f, phi: f(phi), (), "length", "{name} = {value}.", beyond_paper=True)
 SINE_ARCS = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
                  "Синус угла между звеньями {name} = {value}.")
 SINE_LINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",

@@ -1,0 +1,395 @@
+"""Error analysis of constructions: what a pencil's error does to every point, length and number.
+
+The recorded steps are replayed, each with its arguments disturbed; no formula of any method is written a second time. Chained from
+step to step, with the positions as an axis of all arrays, the replays give the Jacobian of every value by the error of everything
+drawn before it, on its own plan and on those it was measured on, back to the first given point.
+
+What a pencil does
+    A drawn point is off by ``pencil`` mm in x and in y. A line or an arc is off by ``pencil`` mm across itself, hence a point where
+    two of them cross under the angle alpha is off by 1/sin(alpha) times as much (root mean square over both directions): the
+    condition number of the crossing. A length taken into compasses is off by ``pencil`` mm, one read off a ruler by ``reading`` mm:
+    that is how lengths come from one plan into numbers, forces and other plans. Directions are taken from the points as they are
+    drawn. The pole of a plan is where it is. What is given by numbers has no error: links have their lengths, however short they
+    are drawn, so another plan takes from a link of known length its direction only.
+
+How errors add up
+    As the root of the sum of squares, correlations included: errors of one origin that reach a value on several ways add up with
+    their signs. An error has therefore the same confidence as ``pencil`` and ``reading`` have: if these are what a careful hand
+    keeps nineteen times of twenty, so is it.
+
+Where it cannot be linear
+    At a dead centre a crossing moves as the root of the error. Disturbances are therefore not vanishing: each argument is moved by
+    its own error, to both sides, and where the two sides do not agree, the farther one counts and :meth:`Errors.linear` tells: the
+    error is then on the safe side, up to twice what chance would make it. A step that cannot be built has the error NaN: it cannot
+    be drawn.
+
+Sources: J. R. Taylor, An Introduction to Error Analysis, 2nd ed., 3.11 (propagation step by step, correlated errors); manual 000,
+introduction to section 3 (accuracy of drawing).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Step, value_of
+
+Floats = npt.NDArray[np.float64]
+Matrices = npt.NDArray[np.float64]
+"""Shape (n, 2, m): for every position a matrix with the rows x and y; n is 1 for what does not depend on the position."""
+
+PENCIL = 0.25
+"""Error of a drawn point, a line across itself or the opening of compasses, mm."""
+READING = 0.5
+"""Error of a length read off a ruler, mm."""
+
+_DRAWN = ("point", "vector")
+_BENT = 0.5
+"""Share of a displacement by which both sides may disagree before the greater counts."""
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What is known of a step: its Jacobian by its sources, the covariance of its own error and that of all errors together.
+
+    ``sources`` are numbers of steps in ascending order; ``jacobian`` has two columns for each.
+    """
+
+    sources: npt.NDArray[np.intp]
+    jacobian: Matrices
+    own: Matrices
+    covariance: Matrices
+    condition: Floats
+    linear: npt.NDArray[np.bool_]
+
+
+class Errors:
+    """Errors of everything constructed on some plans, computed when asked for.
+
+    Parameters
+    ----------
+    plans
+        each plan with its scale factor: unit of the plan per millimetre of paper. Steps of other plans and of none are taken as
+        computed: they have no pencil error of their own.
+    pencil
+        error of a drawn point, mm.
+    reading
+        error of a length read off a ruler, mm.
+    """
+
+    def __init__(self, plans: Iterable[tuple[Plan, float]], pencil: float = PENCIL, reading: float = READING) -> None:
+        self.pencil = pencil
+        self.reading = reading
+        self._mu: dict[int, float] = {}
+        self._paper: dict[int, tuple[str, float]] = {}
+        self._poles: set[int] = set()
+        for plan, mu in plans:
+            for step in plan:
+                self._mu[id(step)] = mu
+                self._paper[id(step)] = plan.unit, mu
+                if step.name == plan.pole:
+                    self._poles.add(id(step))
+        self._known: dict[int, _Known | None] = {}
+        self._numbers: dict[int, int] = {}
+        self._steps: list[Step] = []
+        self._links: dict[int, dict[int, Any]] = {}
+
+    # --- what is asked for --------------------------------------------------------------------------------------------
+    def error(self, step: Step) -> Floats:
+        """Error of a step in its own unit, shape (n,) or (1,): of a point in the direction where it is greatest; NaN: not drawn."""
+        known = self._of(step)
+        return np.zeros(1) if known is None else _greatest(known.covariance)
+
+    def in_mm(self, step: Step) -> Floats:
+        """Error of a drawn step in millimetres of its plan, shape (n,) or (1,)."""
+        return self.error(step) / self._mu[id(step)]
+
+    def of_plan(self, plan: Plan) -> Mapping[str, Floats]:
+        """Error of each point and length of a plan, mm, by the names of the steps."""
+        return {step.name: self.in_mm(step) for step in plan if step.rule.gives in (*_DRAWN, "length") and _numeric(step.value)}
+
+    def between(self, tail: Step, head: Step) -> Floats:
+        """Error of the distance of two points in their unit, without that of reading it: along the line that joins them.
+
+        Where the distance is no longer than its own error, any direction may be the one.
+        """
+        k = self._combined({tail: -1.0, head: 1.0})
+        if k is None:
+            return np.zeros(1)
+        away = np.atleast_1d(np.asarray(head.value) - np.asarray(tail.value))
+        size = np.abs(away)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            u = np.where(size > 0, away / size, 1)
+        u = np.stack((u.real, u.imag), axis=-1)
+        along = np.sqrt(np.einsum("ni,nij,nj->n", u, k, u))
+        return np.where(size > 3 * along, along, _greatest(k))
+
+    def condition(self, step: Step) -> Floats:
+        """How many times as much a crossing is off as the lines or arcs that make it: 1/sin(alpha); 1 for other steps."""
+        known = self._of(step)
+        return np.ones(1) if known is None else known.condition
+
+    def linear(self, step: Step) -> npt.NDArray[np.bool_]:
+        """False where the step is so near to tangency that an error to one side does not do what it does to the other."""
+        known = self._of(step)
+        return np.ones(1, dtype=bool) if known is None else known.linear
+
+    def sensitivity(self, step: Step, source: Step) -> Matrices:
+        """Displacement of a step for a unit displacement of an earlier one, d(x, y)/d(x, y), shape (n, 2, 2) or (1, 2, 2).
+
+        Of a number the first row or column counts. Zero when the step does not depend on the other.
+        """
+        known, number = self._of(step), self._numbers.get(id(source))
+        if known is None or number is None or number not in known.sources:
+            return np.zeros((1, 2, 2))
+        i = 2 * int(np.searchsorted(known.sources, number))
+        return known.jacobian[:, :, i:i + 2]
+
+    # --- one step after another ---------------------------------------------------------------------------------------
+    def _of(self, step: Step) -> _Known | None:
+        if id(step) not in self._known:
+            for s in step.ancestors():
+                if id(s) not in self._known:
+                    with np.errstate(all="ignore"):
+                        self._known[id(s)] = self._analysed(s)
+        return self._known[id(step)]
+
+    def _analysed(self, step: Step) -> _Known | None:
+        """None for what has no error: given numbers and directions, what no pencil draws, and values that are no numbers."""
+        self._note_lengths(step)
+        if not _numeric(step.value) or _beyond_paper(step):
+            return None
+        args = tuple(a for a in step.args if not (isinstance(a, Step) and _beyond_paper(a)))
+        base, size = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {})), np.size(step.value)
+        if base.shape != (size,):
+            return None
+        snapped = self._snapped(step, args)
+        drawn, measured = self._ends(step, args, snapped)
+        mu = self._mu.get(id(step), 0.0)
+        moves: list[tuple[int, Floats]] = []
+        for i, a in enumerate(args):
+            known = self._known[id(a)] if isinstance(a, Step) else None
+            if isinstance(a, Step) and (not _numeric(a.value) or np.size(a.value) > size):
+                continue  # a whole curve at once: its error is that of the line drawn along it
+            if known is not None or i in drawn or i in measured:
+                error = np.zeros(1) if known is None else _greatest(known.covariance)
+                ends = self.pencil * self._mu.get(id(a), mu) if i in drawn or i in measured else 0.0
+                moves.append((i, np.maximum(error, ends)))
+        derivatives, bend = _derivatives(step, args, base, moves, snapped)
+        columns = [(known, d) for i, d in derivatives.items() if (known := self._known.get(id(args[i]))) is not None]
+        lines = sum((_square(derivatives[i]) for i in drawn if i in derivatives), np.zeros((1, 2, 2)))
+        # Each end of a segment has its share of reading it, a point measured from the pole all of it.
+        share = 0.5 if len(drawn) + len(measured) > 1 else 1.0
+        own = sum((share * (self.reading * self._mu.get(id(args[i]), mu)) ** 2 * _square(derivatives[i])
+                   for i in measured if i in derivatives), np.zeros((1, 2, 2)))
+        condition = np.ones(1)
+        if id(step) in self._mu and id(step) not in self._poles:
+            if step.rule.gives in _DRAWN:
+                spread = np.trace(lines, axis1=1, axis2=2) / 2
+                crossing = ~(spread < 1 - 1e-9) & _all_lines([derivatives[i] for i in drawn if i in derivatives])
+                own = own + np.where(crossing[:, None, None], lines, np.eye(2)) * (self.pencil * mu) ** 2
+                condition = np.where(crossing, np.sqrt(spread), 1.0)
+            elif step.rule.gives == "length" and any(isinstance(a, Step) for a in args):
+                own = own + np.diag([1.0, 0.0]) * (self.pencil * mu) ** 2
+        if np.isnan(base).any():
+            own = np.where(np.isnan(base)[:, None, None], np.nan, own)
+        source = step.rule.gives != "direction" and id(step) not in self._poles
+        return self._joined(step, columns, own, condition, bend, source) if columns or source else None
+
+    def _ends(self, step: Step, args: tuple[Any, ...], snapped: Mapping[int, Any]) -> tuple[list[int], list[int]]:
+        """Numbers of the arguments that lines of this step are drawn through, and of those between which something is measured."""
+        gives = step.rule.gives
+        if gives not in (*_DRAWN, "force", "number"):
+            return [], []
+        points = [i for i, a in enumerate(args) if _kind(step, i, a) in _DRAWN]
+        if gives not in _DRAWN:
+            known = {*snapped, *(first for first, _ in snapped.values())} if len(snapped) > 0 else set()
+            return [], [i for i in points if i not in known and isinstance(args[i], Step)]
+        here = self._paper.get(id(step))
+        drawn = [i for i in points if not isinstance(args[i], Step) or self._paper.get(id(args[i])) == here]
+        foreign = [i for i in points if i not in drawn and i not in snapped]
+        return drawn, [] if snapped and len(foreign) == 1 else foreign
+
+    def _joined(self, step: Step, columns: list[tuple[_Known, Matrices]], own: Matrices, condition: Floats, bend: Floats,
+                source: bool) -> _Known:
+        """The Jacobian by all sources of the arguments and, for a ``source``, by the step itself."""
+        sources = np.unique(np.concatenate([k.sources for k, _ in columns] or [np.zeros(0, dtype=np.intp)]))
+        n = max([1, *(len(x) for k, d in columns for x in (k.jacobian, d))])
+        jacobian = np.zeros((n, 2, 2 * len(sources)))
+        for k, d in columns:
+            at = 2 * np.searchsorted(sources, k.sources)
+            jacobian[:, :, np.stack((at, at + 1), axis=-1).ravel()] += d @ k.jacobian
+        if source:
+            self._numbers[id(step)] = len(self._steps)
+            self._steps.append(step)
+            sources = np.append(sources, self._numbers[id(step)])
+            jacobian = np.concatenate((jacobian, np.broadcast_to(np.eye(2), (n, 2, 2))), axis=2)
+        covariance = self._covariance(jacobian, sources, own)
+        return _Known(sources, jacobian, own, covariance, condition, ~(bend > _BENT / 2 * _greatest(covariance)))
+
+    def _covariance(self, jacobian: Matrices, sources: npt.NDArray[np.intp], own: Matrices | None = None) -> Matrices:
+        """Sum over the sources of J M J^T with the own covariance M of each."""
+        total = np.zeros((1, 2, 2))
+        for j, number in enumerate(sources):
+            known = self._known.get(id(self._steps[number]))
+            m = own if known is None else known.own
+            if m is not None and m.any():
+                part = jacobian[:, :, 2 * j:2 * j + 2]
+                total = total + part @ m @ part.swapaxes(1, 2)
+        return total
+
+    def _combined(self, shares: Mapping[Step, float]) -> Matrices | None:
+        """Covariance of a sum of steps, correlations included."""
+        found = [(k, share) for step, share in shares.items() if (k := self._of(step)) is not None]
+        if not found:
+            return None
+        columns = [(k, share * np.eye(2)[None]) for k, share in found]
+        sources = np.unique(np.concatenate([k.sources for k, _ in columns]))
+        jacobian = np.zeros((max(len(k.jacobian) for k, _ in columns), 2, 2 * len(sources)))
+        for k, d in columns:
+            at = 2 * np.searchsorted(sources, k.sources)
+            jacobian[:, :, np.stack((at, at + 1), axis=-1).ravel()] += d @ k.jacobian
+        return self._covariance(jacobian, sources)
+
+    # --- lengths that are known -----------------------------------------------------------------------------------------
+    def _note_lengths(self, step: Step) -> None:
+        """Remember which points lie at a given distance from which: where a length is given by a number, or the points are."""
+        if step.rule.gives != "point":
+            return
+        last: Step | None = None
+        noted = self._links.setdefault(id(step), {})
+        for kind, a in zip(step.rule.takes, step.args, strict=False):
+            if kind == "point" and isinstance(a, Step):
+                last = a
+            elif kind == "length" and last is not None and not (isinstance(a, Step) and any(isinstance(x, Step) for x in a.args)):
+                noted[id(last)] = True
+
+    def _snapped(self, step: Step, args: tuple[Any, ...]) -> dict[int, tuple[int, Any]]:
+        """Points of another plan that lie at a known distance from the first such point: only their directions are taken from it.
+
+        By the number of the argument: the first one's number and the distance. Arms of forces are measured as they are drawn.
+        """
+        if any(isinstance(a, Step) and a.rule.gives == "force" for a in args):
+            return {}
+        paper = self._paper.get(id(step))
+        foreign = [i for i, a in enumerate(args) if isinstance(a, Step) and a.rule.gives == "point" and id(a) in self._paper
+                   and self._paper[id(a)] != paper]
+        found = {}
+        for i in foreign[1:]:
+            first, a = args[foreign[0]], args[i]
+            both_given = not any(isinstance(x, Step) for x in (*first.args, *a.args))
+            if both_given or id(first) in self._links.get(id(a), {}) or id(a) in self._links.get(id(first), {}):
+                found[i] = foreign[0], np.abs(a.value - first.value)
+        return found
+
+
+def errors(plan: Plan, mu: float, pencil: float = PENCIL) -> Mapping[str, Floats]:
+    """Error of each point and length of one plan drawn at the scale factor ``mu``, mm, by the names of the steps."""
+    return Errors([(plan, mu)], pencil).of_plan(plan)
+
+
+def _kind(step: Step, i: int, a: Any) -> str:
+    """Kind of an argument: what its step gives, or what the rule takes."""
+    if isinstance(a, Step):
+        return a.rule.gives
+    return step.rule.takes[i] if i < len(step.rule.takes) else ""
+
+
+def _numeric(value: Any) -> bool:
+    return isinstance(value, int | float | complex | np.number | np.ndarray) and np.asarray(value).dtype.kind in "ifc"
+
+
+def _beyond_paper(step: Step) -> bool:
+    """True for a step that is known better than paper shows, or made from such only."""
+    made_of = [a for a in step.args if isinstance(a, Step)]
+    return step.rule.beyond_paper or (bool(made_of) and all(_beyond_paper(a) for a in made_of))
+
+
+def _derivatives(step: Step, args: tuple[Any, ...], base: Any, moves: list[tuple[int, Floats]],
+                 snapped: Mapping[int, tuple[int, Any]]) -> tuple[dict[int, Matrices], Floats]:
+    """Derivatives (n, 2, 2) of a step by its arguments, each moved to both sides by as much as ``moves`` says, all in one replay.
+
+    Also by how much both sides disagree where they disagree too much.
+    """
+    values = [value_of(a) for a in args]
+    shifts: list[tuple[int, Any, Floats]] = []
+    for i, h in moves:
+        value = np.asarray(values[i])
+        h = np.where(h > 0, h, 1e-6 * np.maximum(np.abs(np.atleast_1d(value)), 1e-300))
+        if _kind(step, i, args[i]) == "direction":
+            shifts.append((i, 1j * value, h))
+        else:
+            shifts += [(i, unit, h) for unit in ((1.0, 1j) if value.dtype.kind == "c" else (1.0,))]
+    replays = _all_at_once(step, values, shifts, snapped, base)
+    if replays is None:
+        replays = [_replayed(step, [v + s * _like(h, v) * unit if j == i else v for j, v in enumerate(values)], snapped)
+                   for i, unit, h in shifts for s in (1, -1)]
+    found: dict[int, Matrices] = {}
+    bend = np.zeros(1)
+    for (i, unit, h), after, before in zip(shifts, replays[::2], replays[1::2], strict=True):
+        up, down = (np.atleast_1d(after) - base) / h, (base - np.atleast_1d(before)) / h
+        one_sided = np.isnan(up) != np.isnan(down)
+        up, down = np.where(np.isnan(up), down, up), np.where(np.isnan(down), up, down)
+        middle, bent = (up + down) / 2, np.where(one_sided, np.abs(up), np.abs(up - down)) / 2
+        agrees = ~(bent >= _BENT * np.abs(middle))
+        d = np.where(agrees, middle, np.where(np.abs(up) > np.abs(down), up, down))
+        bend = np.maximum(bend, np.where(agrees, 0.0, bent * h))
+        column = np.stack((np.real(d), np.imag(d)), axis=-1)
+        row = np.stack(np.broadcast_arrays(np.real(unit), np.imag(unit)), axis=-1).reshape(-1, 1, 2)
+        found[i] = found.get(i, np.zeros((1, 2, 2))) + column[:, :, None] * row
+    return found, bend
+
+
+def _all_at_once(step: Step, values: list[Any], shifts: list[tuple[int, Any, Floats]], snapped: Mapping[int, tuple[int, Any]],
+                 base: Any) -> Any:
+    """All replays of a rule that works entry by entry, shape (2 m, n); None for a rule that does not."""
+    rows: list[Any] = [np.atleast_1d(v)[None] if _numeric(v) else v for v in values]
+    count = 2 * len(shifts) + 1
+    for k, (i, unit, h) in enumerate(shifts):
+        if len(rows[i]) != count:
+            rows[i] = np.broadcast_to(rows[i], (count, max(rows[i].shape[1], len(h)))).copy()
+        rows[i][2 * k] += h * unit
+        rows[i][2 * k + 1] -= h * unit
+    try:
+        found = np.asarray(_replayed(step, rows, snapped))
+    except (TypeError, ValueError, IndexError):
+        return None
+    if found.shape != (count, len(base)) or not np.array_equal(found[-1], base, equal_nan=True):
+        return None
+    return found[:-1]
+
+
+def _like(h: Floats, value: Any) -> Any:
+    """Disturbance in the shape of what it disturbs: one number for one number."""
+    return h if np.ndim(value) or len(h) > 1 else h[0]
+
+
+def _replayed(step: Step, values: list[Any], snapped: Mapping[int, tuple[int, Any]]) -> Any:
+    """The step's rule once more, with other values, and points at known distances kept there."""
+    values = list(values)
+    for i, (first, distance) in snapped.items():
+        away = np.asarray(values[i] - values[first])
+        values[i] = values[first] + np.where(away != 0, away / np.abs(away) * distance, 0.0)
+    return step.rule.compute(*values)
+
+
+def _all_lines(derivatives: list[Matrices]) -> Any:
+    """True where moving any of the points along its line or arc leaves the step where it is: lines cross there."""
+    with np.errstate(invalid="ignore"):
+        return np.logical_and.reduce(np.broadcast_arrays(*(
+            ~(np.abs(np.linalg.det(d)) > 0.05 * np.sum(d**2, axis=(1, 2))) for d in derivatives))) if derivatives else False
+
+
+def _square(d: Matrices) -> Matrices:
+    return d @ d.swapaxes(1, 2)
+
+
+def _greatest(covariance: Matrices) -> Floats:
+    """Root of the greatest eigenvalue of symmetric 2 x 2 matrices."""
+    a, b, c = covariance[:, 0, 0], covariance[:, 1, 1], covariance[:, 0, 1]
+    return np.asarray(np.sqrt((a + b) / 2 + np.hypot((a - b) / 2, c)))
