@@ -105,6 +105,15 @@ def test_failures_are_null_with_their_reasons():
     assert json.loads(as_json(found))["records"][0]["seconds"] is None
 
 
+def test_what_would_take_too_long_is_left_out(monkeypatch):
+    monkeypatch.setattr(peers, "COUNTS", (3, 12))
+    monkeypatch.setattr(peers, "LONGEST", 1e-9)
+    found = measured(peers.Ours)
+    assert {(r.value, r.error is None, r.note) for r in found} == {
+        (3, False, ""), (12, True, "left out at 12 positions: it would take too long"),
+    }  # fmt: skip
+
+
 @pytest.mark.parametrize("program", peer_programs.PROGRAMS)
 def test_without_a_peer(monkeypatch, program):
     monkeypatch.setitem(__import__("sys").modules, program.name.split()[0], None)
