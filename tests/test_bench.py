@@ -13,7 +13,7 @@ import pytest
 from tests.methods import shaper_truth, statics
 from tests.methods import truth as other
 from tmm_sheets.__main__ import run
-from tmm_sheets.bench import costs, diagrams, emission, linkages, plots, profiles, reducers, truth
+from tmm_sheets.bench import costs, diagrams, emission, linkages, plain, plots, profiles, reducers, truth, whole
 from tmm_sheets.bench.records import Bench, Record, as_json, fastest, table
 from tmm_sheets.errors import CannotBuild
 
@@ -202,3 +202,49 @@ def test_costs():
     assert again.seconds < build.seconds
     names = [" ".join(arguments) for arguments, _ in costs.commands("lugansk/cam_flat")]
     assert "solve lugansk/cam_flat --part cam" in names
+
+
+def entities(path):
+    """Kind, layer, numbers of every entity of a DXF file."""
+    import ezdxf
+
+    for e in ezdxf.readfile(path).modelspace():
+        kind = e.dxftype()
+        if kind == "LINE":
+            numbers = [*e.dxf.start.vec2, *e.dxf.end.vec2]
+        elif kind == "LWPOLYLINE":
+            numbers = [e.closed, *(x for point in e.get_points("xy") for x in point)]
+        elif kind == "SOLID":
+            numbers = [x for name in ("vtx0", "vtx1", "vtx2", "vtx3") for x in getattr(e.dxf, name).vec2]
+        elif kind == "HATCH":
+            numbers = [x for point in e.paths[0].vertices for x in point[:2]]
+        else:
+            numbers = [*e.dxf.center.vec2, e.dxf.radius]
+            if kind == "ARC":
+                numbers += [e.dxf.start_angle % 360, e.dxf.end_angle % 360]
+        yield kind, e.dxf.layer, tuple(round(float(x), 3) + 0.0 for x in numbers)
+
+
+def test_the_plain_writer_draws_the_same(tmp_path):
+    """The baseline is honest: entity by entity what ``build`` writes, and a PDF with the same words."""
+    lists = tmp_path / "lists"
+    count = whole.prepare("lugansk/cam_flat", lists)
+    plain.main(str(lists), str(tmp_path))
+    assert run(["build", "lugansk/cam_flat", "-o", str(tmp_path / "build")]) == 0
+    ours, theirs = list(entities(tmp_path / "build/sheet1.dxf")), list(entities(tmp_path / "sheet1.dxf"))
+    assert len(ours) == len(theirs) == count > 1000
+    for kind in {k for k, _, _ in ours}:
+        a, b = ([e[1:] for e in sorted(of) if e[0] == kind] for of in (ours, theirs))
+        assert [layer for layer, _ in a] == [layer for layer, _ in b], kind
+        for (_, x), (_, y) in zip(a, b, strict=True):
+            np.testing.assert_allclose(x, y, atol=1.1e-3)
+    assert (tmp_path / "sheet1.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_whole():
+    found = whole.measure("lugansk/cam_flat", lambda what: None, rounds=1)
+    assert found.entities > 1000
+    assert found.build.wall > 0
+    assert found.imports.processor < found.plain.processor
+    assert 20 < found.build.memory < 120
+    assert "| `build lugansk/cam_flat`, cold |" in whole.table(found)

@@ -24,8 +24,8 @@ MAY = {
 }
 """Parts of the package a folder may import at run time, besides NEUTRAL."""
 
-ALONE = {"ezdxf": {"backends.dxf", "compare.cad_file"}, "reportlab": {"backends.pdf"}, "matplotlib": {"backends.png", "bench.plots"},
-         "pydantic": {"variant"}, "cv2": {"compare"}}
+ALONE = {"ezdxf": {"backends.dxf", "bench.plain", "compare.cad_file"}, "reportlab": {"backends.pdf", "bench.plain"},
+         "matplotlib": {"backends.png", "bench.plots"}, "pydantic": {"variant"}, "cv2": {"compare"}}
 """Libraries and the modules or folders they belong to."""
 
 

@@ -21,8 +21,8 @@ def verdict(deviation: float, tolerance: float) -> Verdict:
 class Report:
     """The outcome of a comparison.
 
-    ``text`` is the table for the terminal, ``tree`` the same for JSON (None where there is no number), ``files`` what is to be written
-    beside it by file name (overlays), ``notes`` what was mended or is worth a warning, a line each.
+    ``text`` is the table for the terminal, ``tree`` the same for JSON (None where there is no number), ``files`` what is to be
+    written beside it by file name (overlays), ``notes`` what was mended or is worth a warning, a line each.
     """
 
     text: str

@@ -24,21 +24,22 @@ def highest(f: Callable[[Floats], Floats], samples: Floats) -> float:
     """Argument of the largest value of a continuous function between the first and the last of the ``samples``.
 
     The samples must separate the humps; corners of ``f`` (where a force begins or ends) must be samples. The bracket
-    round the best sample is divided in 16 again and again until it is as narrow as rounding.
+    round the best sample is divided in 256 again and again until it is flat to rounding.
     """
-    k = int(np.argmax(f(samples)))
+    values = f(samples)
+    k = int(np.argmax(values))
     low, best, high = samples[max(k - 1, 0)], samples[k], samples[min(k + 1, len(samples) - 1)]
-    value = float(f(np.array([best]))[0])
+    value = float(values[k])
     while high - low > 1e-15 * (samples[-1] - samples[0]):
-        t = np.linspace(low, high, 17)
+        t = np.linspace(low, high, 257)
         y = f(t)
         j = int(np.argmax(y))
         # A corner is met exactly by its sample only, so the best so far is kept.
         if y[j] > value:
             best, value = t[j], float(y[j])
-        if np.ptp(y) <= 4e-16 * abs(value):
+        if value - min(y[max(j - 1, 0)], y[min(j + 1, 256)]) <= 4e-15 * abs(value):
             break
-        step = (high - low) / 16
+        step = (high - low) / 256
         low, high = max(best - step, low), min(best + step, high)
     return float(best)
 
@@ -134,14 +135,15 @@ def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: f
     for panels in (1, 2, 4, 8, 16):
         work = Quadrature(moment, borders, panels)
         mean = work.total / (borders[-1] - borders[0])
+        done = work(samples)
         segment, contact = 0.0, []
         for sign in (1.0, -1.0):
             half_square = (omega * (1 + sign * delta / 2)) ** 2 / 2
 
             def height(t: Floats, sign: float = sign, half_square: float = half_square, work: Quadrature = work,
-                       mean: float = mean) -> Floats:
-                at = j if t is samples else inertia(t)
-                return np.asarray(sign * (work(t) - mean * (t - borders[0]) - half_square * at))
+                       mean: float = mean, done: Floats = done) -> Floats:
+                at, spent = (j, done) if t is samples else (inertia(t), work(t))
+                return np.asarray(sign * (spent - mean * (t - borders[0]) - half_square * at))
 
             contact.append(highest(height, samples))
             segment += float(height(np.array(contact[-1:]))[0])

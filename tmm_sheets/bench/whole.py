@@ -1,0 +1,156 @@
+"""Cold build of all sheets against the same display lists written with plain library calls (:mod:`tmm_sheets.bench.plain`).
+
+The two take turns, each in a fresh process: ``build`` reads the project, solves, composes and writes; the plain writer gets the
+finished display lists and only writes. Told are the least wall and processor times of some rounds, starting Python included. The
+ratio carries over to other machines, the times do not.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import asdict, astuple, dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import Any
+
+from tmm_sheets.errors import BadInput
+
+ROUNDS = 7
+PLAIN = str(Path(__file__).with_name("plain.py"))
+PEAK = """
+try:
+    words = open("/proc/self/status").read().split()
+    print(words[words.index("VmHWM:") + 1], file=sys.stderr)
+except OSError:
+    print("nan", file=sys.stderr)
+"""
+"""The largest memory of a process itself, kB (Linux); ``getrusage`` begins with that of the process it was forked from."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """Least times of some runs of a command, s, and its largest memory, MB (its own: not that of the process it began in)."""
+
+    wall: float
+    processor: float
+    memory: float
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A build, the plain writer and the import of the libraries alone; how many entities each writes in DXF."""
+
+    project: str
+    entities: int
+    build: Run
+    plain: Run
+    imports: Run
+
+
+def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> Whole:
+    """Time rounds of both."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        say(f"sheets of {project}")
+        lists = folder / "lists.pickle"
+        entities = prepare(project, lists)
+        programs = {
+            "build": ("from tmm_sheets.__main__ import run; run(sys.argv[1:])",
+                      ["build", project, "--force", "-o", str(folder / "build")]),
+            "plain": ("import runpy; runpy.run_path(sys.argv[0], run_name='__main__')", [str(lists), str(folder)]),
+            "imports": ("import ezdxf, reportlab.pdfgen.canvas, reportlab.pdfbase.ttfonts", []),
+        }
+        runs: dict[str, list[Run]] = {key: [] for key in programs}
+        for k in range(-1, rounds):
+            say(f"round {k + 1} of {rounds}")
+            for key, (program, arguments) in programs.items():
+                found = _timed(program, arguments)
+                if k >= 0:  # the round before the first compiles the modules and fills the caches
+                    runs[key].append(found)
+    best = {key: Run(*(min(values) for values in zip(*map(astuple, of), strict=True))) for key, of in runs.items()}
+    return Whole(project, entities, best["build"], best["plain"], best["imports"])
+
+
+def _timed(program: str, arguments: list[str]) -> Run:
+    # Installed programs are compiled; a machine set not to keep compiled files would time the compiler.
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    watched = f"import sys; sys.argv[0] = {PLAIN!r}\n{program}\n{PEAK}"
+    start, before = perf_counter(), os.times()
+    done = subprocess.run([sys.executable, "-c", watched, *arguments], capture_output=True, text=True, env=environment, check=False)
+    wall, after = perf_counter() - start, os.times()
+    if done.returncode:
+        raise BadInput(f"{' '.join(arguments)}: {done.stderr.strip()[-300:]}")
+    used = after.children_user - before.children_user + after.children_system - before.children_system
+    return Run(wall, used, float(done.stderr.split()[-1]) / 1000)
+
+
+def prepare(project: str, path: Path) -> int:
+    """Write the display lists of all sheets as plain tuples to a file; returns the number of entities."""
+    from tmm_sheets import catalogue
+    from tmm_sheets.drawing.styles import line_types
+    from tmm_sheets.project import Project
+    from tmm_sheets.resources import template
+    from tmm_sheets.sheets.sheet import compose
+
+    opened = Project(catalogue.read(project))
+    sheets = [_plain(compose(opened, n)) for n in range(1, len(opened.sheets) + 1)]
+    from tmm_sheets.backends.dxf import weight
+
+    styles = {name: asdict(look) | {"weight": weight(look.width)} for name, look in line_types().items()}
+    font = str(template("fonts/TMMSheetsB.ttf"))
+    path.write_bytes(pickle.dumps({"styles": styles, "font": font, "sheets": sheets}))
+    return sum(len(s["strokes"]) + len(s["letters"]) for s in sheets)
+
+
+def _plain(drawing: Any) -> dict[str, Any]:
+    """A display list in tuples and lists: the strokes our own DXF has, letters too, and the runs of lettering for PDF."""
+    from cmath import rect
+    from math import pi
+
+    from tmm_sheets.backends.dxf import weight
+    from tmm_sheets.drawing.dashes import strokes
+    from tmm_sheets.drawing.lettering import PEN, glyph
+    from tmm_sheets.drawing.marks import Arc, Line, Polyline, Text
+
+    def xy(z: complex) -> tuple[float, float]:
+        return (float(z.real), float(z.imag))
+
+    lines: list[tuple[Any, ...]] = []
+    texts, letters = [], []
+    for mark in strokes(drawing.marks):
+        if isinstance(mark, Line):
+            lines.append(("line", mark.style, xy(mark.a), xy(mark.b)))
+        elif isinstance(mark, Arc):
+            whole = mark.end - mark.start > 2 * pi - 1e-9
+            ends = () if whole else (mark.start, mark.end)
+            lines.append(("circle" if whole else "arc", mark.style, xy(mark.centre), mark.radius, *ends))
+        elif isinstance(mark, Polyline):
+            lines.append(("polyline", mark.style, [xy(p) for p in mark.points], mark.closed))
+        elif isinstance(mark, Text):
+            texts.append((xy(mark.at), mark.text, mark.height, mark.angle))
+            at, u = mark.at, rect(mark.height, mark.angle)
+            for char in mark.text:
+                letter = glyph(char)
+                letters += [([xy(at + u * p) for p in stroke], weight(PEN * mark.height)) for stroke in letter.strokes]
+                at += u * letter.advance
+        else:
+            lines.append(("fill", mark.style, [xy(p) for p in mark.points]))
+    return {"width": drawing.width, "height": drawing.height, "strokes": lines, "texts": texts, "letters": letters}
+
+
+def table(found: Whole) -> str:
+    """The comparison in Markdown, as it stands in README."""
+    plain = f"the same {found.entities} entities by plain library calls"
+    rows = [(f"`build {found.project}`, cold", found.build), (plain, found.plain),
+            ("`import ezdxf, reportlab` alone", found.imports)]  # fmt: skip
+    lines = ["| process | wall | of the plain one | processor | of the plain one | memory |", "|---|---|---|---|---|---|"]
+    for name, run in rows:
+        share = (run.wall / found.plain.wall, run.processor / found.plain.processor)
+        lines.append(f"| {name} | {1000 * run.wall:.0f} ms | {share[0]:.2f} | {1000 * run.processor:.0f} ms | {share[1]:.2f} | "
+                     f"{run.memory:.0f} MB |")
+    return "\n".join(lines)
