@@ -135,13 +135,15 @@ def _rows_of(bench: Bench, program: type[Program], mechanism: str, m: Mechanism,
     # They print, and warn of what their libraries no longer like: neither is ours to show.
     with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        runs, reason, name = {}, "", program.name
         try:
             entrant = program()
-            runs, reason = entrant.prepare(mechanism, m, turn), ""
+            name = entrant.name
+            runs = entrant.prepare(mechanism, m, turn)
         except Exception as e:
-            runs, reason = {}, _said(e)
+            reason = _said(e)
         for quantity in QUANTITIES:
-            what = (f"peers: {mechanism}", f"{quantity}, {program.name if reason else entrant.name}", "positions")
+            what = (f"peers: {mechanism}", f"{quantity}, {name}", "positions")
             before = next((r.each for r in reversed(bench.records) if (r.field, r.method) == what[:2]), None)
             if before is not None and before * turn.n > LONGEST:
                 bench.records.append(Record(*what, turn.n, None, None, f"left out at {turn.n:g} positions: it would take too long"))
