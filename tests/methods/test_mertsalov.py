@@ -22,7 +22,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel import Flywheel, MotorCheck, Scales, flywheel, wheel
 from tmm_sheets.methods.mertsalov import SPACE, Mertsalov
-from tmm_sheets.methods.running import steady
+from tmm_sheets.methods.running import Energy, steady
 from tmm_sheets.methods.wittenbauer import Wittenbauer
 from tmm_sheets.project import Project
 
@@ -152,7 +152,7 @@ def test_exact_running_with_the_exact_flywheel_has_the_given_delta(fw):
 def test_running_is_the_energy_integral(first):
     """Brute force on another machine: 20,000 angles, the work of its constant force in closed form."""
     r = Shaper()
-    running = steady(r.moment, r.inertia, np.unique(np.append(r.phi, r.breaks)), first, r.omega1)
+    running = steady(Energy(r.moment, r.inertia, np.unique(np.append(r.phi, r.breaks))), first, r.omega1)
     begin, end = r.breaks
 
     def energy(t):
@@ -173,7 +173,7 @@ def test_running_is_the_energy_integral(first):
 
 def test_a_crank_too_light_to_be_carried_round():
     r = Shaper()
-    running = steady(r.moment, r.inertia, np.unique(np.append(r.phi, r.breaks)), 1e-3, r.omega1)
+    running = steady(Energy(r.moment, r.inertia, np.unique(np.append(r.phi, r.breaks))), 1e-3, r.omega1)
     assert np.isnan(running.delta)
 
 

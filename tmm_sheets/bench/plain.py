@@ -33,9 +33,9 @@ def dxf(sheet: dict[str, Any], styles: dict[str, Any], path: Path) -> None:
     for kind, style, *what in sheet["strokes"]:
         attributes = {"layer": styles[style]["layer"], "linetype": "Continuous"}
         if kind == "line":
-            msp.add_line(*what, dxfattribs=attributes)
+            msp.add_line(*what, dxfattribs=attributes)  # type: ignore[misc]
         elif kind == "circle":
-            msp.add_circle(*what, dxfattribs=attributes)
+            msp.add_circle(*what, dxfattribs=attributes)  # type: ignore[misc]
         elif kind == "arc":
             centre, radius, start, end = what
             msp.add_arc(centre, radius, math.degrees(start), math.degrees(end), dxfattribs=attributes)

@@ -24,7 +24,7 @@ from tmm_sheets.construction.step import Rule
 from tmm_sheets.methods.energy_mass import Curve, highest
 from tmm_sheets.methods.flywheel import PLOT, Flywheel, Space
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
-from tmm_sheets.methods.running import Running, steady
+from tmm_sheets.methods.running import Energy, Running, steady
 from tmm_sheets.methods.wittenbauer import Wittenbauer
 
 SPACE = Space(moment=100.0, work=130.0, energy=220.0, inertia=175.0, stack=480.0)
@@ -178,7 +178,11 @@ class Mertsalov(Flywheel):
     # --- how good it is -----------------------------------------------------------------------------------
     def running(self, first: float) -> Running:
         """Exact running when all that turns with the crank has the moment of inertia ``first``, kg m2."""
-        return steady(self.reduced.moment, self.inertia, self.edges, first, self.reduced.omega1)
+        return steady(self._energy, first, self.reduced.omega1)
+
+    @cached_property
+    def _energy(self) -> Energy:
+        return Energy(self.reduced.moment, self.inertia, self.edges)
 
     @cached_property
     def compared(self) -> tuple[Compared, ...]:
