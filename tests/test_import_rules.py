@@ -18,7 +18,7 @@ MAY = {
     "backends": {"backends", "drawing"},
     "families": {"families", "variant"},
     "bench": {"bench", "catalogue", "variant", "project", "results", "building", "explain", "methods", "construction", "mechanism",
-              "drawing", "sheets"},
+              "drawing", "sheets", "backends"},
     "stress": {"stress", "methods", "construction", "mechanism"},
     "compare": {"compare", "project", "explain", "files", "sheets", "methods", "construction", "mechanism", "drawing", "backends"},
 }
