@@ -1,0 +1,117 @@
+"""A photograph, a scan or a print as grey pixels, from JPG, PNG or PDF.
+
+JPG and PNG are read by OpenCV, which turns a picture as its EXIF data say; a page of a PDF, a scan as well as a vector drawing, is rendered
+by pypdfium2. Both come with the extra ``compare``.
+"""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
+
+Grey = npt.NDArray[np.uint8]
+
+LEAST_PIXELS = 2_000_000
+"""Below this the thin lines of an A1 sheet are a third of a pixel wide."""
+MOST_PIXELS = 400_000_000
+PDF_DPI = 200.0
+SHOW = 'a photograph or scan as JPG, PNG or PDF, for example "compare PROJECT --sheet 1 --image photo.jpg"'
+
+
+class Picture(NamedTuple):
+    """Pixels, 255 for white, row 0 at the top, and what was remarkable about the file."""
+
+    grey: Grey
+    notes: tuple[str, ...] = ()
+
+
+def need_opencv() -> None:
+    """Refuse to go on without OpenCV.
+
+    Raises
+    ------
+    BadInput
+        With the command that installs it.
+    """
+    if find_spec("cv2") is None:
+        raise BadInput("comparing a photograph needs OpenCV, which is not installed", hint="pip install tmm-sheets[compare]")
+
+
+def read(path: Path) -> Picture:
+    """Read a photograph.
+
+    Raises
+    ------
+    BadInput
+        When the file is missing, empty or no image, or a library is missing.
+    CannotBuild
+        When the image has too few pixels.
+    """
+    need_opencv()
+    import cv2
+
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise BadInput(Problem("there is no such file", str(path), hint=f"expected {SHOW}")) from None
+    except OSError as e:
+        raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path), hint=f"expected {SHOW}")) from None
+    if not data:
+        raise BadInput(Problem("the file is empty", str(path), hint=f"expected {SHOW}"))
+    notes: tuple[str, ...] = ()
+    if data.lstrip()[:5] == b"%PDF-":
+        grey, notes = _page(data, path)
+    else:
+        try:
+            decoded: Any = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE)
+        except cv2.error:
+            decoded = None
+        if decoded is None:
+            raise BadInput(Problem("is not an image that can be read", str(path), hint=f"expected {SHOW}"))
+        grey = decoded
+    pixels = grey.shape[0] * grey.shape[1]
+    if pixels < LEAST_PIXELS:
+        raise CannotBuild(
+            f"{path}: {grey.shape[1]} x {grey.shape[0]} pixels are too few for an A1 sheet: thin lines cannot be seen",
+            hint="take the picture with at least 8 million pixels, the sheet filling it; messengers shrink pictures: send it as a file",
+        )
+    if pixels > MOST_PIXELS:
+        raise CannotBuild(f"{path}: {pixels / 1e6:.0f} million pixels are more than can be handled", hint="scan at 300 dpi or less")
+    return Picture(grey, notes)
+
+
+def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
+    """The first page of a PDF."""
+    if find_spec("pypdfium2") is None:
+        raise BadInput("reading a PDF needs pypdfium2, which is not installed",
+                       hint="pip install tmm-sheets[compare], or save the page as PNG")  # fmt: skip
+    import pypdfium2
+
+    try:
+        document = pypdfium2.PdfDocument(data)
+    except pypdfium2.PdfiumError as e:
+        raise BadInput(Problem(f"is not a PDF that can be read: {e}", str(path), hint=f"expected {SHOW}")) from None
+    try:
+        pages = len(document)
+        if not pages:
+            raise BadInput(Problem("the PDF has no page", str(path), hint=f"expected {SHOW}"))
+        page = document[0]
+        width, height = page.get_size()
+        scale = min(PDF_DPI / 72, (0.5 * MOST_PIXELS / max(width * height, 1.0)) ** 0.5)
+        # Scans are often put on a page of another size than the paper's: as many pixels as A1 has at this resolution then.
+        scale = max(scale, (30e6 / max(width * height, 1.0)) ** 0.5)
+        bitmap = page.render(scale=scale, grayscale=True)
+        pixels = np.array(bitmap.to_numpy(), dtype=np.uint8)
+        bitmap.close()
+        page.close()
+    finally:
+        document.close()
+    grey = pixels[:, :, 0] if pixels.ndim == 3 else pixels
+    note = (f"{path.name} has {pages} pages; the first was compared",) if pages > 1 else ()
+    return np.ascontiguousarray(grey), note
