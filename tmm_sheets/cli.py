@@ -343,24 +343,96 @@ def plot(
 
 
 @commands.command()
+@PROJECT
+@CORRECTED
+@click.option("--template", is_flag=True, help="Write a CSV file with a line for everything that can be measured on the sheets.")
+@click.option("--measured", type=click.Path(path_type=Path), metavar="FILE", help="Compare the numbers of such a file.")
+@click.option("--sheet", "sheet", type=int, metavar="N", help="Number of the sheet in the image or the drawing.")
+@click.option("--image", type=click.Path(path_type=Path), metavar="FILE", help="Compare a photograph or scan: jpg, png, pdf.")
+@click.option("--views", type=click.Path(path_type=Path), metavar="FILE",
+              help="Where the views stand in the image or the drawing, when its layout is its own.")
+@click.option("--dxf", type=click.Path(path_type=Path), metavar="FILE", help="Compare a CAD drawing.")
+@click.option("--pencil", type=click.FloatRange(0.01, 5), default=0.25, show_default=True, metavar="MM",
+              help="Error of a point drawn by hand.")
+@click.option("--reading", type=click.FloatRange(0.01, 5), default=0.5, show_default=True, metavar="MM",
+              help="Error of a length read off a ruler.")
+@click.option("--json", "target", metavar="FILE", help="Also write the outcome as JSON, to standard output for -.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
+              help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
+def compare(
+    project: str, corrected: bool, template: bool, measured: Path | None, sheet: int | None, image: Path | None,
+    views: Path | None, dxf: Path | None, pencil: float, reading: float, target: str | None, output: Path | None,
+) -> None:
+    """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
+    if sum((template, measured is not None, image is not None, dxf is not None)) != 1:
+        raise click.UsageError("give one of --template, --measured FILE, --image FILE and --dxf FILE")
+    if sheet is None and image is not None:
+        raise click.UsageError("--image needs --sheet N: which sheet it shows")
+    from tmm_sheets import files
+    from tmm_sheets.building import folder_name
+    from tmm_sheets.progress import Progress
+
+    opened = _open(project, corrected)
+    folder = output if output is not None else Path("out") / folder_name(opened.variant.project.name)
+    with Progress() as progress:
+        def say(what: str) -> None:
+            progress.say(f"{what} ...")
+
+        if template:
+            from tmm_sheets.compare import measured as by_ruler
+
+            report = by_ruler.template(opened, folder, say)
+        elif measured is not None:
+            from tmm_sheets.compare import measured as by_ruler
+
+            report = by_ruler.compare(opened, measured, pencil, reading, say)
+        elif image is not None:
+            from tmm_sheets.compare import image as by_eye
+
+            report = by_eye.compare(opened, int(sheet or 1), image, views, pencil, say)
+        else:
+            from tmm_sheets.compare import cad
+
+            report = cad.compare(opened, sheet, Path(str(dxf)), views, pencil, say)
+    made = {folder / name: data for name, data in report.files.items()}
+    if target is not None and target != "-":
+        made[Path(target)] = (report.as_json() + "\n").encode()
+    files.write_all(made)
+    for note in report.notes:
+        click.echo(f"{opened.variant.project.name}: {note}", err=True)
+    click.echo(report.text, err=target == "-")
+    if target == "-":
+        click.echo(report.as_json())
+    for path in made:
+        click.echo(path, err=target == "-")
+
+
+@commands.command()
 @click.option("--json", "target", metavar="FILE", help="Also write the table as JSON, to standard output for -.")
 @click.option("--plot", "folder", type=click.Path(path_type=Path), metavar="DIR", help="Also draw log-log diagrams, SVG.")
 @click.option("--quick", is_flag=True, help="A few small runs only: tries the benchmark out.")
 @click.option("--summary", is_flag=True, help="The first and the last run of each method only, in Markdown.")
 @click.option("--peers", is_flag=True, help="Instead: the same linkages by other programs, those of the extra [peers].")
 @click.option("--cost", metavar="PROJECT", help="Instead: what one sheet or one number of PROJECT costs against the whole.")
-def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None) -> None:
+@click.option("--whole", metavar="PROJECT", help="Instead: all sheets of PROJECT against plain calls of the libraries.")
+def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None,
+          whole: str | None) -> None:
     """Measure every method: error against a truth of 30 digits or more, and time."""
     from tmm_sheets import files
     from tmm_sheets.progress import Progress
 
-    if cost is not None:
-        if target or folder or quick or summary or peers:
-            raise click.UsageError("--cost goes alone")
-        from tmm_sheets.bench import costs
-
+    if cost is not None or whole is not None:
+        if target or folder or quick or summary or peers or (cost and whole):
+            raise click.UsageError("--cost and --whole go alone")
         with Progress() as progress:
-            told = costs.table(cost, lambda what: progress.say(f"{what} ..."))
+            if cost is not None:
+                from tmm_sheets.bench import costs
+
+                told = costs.table(cost, lambda what: progress.say(f"{what} ..."))
+            else:
+                from tmm_sheets.bench import whole as sheets
+
+                told = sheets.table(sheets.measure(str(whole), lambda what: progress.say(f"{what} ...")))
         click.echo(told)
         return
     from tmm_sheets.bench import records

@@ -150,6 +150,46 @@ class Errors:
         i = 2 * int(np.searchsorted(known.sources, number))
         return known.jacobian[:, :, i:i + 2]
 
+    def of_sum(self, terms: Iterable[tuple[Step, int, complex]]) -> tuple[float, list[tuple[Step, complex]]]:
+        """Error of a quantity that grows by the sum of Re(conj(g) d) when the steps are displaced by d, and by what it does so.
+
+        Parameters
+        ----------
+        terms
+            step, number of the position, g: the gradient of the quantity by the step there (a real number for a number).
+
+        Returns
+        -------
+        The error and the gradient of the quantity by every step it goes back to, in the order of drawing.
+        """
+        rows: dict[int, Floats] = {}
+        square = np.zeros(1)
+        owns: dict[int, Matrices] = {}
+        for step, k, g in terms:
+            known = self._of(step)
+            if known is None:
+                continue
+            j = known.jacobian[min(k, len(known.jacobian) - 1)]
+            row = (np.array([g.real, g.imag]) @ j).reshape(-1, 2)
+            for number, part in zip(known.sources, row, strict=True):
+                rows[number] = rows.get(number, np.zeros(2)) + part
+                source = self._known[id(self._steps[number])]
+                if source is not None:
+                    owns[number] = source.own[min(k, len(source.own) - 1)]
+        for number, row in rows.items():
+            if number in owns and owns[number].any():
+                square = square + row @ owns[number] @ row
+        return float(np.sqrt(square[0])), [(self._steps[n], complex(*rows[n])) for n in sorted(rows)]
+
+    def scale(self, step: Step) -> float:
+        """Unit of a step's plan per millimetre of paper; 0 for what is not drawn."""
+        return self._mu.get(id(step), 0.0)
+
+    def order(self, step: Step) -> int:
+        """Number of a step in an order in which each stands after everything it depends on; -1 for what has no error."""
+        self._of(step)
+        return self._numbers.get(id(step), -1)
+
     # --- one step after another ---------------------------------------------------------------------------------------
     def _of(self, step: Step) -> _Known | None:
         if id(step) not in self._known:

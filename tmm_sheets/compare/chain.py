@@ -1,0 +1,266 @@
+"""Judging measured numbers, and the first step where a chain of errors starts.
+
+The numbers are taken in the order of drawing. What an earlier mistake does to a later number is told by the Jacobian of the
+construction: if what remains of a deviation is within tolerance, the number follows from that mistake and is not accused on its
+own. Otherwise a new chain starts: of all steps the number goes back to, that one was drawn wrong whose displacement explains most
+of what is left, with the numbers that are in order as witnesses. A number whose deviation explains nothing else was read or
+computed wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import hypot, isfinite
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.measurable import Measurable, Measurables, angle_apart
+from tmm_sheets.compare.measured_file import Filled, Line, factor_of
+from tmm_sheets.compare.report import Verdict, verdict
+from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.step import Step
+
+CURVED = 0.1
+"""Share of what a mistake explains that may be off, for a mistake is no small displacement and the Jacobian is straight."""
+SCALED = 4
+"""Lengths of a plan from which a wrong scale factor is recognised."""
+HUBER = 2.0
+"""Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
+ALONE = 1.05
+"""How much more than one number a mistake has to explain to be one of drawing."""
+NEARLY = 0.9
+"""Share of the best explanation with which another is as good."""
+SHARE = 0.5
+"""Share of the tolerance that a mistake must make of a number to explain it."""
+EXACT = 1e-6
+"""Tolerance of what is neither drawn nor computed: numbers of teeth."""
+
+Place = tuple[int, int]
+"""A step and a position."""
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A step drawn wrong at a position: its displacement, the covariance of that, how much it explains, the scale of its plan."""
+
+    place: Place
+    step: Step
+    moved: npt.NDArray[np.float64]
+    uncertain: npt.NDArray[np.float64]
+    score: float
+    mu: float
+
+
+@dataclass(eq=False)
+class Judged:
+    """A measured number with its judgement, in its own unit.
+
+    ``follows`` is the number in which its chain of errors starts, itself not included; ``starts`` is True for such a number.
+    ``tolerance`` is infinite where the construction has none to give.
+    """
+
+    line: Line
+    exact: float
+    deviation: float
+    tolerance: float
+    rows: list[tuple[Step, complex]]
+    follows: Judged | None = None
+    starts: bool = False
+    scale: str = ""
+    mistake: Mistake | None = None
+    remark: str = ""
+
+    @property
+    def entry(self) -> Measurable:
+        """What was measured."""
+        return self.line.entry
+
+    @property
+    def verdict(self) -> Verdict:
+        """Green, amber or red."""
+        return verdict(self.deviation, self.tolerance)
+
+    @property
+    def percent(self) -> float | None:
+        """Deviation in per cent of the exact value; None where that is zero."""
+        return 100 * self.deviation / abs(self.exact) if abs(self.exact) > 1e-9 else None
+
+    @property
+    def at(self) -> int:
+        """Number of the position among those of the plans."""
+        return self.entry.terms[-1][1] if self.entry.terms else 0
+
+
+def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> list[Judged]:
+    """Judge every filled line, in the order of the sheets."""
+    errors = found.errors(filled.factors, pencil, reading)
+    numbers = {name: i for i, name in enumerate(found.entries)}
+    # In the order of the sheets, so that steps are numbered plan after plan as they are drawn.
+    lines = sorted(filled.lines, key=lambda line: numbers[line.entry.id])
+    judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
+    rest = _wrong_scales(judged)
+    _chains(rest, errors)
+    return judged
+
+
+def _judged(line: Line, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
+    e = line.entry
+    ratio = found.scales[e.scale].mu / factor_of(line, found.scales, factors) if e.scale else 1.0
+    size = ratio if e.kind == "length" else 1.0
+    # On diagrams the pencil's millimetres stay what they are, whatever the ordinates mean.
+    on_paper = e.scale in found.on_paper
+    error, rows = errors.of_sum((s, k, g * (1.0 if on_paper else size)) for s, k, g in e.terms)
+    if on_paper:
+        rows = [(s, g * size) for s, g in rows]
+    exact = e.value * size
+    read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
+    # A ruler is read no better than its reading is written.
+    written = line.half_digit if e.terms or e.calculated else 0.0
+    tolerance = hypot(error, max(read, written), e.calculated * exact)
+    if not isfinite(tolerance):
+        tolerance = float("inf")
+    measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
+    deviation = angle_apart(measured, exact) if e.kind == "angle" else measured - exact
+    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows)
+    if tolerance == float("inf"):
+        judged.remark = "the construction degenerates here: no tolerance"
+    elif e.signed and judged.verdict == "red" and abs(-measured - exact) <= tolerance:
+        judged.remark = "the sign is wrong"
+    elif judged.verdict == "red" and e.kind != "angle":
+        judged.remark = _slip(measured, exact, tolerance)
+    return judged
+
+
+def _slip(measured: float, exact: float, tolerance: float) -> str:
+    """Slips of the pen that are recognised at sight: a factor of two or ten."""
+    for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01):
+        if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
+            return f"{factor:g} times the exact value"
+    return ""
+
+
+# --- scale factors ------------------------------------------------------------------------------------------------------------
+
+
+def _wrong_scales(judged: list[Judged]) -> list[Judged]:
+    """Mark the lengths of plans that were drawn with another scale factor than stated; returns what is left to explain."""
+    plans: dict[str, list[Judged]] = {}
+    for j in judged:
+        if j.entry.kind == "length" and j.entry.scale and j.line.factor is None:
+            plans.setdefault(j.entry.scale, []).append(j)
+    marked: set[int] = set()
+    for of_plan in plans.values():
+        long = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance]
+        off = [j for j in long if j.verdict == "red"]
+        if len(long) < SCALED or len(off) < 0.6 * len(long):
+            continue
+        times = float(np.median([j.line.value / j.exact for j in long]))
+        explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
+        if times <= 0 or abs(times - 1) < 0.01 or len(explained) < 0.8 * len(of_plan):
+            continue
+        first = next(j for j in of_plan if j in off)
+        first.starts, first.scale = True, f"all lengths of this plan are {times:.3g} times the exact ones: another scale factor?"
+        for j in explained:
+            marked.add(id(j))
+            if j is not first and j.verdict != "green":
+                j.follows = first
+    return [j for j in judged if id(j) not in marked]
+
+
+# --- chains -------------------------------------------------------------------------------------------------------------------
+
+
+class _Sheet:
+    """All judged numbers together: what is left of their deviations, and which steps each depends on."""
+
+    def __init__(self, judged: list[Judged], errors: Errors) -> None:
+        self.judged = judged
+        self.errors = errors
+        self.order = np.array([max((errors.order(s) for s, _, _ in j.entry.terms), default=-1) for j in judged])
+        self.left = np.array([j.deviation for j in judged])
+        self.tolerance = np.array([j.tolerance for j in judged])
+        self.steps: dict[Place, Step] = {}
+        self.heads: set[Place] = set()
+        gradients: dict[Place, dict[int, complex]] = {}
+        for i, j in enumerate(judged):
+            if j.entry.head is not None:
+                self.heads.add(_place(j.entry.head, j.at))
+            for step, g in j.rows:
+                if g and isfinite(abs(g)):
+                    place = _place(step, j.at)
+                    self.steps[place] = step
+                    gradients.setdefault(place, {})[i] = g
+        self.by_place = {place: (np.array(list(of)), np.array([[g.real, g.imag] for g in of.values()]))
+                         for place, of in gradients.items()}
+        self.places = [[_place(step, j.at) for step, g in j.rows if g and isfinite(abs(g))] for j in judged]
+
+    def mistake(self, place: Place) -> Mistake:
+        """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
+
+        Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights).
+        """
+        lines, gradient = self.by_place[place]
+        rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
+        weights = np.ones(len(lines))
+        x = np.zeros(2)
+        for _ in range(8):
+            x, *_ = np.linalg.lstsq(rows * weights[:, None], aims * weights, rcond=1e-6)
+            weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - rows @ x) / HUBER))
+        score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - rows @ x)))
+        step = self.steps[place]
+        return Mistake(place, step, x, np.linalg.pinv(rows.T @ rows, rcond=1e-9), score, self.errors.scale(step))
+
+
+def _loss(r: Any) -> Any:
+    """Huber's loss: square for what chance brings, straight beyond."""
+    size = np.abs(r)
+    return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
+
+
+def _chains(judged: list[Judged], errors: Errors) -> None:
+    """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
+    sheet = _Sheet(judged, errors)
+    open_ = np.array([j.verdict == "red" for j in judged])
+    while open_.any():
+        first = min(np.flatnonzero(open_), key=lambda i: (sheet.order[i], i))
+        start = judged[first]
+        start.starts, open_[first] = True, False
+        mistake = _best(sheet, int(first))
+        if mistake is None:
+            continue
+        lines, gradient = sheet.by_place[mistake.place]
+        shares = gradient @ mistake.moved
+        uncertain = np.sqrt(np.einsum("ni,ij,nj->n", gradient, mistake.uncertain, gradient))
+        start.mistake = mistake
+        for i, share, doubt in zip(lines, shares, uncertain, strict=True):
+            j, before = judged[i], sheet.left[i]
+            if j.verdict == "green" and abs(before) <= j.tolerance:
+                continue  # the mistake did not reach it
+            sheet.left[i] -= share
+            explained = abs(sheet.left[i]) <= hypot(j.tolerance, float(doubt), CURVED * float(share))
+            if explained and abs(share) > SHARE * j.tolerance and not j.starts and abs(sheet.left[i]) < abs(before):
+                open_[i] = False
+                if j.follows is None:
+                    j.follows = start
+
+
+def _best(sheet: _Sheet, i: int) -> Mistake | None:
+    """The mistake behind a red number; None when it explains nothing else: a slip in reading or computing this one."""
+    candidates = [sheet.mistake(place) for place in sheet.places[i]]
+    alone = float(_loss(sheet.left[i] / sheet.tolerance[i]))
+    own = sheet.judged[i].entry.head
+    good = [m for m in candidates if m.score > alone * ALONE]
+    if not good:
+        return None
+    best = max(m.score for m in good)
+    near = [m for m in good if m.score >= NEARLY * best]
+    head = None if own is None else _place(own, sheet.judged[i].at)
+    # Of steps that explain equally well the one that was measured here, else one that was measured at all.
+    return max(near, key=lambda m: (m.place == head, m.place in sheet.heads, m.score))
+
+
+def _place(step: Step, k: int) -> Place:
+    return id(step), k if np.size(step.value) > 1 else 0
