@@ -16,7 +16,7 @@ Pictures are arrays with row 0 at the top; points of pictures and of the sheet a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
@@ -207,6 +207,8 @@ class Guess(NamedTuple):
     corners: Points
     bends: Floats
     reach: float
+    ways: tuple[int, ...] = tuple(range(8))
+    """Positions in which it may be: quarter turns, and 4 more for those in a mirror."""
 
 
 def _guesses(grey: Any, ink: Any) -> list[Guess]:
@@ -241,9 +243,10 @@ def _guesses(grey: Any, ink: Any) -> list[Guess]:
             if quad is not None:
                 papers.insert(0, (quad, _bends((labels == i).astype(np.uint8), quad)))
     edge = np.array([PAPER.x0 + 1j * PAPER.y0, PAPER.x1 + 1j * PAPER.y0, PAPER.x1 + 1j * PAPER.y1, PAPER.x0 + 1j * PAPER.y1])
-    for quad, bends in papers:
+    # What has been found may be the paper's edge as well.
+    for quad, bends in [*((g.corners, g.bends) for g in out), *papers]:
         for turn in range(4):  # the wide margin is on one side only
-            out.append(Guess(_apply(homography(edge, np.roll(quad, turn)), CORNERS), np.roll(bends, turn, 0), 9.0))
+            out.append(Guess(_apply(homography(edge, np.roll(quad, turn)), CORNERS), np.roll(bends, turn, 0), 7.0, (0, 4)))
     return out
 
 
@@ -369,12 +372,12 @@ class Found:
     score: float
 
 
-def _better(best: Found | None, ink: Any, guess: Guess, block: Lines, level: float, ways: Iterable[int]) -> Found | None:
+def _better(best: Found | None, ink: Any, guess: Guess, block: Lines, level: float) -> Found | None:
     """The better of what was found and of a guess, followed along its sides, in up to four positions and as many mirrored ones."""
     sides, corners = _sides(ink, guess)
     if not np.isfinite(corners).all() or min(abs(a - b) for a, b in pairwise([*corners.tolist(), corners[0]])) < 50:
         return best
-    for way in ways:
+    for way in guess.ways:
         mirrored, turn = way >= 4, way % 4
         placed = np.roll(corners[[1, 0, 3, 2]] if mirrored else corners, turn)
         around = tuple(sides[k] for k in np.roll([0, 3, 2, 1] if mirrored else [0, 1, 2, 3], turn))
@@ -403,7 +406,7 @@ def find(grey: Grey, block: Lines) -> Found:
     level = max(5 * 1.4826 * float(np.median(np.abs(ink.astype(np.int16) - int(np.median(ink))))) + float(np.median(ink)), 20.0)
     best: Found | None = None
     for guess in _guesses(small, ink):
-        best = _better(best, ink, guess, block, level, range(8))
+        best = _better(best, ink, guess, block, level)
         if best is not None and best.score > SURE:
             break
     if best is not None and TRIED < best.score <= SURE and not best.mirrored:
@@ -415,7 +418,7 @@ def find(grey: Grey, block: Lines) -> Found:
             seen = np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)])
             corners = _apply(homography(seen, first.corners), CORNERS)
             bends = np.stack([_bend(s, a, b) for s, a, b in zip(first.sides, first.corners, np.roll(first.corners, -1), strict=True)])
-            best = _better(best, ink, Guess(corners, bends, 6.0), block, level, (0,))
+            best = _better(best, ink, Guess(corners, bends, 6.0, (0,)), block, level)
             if best is not None and best.score > SURE:
                 break
     if best is None or best.score < FOUND:
