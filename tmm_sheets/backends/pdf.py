@@ -6,7 +6,7 @@ reportlab makes the page, the font and the file; the content stream is written h
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from io import BytesIO
 from math import ceil, cos, isfinite, pi, sin, tan
 from pathlib import Path
@@ -58,6 +58,18 @@ def render(drawing: Drawing) -> bytes:
     page.showPage()
     stream = pdfdoc.PDFStream(content=page._doc.Pages.pages[-1].stream, filters=[_FastFlate()])
     page._doc.Pages.pages[-1].Contents = stream
+    page.save()
+    return buffer.getvalue()
+
+
+def render_coloured(layers: Sequence[tuple[Drawing, tuple[float, float, float]]]) -> bytes:
+    """The bytes of a one-page PDF with several drawings over each other, each in a colour of its own (red, green, blue, 0 .. 1)."""
+    buffer = BytesIO()
+    page = _document(layers[0][0], buffer)
+    for drawing, (r, g, b) in layers:
+        colour = f"{r:.3f} {g:.3f} {b:.3f}"
+        page._code += ["q", SET_UP, f"{colour} RG {colour} rg", _geometry(drawing), _lettering(drawing, page), "Q"]
+    page.showPage()
     page.save()
     return buffer.getvalue()
 

@@ -1,0 +1,291 @@
+"""A student's CAD drawing against a sheet: found, laid over it, matched element by element."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.compare import cad_file, cad_overlay, layout, view_places
+from tmm_sheets.compare.cad_ink import CadInk, Entity, Space
+from tmm_sheets.compare.elements import Element, View, elements, views
+from tmm_sheets.compare.matching import Finding, Outcome, match, placed
+from tmm_sheets.compare.placing import Placing, candidates, lines, refine, search, snapped
+from tmm_sheets.compare.report import Report
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.sheets.sheet import Composed, composed
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+SIDES = (816.0, 841.0, 584.0, 594.0)
+"""Lengths of the frame's and the paper's sides, mm."""
+SURE = 0.5
+"""Share of our lines found at which a placing is beyond doubt."""
+LOST = 0.2
+"""Share of the elements found below which the drawing is not of this sheet."""
+SHOWN = 60
+"""Rows of a table in the terminal; all of them are in the JSON."""
+VIEW_GONE = 0.15
+"""A view of which less than this is right, and most missing, is told as missing in one row."""
+
+
+@dataclass(frozen=True)
+class Laid:
+    """A drawing laid over a sheet."""
+
+    n: int
+    sheet: Composed
+    elements: tuple[Element, ...]
+    space: Space
+    placing: Placing
+    share: float
+
+
+def compare(project: Project, sheet: int | None, path: Path, views_file: Path | None, pencil: float,
+            say: Callable[[str], None]) -> Report:
+    """Compare a DXF drawing with a sheet of a project; with the sheet it fits best when none is named.
+
+    Raises
+    ------
+    BadInput
+        When the file cannot be read as DXF, there is no such sheet, or the drawing is of none of them.
+    """
+    count = len(project.variant.sheets)
+    if sheet is not None and not 1 <= sheet <= count:
+        raise BadInput(f"--sheet {sheet}: {project.variant.project.name} has {count} sheet{'s' * (count > 1)}", "give one from 1")
+    say(f"reading {path.name}")
+    ink = cad_file.read(path)
+    numbers = [sheet] if sheet is not None else list(range(1, count + 1))
+    sheets = {}
+    for n in numbers:
+        say(f"sheet {n}")
+        sheets[n] = composed(project, n)
+    if views_file is not None and sheet is None and count > 1:
+        raise BadInput("--views needs --sheet N: its views are those of one sheet")
+    say("laying it over the sheet")
+    laid = _lay(sheets, ink)
+    given = view_places.read(views_file, views(laid.sheet)) if views_file is not None else ()
+    space = placed(laid.space, laid.placing)
+    say("placing the views")
+    places = layout.find(laid.elements, lines(s.points for s in space.strokes), [(p, laid.placing) for p in given])
+    outcome = match(laid.elements, space, places.moves, pencil, say)
+    _refuse(project, laid, outcome, ink, sheet, path)
+    notes = (*ink.notes, *_how(laid, ink), *places.notes)
+    say("overlay")
+    shown = [f for f in _worst(outcome.findings) if f.element.view not in _gone(outcome)]
+    marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
+        [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
+    files = cad_overlay.files(laid.n, laid.sheet.drawing, _exact(laid.elements, places.moves), space, marked)
+    name = project.variant.project.name
+    return Report(_text(name, path, laid, outcome, pencil), _tree(name, path, laid, places, outcome, pencil), files, notes)
+
+
+# --- placing ----------------------------------------------------------------------------------------------------------
+
+
+def _lay(sheets: dict[int, Composed], ink: CadInk) -> Laid:
+    """The sheet and the space that fit best, with the placing of the drawing as a whole."""
+    tried: list[Laid] = []
+    known = {n: elements(sheet) for n, sheet in sheets.items()}
+    for mirrored in (False, True):
+        for n, sheet in sheets.items():
+            ours = layout.ink(known[n])
+            for space in ink.spaces:
+                theirs = lines(s.points for s in space.strokes)
+                scales = candidates(theirs, ink.unit, float(np.ptp(ours.real)), SIDES)
+                trial = search(ours, theirs, scales, mirrored=mirrored)
+                tried.append(Laid(n, sheet, known[n], space, trial.placing, trial.share))
+        # The first of those that are equal: model space, not mirrored.
+        best = max(tried, key=lambda laid: round(laid.share, 2))
+        if best.share >= SURE:
+            break
+    ours = layout.ink(best.elements)
+    picked = ours[:: max(len(ours) // 4000, 1)]
+    theirs = lines(s.points for s in best.space.strokes)
+    fitted = refine(picked, theirs, best.placing)
+    if fitted.share < best.share - 0.1:  # too little to go by: the whole has no one place
+        return best
+    placing = snapped(picked, theirs, fitted.placing, ink.unit)
+    return Laid(best.n, best.sheet, best.elements, best.space, placing, fitted.share)
+
+
+def _how(laid: Laid, ink: CadInk) -> list[str]:
+    """What was done to the drawing to lay it over the sheet, where it is not as it should be."""
+    found = []
+    p = laid.placing
+    if p.mirrored:
+        found.append("the drawing is mirrored; it was turned over for the comparison")
+    quarter = round(p.degrees / 90) % 4
+    if quarter:
+        found.append(f"the drawing lies turned by {(-90 * quarter) % 360} degrees; it was turned back")
+    rest = (p.degrees + 45) % 90 - 45
+    if abs(rest) > 0.02:
+        found.append(f"the drawing is askew by {-rest:.2f} degrees; it was straightened")
+    unit = ink.unit or 1.0
+    ratio = p.scale / unit
+    if abs(ratio - 1) > 1e-3:
+        usual = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}
+        size = next((s for r, s in usual.items() if abs(ratio / r - 1) < 1e-3), None)
+        words = {1000.0: "metres", 25.4: "inches", 10.0: "centimetres", 1.0: "millimetres"}
+        word = next((w for s, w in words.items() if abs(p.scale / s - 1) < 1e-3), None)
+        declared = next((w for s, w in words.items() if s == unit), f"units of {unit:g} mm")
+        if word is not None and (size is None or ink.unit != 1.0):
+            declares = f"the file declares {declared}" if ink.unit else "the file declares no units"
+            found.append(f"the drawing is in {word} though {declares}; it was scaled accordingly")
+        elif size is not None:
+            found.append(f"the drawing is at scale {size}; it was scaled to 1:1")
+        else:
+            found.append(f"one unit of the drawing is {p.scale:.6g} mm of the sheet; it was scaled accordingly")
+    if laid.space.name != "model space":
+        found.append(f"compared is {laid.space.name}, with what its viewports show")
+    return found
+
+
+def _refuse(project: Project, laid: Laid, outcome: Outcome, ink: CadInk, asked: int | None, path: Path) -> None:
+    """Stop where the drawing is of another sheet."""
+    lines_only = [f for f in outcome.findings if f.element.kind != "text" and f.element.view.n and f.verdict is not None]
+    right = sum(f.verdict == "green" for f in lines_only) / max(len(lines_only), 1)
+    if right >= LOST:
+        return
+    hint = "is it the right project and variant? a drawing with a layout of its own can be told with --views where its views are"
+    count = len(project.variant.sheets)
+    if asked is not None and count > 1:
+        others = _lay({n: composed(project, n) for n in range(1, count + 1) if n != asked}, ink)
+        if others.share > max(laid.share + 0.15, 0.4):
+            hint = f"it looks like sheet {others.n}: use --sheet {others.n}, or leave --sheet out"
+    what = f"sheet {laid.n}" if asked is not None or count == 1 else f"any of the {count} sheets"
+    raise BadInput(Problem(f"only {right:.0%} of the lines of {what} are in this drawing", str(path), hint=hint))
+
+
+def _exact(found: Sequence[Element], moves: Any) -> list[Points]:
+    """Lines of the exact sheet where the drawing has its views."""
+    out: list[Points] = []
+    for e in found:
+        move = moves.get(e.view, Placing())
+        if e.kind == "hatch":
+            out += [move(p) for p in e.pieces]
+        elif e.kind != "text":
+            out.append(move(e.points))
+    return out
+
+
+# --- the report -------------------------------------------------------------------------------------------------------
+
+
+def _worst(findings: Sequence[Finding]) -> list[Finding]:
+    """What is not right, red first, the largest deviation first."""
+    rank = {"red": 0, "amber": 1}
+    return sorted((f for f in findings if f.verdict in rank), key=lambda f: (rank[str(f.verdict)], -f.deviation, f.element.number))
+
+
+def _gone(outcome: Outcome) -> set[View]:
+    """Views that are not in the drawing at all."""
+    by_view: dict[View, list[Finding]] = {}
+    for f in outcome.findings:
+        by_view.setdefault(f.element.view, []).append(f)
+    return {v for v, found in by_view.items() if len(found) > 5 and sum(f.missing for f in found) > 0.6 * len(found)
+            and sum(f.verdict == "green" for f in found) < VIEW_GONE * len(found)}
+
+
+def _called(e: Element) -> str:
+    if e.kind == "text":
+        return "text"
+    what: str = e.kind
+    if e.arrow and e.kind == "line":
+        what = "arrow"
+    elif e.kind == "circle" and e.fills:
+        what = "dot"
+    elif e.kind == "hatch":
+        what = "hatching"
+    return f"{what} {e.name}".strip()
+
+
+def _found_by(entities: Sequence[Entity]) -> str:
+    if not entities:
+        return ""
+    more = f" and {len(entities) - 1} more" if len(entities) > 1 else ""
+    return f"{entities[0]}{more}"
+
+
+def _text(name: str, path: Path, laid: Laid, outcome: Outcome, pencil: float) -> str:
+    gone = _gone(outcome)
+    colours = Counter(f.verdict for f in outcome.findings)
+    out = [f"{name}, sheet {laid.n}: {path.name} ({laid.space.name}), {len(outcome.findings)} elements, tolerance {pencil:g} mm",
+           ""]
+    rows = []
+    for f in _worst(outcome.findings):
+        if f.element.view not in gone:
+            where = _found_by([laid.space.entities[k] for k in f.entities])
+            rows.append((str(f.element.number), f.element.view.name, _called(f.element), f.what, str(f.verdict), where))
+    if rows:
+        out += _table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows)
+        out.append("")
+    out += [f'missing altogether: view "{v.name}", {sum(f.element.view == v for f in outcome.findings)} elements'
+            for v in sorted(gone, key=lambda v: v.n)]
+    extra = []
+    for k, x in enumerate(outcome.extras, 1):
+        what = f'text "{x.text}"' if x.text else f"{x.length:.1f} mm of line" + (f" in {x.count} entities" if x.count > 1 else "")
+        extra.append((f"+{k}", what, f"({x.at.real:.0f}, {x.at.imag:.0f})", str(x.verdict), str(x.entity)))
+    if extra:
+        out += ["extra, on no element of the sheet:", *_table(("no.", "what", "about, mm", "verdict", "in the drawing"), extra), ""]
+    skipped = colours[None]
+    also = f", {skipped} not compared" if skipped else ""
+    worst = max((f.deviation for f in outcome.findings if f.verdict == "green"), default=0.0)
+    out.append(f"{colours['green']} green (up to {worst:.2f} mm), {colours['amber']} amber, {colours['red']} red{also}; "
+               f"{len(outcome.extras)} extra")
+    return "\n".join(out)
+
+
+def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
+    shown = [tuple(c if len(c) <= 74 else c[:73] + "…" for c in row) for row in rows[:SHOWN]]
+    widths = [max(len(row[k]) for row in (head, *shown)) for k in range(len(head))]
+    out = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (head, *shown)]
+    if len(rows) > SHOWN:
+        out.append(f"... and {len(rows) - SHOWN} more; --json has all")
+    return out
+
+
+def _point(z: complex | None) -> list[float] | None:
+    return None if z is None else [round(z.real, 3), round(z.imag, 3)]
+
+
+def _rounded(x: float | None) -> float | None:
+    return None if x is None else round(x, 4)
+
+
+def _tree(name: str, path: Path, laid: Laid, places: layout.Layout, outcome: Outcome, pencil: float) -> dict[str, Any]:
+    colours = Counter(f.verdict for f in outcome.findings)
+    p = laid.placing
+
+    def entity(e: Entity) -> dict[str, str]:
+        return {"type": e.kind, "layer": e.layer, "handle": e.handle}
+
+    return {
+        "project": name,
+        "sheet": laid.n,
+        "drawing": path.name,
+        "space": laid.space.name,
+        "tolerance": pencil,
+        "placing": {"scale": p.scale, "degrees": round(p.degrees, 4), "shift": _point(p.shift), "mirrored": p.mirrored,
+                    "share": round(laid.share, 4)},
+        "views": [{"view": v.name, "share": round(s, 4), **(
+            {"shift": _point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
+            if v in places.moves else {})} for v, s in places.share.items()],
+        "elements": [{
+            "number": f.element.number, "view": f.element.view.name, "kind": f.element.kind, "name": f.element.name,
+            "step": f.element.of, "verdict": f.verdict, "deviation": round(f.deviation, 4), "shift": _point(f.shift),
+            "turn": _rounded(f.turn), "size": _rounded(f.size), "missing": f.missing, "what": f.what, "at": _point(f.at),
+            "entities": [entity(laid.space.entities[k]) for k in f.entities],
+        } for f in outcome.findings],
+        "extra": [{"number": k, "what": x.text or "line", "length": round(x.length, 3), "at": _point(x.at), "verdict": x.verdict,
+                   "count": x.count, "entity": entity(x.entity)} for k, x in enumerate(outcome.extras, 1)],
+        "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
+                    "extra": len(outcome.extras)},
+    }
+

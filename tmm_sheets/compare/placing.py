@@ -1,0 +1,332 @@
+"""Where a drawing lies on the sheet: scale, turn and shift that bring its lines onto the known ones.
+
+Found by correlating pictures of both (fast Fourier transform) for every scale and quarter turn that comes into question, then
+refined on the lines themselves, robustly: what is drawn wrongly hardly counts. Points are complex.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.drawing.marks import Points
+
+CELL = 3.0
+"""Cell of the pictures that are correlated, mm."""
+CELLS = 540
+"""Cells of such a picture along each side: what is larger than 1.6 m does not come into question."""
+HIT = 1.0
+"""A point of ours is found when a line of theirs passes within this, mm, in :meth:`Lines.share`."""
+
+
+class Placing(NamedTuple):
+    """``turn * z + shift`` for a point ``z`` of the drawing, of its mirror image when ``mirrored``."""
+
+    turn: complex = 1 + 0j
+    shift: complex = 0j
+    mirrored: bool = False
+
+    def __call__(self, z: Any) -> Any:
+        """The place on the sheet, mm."""
+        return self.turn * (np.conj(z) if self.mirrored else z) + self.shift
+
+    def back(self, z: Any) -> Any:
+        """The place in the drawing of a place on the sheet."""
+        z = (z - self.shift) / self.turn
+        return np.conj(z) if self.mirrored else z
+
+    @property
+    def scale(self) -> float:
+        """Millimetres of the sheet per unit of the drawing."""
+        return abs(self.turn)
+
+    @property
+    def degrees(self) -> float:
+        """Angle by which the drawing has to be turned, -180 .. 180."""
+        return float(np.degrees(np.angle(self.turn)))
+
+    def after(self, first: Placing) -> Placing:
+        """The placing that does ``first`` and then this one."""
+        turn = np.conj(first.turn) if self.mirrored else first.turn
+        shift = np.conj(first.shift) if self.mirrored else first.shift
+        return Placing(complex(self.turn * turn), complex(self.turn * shift + self.shift), self.mirrored != first.mirrored)
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Straight pieces ``a`` .. ``b`` of many lines; ``owner`` is the number of the line each belongs to."""
+
+    a: Points
+    b: Points
+    owner: npt.NDArray[np.int64]
+
+    @cached_property
+    def length(self) -> npt.NDArray[np.float64]:
+        """Lengths of the pieces."""
+        return np.asarray(np.abs(self.b - self.a))
+
+    @cached_property
+    def tree(self) -> Any:
+        """The pieces in a tree by place (shapely)."""
+        import shapely
+
+        return shapely.STRtree(shapes(self.a, self.b))
+
+    def points(self, step: float) -> Points:
+        """Places along the lines about ``step`` apart, at least one on each piece longer than a tenth of that."""
+        n = np.ceil(self.length / step).astype(int)
+        n[self.length < 0.1 * step] = 0
+        k = np.repeat(np.arange(len(n)), n)
+        t = (np.arange(len(k)) - np.repeat(np.cumsum(n) - n, n) + 0.5) / n[k]
+        return np.asarray(self.a[k] + t * (self.b - self.a)[k])
+
+    def moved(self, placing: Placing) -> Lines:
+        """The lines elsewhere."""
+        return Lines(placing(self.a), placing(self.b), self.owner)
+
+    def only(self, keep: npt.NDArray[np.bool_]) -> Lines:
+        """Some of the pieces."""
+        return Lines(self.a[keep], self.b[keep], self.owner[keep])
+
+    def share(self, points: Points, within: float = HIT) -> float:
+        """Share of the points that a line passes within some millimetres."""
+        if not len(points) or not len(self.a):
+            return 0.0
+        return float(self.nearest(points, within)[2].mean())
+
+    def nearest(self, points: Points, within: float) -> tuple[Points, Points, npt.NDArray[np.bool_]]:
+        """For each point the nearest place on a line, the direction of that line (unit), and whether there is one at all."""
+        import shapely
+
+        foot, unit, found = points.copy(), np.ones(len(points), complex), np.zeros(len(points), bool)
+        if not len(self.a):
+            return foot, unit, found
+        i, j = self.tree.query_nearest(shapely.points(points.real, points.imag), max_distance=within, all_matches=False)
+        a, d = self.a[j], (self.b - self.a)[j]
+        size = np.maximum(np.abs(d), 1e-12)
+        u = d / size
+        t = np.clip(((points[i] - a) * np.conj(u)).real, 0.0, size)
+        foot[i], unit[i], found[i] = a + t * u, u, True
+        return foot, unit, found
+
+
+def shapes(a: Points, b: Points) -> Any:
+    """Straight pieces as shapely lines."""
+    import shapely
+
+    return shapely.linestrings(np.stack((np.column_stack((a.real, a.imag)), np.column_stack((b.real, b.imag))), axis=1))
+
+
+def lines(strokes: Iterable[Points]) -> Lines:
+    """Straight pieces of lines through points; pieces without length are left out."""
+    parts = list(strokes)
+    if not parts:
+        return Lines(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, np.int64))
+    a, b = np.concatenate([p[:-1] for p in parts]), np.concatenate([p[1:] for p in parts])
+    owner = np.repeat(np.arange(len(parts)), [len(p) - 1 for p in parts])
+    keep = a != b
+    return Lines(a[keep], b[keep], owner[keep])
+
+
+def candidates(theirs: Lines, unit: float | None, width: float, sides: Sequence[float]) -> list[float]:
+    """Scales, mm per unit of the drawing, that come into question, the likely ones first.
+
+    Parameters
+    ----------
+    theirs : the drawing, in its units
+    unit : mm of the declared unit, None when there is none
+    width : width of the known lines, mm
+    sides : lengths of lines that stand out by their length (frame, edge of the paper), mm
+    """
+    longest = np.sort(theirs.length)[::-1]
+    stand_out: list[float] = []
+    for x in longest[:40]:
+        if all(abs(x - y) > 1e-3 * x for y in stand_out):
+            stand_out.append(float(x))
+    found = [s / x for x in stand_out[:4] for s in sides]
+    base = unit or 1.0
+    found += [base * k for k in RATIOS]
+    found += [k for k in (1.0, 25.4, 1000.0, 10.0, 0.1, 0.001) if k != base]
+    z = np.concatenate((theirs.a, theirs.b))
+    for span in (np.ptp(z.real), np.ptp(z.imag)):
+        found += [width / float(span)] if span > 0 else []
+    q = [np.quantile(part, (0.02, 0.98)) for part in (z.real, z.imag)]
+    size = max(float(q[0][1] - q[0][0]), float(q[1][1] - q[1][0]))
+    good: list[float] = []
+    for s in found:
+        if 0.15 * width < s * size < 1.7 * width and all(abs(s - g) > 2e-4 * g for g in good):
+            good.append(s)
+    return good
+
+
+RATIOS = (1.0, 2.0, 0.5, 2.5, 0.4, 4.0, 0.25, 5.0, 0.2, 10.0, 0.1, 20.0, 50.0, 100.0)
+"""Scales of GOST 2.302 and their inverses: mm of the sheet per mm drawn."""
+
+
+class Found(NamedTuple):
+    """A placing with the share of our lines it brings lines of theirs to."""
+
+    placing: Placing
+    share: float
+
+
+def search(ours: Points, theirs: Lines, scales: Sequence[float], turns: Sequence[int] = (0, 1, 3, 2), mirrored: bool = False,
+           enough: float = 0.8, tries: int = 8) -> Found:
+    """The scale, the quarter turns and the shift with which most of our lines lie on theirs.
+
+    Parameters
+    ----------
+    ours : places along our lines, mm of the sheet
+    theirs : their lines, drawing units
+    scales, turns : what to try, mm per unit and quarter turns counter-clockwise
+    mirrored : whether the drawing is a mirror image
+    enough : stop at this share
+    tries : how many of the placings that look best in the pictures are looked at more closely
+    """
+    if not len(ours):
+        return Found(Placing(mirrored=mirrored), 0.0)
+    low = complex(ours.real.min(), ours.imag.min())
+    mine = np.fft.rfft2(_grown(_picture(ours, low)))
+    picked = ours[:: max(len(ours) // 1500, 1)]
+    good: list[tuple[float, Placing]] = []
+    best = Found(Placing(mirrored=mirrored), 0.0)
+    for scale in scales:
+        here: list[tuple[float, Placing]] = []
+        for quarter in turns:
+            placing = Placing(scale * 1j**quarter, 0j, mirrored)
+            z = theirs.moved(placing).points(CELL)
+            if len(z):
+                here += _peaks(mine, z, low, placing)
+        good += here
+        here.sort(key=lambda peak: -peak[0])
+        if here and here[0][0] > 0.5 * enough * len(_cells(ours)):
+            trial = refine(picked, theirs, here[0][1], (6.0, 3.0, 1.5), False, 1)
+            best = max(best, trial, key=lambda f: f.share)
+            if best.share >= enough:
+                return best
+    good.sort(key=lambda peak: -peak[0])
+    for _, placing in good[:tries]:
+        best = max(best, refine(picked, theirs, placing, (6.0, 3.0, 1.5), False, 1), key=lambda f: f.share)
+        if best.share >= enough:
+            break
+    return best
+
+
+def _peaks(mine: npt.NDArray[np.complex128], z: Points, low: complex, placing: Placing,
+           most: int = 2) -> list[tuple[float, Placing]]:
+    """The best shifts of one scale and turn with the cells that meet, less those that would by chance."""
+    corner = complex(np.quantile(z.real, 0.001), np.quantile(z.imag, 0.001))
+    picture = _picture(z, corner)
+    product = np.fft.irfft2(mine * np.conj(np.fft.rfft2(picture)), s=(CELLS, CELLS))
+    # Our cells over their ground: so many meet anyhow.
+    rows, columns = (max(int(np.ptp(part) / CELL), 1) for part in (z.imag, z.real))
+    chance = min(float(picture.sum()) / (rows * columns), 1.0) * float(mine[0, 0].real)
+    found = []
+    for _ in range(most):
+        k = int(product.argmax())
+        i, j = divmod(k, CELLS)
+        peak = float(product[i, j]) - chance
+        r, c = np.arange(i - 2, i + 3) % CELLS, np.arange(j - 2, j + 3) % CELLS
+        product[np.ix_(r, c)] = 0.0
+        i, j = (i - CELLS if i > CELLS // 2 else i), (j - CELLS if j > CELLS // 2 else j)
+        found.append((peak, placing._replace(shift=low - corner + CELL * complex(j, i))))
+    return found
+
+
+def _cells(z: Points) -> npt.NDArray[np.int64]:
+    """Cells the points fall into, each once."""
+    return np.unique((z.imag // CELL).astype(np.int64) * 100_000 + (z.real // CELL).astype(np.int64))
+
+
+def _picture(z: Points, corner: complex) -> npt.NDArray[np.float64]:
+    """Inked cells, the corner in the first one."""
+    i, j = ((z.imag - corner.imag) / CELL).astype(int), ((z.real - corner.real) / CELL).astype(int)
+    inside = (i >= 0) & (i < CELLS) & (j >= 0) & (j < CELLS)
+    cells = np.zeros((CELLS, CELLS))
+    cells[i[inside], j[inside]] = 1.0
+    return cells
+
+
+def _grown(cells: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Half a hit in the neighbours of inked cells."""
+    wide = cells.copy()
+    for axis in (0, 1):
+        for way in (1, -1):
+            wide = np.maximum(wide, 0.5 * np.roll(cells, way, axis))
+    return wide
+
+
+def refine(ours: Points, theirs: Lines, start: Placing, reaches: Sequence[float] = (3.0, 1.5, 0.8, 0.4, 0.25), free: bool = True,
+           rounds: int = 2) -> Found:
+    """A placing made better: our points are to lie on the nearest lines of theirs, wrong ones counting little.
+
+    Parameters
+    ----------
+    ours : places along our lines, mm of the sheet
+    theirs : their lines, drawing units
+    start : a placing that is good to the first of ``reaches``
+    reaches : how far lines are looked for in turn, mm
+    free : whether scale and angle are fitted as well as the shift
+    """
+    placing = start
+    scale = placing.scale
+    for reach in reaches:
+        for _ in range(rounds):
+            # Their lines stay where they are, our points go back to them: the tree is made once.
+            z = placing.back(ours)
+            foot, unit, found = theirs.nearest(z, reach / scale)
+            if found.sum() < 8:
+                return Found(placing, 0.0)
+            at, foot_mm = ours[found], placing(foot[found])
+            direction = placing.turn / scale * (np.conj(unit[found]) if placing.mirrored else unit[found])
+            n = 1j * direction
+            off = ((foot_mm - at) * np.conj(n)).real
+            # Least absolute deviations: where most lines are exact the rest has no say at all.
+            weight = 1 / np.maximum(np.abs(off), 0.01 * reach + 1e-4)
+            middle = complex(at.mean())
+            r = foot_mm - middle
+            columns = [n.real, n.imag]
+            if free:
+                columns += [((1j * r) * np.conj(n)).real, (r * np.conj(n)).real]
+            m = np.column_stack(columns)
+            w = np.sqrt(weight)
+            step = np.linalg.lstsq(m * w[:, None], -off * w, rcond=1e-9)[0]
+            shift = complex(step[0], step[1])
+            turn = 1 + complex(step[3], step[2]) if free else 1 + 0j
+            # z' = middle + turn (z - middle) + shift
+            placing = Placing(turn, middle - turn * middle + shift).after(placing)
+            scale = placing.scale
+    _, _, found = theirs.nearest(placing.back(ours), HIT / scale)
+    return Found(placing, float(found.mean()))
+
+
+def snapped(ours: Points, theirs: Lines, fitted: Placing, unit: float | None) -> Placing:
+    """The placing with its scale and angle set to the round ones they nearly are, the shift fitted again."""
+    scale, angle = fitted.scale, float(np.angle(fitted.turn))
+    quarter = round(angle / (np.pi / 2))
+    if abs(angle - quarter * np.pi / 2) < NEARLY:
+        angle = quarter * np.pi / 2
+        turn = 1j**quarter
+    else:
+        turn = complex(np.exp(1j * angle))
+    for base in dict.fromkeys((unit or 1.0, 1.0, 1000.0, 10.0, 25.4, 0.1, 0.001)):
+        for ratio in RATIOS:
+            if abs(scale / (base * ratio) - 1) < NEARLY:
+                middle = complex(ours.mean())
+                new = base * ratio * turn
+                z = fitted.back(middle)
+                shift = middle - new * (np.conj(z) if fitted.mirrored else z)
+                return refine(ours, theirs, Placing(new, shift, fitted.mirrored), (0.5, 0.25, 0.1), False, 3).placing
+    middle = complex(ours.mean())
+    z = fitted.back(middle)
+    new = scale * turn
+    return Placing(new, middle - new * (np.conj(z) if fitted.mirrored else z), fitted.mirrored)
+
+
+NEARLY = 4e-4
+"""Relative error of a scale, or error of an angle in rad, that is taken for rounding (0.3 mm over the sheet)."""
