@@ -111,9 +111,14 @@ def show(project: str, corrected: bool, as_file: bool) -> None:
 @PROJECT
 @CORRECTED
 def check(project: str, corrected: bool) -> None:
-    """Read and assemble PROJECT; write nothing."""
+    """Read and assemble PROJECT, tell what no pencil can draw; write nothing."""
     opened = _open(project, corrected)
     opened.check()
+    if opened.variant.crank is not None:
+        from tmm_sheets.sheets import flat_crossings
+
+        for line in flat_crossings.lines(opened):
+            click.echo(f"{opened.variant.project.name}: {line}", err=True)
     click.echo(f"{opened.variant.project.name}: OK")
 
 

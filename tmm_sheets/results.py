@@ -70,6 +70,7 @@ def assemble(
         for name in LINKAGE:
             if name in asked:
                 tree[name] = _SECTIONS[name](project, study, chosen)
+        tree["condition"] = _condition(study, [name for name in LINKAGE if name in asked], chosen)
     scales: dict[str, Any] = {}
     plans = set(asked) & {"positions", "velocities", "accelerations"}
     if plans:
@@ -255,6 +256,18 @@ def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]
             "difference_percent": _percent(by_statics, by_lever),
         },
     }
+
+
+def _condition(study: Study, asked: list[str], chosen: list[int]) -> dict[str, Any]:
+    """Condition number of each plan, the worst of its crossings, at each position; of forces at those they are told for."""
+    from tmm_sheets.construction import condition
+
+    n = len(study.labels)
+    plans = {name: [getattr(study, name).plan] for name in asked if name != "forces"}
+    found = {name: condition.of_plans(of_part, n) for name, of_part in plans.items()}
+    if "forces" in asked:
+        found["forces"] = condition.of_plans((fp.plan for fp in study.forces.plans.values()), n)[chosen]
+    return found
 
 
 def _percent(a: Any, b: Any) -> Any:

@@ -39,6 +39,19 @@ class Label:
     part: int = -1
 
 
+@dataclass(frozen=True)
+class Note:
+    """A remark to a view in words; the sheet finds it a free place, in ``box`` or near it, when all labels are set.
+
+    ``of`` and ``part`` are those of the canvas when the note was asked for.
+    """
+
+    text: str
+    box: Box
+    of: str = ""
+    part: int = -1
+
+
 class Part(NamedTuple):
     """A view, or a titled part of one: its marks are those from ``first`` to where the next part begins.
 
@@ -80,6 +93,7 @@ class Canvas:
     of: str = ""
     parts: list[Part] = field(default_factory=list)
     groups: list[Group] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
@@ -204,6 +218,10 @@ class Canvas:
         if anchor == anchor:
             self.labels.append(
                 Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1))
+
+    def note(self, box: Box, text: str) -> None:
+        """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
+        self.notes.append(Note(text, box, self.of, len(self.parts) - 1))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
         """Title of a view centred at the top of its place, the scale factor under it; returns what is left below."""

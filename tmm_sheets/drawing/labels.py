@@ -61,7 +61,7 @@ def text_box(mark: Text) -> Points:
 
 def place(canvas: Canvas, area: Box) -> list[Crowded]:
     """Set every requested label of the canvas inside ``area``; returns those that found no free place."""
-    grid = _Grid(area, canvas.marks)
+    grid = Grid(area, canvas.marks)
     crowded = []
     for label in canvas.labels:
         if not _set(canvas, grid, label):
@@ -70,7 +70,7 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
     return crowded
 
 
-class _Grid:
+class Grid:
     """Ink on the sheet as two summed-area tables, and the labels set so far."""
 
     def __init__(self, area: Box, marks: list[Mark]) -> None:
@@ -145,7 +145,7 @@ def _sampled(lines: list[Points]) -> Points:
     return np.asarray(np.interp(t, along, p.real) + 1j * np.interp(t, along, p.imag))
 
 
-def _set(canvas: Canvas, grid: _Grid, label: Label) -> bool:
+def _set(canvas: Canvas, grid: Grid, label: Label) -> bool:
     laid = letter(label.text, label.height)
     w, h = laid.width + 0.15 * label.height, laid.ascent + laid.descent
     units = _DIRECTIONS if not label.away else _DIRECTIONS * (label.away / abs(label.away))

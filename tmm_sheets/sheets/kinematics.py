@@ -12,7 +12,7 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.sheets import indicator, kinematic_frames, linkage
+from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import Frame, pick
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     c = m.crank
     centre = m.fixed[c.pivot]
     canvas.title(box, "Планы положений механизма", str(frame.scale))
+    flat_crossings.warn(project, canvas, box, pos.plan, (i for i, _ in cycle.drawn))
     canvas.scales["dead-positions"] = frame.scale
     canvas.circle(frame(centre), c.length / frame.scale.mu, "thin")
     _paths(canvas, project, frame, box.y1 - 18.0)
@@ -270,6 +271,7 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     shown, spans, rows, per_row, scale = layout.shown, layout.spans, layout.rows, layout.per_row, layout.scale
     inside, count, margin = layout.inside, len(layout.shown), kinematic_frames.MARGIN
     canvas.title(box, "Планы скоростей" if count > 1 else "План скоростей", str(scale))
+    flat_crossings.warn(project, canvas, box, vel.plan, (i for i, _ in shown))
     heights = [max(s.height for s in spans[r * per_row:(r + 1) * per_row]) / scale.mu + 16.0 for r in range(rows)]
     spare = (inside.height - sum(heights)) / rows
     y = inside.y1
@@ -363,6 +365,7 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
     acc, k = project.study.accelerations, project.force_index
     frame = kinematic_frames.accelerations(project, canvas, box)
     canvas.title(box, f"План ускорений (положение {project.cycle.labels[k]})", str(frame.scale))
+    flat_crossings.warn(project, canvas, box, acc.plan)
     _draw_plan(canvas, acc.plan, k, frame, "π", symbols_at=True)
 
 

@@ -14,7 +14,7 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets import linkage
+from tmm_sheets.sheets import flat_crossings, linkage
 from tmm_sheets.sheets.frame import Frame, extent, fit_frame, pick
 
 if TYPE_CHECKING:
@@ -345,6 +345,7 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     frame = Frame(scale, inside.centre - scale.mm(real.centre))
     canvas.of = fp.plan.name
     canvas.title(box, fp.plan.title, str(scale), 5.0)
+    flat_crossings.warn(project, canvas, box, fp.plan)
     sides = [s for s in fp.sides if abs(complex(s[2].at(k)) - complex(s[1].at(k))) > 0]
     for sign, tail, head, _ in sides:
         a, b = frame(complex(tail.at(k))), frame(complex(head.at(k)))

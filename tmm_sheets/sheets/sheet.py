@@ -87,6 +87,10 @@ def composed(project: Project, n: int) -> Composed:
         _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
     canvas.begin(INSIDE, "", "labels")
     crowded = place(canvas, INSIDE)
+    if canvas.notes:
+        from tmm_sheets.drawing import notes
+
+        crowded += notes.place(canvas, INSIDE)
     title = f"{project.variant.project.title}. {plan.title}"
     drawing = Drawing(WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets")
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups))

@@ -1,0 +1,96 @@
+"""Notes find free places by themselves: words beside a view, set when everything else is drawn, that cover nothing at all."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.drawing.canvas import Canvas, Note
+from tmm_sheets.drawing.labels import Crowded, Grid
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+
+HEIGHTS = (3.5, 2.5)
+"""Heights of lettering, mm, the second where the first finds no place in the view, or on the whole sheet (GOST 2.304)."""
+LEADING = 1.6
+"""Distance of the lines of a note, in heights of its capitals."""
+LINES = (2, 1, 3, 4, 5)
+"""Numbers of lines a note may have, the most welcome first."""
+CLEAR = 1.5
+"""Margin kept round a note, mm."""
+STEP = 1.0
+"""Distance of the places tried, mm."""
+OUTSIDE = 4.0
+"""What a millimetre outside the view costs, in millimetres from its upper edge."""
+
+
+def place(canvas: Canvas, area: Box) -> list[Crowded]:
+    """Set every note of the canvas inside ``area``; returns those that found no free place, which are left out."""
+    crowded = []
+    for note in canvas.notes:
+        grid = Grid(area, canvas.marks)
+        for region, height in product((note.box, area), HEIGHTS):
+            found = [choice for n in LINES if (choice := _choice(grid, region, note, height, n)) is not None]
+            if found:
+                _, corner, lines = min(found, key=lambda choice: choice[0])
+                _set(canvas, note, corner, lines, height)
+                break
+        else:
+            crowded.append(Crowded(note.text, note.box.centre))
+    canvas.notes.clear()
+    return crowded
+
+
+def _wrapped(text: str, height: float, count: int) -> list[str]:
+    """The text broken between words into ``count`` lines of about one length."""
+    words = text.split(" ")
+    widths = [letter(word, height).width for word in words]
+    space = letter("н н", height).width - 2 * letter("н", height).width
+    room = (sum(widths) + space * (len(words) - count)) / count
+    while True:
+        lines: list[list[str]] = [[]]
+        used = 0.0
+        for word, width in zip(words, widths, strict=True):
+            if lines[-1] and used + space + width > room:
+                lines.append([])
+                used = 0.0
+            used += width + (space if lines[-1] else 0.0)
+            lines[-1].append(word)
+        if len(lines) <= count:
+            return [" ".join(line) for line in lines]
+        room += height
+
+
+def _choice(grid: Grid, region: Box, note: Note, height: float, count: int) -> tuple[float, complex, list[str]] | None:
+    """The best free place in ``region`` for a note of so many lines: its cost, the lower left corner, the lines."""
+    lines = _wrapped(note.text, height, count)
+    laid = [letter(line, height) for line in lines]
+    w = max(line.width for line in laid) + 0.15 * height
+    h = (len(laid) - 1) * LEADING * height + laid[0].ascent + laid[-1].descent
+    box = note.box
+    x, y = np.meshgrid(np.arange(region.x0 + CLEAR, region.x1 - w - CLEAR, STEP),
+                       np.arange(region.y0 + CLEAR, region.y1 - h - CLEAR, STEP))
+    sides = np.array([x.ravel(), y.ravel(), x.ravel() + w, y.ravel() + h])
+    outside = np.maximum.reduce([box.x0 - sides[0], box.y0 - sides[1], sides[2] - box.x1, sides[3] - box.y1, np.zeros(x.size)])
+    cost = OUTSIDE * outside + np.abs(box.y1 - sides[3]) + 0.2 * np.abs(sides[0] + w / 2 - box.centre.real)
+    cost += height * LINES.index(count)
+    covered = grid.under(grid.heavy, _with_margin(sides)) + grid.under(grid.light, _with_margin(sides))
+    cost = np.where(covered > 0, np.inf, cost)
+    best = int(np.argmin(cost)) if cost.size else 0
+    if not cost.size or not np.isfinite(cost[best]):
+        return None
+    return float(cost[best]), complex(sides[0, best], sides[1, best]), lines
+
+
+def _with_margin(sides: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return np.asarray(sides + CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None])
+
+
+def _set(canvas: Canvas, note: Note, corner: complex, lines: list[str], height: float) -> None:
+    canvas.of = note.of
+    baseline = corner + 1j * letter(lines[-1], height).descent
+    for k, line in enumerate(lines, 1):
+        canvas.put(letter(line, height), baseline + 1j * (len(lines) - k) * LEADING * height, 0.0, line)
+        canvas.groups[-1] = canvas.groups[-1]._replace(part=note.part)

@@ -1,0 +1,178 @@
+"""Crossings too flat to be drawn: where lines or arcs meet at so small an angle that a pencil cannot find the point.
+
+Nature, not the program, takes these digits away, so the sheet says it beside the view, with the position to take instead. Looked
+for are points whose lines cross under less than 30 degrees (condition number 2); told are those that a pencil of 0.25 mm misses by
+more than a millimetre, the errors of everything drawn before included. Where no crossing is flat, which one product for each
+crossing tells, nothing else is computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from math import asin, degrees
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction import condition, rules
+from tmm_sheets.construction.scale import fixed
+from tmm_sheets.sheets import kinematic_frames
+
+if TYPE_CHECKING:
+    from tmm_sheets.box import Box
+    from tmm_sheets.construction.error import Errors
+    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.drawing.canvas import Canvas
+    from tmm_sheets.project import Project
+
+FLAT = 2.0
+"""Condition number from which a crossing is looked at: lines under 30 degrees."""
+STEEP = 1.5
+"""Condition number up to which a position is recommended instead: lines over 40 degrees."""
+COARSE = 1.0
+"""Error of a point, mm, above which it is told."""
+_KINEMATIC = {"positions": "mu_l", "velocities": "mu_V", "accelerations": "mu_a"}
+
+
+@dataclass(frozen=True)
+class Flat:
+    """A crossing that cannot be drawn at some positions, named by their numbers.
+
+    ``worst`` is where it is told: the position of the force analysis if that is among them, the worst else; ``mm`` its error
+    there, None where it is no smaller than half of the plan: the pencil does not find it at all. ``angle`` is that between the
+    lines, rad. ``better`` is the nearest position of the same stroke where every crossing is steep, with this one's error there,
+    None when there is none.
+    """
+
+    plan: Plan
+    step: Step
+    positions: tuple[int, ...]
+    worst: int
+    mm: float | None
+    angle: float
+    better: int | None
+    better_mm: float
+
+
+def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, Any]) -> list[Flat]:
+    """Crossings of a plan that cannot be drawn at the positions ``drawn``; ``scales`` are those of the plans on the sheet."""
+    places = list(drawn)
+    errors: Errors | None = None
+    found = []
+    for name, number in condition.crossings(plan).items():
+        steep = np.broadcast_to(number, (len(project.study.labels),))
+        if not (steep[places] > FLAT).any():
+            continue
+        errors = errors or _errors(project, plan, scales)
+        mm = np.broadcast_to(errors.in_mm(plan[name]), steep.shape)
+        bad = tuple(i for i in places if steep[i] > FLAT and not mm[i] <= COARSE)
+        if bad:
+            worst = max(bad, key=lambda i: (i == project.force_index, np.nan_to_num(mm[i], nan=np.inf)))
+            better = _better(project, worst)
+            size = kinematic_frames.plan_extent(plan, worst)
+            hopeless = not scales[plan.name].real(mm[worst]) < 0.5 * max(size.width, size.height)
+            found.append(Flat(plan, plan[name], bad, worst, None if hopeless else float(mm[worst]), asin(1 / float(steep[worst])),
+                              better, float("nan") if better is None else float(mm[better])))
+    return found
+
+
+def _errors(project: Project, plan: Plan, scales: dict[str, Any]) -> Errors:
+    """Errors of a plan and of those it was measured on, at the scale factors of the sheets."""
+    from tmm_sheets.construction.error import Errors
+
+    study = project.study
+    order = list(_KINEMATIC)
+    before = {name: getattr(study, name).plan for name in (order if plan.name not in order else order[:order.index(plan.name)])}
+    elsewhere = {name for name in before if name not in scales}
+    kept = kinematic_frames.scales(project, elsewhere) if elsewhere else {}
+    known = {name: scales[name] if name in scales else kept[_KINEMATIC[name]][0]
+             for name in before if name in scales or _KINEMATIC[name] in kept}
+    return Errors([*((before[name], scale.mu) for name, scale in known.items()), (plan, scales[plan.name].mu)])
+
+
+def _better(project: Project, i: int) -> int | None:
+    """The nearest of the drawn positions on the same stroke where every crossing is steep, the steeper of two.
+
+    Plans of accelerations and forces cross the same lines as those of velocities.
+    """
+    study, cycle = project.study, project.cycle
+    flattest = condition.of_plans((study.positions.plan, study.velocities.plan), len(study.labels))
+    stroke = np.zeros(len(study.labels)) if cycle.strokes is None else cycle.strokes.working(cycle.turned, 1)
+    order = [k for k, _ in cycle.drawn]
+    at = order.index(i)
+
+    def away(k: int) -> int:
+        n = abs(order.index(k) - at)
+        return min(n, len(order) - n)
+
+    fit = [k for k in order if flattest[k] < STEEP and stroke[k] == stroke[i]]
+    return min(fit, key=lambda k: (away(k), flattest[k]), default=None)
+
+
+# --- in words ---------------------------------------------------------------------------------------------------------
+
+
+def warn(project: Project, canvas: Canvas, box: Box, plan: Plan, drawn: Iterable[int] | None = None) -> None:
+    """Ask for a note beside a view for every crossing of its plan that cannot be drawn; by default at the analysed position."""
+    for flat in find(project, plan, [project.force_index] if drawn is None else drawn, canvas.scales):
+        canvas.note(box, said(project, flat))
+
+
+def said(project: Project, flat: Flat) -> str:
+    """The warning in Russian, lettering markup."""
+    from tmm_sheets.sheets import linkage
+
+    labels = dict(project.cycle.drawn)
+    several = len(flat.positions) > 1
+    name = linkage.indexed(flat.step.name)
+    at = f"положени{'ях' if several else 'и'} {_listed(project, flat.positions)}"
+    if flat.plan.name == "positions":
+        verb, what = "провести", f"В {at} {'точку' if flat.step.rule is rules.LINE_LINE else 'засечку точки'} {name}"
+    else:
+        on = {"velocities": "плане скоростей", "accelerations": "плане ускорений"}.get(flat.plan.name)
+        point = "точку" if on else "вершину"
+        verb, what = "найти", f"На {on or flat.plan.title.replace('План', 'плане', 1)} в {at} {point} {name}"
+    how = f"нельзя {verb}" + ("" if flat.mm is None else f" точнее {fixed(flat.mm, 1)} мм")
+    angle = degrees(flat.angle)
+    where = f"в положении {labels[flat.worst]} " if several else ""
+    why = f"{where}линии сходятся под углом {fixed(angle, 0 if angle >= 10 else 1)}°"
+    if flat.better is None:
+        advice = "на этом ходе нет положения лучше"
+    else:
+        purpose = "для силового расчёта возьмите положение" if flat.worst == project.force_index else "точнее в положении"
+        advice = f"{purpose} {labels[flat.better]} ({fixed(flat.better_mm, 1)} мм)"
+    return f"{what} {how}: {why}; {advice}"
+
+
+def _listed(project: Project, positions: tuple[int, ...]) -> str:
+    """Labels of positions; three and more in a row as 5–7."""
+    order = [i for i, _ in project.cycle.drawn]
+    labels = dict(project.cycle.drawn)
+    rows: list[list[int]] = []
+    for i in positions:
+        if rows and order.index(i) == order.index(rows[-1][-1]) + 1:
+            rows[-1].append(i)
+        else:
+            rows.append([i])
+    return ", ".join(f"{labels[r[0]]}–{labels[r[-1]]}" if len(r) > 2 else ", ".join(labels[i] for i in r) for r in rows)
+
+
+def lines(project: Project) -> Iterator[str]:
+    """The same for the command line, in English, for the plans of positions and velocities as the sheets have them."""
+    places, labels = [i for i, _ in project.cycle.drawn], project.cycle.labels
+    for name in ("positions", "velocities"):
+        plan, symbol = getattr(project.study, name).plan, _KINEMATIC[name]
+        if not any((np.broadcast_to(c, (len(labels),))[places] > FLAT).any() for c in condition.crossings(plan).values()):
+            continue
+        kept = kinematic_frames.scales(project, {name})
+        if symbol not in kept:  # no sheet draws it
+            continue
+        for flat in find(project, plan, places, {name: kept[symbol][0]}):
+            which = f"position{'s' if len(flat.positions) > 1 else ''} {_listed(project, flat.positions)}"
+            size = "not be drawn" if flat.mm is None else f"be drawn no better than {flat.mm:.1f} mm"
+            instead = "no position of this stroke is better" if flat.better is None else \
+                f"position {labels[flat.better]} is better ({flat.better_mm:.1f} mm)"
+            yield (f"{name}, {which}: point {flat.step.name} can {size}, its lines cross under "
+                   f"{degrees(flat.angle):.1f} deg at position {labels[flat.worst]}; {instead}")
