@@ -150,6 +150,8 @@ def sample(picture: Any, p: Points) -> Any:
     """Values of a picture at complex pixel coordinates of any shape, bilinear; 0 outside."""
     import cv2
 
+    if not np.size(p):
+        return np.zeros(np.shape(p), picture.dtype)
     flat = np.atleast_2d(p)
     wide = 8192  # cv2 takes at most 32767 rows and columns
     x, y = flat.real.astype(np.float32).ravel(), flat.imag.astype(np.float32).ravel()
@@ -479,13 +481,18 @@ def _rough(corners: Points, sides: Sequence[Points], shape: tuple[int, ...]) -> 
     return _fit_sides(m, np.concatenate(some), side, np.ones(len(side), bool))[0]
 
 
-def fit_frame(grey: Grey, found: Found) -> tuple[Map, float]:
-    """Homography, lens and bending of the sides from the frame; also the scatter of the sides' points about the result, mm."""
+def fit_frame(grey: Grey, found: Found) -> tuple[Map, float, float]:
+    """Homography, lens and bending of the sides from the frame.
+
+    Returns
+    -------
+    The map, the scatter of the sides' points about it and the width the frame's lines seem to have, mm.
+    """
     m = _rough(found.corners, found.sides, grey.shape)
-    scatter = 1.0
+    scatter, wide = 1.0, 0.0
     p, n, side = _side_points()
     step = 0.1
-    for width in (2.5, 1.5, 1.5):
+    for width in (2.5, 1.5, 2.0):
         offsets = np.arange(-width, width + step / 2, step)
         at = m.to_picture(p[:, None] + n[:, None] * offsets)
         profile = _local_ink(grey, at)
@@ -496,7 +503,9 @@ def fit_frame(grey: Grey, found: Found) -> tuple[Map, float]:
         o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
         use = strength > 0.4 * np.median(strength)
         m, scatter = _fit_sides(m, m.to_picture(p + n * o), side, use)
-    return m, scatter
+        about = np.where(np.abs(offsets - o[:, None]) < 1.5, profile, 0.0)
+        wide = float(np.median(about.sum(1)[use] * step / np.maximum(about.max(1)[use], 1e-3)))
+    return m, scatter, wide
 
 
 def _local_ink(grey: Any, at: Points) -> Floats:
@@ -569,15 +578,24 @@ def straighten(grey: Grey, m: Map, scale: float = SCALE) -> Any:
         grey = cv2.resize(grey, None, fx=f, fy=f, interpolation=cv2.INTER_AREA)
         nodes = (nodes + 0.5 + 0.5j) * f - (0.5 + 0.5j)
     out = np.empty((height, width), np.uint8)
-    px, py = nodes.real.astype(np.float32), nodes.imag.astype(np.float32)
-    column = (((np.arange(width) + 0.5) / scale - x[0]) / NODE).astype(np.float32)
+    # Linear between the nodes, as products of matrices: cv2 would round to a 32nd of the distance between nodes.
+    across = _weights((np.arange(width) + 0.5) / scale, x)
+    px, py = nodes.real.astype(np.float32) @ across.T, nodes.imag.astype(np.float32) @ across.T
     for top in range(0, height, 512):
         rows = np.arange(top, min(top + 512, height))
-        row = ((PAPER.y1 - (rows + 0.5) / scale - y[0]) / NODE).astype(np.float32)
-        gx, gy = np.meshgrid(column, row)
-        mx, my = (cv2.remap(part, gx, gy, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE) for part in (px, py))
-        out[top : top + len(rows)] = cv2.remap(grey, mx, my, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        down = _weights(PAPER.y1 - (rows + 0.5) / scale, y)
+        out[top : top + len(rows)] = cv2.remap(grey, down @ px, down @ py, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     return darkness(out, 5 * scale)
+
+
+def _weights(at: Floats, nodes: Floats) -> Any:
+    """Matrix that interpolates values at evenly spaced nodes linearly."""
+    k = np.clip(((at - nodes[0]) / NODE).astype(int), 0, len(nodes) - 2)
+    t = (at - nodes[k]) / NODE
+    out = np.zeros((len(at), len(nodes)), np.float32)
+    out[np.arange(len(at)), k] = 1 - t
+    out[np.arange(len(at)), k + 1] = t
+    return out
 
 
 def pixels(p: Points, scale: float = SCALE) -> Points:

@@ -11,7 +11,7 @@ straight line has no shift along itself and no growth; its length is measured at
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 from typing import Any, Literal, NamedTuple
 
@@ -142,10 +142,10 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
     found: list[Trace] = []
     for e in elements:
         if measurable(e):
-            s = _stations(e)
-            near = _near(e, s, ink, known, level)
+            # A curve in place is off here and there rather than too large.
+            near = _near(e, _stations(e, e.kind in ("circle", "arc")), ink, known, level)
             if near is None:
-                open_.append((e, s))
+                open_.append((e, _stations(e, e.kind != "line")))
             else:
                 found.append(near)
     for e in elements:
@@ -163,7 +163,7 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
             left[wiped > 0] = 0
     for t in found:
         if t.status == "measured" and t.element.kind in ("line", "arc", "curve"):
-            t = _with_ends(t, ink, taken, level)
+            t = _with_ends(t, ink, taken, left, level)
         out[t.element.number] = t
     for e in elements:  # a hand may have written here
         if e.kind == "text":
@@ -225,8 +225,8 @@ def _presence(e: Element, ink: Any, level: float) -> Trace:
     return Trace(e, "small", covered=1.0)
 
 
-def _stations(e: Element) -> Stations:
-    """Places along an element, at most some 120, and what a similarity does to them along their normals."""
+def _stations(e: Element, grows: bool) -> Stations:
+    """Places along an element, at most some 120, and what a similarity (without growth if not ``grows``) does to them."""
     step = max(e.length / 120, 0.6)
     p, n = sampled(e.points, step)
     if e.kind != "circle" and len(p) > 6:
@@ -235,7 +235,7 @@ def _stations(e: Element) -> Stations:
     half = max(float(np.abs(p - middle).max()), 1.0)
     d = (p - middle) / half
     raw = np.stack((n.real, n.imag, (np.conj(n) * 1j * d).real, (np.conj(n) * d).real), -1)
-    if e.kind == "line":
+    if not grows:
         raw[:, 3] = 0.0
     return Stations(p, n, raw, half)
 
@@ -289,7 +289,21 @@ def _near(e: Element, s: Stations, ink: Any, known: Any, level: float) -> Trace 
     halves = [good[k].sum() / max(free[k].sum(), 1) for k in (slice(0, half), slice(half, None)) if free[k].sum() > 3]
     if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
         return None
-    return _measured(e, s, base @ x, free, float(share / expected))
+    t = _measured(e, s, base @ x, free, float(share / expected))
+    if e.kind == "curve":
+        t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
+    return t
+
+
+def _local(o: Floats, use: Any, step: float) -> float:
+    """Largest offset that a stretch of ten millimetres agrees on."""
+    size = max(round(10 / step), 5)
+    worst = 0.0
+    for i in range(0, len(o) - size + 1, max(size // 2, 1)):
+        some = o[i : i + size][use[i : i + size]]
+        if len(some) > 0.7 * size and np.ptp(np.percentile(some, (20, 80))) < 0.5:
+            worst = max(worst, abs(float(np.median(some))))
+    return worst
 
 
 def _peaks_within(profile: Any, offsets: Floats, reach: Floats, half: float) -> tuple[Floats, Floats]:
@@ -378,10 +392,8 @@ def _peaks_about(profile: Any, offsets: Floats, centre: Floats, reach: float) ->
     return peaks(profile, offsets, centre, reach, 0.4)
 
 
-def _with_ends(t: Trace, ink: Any, known: Any, level: float) -> Trace:
+def _with_ends(t: Trace, ink: Any, known: Any, left: Any, level: float) -> Trace:
     """Where the line begins and ends."""
-    from dataclasses import replace
-
     assert t.at is not None
     e, z = t.element, t.at
     if abs(z[0] - z[-1]) < 1e-6 or e.length < 8:
@@ -389,12 +401,12 @@ def _with_ends(t: Trace, ink: Any, known: Any, level: float) -> Trace:
     patterned = bool(line_type(e.style).pattern)
     ends = []
     for way in (z, z[::-1]):
-        ends.append(_end(way, ink, known, level, min(FAR, 0.4 * e.length), 3.5 if patterned else 1.6))
+        ends.append(_end(way, ink, known, left, level, 0.5 * line_type(e.style).width, min(FAR, 0.4 * e.length), 3.5 if patterned else 1.6))
     return replace(t, ends=(ends[0], ends[1]))
 
 
-def _end(z: Points, ink: Any, known: Any, level: float, reach: float, gap: float) -> float:
-    """How far a line runs beyond its first point, nan when other lines hide it."""
+def _end(z: Points, ink: Any, known: Any, left: Any, level: float, pen: float, reach: float, gap: float) -> float:
+    """How far a line drawn with a pen of half width ``pen`` runs beyond its first point, nan when others hide it."""
     step = 0.2
     run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
     u = z[0] - z[min(int(np.searchsorted(run, 1.0)) + 1, len(z) - 1)]
@@ -420,10 +432,14 @@ def _end(z: Points, ink: Any, known: Any, level: float, reach: float, gap: float
                 break
             last = i
     end = float(t[last])
+    if end > 0:  # round ends, and the blur that counts as ink
+        end = max(end - pen - 0.15, 0.0)
     if end > 0.3:
-        # Beyond its end: is that its own ink, or a line that crosses or goes on there?
+        # Beyond its end: is that its own ink, or a line that crosses or goes on there? What far out was wiped is another's.
         free = beyond & (t <= end + 0.1) & ~others
-        if free.sum() * step < 0.6 * max(end - 0.5, 0.1):
+        rest = (t > pen + ROOM / 2 + 0.3) & (t <= end)
+        unknown = sample(left, pixels(p[rest])) > level
+        if free.sum() * step < 0.6 * max(end - 0.5, 0.1) or (len(unknown) > 2 and unknown.mean() < 0.6):
             return float("nan")
     elif end < -0.5 and dark[(t > end + 0.3) & (t < 0)].mean() > 0.3:
         return float("nan")  # here and there: a weak line

@@ -1,0 +1,177 @@
+"""Students by chance: a project drawn by hand with a pencil's errors and mistakes planted, measured, and compared.
+
+Every step is done again by its own rule with what was drawn before it, so that nothing here is linear. Run for statistics:
+python -m tests.compare.students [N]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets import catalogue
+from tmm_sheets.compare.chain import Judged, judge
+from tmm_sheets.compare.measurable import Measurable, Measurables, measurables
+from tmm_sheets.compare.measured_file import Filled, Line
+from tmm_sheets.construction import error
+from tmm_sheets.construction.step import Step, value_of
+from tmm_sheets.project import Project
+
+PENCIL, READING = 0.25, 0.5
+SIGMA = 0.5
+"""Standard deviation of a careful hand, as a share of what it keeps to nineteen times of twenty."""
+PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "transport/diesel@01-Т-27")
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A mistake: a step of a plan at a position, drawn off by ``shift`` mm; a number is multiplied by ``times`` instead."""
+
+    plan: str
+    label: str
+    step: str
+    shift: complex = 0j
+    times: float = 1.0
+
+
+class Hand:
+    """One drawing of a project: the value of every step as it was drawn."""
+
+    def __init__(self, found: Measurables, rng: np.random.Generator, plants: tuple[Plant, ...] = (), sigma: float = SIGMA) -> None:
+        self.found = found
+        self.errors = found.errors({}, PENCIL, READING)
+        self.rng = rng
+        self.sigma = sigma
+        self.drawn: dict[int, Any] = {}
+        self.plants: dict[int, list[tuple[int, Plant, float]]] = {}
+        for plan, key in found.plans:
+            mu = 1.0 if plan.unit == "mm" else found.scales[key].mu
+            for p in plants:
+                if plan.name == p.plan:
+                    k = plan.labels.index(p.label) if len(plan.labels) > 1 else 0
+                    self.plants.setdefault(id(plan[p.step]), []).append((k, p, mu))
+
+    def value(self, step: Step) -> Any:
+        """The step as it was drawn: all before it first."""
+        for s in step.ancestors():
+            if id(s) not in self.drawn:
+                self.drawn[id(s)] = self._done(s)
+        return self.drawn[id(step)]
+
+    def _done(self, step: Step) -> Any:
+        if not error._numeric(step.value) or error._beyond_paper(step):
+            return step.value
+        args = tuple(a for a in step.args if not (isinstance(a, Step) and error._beyond_paper(a)))
+        values = [self.drawn[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
+        self.errors.error(step)
+        with np.errstate(all="ignore"):
+            made = np.array(error._replayed(step, values, self.errors._snapped(step, args)))
+        known = self.errors._known[id(step)]
+        if known is not None:
+            own = np.broadcast_to(np.nan_to_num(known.own), (np.size(made) or 1, 2, 2))
+            size, axes = np.linalg.eigh(own)
+            noise = axes @ (np.sqrt(np.maximum(size, 0)) * self.rng.normal(0, self.sigma, (len(own), 2)))[..., None]
+            off = noise[:, 0, 0] + 1j * noise[:, 1, 0]
+            off = off if made.dtype.kind == "c" else off.real
+            made = made + (off if made.ndim else off[0])
+        for k, plant, mu in self.plants.get(id(step), ()):
+            made = np.array(made)
+            at = (k,) if made.ndim else ()
+            made[at] = made[at] * plant.times + (plant.shift * mu if made.dtype.kind == "c" else (plant.shift * mu).real)
+        return made
+
+    def measured(self, e: Measurable) -> float:
+        """What is read off this drawing."""
+        def at(step: Step, k: int) -> complex:
+            value = np.asarray(self.value(step))
+            return complex(value[k] if value.ndim else value)
+
+        value = e.value
+        if e.kind != "angle" and len(e.terms) == 2 and e.head is not None and not e.signed:
+            (tail, k, _), (head, _, g) = e.terms
+            value = abs(at(head, k) - at(tail, k)) * abs(g)
+        else:
+            for step, k, g in e.terms:
+                exact = np.asarray(step.value)
+                value += (np.conj(g) * (at(step, k) - complex(exact[k] if exact.ndim else exact))).real
+        value += self.rng.normal(0, self.sigma * READING) * e.reading
+        if e.kind == "result":
+            return float(f"{value:.3g}") if e.calculated else value
+        return round(2 * value) / 2 if abs(value) > 5 else round(value, 1)
+
+    def filled(self, chosen: Mapping[str, Measurable] | None = None) -> Filled:
+        """A file with everything that can be measured, or with what was chosen."""
+        lines = []
+        for i, e in enumerate((chosen or self.found.entries).values()):
+            value = self.measured(e)
+            if np.isfinite(value):
+                half = 0.25 if e.kind != "result" else 0.5 * 10.0 ** (np.floor(np.log10(abs(value) or 1)) - 2)
+                lines.append(Line(e, value, float(half), i))
+        return Filled(lines)
+
+
+def compared(found: Measurables, rng: np.random.Generator, plants: tuple[Plant, ...] = (), sigma: float = SIGMA) -> list[Judged]:
+    """Draw, measure and judge."""
+    return judge(Hand(found, rng, plants, sigma).filled(), found, PENCIL, READING)
+
+
+def opened(project: str) -> Measurables:
+    """What can be measured of a shipped project."""
+    return measurables(Project(catalogue.read(project)), lambda what: None)
+
+
+def planted(found: Measurables, rng: np.random.Generator) -> Plant:
+    """A point of a kinematic or force plan that lengths are measured to, off by 3 to 6 mm in any direction."""
+    heads = [e for e in found.entries.values() if e.kind == "length" and e.head is not None and e.scale not in found.on_paper
+             and e.plan in ("positions", "velocities", "accelerations") and len(e.head.args) > 1]
+    e = heads[rng.integers(len(heads))]
+    return Plant(e.plan, e.label, e.head.name, rng.uniform(3, 6) * np.exp(2j * np.pi * rng.random()))
+
+
+def main(count: int) -> None:
+    """Statistics over projects: clean drawings, then one misplaced point each."""
+    rng = np.random.default_rng(7)
+    print("project                      clean: numbers  amber %   red %   starts per drawing | planted: seen  named  same point  "
+          "other starts")
+    for name in PROJECTS:
+        found = opened(name)
+        colours: Counter[str] = Counter()
+        starts = 0
+        for _ in range(count):
+            judged = compared(found, rng)
+            colours.update(j.verdict for j in judged)
+            starts += sum(j.starts for j in judged)
+        total = sum(colours.values())
+        seen = named = exact = others = 0
+        for _ in range(count):
+            plant = planted(found, rng)
+            judged = compared(found, rng, (plant,))
+            begun = [j for j in judged if j.starts]
+            mine = [j for j in begun if _about(j, plant, found)]
+            seen += any(j.verdict == "red" for j in judged if _touched(j, plant, found))
+            named += bool(mine)
+            exact += any(j.mistake is not None and j.mistake.step.name == plant.step for j in mine)
+            others += len(begun) - len(mine)
+        print(f"{name:28} {total / count:14.0f} {100 * colours['amber'] / total:8.2f} {100 * colours['red'] / total:7.3f} "
+              f"{starts / count:20.2f} | {100 * seen / count:13.0f}% {100 * named / count:5.0f}% {100 * exact / count:10.0f}% "
+              f"{others / count:13.2f}")
+
+
+def _touched(j: Judged, plant: Plant, found: Measurables) -> bool:
+    """True for a number that depends on the planted step."""
+    step = next(plan[plant.step] for plan, _ in found.plans if plan.name == plant.plan)
+    return j.entry.label == plant.label and any(s is step for s, _ in j.rows)
+
+
+def _about(j: Judged, plant: Plant, found: Measurables) -> bool:
+    """True for a start that the planted step explains: the first number to show it, at its position."""
+    return _touched(j, plant, found)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20)

@@ -1,0 +1,166 @@
+"""Many simulated photographs with planted errors: what the comparison finds, what it makes up, how well it rectifies, what it costs.
+
+Usage: python -m tests.compare.trial [-n 200] [--first 0] [--errors 4] [--time]
+"""
+
+import argparse
+import resource
+import sys
+import tempfile
+from collections import Counter, defaultdict
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from tests.compare.simulation import shoot
+from tmm_sheets import catalogue
+from tmm_sheets.compare import image, tracing
+from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.photograph import read
+from tmm_sheets.compare.tracing import LOOSE_STYLES
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.project import Project
+from tmm_sheets.sheets.sheet import composed
+
+GRID = (np.linspace(20, 836, 41)[None, :] + 1j * np.linspace(5, 589, 31)[:, None]).ravel()
+BINS = ((1, 1.5), (1.5, 2), (2, 3), (3, 5))
+
+
+def position_errors(m, shot):
+    """Distance between where places of the sheet are in the picture and are thought to be, in mm of the sheet."""
+    pixels = np.abs(shot.place(GRID + 0.5) - shot.place(GRID - 0.5))
+    return np.abs(m.to_picture(GRID) - shot.place(GRID)) / pixels
+
+
+def judged(found, known, pencil=0.25):
+    traces, extra = tracing.trace(known, found.ink)
+    return [image.judge(t, pencil, found.uncertainty) for t in traces], extra
+
+
+def near(z, x, room=4.0):
+    """Share of the points z within an extra's box."""
+    d = z - x.middle
+    return float(((np.abs(d.real) < x.width / 2 + room) & (np.abs(d.imag) < x.height / 2 + room)).mean())
+
+
+class Tally:
+    def __init__(self):
+        self.found = defaultdict(Counter)  # (kind, size class) -> outcome
+        self.elements = Counter()
+        self.false = Counter()
+        self.errors, self.worst, self.medians = [], [], []
+        self.refused = []
+        self.examples = []
+
+    def add(self, label, sheet, shot, found, findings, extra):
+        marks = sheet.drawing.marks
+        of_mark = {id(m): f for f in findings for m in f.trace.element.marks}
+        touched = set()
+        for p in shot.planted:
+            if p.kind == "extra":
+                hit = any(near(p.drawn, x) > 0.5 for x in extra)
+                self.found["extra", "15-60 mm"]["red" if hit else "missed"] += 1
+                continue
+            f = of_mark[id(marks[p.mark])]
+            touched.add(id(f))
+            size = "" if p.kind == "missing" else next((f"{a}-{b} mm" for a, b in BINS if p.size <= b), "")
+            kind = p.kind
+            if p.kind == "size" and f.trace.element.kind == "line":
+                kind = "size, thin line" if f.trace.element.style in LOOSE_STYLES else "size, line"
+            outcome = "dense" if f.trace.status in ("dense", "small") else f.verdict if f.verdict != "green" else "missed"
+            self.found[kind, size][outcome] += 1
+            if outcome == "missed" and "thin" not in kind:
+                self.examples.append(f"missed {label}: {p.kind} {p.size:.1f} element {f.trace.element.number} {f.said} {f.off:.2f}")
+        for f in findings:
+            status = f.trace.status
+            if id(f) in touched or status in ("small", "lettering"):
+                continue
+            self.elements[status if status == "dense" else "judged"] += 1
+            if f.verdict != "green":
+                self.false[f.verdict] += 1
+                if f.verdict == "red":
+                    self.examples.append(f"false {label}: element {f.trace.element.number} {f.trace.element.kind} {f.said}")
+        for x in extra:
+            if not any(p.drawn is not None and near(p.drawn, x) > 0 for p in shot.planted):
+                self.false["extra ink"] += 1
+                self.examples.append(f"false {label}: extra {x.width:.0f} x {x.height:.0f} at {x.middle:.0f}")
+        e = position_errors(found.map, shot)
+        self.errors.append(e)
+
+    def report(self, sheets):
+        print(f"{sheets} sheets, {len(self.refused)} refused {self.refused}")
+        if not self.errors:
+            return
+        e = np.concatenate(self.errors)
+        worst = np.array([x.max() for x in self.errors])
+        print(f"position error, mm: median {np.median(e):.2f}, 95 % {np.percentile(e, 95):.2f}, worst {e.max():.2f}; "
+              f"worst place of a sheet: median {np.median(worst):.2f}, above 0.8 on {int((worst > 0.8).sum())} sheets")
+        print("planted errors        size        n   red  amber  missed  not measurable")
+        total = Counter()
+        for (kind, size), c in sorted(self.found.items()):
+            print(f"{kind:20} {size:9} {sum(c.values()):4} {c['red']:5} {c['amber']:6} {c['missed']:7} {c['dense']:8}")
+            total += c
+        print(f"{'all':30} {sum(total.values()):4} {total['red']:5} {total['amber']:6} {total['missed']:7} {total['dense']:8}")
+        n = self.elements["judged"]
+        print(f"elements without error: {n} judged, {self.elements['dense']} not measurable; false: {self.false['red']} red "
+              f"({100 * self.false['red'] / n:.2f} %), {self.false['amber']} amber ({100 * self.false['amber'] / n:.2f} %), "
+              f"{self.false['extra ink']} places of extra ink; {self.false['red'] / len(self.errors):.2f} red a sheet")
+
+
+def timing():
+    """Seconds and memory of one 12 Mpx photograph, everything from the file to the overlay."""
+    project = Project(catalogue.read("press"))
+    shot = shoot(composed(project, 1).drawing, 1, 4, megapixels=12.0)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "photo.jpg"
+        path.write_bytes(shot.data)
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        start = perf_counter()
+        image.compare(project, 1, path)
+        print(f"one 12 Mpx photograph: {perf_counter() - start:.1f} s; peak memory of the process {before / 1e6:.2f} GB before (the "
+              f"simulation), {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6:.2f} GB after")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("-n", type=int, default=200)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--errors", type=int, default=4)
+    parser.add_argument("--time", action="store_true")
+    parser.add_argument("--show", action="store_true", help="tell every miss and false alarm")
+    options = parser.parse_args()
+    if options.time:
+        timing()
+        return
+    names = catalogue.shipped()
+    tally = Tally()
+    start = perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "photo.jpg"
+        for seed in range(options.first, options.first + options.n):
+            rng = np.random.default_rng([seed, 1])
+            project = Project(catalogue.read(names[seed % len(names)]))
+            n = int(rng.integers(len(project.variant.sheets))) + 1
+            sheet = composed(project, n)
+            shot = shoot(sheet.drawing, seed, options.errors)
+            path.write_bytes(shot.data)
+            label = f"{project.variant.project.name} {n} seed {seed}"
+            known = elements(sheet)
+            try:
+                found = image.rectify(read(path), known, path)
+                if found.match < image.MATCH:
+                    raise CannotBuild(f"match {found.match:.2f}")
+            except CannotBuild as e:
+                tally.refused.append(f"{label}: {e.args[0]}")
+                continue
+            tally.add(label, sheet, shot, found, *judged(found, known))
+            if sys.stderr.isatty():
+                print(f"\r{seed + 1 - options.first} of {options.n}, {perf_counter() - start:.0f} s", end="", file=sys.stderr)
+    tally.report(options.n)
+    if options.show:
+        print("\n".join(tally.examples))
+
+
+if __name__ == "__main__":
+    main()
