@@ -160,19 +160,18 @@ def _listed(project: Project, positions: tuple[int, ...]) -> str:
 
 
 def lines(project: Project) -> Iterator[str]:
-    """The same for the command line, in English, for the plans of positions and velocities as the sheets have them."""
-    places, labels = [i for i, _ in project.cycle.drawn], project.cycle.labels
-    for name in ("positions", "velocities"):
-        plan, symbol = getattr(project.study, name).plan, _KINEMATIC[name]
-        if not any((np.broadcast_to(c, (len(labels),))[places] > FLAT).any() for c in condition.crossings(plan).values()):
-            continue
-        kept = kinematic_frames.scales(project, {name})
-        if symbol not in kept:  # no sheet draws it
-            continue
-        for flat in find(project, plan, places, {name: kept[symbol][0]}):
-            which = f"position{'s' if len(flat.positions) > 1 else ''} {_listed(project, flat.positions)}"
-            size = "not be drawn" if flat.mm is None else f"be drawn no better than {flat.mm:.1f} mm"
-            instead = "no position of this stroke is better" if flat.better is None else \
-                f"position {labels[flat.better]} is better ({flat.better_mm:.1f} mm)"
-            yield (f"{name}, {which}: point {flat.step.name} can {size}, its lines cross under "
-                   f"{degrees(flat.angle):.1f} deg at position {labels[flat.worst]}; {instead}")
+    """The same for the command line, in English, for the position plans: those of velocities cross at the same angles."""
+    plan, labels = project.study.positions.plan, project.cycle.labels
+    places = [i for i, _ in project.cycle.drawn]
+    if not any((np.broadcast_to(c, (len(labels),))[places] > FLAT).any() for c in condition.crossings(plan).values()):
+        return
+    kept = kinematic_frames.scales(project, {"positions"})
+    if "mu_l" not in kept:  # no sheet draws it
+        return
+    for flat in find(project, plan, places, {"positions": kept["mu_l"][0]}):
+        which = f"position{'s' if len(flat.positions) > 1 else ''} {_listed(project, flat.positions)}"
+        size = "not be drawn" if flat.mm is None else f"be drawn no better than {flat.mm:.1f} mm"
+        instead = "no position of this stroke is better" if flat.better is None else \
+            f"position {labels[flat.better]} is better ({flat.better_mm:.1f} mm)"
+        yield (f"{which}: point {flat.step.name} can {size}, its lines cross under {degrees(flat.angle):.1f} deg "
+               f"at position {labels[flat.worst]}; {instead}")
