@@ -37,8 +37,10 @@ class Stopwatch:
 
 
 def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) -> str:
-    """The report as plain text."""
-    lines = ["plan                            steps  evaluated  skipped         ms"]
+    """The report as plain text; "condition" is that of the flattest crossing computed: 1/sin of the angle between its lines."""
+    from tmm_sheets.construction import condition
+
+    lines = ["plan                            steps  evaluated  skipped         ms  condition"]
     for name, plans in parts(project).items():
         if plans is None:
             lines.append(f"{name}: not built")
@@ -47,7 +49,9 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
         for plan in plans:
             done = sum(step.evaluated for step in plan)
             ms = 1000 * sum(sum(step.seconds) for step in plan)
-            lines.append(f"  {plan.name:28}{len(plan.steps):7}{done:11}{len(plan.steps) - done:9}{ms:11.3f}")
+            worst = condition.worst(plan)
+            told = "" if worst is None else f"{worst[0]:11.2f} in {worst[1]}"
+            lines.append(f"  {plan.name:28}{len(plan.steps):7}{done:11}{len(plan.steps) - done:9}{ms:11.3f}{told}")
     lines += ["", "sheet   marks"]
     for n, drawing in drawings.items():
         kinds = Counter(type(mark).__name__.lower() for mark in drawing.marks)

@@ -103,6 +103,26 @@ def test_what_is_no_crossing_and_what_touches():
     assert condition.of_plans([Plan("empty", "", "mm")], 3).tolist() == [1, 1, 1]
 
 
+def test_the_worst_of_what_was_computed_already():
+    plan = Plan("arcs", "", "mm")
+    p, q = plan.add("P", rules.GIVEN, 0j), plan.add("Q", rules.GIVEN, 5 + 0j)
+    steep, flatter = (plan.add(name, rules.ARC_ARC, p, r, q, 4.0, 1.0) for name, r in (("R", 3.0), ("F", 1.2)))
+    assert condition.worst(plan) is None
+    assert not steep.evaluated
+    _ = steep.value
+    assert condition.worst(plan) == (pytest.approx(1.0), "R")
+    assert not flatter.evaluated
+    _ = flatter.value
+    number, name = condition.worst(plan)
+    assert (number > 1.5, name) == (True, "F")
+
+
+def test_explain_has_the_worst(tmp_path, capsys):
+    assert run(["build", str(NEAR), "--explain", "--format", "svg", "-o", str(tmp_path)]) == 0
+    row = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("  positions "))
+    assert row.endswith("4.38 in C")
+
+
 # --- what is found ----------------------------------------------------------------------------------------------------
 
 

@@ -67,3 +67,10 @@ def of_plans(plans: Iterable[Plan], n: int) -> Floats:
         for found in crossings(plan).values():
             worst = np.maximum(worst, found)
     return worst
+
+
+def worst(plan: Plan) -> tuple[float, str] | None:
+    """The worst condition number among the crossings computed already, and the point's name; None where there are none."""
+    found = [(float(np.nanmax(number)), step.name) for step in plan
+             if step.evaluated and (number := condition(step)) is not None and not np.isnan(number).all()]
+    return max(found, default=None)
