@@ -206,7 +206,7 @@ def table(records: Iterable[Record]) -> str:
 
 
 def summary(records: Iterable[Record]) -> str:
-    """Time for each position and error, the programs side by side, in Markdown; one row for all counts of positions."""
+    """Microseconds for each position at every count, and the errors from the first to the last, side by side, in Markdown."""
     records = list(records)
     programs, found = _side_by_side(records)
     rows: dict[tuple[str, str], list[dict[str, Record]]] = {}
@@ -214,13 +214,19 @@ def summary(records: Iterable[Record]) -> str:
     for (mechanism, quantity, n), by_program in found.items():
         rows.setdefault((mechanism, quantity), []).append(by_program)
         counts[f"{n:,.0f}"] = None
-    heads = ["mechanism", f"{' / '.join(counts)} positions", *programs]
-    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    lines = [f"us for a position at {' / '.join(counts)} positions; largest relative error", "",
+             f"| mechanism | | {' | '.join(programs)} |", "|---" * (len(programs) + 2) + "|"]
     for (mechanism, quantity), several in rows.items():
-        cells = []
-        for p in programs:
-            pairs = [_cells(by_program.get(p)) for by_program in several]
-            times, errors = (" / ".join(part) for part in zip(*pairs, strict=True))
-            cells.append("-" if all(pair[0] == "-" for pair in pairs) else f"{times}; error {errors}")
+        cells = [_summed_up([by_program.get(p) for by_program in several]) for p in programs]
         lines.append(f"| {mechanism} | {quantity} | {' | '.join(cells)} |")
     return "\n".join([*lines, "", *(f"- {reason}" for reason in _reasons(records))])
+
+
+def _summed_up(several: list[Record | None]) -> str:
+    done = [r for r in several if r is not None and r.error is not None]
+    if not done:
+        return "-"
+    times = " / ".join("-" if r is None or r.each is None else f"{1e6 * r.each:.2g}" if r.each < 1e-5 else f"{1e6 * r.each:.0f}"
+                       for r in several)
+    errors = list(dict.fromkeys(f"{r.error:.0e}" for r in (done[0], done[-1])))
+    return f"{times}; {' .. '.join(errors)}"
