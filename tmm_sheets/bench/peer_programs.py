@@ -233,16 +233,18 @@ class Loops(Program):
         angles = m.crank.sense * turn.angles
         speeds, zeros = np.full(turn.n, m.crank.omega), np.zeros(turn.n)
 
-        def run(order: int) -> Points:
+        def run(quantity: str, motion: Any, joints: dict[str, Any]) -> Points:
+            motion.iterate()
+            return {k: getattr(joint, f"x_{quantity}") + 1j * getattr(joint, f"y_{quantity}") for k, joint in joints.items()}
+
+        runs: Runs = {}
+        for order, quantity in enumerate(("positions", "velocities", "accelerations")):
             vectors, joints, loops, guess = self._model(mechanism, m)
             motion = self.library.Mechanism(
                 vectors=vectors, origin=joints[m.crank.pivot], loops=loops, pos=angles, vel=speeds if order else None,
                 acc=zeros if order > 1 else None, guess=(guess, np.ones(len(guess)), np.ones(len(guess))))
-            motion.iterate()
-            x, y = (("x_positions", "y_positions"), ("x_velocities", "y_velocities"), ("x_accelerations", "y_accelerations"))[order]
-            return {k: getattr(joint, x) + 1j * getattr(joint, y) for k, joint in joints.items()}
-
-        return {quantity: partial(run, k) for k, quantity in enumerate(("positions", "velocities", "accelerations"))}
+            runs[quantity] = partial(run, quantity, motion, joints)
+        return runs
 
     def _model(self, mechanism: str, m: Mechanism) -> tuple[list[Any], dict[str, Any], Callable[..., Any], Any]:
         """Vectors, joints, loops and a guess of the unknowns at the first position."""
