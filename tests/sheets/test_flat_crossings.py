@@ -171,6 +171,17 @@ def test_well_conditioned_projects_have_none_and_nothing_is_replayed(name, monke
         assert flat_crossings.find(p, plan, range(len(study.labels)), {}) == []
 
 
+def test_the_analysed_position_may_be_in_the_second_turn():
+    """Engines have cycles of two turns; the plans of the second repeat those of the first."""
+    p = near(turns=("positions = 12", "positions = 12\nturns = 2"), position=('force_position = "6"', 'force_position = "18"'))
+    found = sheet.composed(p, 1)
+    told = " ".join(g.text for g in found.groups if g.kind == "lettering")
+    assert "В положениях 5–7 засечку точки C нельзя провести точнее 2,3 мм" in told
+    assert "линии сходятся под углом 13°; для силового расчёта возьмите положение 4, 16 (0,6 мм)" in told
+    assert "На плане ускорений в положении 18 точку c нельзя найти" in told
+    assert found.crowded == ()
+
+
 def test_the_better_position_is_on_the_same_stroke():
     p = near(strokes=("positions = 12", 'positions = 12\noutput = "E"\nworking_sense = "+x"'))
     scale, _ = kinematic_frames.scales(p, {"positions"})["mu_l"]

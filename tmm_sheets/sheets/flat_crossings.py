@@ -69,13 +69,24 @@ def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, A
         mm = np.broadcast_to(errors.in_mm(plan[name]), steep.shape)
         bad = tuple(i for i in places if steep[i] > FLAT and not mm[i] <= COARSE)
         if bad:
-            worst = max(bad, key=lambda i: (i == project.force_index, np.nan_to_num(mm[i], nan=np.inf)))
+            worst = max(bad, key=lambda i: (_analysed(project, i), np.nan_to_num(mm[i], nan=np.inf)))
             better = _better(project, worst)
             size = kinematic_frames.plan_extent(plan, worst)
             hopeless = not scales[plan.name].real(mm[worst]) < 0.5 * max(size.width, size.height)
             found.append(Flat(plan, plan[name], bad, worst, None if hopeless else float(mm[worst]), asin(1 / float(steep[worst])),
                               better, float("nan") if better is None else float(mm[better])))
     return found
+
+
+def _drawn(project: Project, i: int) -> int:
+    """The position of the first turn that a position repeats; itself in the first."""
+    turned = project.cycle.turned
+    return next(k for k, _ in project.cycle.drawn if abs(np.exp(1j * turned[k]) - np.exp(1j * turned[i])) < 1e-9)
+
+
+def _analysed(project: Project, i: int) -> bool:
+    """True for the position of the force analysis, in whichever turn."""
+    return _drawn(project, i) == _drawn(project, project.force_index)
 
 
 def _errors(project: Project, plan: Plan, scales: dict[str, Any]) -> Errors:
@@ -101,7 +112,7 @@ def _better(project: Project, i: int) -> int | None:
     flattest = condition.of_plans((study.positions.plan, study.velocities.plan), len(study.labels))
     stroke = np.zeros(len(study.labels)) if cycle.strokes is None else cycle.strokes.working(cycle.turned, 1)
     order = [k for k, _ in cycle.drawn]
-    at = order.index(i)
+    at = order.index(_drawn(project, i))
 
     def away(k: int) -> int:
         n = abs(order.index(k) - at)
@@ -124,7 +135,7 @@ def said(project: Project, flat: Flat) -> str:
     """The warning in Russian, lettering markup."""
     from tmm_sheets.sheets import linkage
 
-    labels = dict(project.cycle.drawn)
+    labels = _labels(project)
     several = len(flat.positions) > 1
     name = linkage.indexed(flat.step.name)
     at = f"положени{'ях' if several else 'и'} {_listed(project, flat.positions)}"
@@ -141,18 +152,23 @@ def said(project: Project, flat: Flat) -> str:
     if flat.better is None:
         advice = "на этом ходе нет положения лучше"
     else:
-        purpose = "для силового расчёта возьмите положение" if flat.worst == project.force_index else "точнее в положении"
+        purpose = "для силового расчёта возьмите положение" if _analysed(project, flat.worst) else "точнее в положении"
         advice = f"{purpose} {labels[flat.better]} ({fixed(flat.better_mm, 1)} мм)"
     return f"{what} {how}: {why}; {advice}"
+
+
+def _labels(project: Project) -> dict[int, str]:
+    """What the sheet calls each position: those drawn by all their labels, a repetition of one by its own."""
+    return {**dict(enumerate(project.cycle.labels)), **dict(project.cycle.drawn)}
 
 
 def _listed(project: Project, positions: tuple[int, ...]) -> str:
     """Labels of positions; three and more in a row as 5–7."""
     order = [i for i, _ in project.cycle.drawn]
-    labels = dict(project.cycle.drawn)
+    labels = project.cycle.labels
     rows: list[list[int]] = []
     for i in positions:
-        if rows and order.index(i) == order.index(rows[-1][-1]) + 1:
+        if rows and order.index(_drawn(project, i)) == order.index(_drawn(project, rows[-1][-1])) + 1:
             rows[-1].append(i)
         else:
             rows.append([i])
@@ -161,7 +177,7 @@ def _listed(project: Project, positions: tuple[int, ...]) -> str:
 
 def lines(project: Project) -> Iterator[str]:
     """The same for the command line, in English, for the position plans: those of velocities cross at the same angles."""
-    plan, labels = project.study.positions.plan, project.cycle.labels
+    plan, labels = project.study.positions.plan, _labels(project)
     places = [i for i, _ in project.cycle.drawn]
     if not any((np.broadcast_to(c, (len(labels),))[places] > FLAT).any() for c in condition.crossings(plan).values()):
         return
