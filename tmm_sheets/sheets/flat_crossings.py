@@ -148,7 +148,8 @@ def said(project: Project, flat: Flat) -> str:
     how = f"нельзя {verb}" + ("" if flat.mm is None else f" точнее {fixed(flat.mm, 1)} мм")
     angle = degrees(flat.angle)
     where = f"в положении {labels[flat.worst]} " if several else ""
-    why = f"{where}линии сходятся под углом {fixed(angle, 0 if angle >= 10 else 1)}°"
+    under = f"под углом {fixed(angle, 0 if angle >= 10 else 1)}°" if angle >= 0.1 else "под углом меньше 0,1°"
+    why = f"{where}линии сходятся {under}"
     if flat.better is None:
         advice = "на этом ходе нет положения лучше"
     else:
