@@ -1,7 +1,8 @@
 """Photographs of sheets drawn by hand, made up: what stood where is known exactly.
 
-A drawing is traced with a pencil (ends that miss, lines that waver, pressure that varies, dashes set by eye), errors are planted, the
-paper curls, a camera with a wrong lens looks at it from aside in bad light, and the picture is stored as a JPEG. Nothing here is shared with
+A drawing is traced with a pencil (ends that miss, lines that waver, pressure that varies, dashes set by eye), errors are planted,
+the paper curls, a camera with a wrong lens looks at it from aside in bad light, and the picture is stored as a JPEG. Nothing here
+is shared with
 the program that reads the picture but the display list.
 """
 
@@ -24,7 +25,7 @@ KINDS = ("moved", "turned", "size", "missing", "extra")
 
 @dataclass(frozen=True)
 class Planted:
-    """An error put into the drawing: of which mark (None for an extra line), how large, where it ought to be and where it is drawn, mm."""
+    """An error put into the drawing: of which mark (None: an extra line), how large, where it ought to be and is drawn, mm."""
 
     kind: str
     mark: int | None
@@ -72,21 +73,24 @@ def random_camera(rng: Any) -> Camera:
     """A camera in the hand of a student."""
     return Camera(
         megapixels=rng.uniform(8, 20), fill=rng.uniform(0.82, 0.96), tilt=rng.uniform(0, 0.25), turn=rng.normal(0, 0.02),
-        azimuth=rng.uniform(0, 2 * np.pi), distance=rng.uniform(900, 1500), k1=rng.uniform(-0.06, 0.04), k2=rng.uniform(-0.01, 0.01),
+        azimuth=rng.uniform(0, 2 * np.pi), distance=rng.uniform(900, 1500),
+        k1=rng.uniform(-0.06, 0.04), k2=rng.uniform(-0.01, 0.01),
         curl=rng.uniform(0, 6), fold=rng.uniform(0, np.pi), waves=(1.0, *rng.normal(0, (0.3, 0.1))), shade=rng.uniform(0.1, 0.5),
         vignette=rng.uniform(0, 0.35), blur=rng.uniform(0.4, 1.0), noise=rng.uniform(1.5, 5), quality=int(rng.integers(75, 95)),
         paper=rng.uniform(190, 235), desk=rng.choice([60.0, 110.0, 150.0, 180.0]),
     )  # fmt: skip
 
 
-# --- the pencil ---------------------------------------------------------------------------------------------------------------------
+# --- the pencil
+# ---------------------------------------------------------------------------------------------------------------------
 
 
 def _waver(rng: Any, n: int, step: float, size: float) -> Any:
     """Smooth noise along a line: wave lengths of some 40 mm."""
     knots = max(int(n * step / 20) + 3, 4)
     rough = rng.normal(0, size, knots)
-    return np.interp(np.linspace(0, knots - 1, n), np.arange(knots), np.convolve(np.pad(rough, 1, "edge"), (0.25, 0.5, 0.25), "valid"))
+    smooth = np.convolve(np.pad(rough, 1, "edge"), (0.25, 0.5, 0.25), "valid")
+    return np.interp(np.linspace(0, knots - 1, n), np.arange(knots), smooth)
 
 
 def resample(points: Any, step: float = 1.0) -> Any:
@@ -136,7 +140,8 @@ def _dashed(points: Any, pattern: tuple[float, ...], rng: Any) -> list[Any]:
     return out
 
 
-# --- planted errors -----------------------------------------------------------------------------------------------------------------
+# --- planted errors
+# -----------------------------------------------------------------------------------------------------------------
 
 
 def _raster(lines: list[Any], drawing: Drawing, scale: float, thick: int) -> Any:
@@ -155,7 +160,9 @@ def _covered(points: Any, others: Any, drawing: Drawing, scale: float) -> float:
     return float((others[y, x] > 0).mean())
 
 
-def plant(drawing: Drawing, rng: Any, count: int, kinds: tuple[str, ...] = KINDS) -> tuple[dict[int, Mark | None], list[Planted], list[Mark]]:
+def plant(
+    drawing: Drawing, rng: Any, count: int, kinds: tuple[str, ...] = KINDS,
+) -> tuple[dict[int, Mark | None], list[Planted], list[Mark]]:
     """Errors for a drawing: marks to be drawn otherwise (None: not at all), what they are, marks too many.
 
     Marks that another line covers are left alone, and none is moved onto another line: nobody could see that.
@@ -227,17 +234,27 @@ def plant(drawing: Drawing, rng: Any, count: int, kinds: tuple[str, ...] = KINDS
         if _covered(flat(mark), others, drawing, scale) > 0.35 or (new and _covered(flat(new), others, drawing, scale) > 0.35):
             continue
         changed[i] = new
+        head = marks[i + 1] if i + 1 < len(marks) else None
+        if isinstance(mark, Line) and isinstance(head, Fill) and np.abs(head.points - mark.b).min() < 2:
+            # An arrow's head goes with its shaft.
+            changed[i + 1] = None
+            if isinstance(new, Line):
+                spin = (new.b - new.a) / (mark.b - mark.a)
+                changed[i + 1] = head._replace(points=new.b + (np.asarray(head.points) - mark.b) * spin / abs(spin))
         if kind == "missing":
             size = float(np.abs(np.diff(flat(mark))).sum())
         planted.append(Planted(kind, i, size, flat(mark), flat(new) if new else None))
     return changed, planted, extra
 
 
-# --- paper and camera ---------------------------------------------------------------------------------------------------------------
+# --- paper and camera
+# ---------------------------------------------------------------------------------------------------------------
 
 
-def paper(drawing: Drawing, rng: Any, pencil: float = 0.12, changed: dict[int, Mark | None] | None = None, extra: list[Mark] | None = None,
-          scale: float = RASTER) -> Any:
+def paper(
+    drawing: Drawing, rng: Any, pencil: float = 0.12, changed: dict[int, Mark | None] | None = None,
+    extra: list[Mark] | None = None, scale: float = RASTER,
+) -> Any:
     """The drawing traced by hand: 255 for black, 0 for bare paper, ``scale`` pixels per mm."""
     out = np.zeros((round(drawing.height * scale), round(drawing.width * scale)), np.uint8)
     strokes: list[tuple[float, Any, bool, float]] = []
@@ -311,7 +328,8 @@ def projection(camera: Camera, width: float, height: float) -> tuple[Any, tuple[
         r2 = np.abs(ray) ** 2
         return ray * (1 + camera.k1 * r2 + camera.k2 * r2**2)
 
-    b = bent(np.array([0, width, width + 1j * height, 1j * height, width / 2, width / 2 + 1j * height, 1j * height / 2, width + 1j * height / 2]))
+    u, v = np.meshgrid([0, width / 2, width], [0, height / 2, height])
+    b = bent((u + 1j * v).ravel())
     zoom = min(columns * camera.fill / np.ptp(b.real), rows * min(camera.fill + 0.02, 0.98) / np.ptp(b.imag))
     middle = complex((b.real.min() + b.real.max()) / 2, (b.imag.min() + b.imag.max()) / 2)
 
@@ -356,7 +374,8 @@ def photograph(ink: Any, drawing: Drawing, camera: Camera, rng: Any, scale: floa
     x, y = _inverse(place, (columns, rows), width, height)
     finest = abs(place(np.array(width / 2 + 1 + 1j * height / 2)) - place(np.array(width / 2 + 1j * height / 2)))  # pixels per mm
     soft = cv2.GaussianBlur(ink, (0, 0), max(0.4 * scale / finest, 0.3))
-    seen = cv2.remap(soft, x * scale - 0.5, (height - y) * scale - 0.5, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0)
+    seen = cv2.remap(soft, x * scale - 0.5, (height - y) * scale - 0.5, cv2.INTER_LINEAR,
+                     borderMode=cv2.BORDER_CONSTANT, borderValue=0)  # fmt: skip
     inside = ((x > 0) & (x < width) & (y > 0) & (y < height)).astype(np.float32)
     inside = cv2.GaussianBlur(inside, (0, 0), 0.7)
     del x, y
@@ -394,7 +413,9 @@ def photograph(ink: Any, drawing: Drawing, camera: Camera, rng: Any, scale: floa
     return Shot(data.tobytes(), turned)
 
 
-def shoot(drawing: Drawing, seed: int, errors: int = 0, pencil: float = 0.12, kinds: tuple[str, ...] = KINDS, **changes: Any) -> Shot:
+def shoot(
+    drawing: Drawing, seed: int, errors: int = 0, pencil: float = 0.12, kinds: tuple[str, ...] = KINDS, **changes: Any,
+) -> Shot:
     """A random photograph of a hand drawing with so many errors; ``changes`` to the camera."""
     rng = np.random.default_rng(seed)
     changed, planted, extra = plant(drawing, rng, errors, kinds)

@@ -16,7 +16,7 @@ from tmm_sheets.compare.photograph import Picture, read
 from tmm_sheets.compare.report import Report, Verdict, verdict
 from tmm_sheets.compare.tracing import LOOSE_STYLES, Extra, Trace
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.sheets.sheet import Composed, composed
+from tmm_sheets.sheets.sheet import composed
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -26,8 +26,8 @@ LEAST_SCALE, FAIR_SCALE = 2.0, 3.0
 BLURRED = 2.4  # mm a frame line 0.8 mm wide may seem to have
 MATCH, CERTAIN = 0.5, 0.12
 """Share of a sheet's lines that must be in the picture where they belong, and by how much another sheet must do better."""
-RECTIFIED = 0.25
-"""Error of a place after rectification, mm: 95 % of places of simulated photographs are within twice that."""
+RECTIFIED = 0.15
+"""Error of a place after rectification, mm: some 95 % of the places of simulated photographs are within it."""
 LOOSE = 2.5  # mm by which lines whose ends mean nothing may be too long or too short
 TURNS = {1: "a quarter turn clockwise", 2: "a half turn", 3: "a quarter turn counter-clockwise"}
 
@@ -50,7 +50,8 @@ class Finding:
 
 
 def compare(
-    project: Project, n: int, path: Path, views: Path | None = None, pencil: float = 0.25, say: Callable[[str], None] = lambda _: None,
+    project: Project, n: int, path: Path, views: Path | None = None, pencil: float = 0.25,
+    say: Callable[[str], None] = lambda _: None,
 ) -> Report:
     """Compare a photograph of sheet ``n`` with the exact sheet.
 
@@ -74,7 +75,8 @@ def compare(
     """
     count = len(project.variant.sheets)
     if not 1 <= n <= count:
-        raise BadInput(f"{project.variant.project.name} has {count} sheets; there is no sheet {n}", hint=f"--sheet 1 to --sheet {count}")
+        raise BadInput(f"{project.variant.project.name} has {count} sheets; there is no sheet {n}",
+                       hint=f"--sheet 1 to --sheet {count}")  # fmt: skip
     say("reading the picture")
     picture = read(path)
     say("composing the sheet")
@@ -92,8 +94,8 @@ def compare(
 class Rectified:
     """The sheet seen from straight above: ``ink`` as ``rectification.straighten`` makes it, ``map`` the way there.
 
-    ``match`` is the share of the known lines that were found in place, ``uncertainty`` the error of a place, mm, ``scale`` pixels of the
-    picture per mm.
+    ``match`` is the share of the known lines that were found in place, ``uncertainty`` the error of a place, mm, ``scale`` pixels
+    of the picture per mm.
     """
 
     ink: Any
@@ -177,7 +179,8 @@ def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
                       "which tells where its views stand")  # fmt: skip
 
 
-# --- judging ------------------------------------------------------------------------------------------------------------------------------
+# --- judging
+# ------------------------------------------------------------------------------------------------------------------------------
 
 
 def judge(t: Trace, pencil: float, uncertainty: float) -> Finding:
@@ -248,7 +251,8 @@ def _report(
     order = {"red": 0, "amber": 1, "green": 2}
     bad.sort(key=lambda f: (order[f.verdict], -f.share))
     measured = [f for f in findings if f.trace.status == "measured"]
-    count = {v: sum(f.verdict == v for f in findings if f.trace.status in ("measured", "missing")) for v in ("green", "amber", "red")}
+    lines = [f for f in findings if f.trace.status in ("measured", "missing")]
+    count = {v: sum(f.verdict == v for f in lines) for v in ("green", "amber", "red")}
     dense = sum(f.trace.status == "dense" for f in findings)
     name = project.variant.project.name
     out = [

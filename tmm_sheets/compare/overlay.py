@@ -1,7 +1,7 @@
 """Our drawing over the hand's: ink in blue, the exact lines thin and orange, what is off in red, circled, with its number.
 
-As PNG (drawn by OpenCV) and as a one-page PDF of the sheet's size in which the ink is an image and everything else lines, so that it can
-be looked at closely; the PDF is written here, it has nothing but that image and strokes.
+As PNG (drawn by OpenCV) and as a one-page PDF of the sheet's size in which the ink is an image and everything else lines, so that
+it can be looked at closely; the PDF is written here, it has nothing but that image and strokes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.rectification import PAPER, SCALE, pixels
+from tmm_sheets.compare.rectification import PAPER, pixels
 from tmm_sheets.drawing.marks import Points
 
 INK = (40, 70, 160)
@@ -37,9 +37,8 @@ def png(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag]) -
     import cv2
 
     size = (round(PAPER.width * PNG_SCALE), round(PAPER.height * PNG_SCALE))
-    grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA).astype(np.float32)[:, :, None] / 255
-    strength = np.minimum(1.6 * grey, 1)
-    picture = (255 * (1 - strength) + strength * np.array(INK[::-1], np.float32)).astype(np.uint8)
+    grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
+    picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
     for points in ours:
         cv2.polylines(picture, [_fixed(points)], False, OURS[::-1], 1, cv2.LINE_AA, 4)
     for f in flags:
@@ -60,19 +59,26 @@ def _fixed(p: Points) -> Any:
     return np.round(np.column_stack((q.real, q.imag)) * 16).astype(np.int32)
 
 
+def _palette() -> Any:
+    """Red, green, blue of every darkness, (256, 3)."""
+    strength = np.minimum(1.6 * np.arange(256) / 255, 1)[:, None]
+    return np.round(255 + (np.array(INK) - 255) * strength).astype(np.uint8)
+
+
 def _clean(ink: Any, level: float) -> Any:
     """Ink without the grain of bare paper."""
-    return np.where(ink > 0.6 * level, ink, 0).astype(np.uint8)
+    import cv2
+
+    return cv2.threshold(ink, 0.6 * level, 255, cv2.THRESH_TOZERO)[1]
 
 
 def pdf(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag], title: str) -> bytes:
     """The overlay as a PDF of the sheet's size."""
     mm = 72 / 25.4
     rows, columns = ink.shape
-    palette = b"".join(
-        bytes(round(255 + (c - 255) * min(1.6 * i / 255, 1.0)) for c in INK) for i in range(256)
-    )
-    out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm 1 J 1 j 0.12 w", _colour(OURS)]
+    palette = _palette().tobytes()
+    out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm", "1 J 1 j 0.12 w",
+           _colour(OURS)]  # fmt: skip
     out += [_path(points) for points in ours]
     for f in flags:
         out += [_colour(BAD[f.verdict]), "0.35 w"]
@@ -92,8 +98,9 @@ def pdf(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag], t
         (f"<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {PAPER.width * mm:.4f} {PAPER.height * mm:.4f}] /Contents 4 0 R "
          "/Resources << /XObject << /Ink 5 0 R >> /Font << /F 6 0 R >> >> >>").encode("ascii"),
         b"<< /Length %d /Filter /FlateDecode >>\nstream\n" % len(content) + content + b"\nendstream",
-        (f"<< /Type /XObject /Subtype /Image /Width {columns} /Height {rows} /BitsPerComponent 8 /ColorSpace [/Indexed /DeviceRGB 255 "
-         f"<{palette.hex()}>] /Filter /FlateDecode /Length {len(image)} >>\nstream\n").encode("ascii") + image + b"\nendstream",
+        (f"<< /Type /XObject /Subtype /Image /Width {columns} /Height {rows} /BitsPerComponent 8 "
+         f"/ColorSpace [/Indexed /DeviceRGB 255 <{palette.hex()}>] /Filter /FlateDecode "
+         f"/Length {len(image)} >>\nstream\n").encode("ascii") + image + b"\nendstream",
         b"<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica >>",
         f"<< /Title <{name}> /Creator (tmm-sheets) >>".encode("ascii"),
     ]  # fmt: skip

@@ -1,7 +1,7 @@
 """A photograph, a scan or a print as grey pixels, from JPG, PNG or PDF.
 
-JPG and PNG are read by OpenCV, which turns a picture as its EXIF data say; a page of a PDF, a scan as well as a vector drawing, is rendered
-by pypdfium2. Both come with the extra ``compare``.
+JPG and PNG are read by OpenCV, which turns a picture as its EXIF data say; a page of a PDF, a scan as well as a vector drawing, is
+rendered by pypdfium2. Both come with the extra ``compare``.
 """
 
 from __future__ import annotations
@@ -79,7 +79,8 @@ def read(path: Path) -> Picture:
     if pixels < LEAST_PIXELS:
         raise CannotBuild(
             f"{path}: {grey.shape[1]} x {grey.shape[0]} pixels are too few for an A1 sheet: thin lines cannot be seen",
-            hint="take the picture with at least 8 million pixels, the sheet filling it; messengers shrink pictures: send it as a file",
+            hint="take the picture with at least 8 million pixels, the sheet filling it; messengers shrink pictures, so send it as "
+            "a file",
         )
     if pixels > MOST_PIXELS:
         raise CannotBuild(f"{path}: {pixels / 1e6:.0f} million pixels are more than can be handled", hint="scan at 300 dpi or less")

@@ -1,14 +1,15 @@
 """Finding the frame in a photograph and bringing the sheet back to its millimetres.
 
-The frame (GOST 2.301: 20 mm at the left, 5 mm elsewhere) is sought as the largest thing made of lines, or from the edge of the paper, and is
-told from other rectangles, and its four positions from one another, by the lines of the title block. Its sides are then followed at full
+The frame (GOST 2.301: 20 mm at the left, 5 mm elsewhere) is sought as the largest thing made of lines, or from the edge of the
+paper, and is told from other rectangles, and its four positions from one another, by the lines of the title block. Its sides are
+then followed at full
 resolution and give, one after another,
 
 1. a homography and two coefficients of radial distortion, by least squares of the distances of the sides' points;
 2. what is left of the sides' bending (the paper's curl), carried inside between opposite sides (a Coons patch);
 3. a smooth correction of low order from the lines of the drawing and of the title block: products of sines and cosines with at most
-   :data:`ORDER` half waves over the sheet, zero across the sides, fitted robustly to all lines at once. It cannot follow a single view,
-   least of all a single line: with several hundred lines and some thirty numbers one wrong line moves it by hundredths of a
+   :data:`ORDER` half waves over the sheet, zero across the sides, fitted robustly to all lines at once. It cannot follow a single
+   view, least of all a single line: with several hundred lines and some thirty numbers one wrong line moves it by hundredths of a
    millimetre (Geman and McClure's weights leave it out altogether).
 
 Pictures are arrays with row 0 at the top; points of pictures and of the sheet are complex numbers, pixels and millimetres.
@@ -30,7 +31,7 @@ from tmm_sheets.compare.photograph import Grey
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 
-Floats = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.floating[Any]]
 
 PAPER = Box(0.0, 0.0, 841.0, 594.0)
 FRAME = Box(20.0, 5.0, 836.0, 589.0)
@@ -162,11 +163,12 @@ def sample(picture: Any, p: Points) -> Any:
     return out.ravel()[: len(x)].reshape(np.shape(p))
 
 
-# --- the frame, roughly ---------------------------------------------------------------------------------------------------------------
+# --- the frame, roughly
+# ---------------------------------------------------------------------------------------------------------------
 
 
 def _quadrilateral(points: Any) -> Points | None:
-    """Four corners of the hull of some pixels, or None when it is no quadrilateral; in the order of the sheet's corners if not mirrored."""
+    """Four corners of the hull of some pixels, in the order of the sheet's if not mirrored; None when it is no quadrilateral."""
     import cv2
 
     hull = cv2.convexHull(points)
@@ -194,7 +196,8 @@ def _straight_lines(ink: Any, length: int = 61) -> Any:
     best = np.zeros_like(ink)
     for down in (False, True):
         for slope in np.linspace(-0.45, 0.45, 13):
-            shear = np.array([[1, 0, 0], [slope, 1, -slope * columns / 2]]) if not down else np.array([[1, slope, -slope * rows / 2], [0, 1, 0]])
+            along_rows = [[1, 0, 0], [slope, 1, -slope * columns / 2]]
+            shear = np.array([[1, slope, -slope * rows / 2], [0, 1, 0]] if down else along_rows)
             sheared = cv2.warpAffine(ink, shear, (columns, rows), flags=cv2.INTER_LINEAR)
             sheared = cv2.blur(sheared, (1, length) if down else (length, 1))
             best = cv2.max(best, cv2.warpAffine(sheared, shear, (columns, rows), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP))
@@ -204,7 +207,7 @@ def _straight_lines(ink: Any, length: int = 61) -> Any:
 
 
 class Guess(NamedTuple):
-    """A quadrilateral that may be the frame, how far its sides bend off their chords at the stations, and how wrong that may be; pixels."""
+    """A quadrilateral that may be the frame, how far its sides bend off their chords, and how wrong that may be; pixels."""
 
     corners: Points
     bends: Floats
@@ -237,7 +240,7 @@ def _guesses(grey: Any, ink: Any) -> list[Guess]:
     _, bright = cv2.threshold(soft, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)
     bright = cv2.morphologyEx(bright, cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8))
     count, labels, stats, _ = cv2.connectedComponentsWithStats(bright, connectivity=4)
-    papers = [(np.array([1j * rows, columns + 1j * rows, columns, 0j]), np.zeros((4, STATIONS)))]
+    papers: list[tuple[Points, Floats]] = [(np.array([1j * rows, columns + 1j * rows, columns, 0j]), np.zeros((4, STATIONS)))]
     if count > 1:
         i = int(np.argmax(stats[1:, cv2.CC_STAT_AREA])) + 1
         if stats[i, cv2.CC_STAT_AREA] > 0.15 * rows * columns:
@@ -253,7 +256,7 @@ def _guesses(grey: Any, ink: Any) -> list[Guess]:
 
 
 def _bends(mask: Any, quad: Points) -> Floats:
-    """How far the outline of a region lies off the chords between its corners, to the left of the way, at the stations of each side."""
+    """How far the outline of a region lies to the left of the chords between its corners, at the stations of each side."""
     out = np.zeros((4, STATIONS))
     t = np.linspace(0.01, 0.99, STATIONS)
     for k, (a, b) in enumerate(pairwise([*quad.tolist(), quad[0]])):
@@ -297,8 +300,8 @@ def follow(profile: Any, steps: int = 2, stiffness: float = 0.5) -> npt.NDArray[
 def _sides(ink: Any, guess: Guess) -> tuple[list[Points], Points]:
     """Points on the four sides near a guess and the corners where the sides meet, in pixels.
 
-    The darkest way is followed twice: lines beside the frame (of a table, say) draw it aside for a while, a curve through most of its points
-    is not misled.
+    The darkest way is followed twice: lines beside the frame (of a table, say) draw it aside for a while, a curve through most of
+    its points is not misled.
     """
     found, ends = [], []
     t = np.linspace(0.01, 0.99, STATIONS)
@@ -306,7 +309,7 @@ def _sides(ink: Any, guess: Guess) -> tuple[list[Points], Points]:
     for k, (a, b) in enumerate(pairwise([*quad.tolist(), quad[0]])):
         n = 1j * (b - a) / abs(b - a)
         base = (a + t * (b - a))[:, None]
-        centre = guess.bends[k]
+        centre: Floats = guess.bends[k]
         for width, degree in ((guess.reach, 4), (4.0, 5), (3.0, 6)):
             offsets = np.arange(-width, width + 0.25, 0.5)
             at = base + n * (centre[:, None] + offsets[None, :])
@@ -336,7 +339,7 @@ def _through(t: Floats, y: Floats, degree: int) -> Floats:
     """Chebyshev coefficients of a curve through most of the points; t from 0 to 1."""
     base = np.polynomial.chebyshev.chebvander(2 * t - 1, degree)
     w = np.ones(len(t))
-    c = np.zeros(degree + 1)
+    c: Floats = np.zeros(degree + 1)
     for k in range(12):
         c = np.linalg.lstsq(base * w[:, None], y * w, rcond=None)[0]
         r = np.abs(y - base @ c)
@@ -347,7 +350,8 @@ def _through(t: Floats, y: Floats, degree: int) -> Floats:
 def _share(ink: Any, m: Map, known: Lines, level: float, reach: float = 1.2) -> float:
     """Share of the known lines that have ink within ``reach`` mm, less half the share of those beside them that have.
 
-    The lines at the far end of the sheet (the box for the turned designation) count a quarter: a margin taken for the sheet shows there.
+    The lines at the far end of the sheet (the box for the turned designation) count a quarter: a margin taken for the sheet shows
+    there.
     """
     offsets = np.linspace(-reach, reach, 7)
     at = m.to_picture(known.points[:, None] + known.normals[:, None] * offsets)
@@ -418,16 +422,17 @@ def find(grey: Grey, block: Lines) -> Found:
             outer = [PAPER if edges >> k & 1 else FRAME for k in range(4)]  # bottom, right, top, left
             x0, x1, y0, y1 = outer[3].x0, outer[1].x1, outer[0].y0, outer[2].y1
             seen = np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)])
-            corners = _apply(homography(seen, first.corners), CORNERS)
-            bends = np.stack([_bend(s, a, b) for s, a, b in zip(first.sides, first.corners, np.roll(first.corners, -1), strict=True)])
-            best = _better(best, ink, Guess(corners, bends, 6.0, (0,)), block, level)
+            guessed = _apply(homography(seen, first.corners), CORNERS)
+            chords = zip(first.sides, first.corners, np.roll(first.corners, -1), strict=True)
+            bends = np.stack([_bend(s, a, b) for s, a, b in chords])
+            best = _better(best, ink, Guess(guessed, bends, 6.0, (0,)), block, level)
             if best is not None and best.score > SURE:
                 break
     if best is None or best.score < FOUND:
-        seen = 0.0 if best is None else max(best.score, 0.0)
+        share = 0.0 if best is None else max(best.score, 0.0)
         raise CannotBuild(
             "no frame with a title block was found in the picture "
-            f"(at best {100 * seen:.0f} % of the title block's lines are where they belong)",
+            f"(at best {100 * share:.0f} % of the title block's lines are where they belong)",
             hint="the whole frame must be in the picture, flat, on a background that is not as light as the paper, and sharp; "
             "form 1 or 2a of GOST 2.104 in the lower right corner",
         )
@@ -439,7 +444,8 @@ def find(grey: Grey, block: Lines) -> Found:
     return Found(best.corners / shrink, tuple(s / shrink for s in best.sides), turned, False, best.score)
 
 
-# --- the frame, exactly -----------------------------------------------------------------------------------------------------------------
+# --- the frame, exactly
+# -----------------------------------------------------------------------------------------------------------------
 
 
 def _side_points() -> tuple[Points, Points, npt.NDArray[np.int64]]:
@@ -538,7 +544,7 @@ def _fit_sides(m: Map, seen: Points, side: npt.NDArray[np.int64], use: Any) -> t
         b = np.concatenate((-r * w, -prior * x[8:]))
         norm = np.linalg.norm(a, axis=0)
         a /= norm
-        change = np.linalg.solve(a.T @ a, a.T @ b) / norm
+        change = np.linalg.solve(np.einsum("ni,nj->ij", a, a), np.einsum("ni,n->i", a, b)) / norm
         x = x + change
         if np.abs(change / size).max() < 1e-1:
             break
@@ -561,10 +567,11 @@ def _fit_sides(m: Map, seen: Points, side: npt.NDArray[np.int64], use: Any) -> t
     return Map(m.middle, m.reach, matrix, (float(x[8]), float(x[9])), sides, m.waves), float(max(left))
 
 
-# --- the drawing ------------------------------------------------------------------------------------------------------------------------
+# --- the drawing
+# ------------------------------------------------------------------------------------------------------------------------
 
 
-def straighten(grey: Grey, m: Map, scale: float = SCALE) -> Any:
+def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
     """The sheet seen from straight above, ``scale`` pixels per mm, as darkness 0 .. 255."""
     import cv2
 
@@ -626,24 +633,27 @@ def refine(m: Map, ink: Any, lines: Lines, level: float, scale: float = SCALE) -
     c = np.zeros(2 * ORDER**2)
     offsets = np.arange(-4.0, 4.05, 0.1)
     hit, sigma = 0.0, 1.0
-    for reach, order, loose in ((3.5, 2, 1.0), (2.5, 2, 0.7), (1.6, 3, 0.5), (1.2, ORDER, 0.3), (1.0, ORDER, 0.25), (0.8, ORDER, 0.2)):
-        x_, y_ = x @ c[: x.shape[-1]], y @ c[x.shape[-1] :]
+    coarse_to_fine = ((3.5, 2, 1.0), (2.5, 2, 0.7), (1.6, 3, 0.5), (1.2, ORDER, 0.3), (1.0, ORDER, 0.25), (0.8, ORDER, 0.2))
+    for reach, order, loose in coarse_to_fine:
+        x_, y_ = np.einsum("ni,i->n", x, c[: x.shape[-1]]), np.einsum("ni,i->n", y, c[x.shape[-1] :])
         table = profiles(ink, lines, offsets, np.asarray(x_ + 1j * y_), scale)
         o, strength = peaks(table, offsets, 0.0, reach, 0.4)
         use = strength > level
         hit = float((use & (np.abs(o) < 0.5)).mean())
         active = rank <= order
-        target = o + base @ c
+        target = o + np.einsum("ni,i->n", base, c)
         new = np.where(active, c, 0.0)
         # Frame and lens have done most: amplitudes beyond some millimetres are not believed, small waves even less.
         ridge = np.sqrt(np.maximum(use.sum(), 1)) * 0.007 * rank**1.5
         some = base[:, active]
-        for _ in range(10):
-            r = target - base @ new
+        for _ in range(7):
+            r = target - np.einsum("ni,i->n", base, new)
             w = (weight * use / (1 + (r / loose) ** 2)) ** 2
             weighted = some * w[:, None]
-            new[active] = np.linalg.solve(some.T @ weighted + np.diag(ridge[active] ** 2), weighted.T @ target)
+            # einsum: for so small a product the threads of a matrix library cost more than they bring.
+            square = np.einsum("ni,nj->ij", some, weighted) + np.diag(ridge[active] ** 2)
+            new[active] = np.linalg.solve(square, np.einsum("ni,n->i", weighted, target))
         c = new
-        r = (target - base @ c)[use]
+        r = (target - np.einsum("ni,i->n", base, c))[use]
         sigma = 1.4826 * float(np.median(np.abs(r))) if len(r) else 1.0
     return Map(m.middle, m.reach, m.matrix, m.bend, m.sides, c), sigma, hit

@@ -1,11 +1,12 @@
 """Every known element of a sheet measured in the rectified picture, along its normals.
 
-First each element is looked for at its own place, no farther than half way to the next line that is known to be there. What is found is
-wiped out of the picture, with a pencil's width to spare, lettering and heads of arrows too. Whatever has not been found is sought in the
-ink that is left, up to :data:`FAR` millimetres away, turned or of another size. Ink that is left after that belongs to nothing.
+First each element is looked for at its own place, no farther than half way to the next line that is known to be there. What is
+found is wiped out of the picture, with a pencil's width to spare, lettering and heads of arrows too. Whatever has not been found
+is sought in the ink that is left, up to :data:`FAR` millimetres away, turned or of another size. Ink that is left after that
+belongs to nothing.
 
-An element's displacement is a similarity: two shifts, a turn and a growth, of which only what shows along its normals is determined (a
-straight line has no shift along itself and no growth; its length is measured at its ends).
+An element's displacement is a similarity: two shifts, a turn and a growth, of which only what shows along its normals is
+determined (a straight line has no shift along itself and no growth; its length is measured at its ends).
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from tmm_sheets.compare.rectification import FRAME, PAPER, SCALE, Lines, peaks, 
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
-Floats = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.floating[Any]]
 Status = Literal["measured", "missing", "dense", "lettering", "absent lettering", "small"]
 
 NEAR = 2.0  # mm about its own place within which an element is sought first
@@ -41,9 +42,9 @@ LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "t
 class Trace:
     """What was found of an element.
 
-    ``shift`` is that of its middle, mm; ``turn`` rad; ``growth`` mm at the radius or half length; ``deviation`` the largest distance
-    between where its line is and ought to be, mm; ``ends`` how far the line runs beyond its beginning and end (negative: it stops short;
-    nan: cannot be told), mm; ``covered`` the share of it that has ink; ``at`` its line as it was found.
+    ``shift`` is that of its middle, mm; ``turn`` rad; ``growth`` mm at the radius or half length; ``deviation`` the largest
+    distance between where its line is and ought to be, mm; ``ends`` how far the line runs beyond its beginning and end (negative:
+    it stops short; nan: cannot be told), mm; ``covered`` the share of it that has ink; ``at`` its line as it was found.
     """
 
     element: Element
@@ -95,7 +96,7 @@ def measurable(e: Element) -> bool:
     return e.kind in ("line", "arc", "circle", "curve") and e.length >= LEAST and not (e.kind == "circle" and e.fills)
 
 
-def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 5000) -> Lines:
+def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 4000) -> Lines:
     """Stations along the elements that are lines, for the rectification: at most some ``most`` of them."""
     chosen = [e for e in elements if measurable(e) and e.length >= least and e.style != "text"]
     step = max(sum(e.length for e in chosen) / most, 2.0)
@@ -319,8 +320,8 @@ def _measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> T
     z = e.points
     middle = e.centre if e.kind == "circle" else s.points.mean()
     moved = z + (full[0] + 1j * full[1]) + (z - middle) / s.half * (full[3] + 1j * full[2])
-    return Trace(e, "measured", complex(full[0], full[1]), float(full[2] / s.half), float(full[3]), float(np.abs(o).max()), covered=covered,
-                 at=np.asarray(moved))  # fmt: skip
+    return Trace(e, "measured", complex(full[0], full[1]), float(full[2] / s.half), float(full[3]), float(np.abs(o).max()),
+                 covered=covered, at=np.asarray(moved))  # fmt: skip
 
 
 def _far(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: float) -> Trace:
@@ -337,7 +338,7 @@ def _far(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: float)
     n, k = base.shape
     # Guesses: nothing, parallel shifts, and what some of the dark places say.
     rng = np.random.default_rng(e.number)
-    guesses = [np.zeros((1, k))]
+    guesses: list[Floats] = [np.zeros((1, k))]
     if k:
         grid = np.arange(-reach, reach + 0.01, 0.4)
         if e.kind == "line":
@@ -401,7 +402,8 @@ def _with_ends(t: Trace, ink: Any, known: Any, left: Any, level: float) -> Trace
     patterned = bool(line_type(e.style).pattern)
     ends = []
     for way in (z, z[::-1]):
-        ends.append(_end(way, ink, known, left, level, 0.5 * line_type(e.style).width, min(FAR, 0.4 * e.length), 3.5 if patterned else 1.6))
+        pen, reach = 0.5 * line_type(e.style).width, min(FAR, 0.4 * e.length)
+        ends.append(_end(way, ink, known, left, level, pen, reach, 3.5 if patterned else 1.6))
     return replace(t, ends=(ends[0], ends[1]))
 
 
