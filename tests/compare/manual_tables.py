@@ -3,6 +3,9 @@
 Every cell that has an entry in the template is filled in, with the manual's own scale factors. A slip counts as found when its
 number is not green; a clean number that is red is a false alarm. Slips smaller than what a pencil does cannot be seen from the
 numbers alone: they are told with their size in tolerances. Run: python -m tests.compare.manual_tables
+
+The false alarms are no slips of the pen but drawings of the manual that are off by more than a careful pencil: arms of forces up to
+4.5 mm, the closing side F30 of the engine 3.6 mm, and what was computed from them.
 """
 
 from __future__ import annotations
@@ -69,7 +72,8 @@ SHAPER_TABLES = {
     "shaper_table_3_2": {"pb3_mm": "velocities/{}/pb3", "CB_mm": "positions/{}/CB", "cd_mm": "velocities/{}/pd"},
     "shaper_table_3_3": {
         "pb3_mm": "velocities/{}/pb3", "VB3_m_s": "results/{}/V_B3", "bb3_mm": "velocities/{}/bb3", "VB3B_m_s": "results/{}/V_B3B",
-        "pd_mm": "velocities/{}/pd", "VD_VS4_m_s": "results/{}/V_D", "pd5_mm": "velocities/{}/pd5", "VD5_VS5_m_s": "results/{}/V_D5",
+        "pd_mm": "velocities/{}/pd", "VD_VS4_m_s": "results/{}/V_D", "pd5_mm": "velocities/{}/pd5",
+        "VD5_VS5_m_s": "results/{}/V_D5",
         "pS3_mm": "velocities/{}/ps3", "VS3_m_s": "results/{}/V_S3", "omega2_omega3_rad_s": "results/{}/omega3",
     },
     "flywheel_table_5_1": {"VD5_m_s": "results/{}/V_D5", "Mc_reduced_N_m": "results/{}/M_red"},
@@ -90,7 +94,8 @@ SHAPER_SCALARS = {
     "sh.aD5D": "results/2/a_D5D^r", "sh.aS3": "results/2/a_S3", "sh.e3": "results/2/epsilon3", "sh.G4": "results/2/G4",
     "sh.G5": "results/2/G5", "sh.Fi4": "results/2/Fi4", "sh.Fi5": "results/2/Fi5", "sh.F54": "results/2/F54",
     "sh.F50": "results/2/F50", "sh.F43": "results/2/F43", "sh.h5_mm": "arms/2/h_F5(D)", "sh.h50": "results/2/h50",
-    "sh.G2": "results/2/G2", "sh.G3": "results/2/G3", "sh.Fi2": "results/2/Fi2", "sh.Fi3": "results/2/Fi3", "sh.Mi3": "results/2/Mi3",
+    "sh.G2": "results/2/G2", "sh.G3": "results/2/G3", "sh.Fi2": "results/2/Fi2", "sh.Fi3": "results/2/Fi3",
+    "sh.Mi3": "results/2/Mi3",
     "sh.arm.G2": "arms/2/h_G2(C)", "sh.arm.Fi2": "arms/2/h_Fi2(C)", "sh.arm.Fi3": "arms/2/h_Fi3(C)", "sh.arm.G3": "arms/2/h_G3(C)",
     "sh.arm.F34": "arms/2/h_F34(C)", "sh.BC_mm": "positions/2/CB", "sh.F21t": "results/2/F21t", "sh.F21": "results/2/F21",
     "sh.F23": "results/2/F23", "sh.F30": "results/2/F30", "sh.arm.h12": "arms/2/h_F12(A)", "sh.F1k": "results/2/F1",
@@ -99,7 +104,8 @@ SHAPER_SCALARS = {
     "sh.lev.pd": "lever/2/hFMi3", "sh.lev.h1": "lever/2/hF1", "sh.F1l": "results/2/F1-lever",
 }
 SHAPER_FLYWHEEL = {
-    "sh.psimax": "energy-mass/psi_max", "sh.psimin": "energy-mass/psi_min", "sh.ab": "energy-mass/ab", "sh.Jm": "results/J_flywheel",
+    "sh.psimax": "energy-mass/psi_max", "sh.psimin": "energy-mass/psi_min", "sh.ab": "energy-mass/ab",
+    "sh.Jm": "results/J_flywheel",
     "sh.D": "results/D", "sh.Brim": "results/B", "sh.Hrim": "results/H", "sh.mfly": "results/m", "sh.w1": "results/2/omega1",
 }
 
@@ -138,7 +144,8 @@ ENGINE = {
     "driving-moment": 47.1, "total-work": 23.55, "energy-mass": 23.55, "reduced-inertia": 0.00015,
 }
 _RODS = {
-    "VS2_m_s": "results/{}/V_S2", "VS4_m_s": "results/{}/V_S4", "omega2_rad_s": "results/{}/omega2", "omega4_rad_s": "results/{}/omega4",
+    "VS2_m_s": "results/{}/V_S2", "VS4_m_s": "results/{}/V_S4", "omega2_rad_s": "results/{}/omega2",
+    "omega4_rad_s": "results/{}/omega4",
 }
 ENGINE_TABLES = {
     "3_4": {"bc_mm": "velocities/{}/bc", "bS2_mm": "velocities/{}/bs2", "de_mm": "velocities/{}/de", "dS4_mm": "velocities/{}/ds4"},
@@ -147,7 +154,8 @@ ENGINE_TABLES = {
         "pe_mm": "velocities/{}/pe", "VE_VS5_m_s": "results/{}/V_E", "ed_mm": "velocities/{}/de", "VED_m_s": "results/{}/V_ED",
         "pS2_mm": "velocities/{}/ps2", "pS4_mm": "velocities/{}/ps4", **_RODS,
     },
-    "5_3": {"VC_m_s": "results/{}/V_C", "VE_m_s": "results/{}/V_E", "M3_N_m": "results/{}/M_F3", "M5_N_m": "results/{}/M_F5", "Md_N_m": "results/{}/M_red"},
+    "5_3": {"VC_m_s": "results/{}/V_C", "VE_m_s": "results/{}/V_E", "M3_N_m": "results/{}/M_F3", "M5_N_m": "results/{}/M_F5",
+    "Md_N_m": "results/{}/M_red"},
     "5_4": {
         "m2VS2sq_kg_m2_s2": "results/{}/m2V_S2^2", "JS2w2sq_kg_m2_s2": "results/{}/J_S2omega2^2", "VS3_m_s": "results/{}/V_C",
         "m3VS3sq_kg_m2_s2": "results/{}/m3V_C^2", "m4VS4sq_kg_m2_s2": "results/{}/m4V_S4^2", "VS5_m_s": "results/{}/V_E",
@@ -162,7 +170,8 @@ ENGINE_SCALARS = {
     "en.w1": "results/1/omega1", "en.aB": "results/1/a_B", "en.an": "results/1/a_CB^n", "en.bn_mm": "accelerations/1/bn",
     "en.bS2a_mm": "accelerations/1/bs2", "en.aC": "results/1/a_C", "en.at2": "results/1/a_CB^t", "en.aE": "results/1/a_E",
     "en.at4": "results/1/a_ED^t", "en.aS2": "results/1/a_S2", "en.aS4": "results/1/a_S4", "en.e2": "results/1/epsilon2",
-    "en.G4": "results/1/G4", "en.G5": "results/1/G5", "en.Fi4": "results/1/Fi4", "en.Fi5": "results/1/Fi5", "en.Mi4": "results/1/Mi4",
+    "en.G4": "results/1/G4", "en.G5": "results/1/G5", "en.Fi4": "results/1/Fi4", "en.Fi5": "results/1/Fi5",
+    "en.Mi4": "results/1/Mi4",
     "en.arm.G4": "arms/1/h_G4(E)", "en.arm.Fi4": "arms/1/h_Fi4(E)", "en.F41t": "results/1/F41t", "en.F41": "results/1/F41",
     "en.F50": "results/1/F50", "en.F45": "results/1/F45", "en.Fi2": "results/1/Fi2", "en.Fi3": "results/1/Fi3",
     "en.Mi2": "results/1/Mi2", "en.arm.G2": "arms/1/h_G2(C)", "en.arm.Fi2": "arms/1/h_Fi2(C)", "en.F21t": "results/1/F21t",
@@ -202,8 +211,10 @@ def engine() -> list[Table]:
 
 # --- gear and cam of manual 000, press of manual 002 ----------------------------------------------------------------------------
 
-GEAR_SLIPS = {("4", "theta1"): "(37 - 19)/37 = 0.49", ("4", "theta2"): "(19 - 37)/19 = -0.95", ("6", "theta1"): "(62.5 - 6.5)/62.5 = 0.90"}
-GEAR_VALUES = {"r1": "r1", "r2": "r2", "rb1": "rb1", "rb2": "rb2", "rw1": "rw1", "rw2": "rw2", "ra1": "ra1", "ra2": "ra2", "rf1": "rf1",
+GEAR_SLIPS = {("4", "theta1"): "(37 - 19)/37 = 0.49", ("4", "theta2"): "(19 - 37)/19 = -0.95", ("6",
+    "theta1"): "(62.5 - 6.5)/62.5 = 0.90"}
+GEAR_VALUES = {"r1": "r1", "r2": "r2", "rb1": "rb1", "rb2": "rb2", "rw1": "rw1", "rw2": "rw2", "ra1": "ra1", "ra2": "ra2",
+    "rf1": "rf1",
                "rf2": "rf2", "s1": "s1", "s2": "s2", "alpha_w": "alpha_w", "s_chord1": "s_chord1"}
 
 
@@ -214,7 +225,8 @@ def gear() -> list[Table]:
         for column, name in (("yV1_mm", "yV1"), ("yV2_mm", "yV2"), ("theta1", "theta1"), ("theta2", "theta2")):
             if not row[column].startswith("-inf"):
                 entry = f"gear-sliding/{row['position']}/{name}"
-                table.cells.append(Cell(f"{row['position']} {name}", entry, row[column], GEAR_SLIPS.get((row["position"], name), "")))
+                table.cells.append(Cell(f"{row['position']} {name}", entry, row[column], GEAR_SLIPS.get((row["position"], name),
+                "")))
     geometry = Table("gear_values", "lugansk/shaper", {})
     for row in rows("gear_values"):
         if row["symbol"] in GEAR_VALUES:
@@ -223,7 +235,7 @@ def gear() -> list[Table]:
     return [table, geometry]
 
 
-CAM_VALUES = {"e": ("e", ""), "S0": ("s0", ""), "r0": ("r0", ""), "rho_min": ("rho_min", ""), "r_p": ("r_roller", "")}
+CAM_VALUES = {"e": "e", "S0": "s0", "r0": "r0", "rho_min": "rho_min", "r_p": "r_roller"}
 
 
 def cams() -> list[Table]:
@@ -232,7 +244,7 @@ def cams() -> list[Table]:
     for row in rows("cam_example_1"):
         if row["symbol"] in CAM_VALUES:
             slip = row["note"] if not row["tolerance"] else ""
-            table.cells.append(Cell(row["symbol"], f"results/{CAM_VALUES[row['symbol']][0]}", row["printed"], slip))
+            table.cells.append(Cell(row["symbol"], f"results/{CAM_VALUES[row['symbol']]}", row["printed"], slip))
     return [table]
 
 
@@ -262,8 +274,7 @@ def press() -> list[Table]:
         slip = "ordinate without its sign" if row["position"] in ("1", "2", "3", "9", "10", "11", "12") else ""
         speed.cells.append(Cell(row["position"], f"results/{row['position']}/omega_I", row["omega_rad_s"], slip))
     scalars = {r["id"]: r for r in rows("press_scalars")}
-    for key, entry, scale in (("pr.Md", "results/M_const", ""), ("pr.ab", "first-energy/ab", "")):
-        del scale
+    for key, entry in (("pr.Md", "results/M_const"), ("pr.ab", "first-energy/ab")):
         speed.cells.append(Cell(key, entry, scalars[key]["value"], scalars[key]["errata"]))
     speed.scales = {**PRESS, "first-energy": PRESS["work"]}
     return [table, speed]
@@ -296,34 +307,42 @@ def tables() -> list[Table]:
     return [*shaper(), *engine(), *gear(), *cams(), *press()]
 
 
+def is_right(o: Outcome) -> bool:
+    """True for a slip that leaves the number right to three digits: the formula gives the same there, or rounding mends it."""
+    return abs(o.judged.deviation) <= max(0.005 * abs(o.judged.exact), 1e-9) or abs(o.judged.deviation) < 0.02 * o.judged.tolerance
+
+
 def main() -> None:
     """Print the counts and every false alarm and miss."""
     from tempfile import TemporaryDirectory
 
-    totals = {"clean": 0, "green": 0, "amber": 0, "false alarms": 0, "slips": 0, "found": 0, "missed": 0}
+    every: list[Outcome] = []
     with TemporaryDirectory() as folder:
         for table in tables():
             outcomes, without = compared(table, Path(folder))
-            clean = [o for o in outcomes if not o.cell.slip]
-            slips = [o for o in outcomes if o.cell.slip]
-            alarms = [o for o in clean if o.judged.verdict == "red"]
-            missed = [o for o in slips if o.judged.verdict == "green"]
-            totals["clean"] += len(clean)
-            totals["green"] += sum(o.judged.verdict == "green" for o in clean)
-            totals["amber"] += sum(o.judged.verdict == "amber" for o in clean)
-            totals["false alarms"] += len(alarms)
-            totals["slips"] += len(slips)
-            totals["found"] += len(slips) - len(missed)
-            totals["missed"] += len(missed)
-            print(f"{table.name}: {len(clean)} clean, {len(alarms)} red; {len(slips)} slips, {len(slips) - len(missed)} found; "
-                  f"{len(without)} without an entry")
-            ambers = [o for o in clean if o.judged.verdict == "amber"]
-            for title, some in (("  red", alarms), ("  amber", ambers), ("  missed", missed)):
-                for o in some:
-                    j = o.judged
-                    print(f"{title}: {o.cell.place}: {j.line.value:g} for {j.exact:.5g} {j.entry.unit}, {j.deviation:+.3g} is "
-                          f"{abs(j.deviation) / j.tolerance:.2f} tolerances{' follows' if j.follows else ''}; {o.cell.slip} [{j.remark}]")
-    print(totals)
+            every += outcomes
+            print(f"{table.name}: {count(outcomes)}; {len(without)} cells without an entry")
+            for o in outcomes:
+                j, slip = o.judged, o.cell.slip
+                if (j.verdict == "green") == bool(slip):
+                    title = "missed" if slip else j.verdict
+                    said = "; ".join(filter(None, ("follows" if j.follows else "", slip, j.remark)))
+                    print(f"  {title}: {o.cell.place}: {j.line.value:g} for {j.exact:.5g} {j.entry.unit}, {j.deviation:+.3g} is "
+                          f"{abs(j.deviation) / j.tolerance:.2f} tolerances; {said}")
+    print(f"together: {count(every)}")
+
+
+def count(outcomes: list[Outcome]) -> dict[str, int]:
+    """Numbers of clean cells by verdict, of slips found, missed as within a pencil's reach, and missed as right all the same."""
+    clean = [o.judged for o in outcomes if not o.cell.slip]
+    slips = [o for o in outcomes if o.cell.slip]
+    missed = [o for o in slips if o.judged.verdict == "green"]
+    return {
+        "clean": len(clean), "amber": sum(j.verdict == "amber" for j in clean), "red": sum(j.verdict == "red" for j in clean),
+        "of these following": sum(j.verdict == "red" and j.follows is not None for j in clean), "slips": len(slips),
+        "found": len(slips) - len(missed), "within reach": sum(not is_right(o) for o in missed),
+        "right": sum(map(is_right, missed)),
+    }
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import hypot, isfinite
+from math import atan, degrees, hypot, isfinite, radians, tan
 from typing import Any
 
 import numpy as np
@@ -21,12 +21,15 @@ from tmm_sheets.compare.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured_file import Filled, Line, factor_of
 from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.scale import number
 from tmm_sheets.construction.step import Step
 
 CURVED = 0.1
 """Share of what a mistake explains that may be off, for a mistake is no small displacement and the Jacobian is straight."""
 SCALED = 4
 """Lengths of a plan from which a wrong scale factor is recognised."""
+ROUNDED = 0.005
+"""Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
 HUBER = 2.0
 """Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
 ALONE = 1.05
@@ -35,6 +38,8 @@ NEARLY = 0.9
 """Share of the best explanation with which another is as good."""
 SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
+LONG = 10.0
+"""Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
 EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
 
@@ -72,6 +77,7 @@ class Judged:
     scale: str = ""
     mistake: Mistake | None = None
     remark: str = ""
+    inconsistent: bool = False
 
     @property
     def entry(self) -> Measurable:
@@ -80,8 +86,9 @@ class Judged:
 
     @property
     def verdict(self) -> Verdict:
-        """Green, amber or red."""
-        return verdict(self.deviation, self.tolerance)
+        """Green, amber or red; not green where it does not follow from the student's own numbers."""
+        judged = verdict(self.deviation, self.tolerance)
+        return "amber" if judged == "green" and self.inconsistent else judged
 
     @property
     def percent(self) -> float | None:
@@ -101,6 +108,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     # In the order of the sheets, so that steps are numbered plan after plan as they are drawn.
     lines = sorted(filled.lines, key=lambda line: numbers[line.entry.id])
     judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
+    _check_arithmetic(judged, filled, found)
     rest = _wrong_scales(judged)
     _chains(rest, errors)
     return judged
@@ -115,12 +123,18 @@ def _judged(line: Line, found: Measurables, factors: Mapping[str, float], errors
     error, rows = errors.of_sum((s, k, g * (1.0 if on_paper else size)) for s, k, g in e.terms)
     if on_paper:
         rows = [(s, g * size) for s, g in rows]
-    exact = e.value * size
+        error /= ratio if e.kind == "result" else 1.0
+    exact = e.value * size if e.slope is None else _tilted(e.value, e.slope, found, factors)
     read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
     # A ruler is read no better than its reading is written.
     written = line.half_digit if e.terms or e.calculated else 0.0
-    tolerance = hypot(error, max(read, written), e.calculated * exact)
-    if not isfinite(tolerance):
+    second = 0.0
+    for factor, step, k, per_mm in e.squares:
+        of_step = errors.error(step)
+        second += factor * (float(of_step[min(k, len(of_step) - 1)]) ** 2 + (per_mm / ratio * reading) ** 2)
+    tolerance = hypot(error, max(read, written), e.calculated * exact, second)
+    # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
+    if not isfinite(tolerance) or (e.kind == "length" and exact > LONG and tolerance > exact):
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact) if e.kind == "angle" else measured - exact
@@ -134,12 +148,47 @@ def _judged(line: Line, found: Measurables, factors: Mapping[str, float], errors
     return judged
 
 
+def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: Mapping[str, float]) -> float:
+    """Angle of a line of a diagram, degrees, when its axes have other scale factors."""
+    x, y = (factors.get(key, found.scales[key].mu) / found.scales[key].mu for key in slope)
+    return degrees(atan(tan(radians(angle)) * x / y))
+
+
 def _slip(measured: float, exact: float, tolerance: float) -> str:
     """Slips of the pen that are recognised at sight: a factor of two or ten."""
     for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01):
         if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
             return f"{factor:g} times the exact value"
     return ""
+
+
+# --- arithmetic --------------------------------------------------------------------------------------------------------------
+
+
+def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) -> None:
+    """Compute results again from the numbers they should have come from: only rounding may stand between them.
+
+    A result that is exact but for rounding is right, wherever it came from.
+    """
+    by_id = {j.entry.id: j for j in judged}
+    for result, check in found.checks.items():
+        j = by_id.get(result)
+        needs = [by_id[name] for name in check.needs if name in by_id]
+        if j is None or len(needs) != len(check.needs):
+            continue
+        times = filled.factors.get(check.scale, found.scales[check.scale].mu) if check.scale else 1.0
+        values = [n.line.value * times for n in needs]
+        expected = check.compute(*values)
+        allowed = ROUNDED * abs(expected) + j.line.half_digit
+        for i, n in enumerate(needs):
+            moved = [*values[:i], values[i] + n.line.half_digit * times, *values[i + 1:]]
+            allowed += abs(check.compute(*moved) - expected)
+        apart = j.line.value - expected if j.entry.signed else abs(j.line.value) - abs(expected)
+        if abs(apart) > allowed and abs(j.deviation) > ROUNDED * abs(j.exact) + j.line.half_digit:
+            j.inconsistent = True
+            own = ", ".join(f"{n.entry.quantity} = {number(n.line.value, 5)}" for n in needs)
+            said = f"does not follow from your own {own}: that gives {number(expected, 4)}"
+            j.remark = f"{j.remark}; {said}" if j.remark else said
 
 
 # --- scale factors ------------------------------------------------------------------------------------------------------------

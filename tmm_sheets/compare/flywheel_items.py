@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.compare.measurable import Measurable, Measurables, Term, measured_step, scalar
+from tmm_sheets.compare.measurable import RESULTS, Measurable, Measurables, Term, measured_step, scalar, size
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.methods.integration import CHORD, smooth
@@ -32,7 +32,7 @@ def collect(project: Project, found: Measurables) -> None:
         "total-work": (s.energy, {"ΔE": "y_ΔE"}),
         "reduced-inertia": (s.inertia, {"J": "y_J"}),
         "energy-mass": (s.energy, {"ab": "ab", "ψ_max": "ψ_max", "ψ_min": "ψ_min"}),
-        "first-energy": (s.energy, {"T_I": "y_T", "ab": "ab"}),
+        "first-energy": (s.energy, {"T_II": "y_T2", "T_I": "y_T1", "ab": "ab"}),
     }
     for name, (scale, steps) in keys.items():
         if name not in plans:
@@ -49,11 +49,19 @@ def collect(project: Project, found: Measurables) -> None:
                     continue  # the position that closes the cycle
                 found.add(_entry(plan, found, k, step, quantity, extra if step_name == "ab" else ()))
     _results(f, found, _touching(f))
+    if "crank-speed" in plans:
+        plan = plans["crank-speed"]
+        found.plans.append((plan, "first-energy"))
+        for k, label in enumerate(plan.labels[:-1]):
+            step = plan["ω1"]
+            entry_id = f"{RESULTS}/{label}/omega_I"
+            found.add(size("Угловая скорость начального звена", entry_id, label, "ω_I", "рад/с", k, step, by=step))
 
 
 def _entry(plan: Plan, found: Measurables, k: int, step: Step, quantity: str, extra: tuple[Term, ...]) -> Measurable:
     entry = measured_step(plan, found.scales, k, step, quantity)
-    return replace(entry, terms=(*entry.terms, *extra))
+    slope = ("reduced-inertia", "energy-mass") if entry.kind == "angle" else None
+    return replace(entry, terms=(*entry.terms, *extra), slope=slope)
 
 
 def _touching(f: Flywheel) -> tuple[Term, ...]:
@@ -88,9 +96,9 @@ def _results(f: Flywheel, found: Measurables, touching: tuple[Term, ...]) -> Non
     per_mm = f.scales.energy.mu / (f.data.delta * f.reduced.omega1**2)
     terms = tuple((step, k, g * per_mm) for step, k, g in ((plan["ab"], 0, 1 + 0j), *touching))
     scalar(found, TITLE, "M_const", f.M_constant, "Н·м", [(f.driving_plan["dK"], 0, 1j * f.scales.moment.mu)],
-           reading=f.scales.moment.mu, signed=False)
+           scale="reduced-moment", reading=f.scales.moment.mu, signed=False)
     for name, value in (("J_I", f.J_first), ("J_flywheel", f.J_flywheel)):
-        scalar(found, TITLE, name, value, "кг·м²", terms, reading=per_mm)
+        scalar(found, TITLE, name, value, "кг·м²", terms, scale=plan.name, reading=per_mm)
     if not f.J_flywheel > 0:
         return
     wheel = f.wheel
@@ -99,4 +107,5 @@ def _results(f: Flywheel, found: Measurables, touching: tuple[Term, ...]) -> Non
     for name, value in {**lengths, "m": wheel.mass}.items():
         unit, power = ("м", 0.2) if name in lengths else ("кг", 0.6)
         share = power * value / f.J_flywheel
-        scalar(found, TITLE, name, value, unit, [(s, k, g * share) for s, k, g in terms], reading=per_mm * share)
+        scalar(found, TITLE, name, value, unit, [(s, k, g * share) for s, k, g in terms], scale=plan.name,
+               reading=per_mm * share)

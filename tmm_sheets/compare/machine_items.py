@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.compare.measurable import DEGREES, MILLIMETRES, Measurables, length, measured_step, scalar
+from tmm_sheets.compare.measurable import CALCULATED, DEGREES, MILLIMETRES, Measurable, Measurables, length, measured_step, scalar
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.protocol import spoken
+from tmm_sheets.construction.step import value_at
 from tmm_sheets.methods.cam_motion import ACROSS, ORDINATE
 from tmm_sheets.methods.integration import CHORD
 
@@ -49,11 +51,29 @@ def _gear(project: Project, found: Measurables) -> None:
         for tail, head in (("O1", "O2"), ("N1", "N2"), ("A", "B"), ("A", "Pw"), ("Pw", "B")):
             if tail in plan and head in plan:
                 found.add(length(plan, found.scales, 0, plan[tail], plan[head], tail + head))
+    if "gear-sliding" in found.scales:
+        _sliding(pair.sliding, found)
     for name, value in pair.results().items():
         if name in GEAR_ANGLES:
             scalar(found, "Зубчатая передача", name, degrees(value), DEGREES)
         else:
             scalar(found, "Зубчатая передача", name, value, "" if name in GEAR_NUMBERS else MILLIMETRES)
+
+
+def _sliding(plan: Plan, found: Measurables) -> None:
+    """Ordinates of the speeds, mm, and specific slidings at the manual's divisions of the line of action."""
+    found.plans.append((plan, "gear-sliding"))
+    for i, label in enumerate(plan.labels):
+        for name in ("yV1", "yV2", "theta1", "theta2"):
+            step = plan[name]
+            value = float(np.real(value_at(step, i)))
+            ordinate = name.startswith("y")
+            sign = 1.0 if value >= 0 else -1.0
+            found.add(Measurable(
+                f"gear-sliding/{label}/{name}", plan.name, plan.title, label, spoken(name) if not ordinate else name,
+                MILLIMETRES if ordinate else "", "length" if ordinate else "result", abs(value) if ordinate else value,
+                ((step, i, complex(sign if ordinate else 1)),), "", 1.0 if ordinate else 0.0,
+                calculated=0.0 if ordinate else CALCULATED, head=step, signed=not ordinate))
 
 
 def _reducer(project: Project, found: Measurables) -> None:

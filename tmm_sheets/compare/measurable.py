@@ -6,6 +6,7 @@ its tolerance.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import degrees, hypot, isfinite
@@ -18,8 +19,8 @@ from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.methods.forces import MOMENTS
-from tmm_sheets.methods.velocities import SAME
+from tmm_sheets.methods.forces import MOMENTS, TANGENTIAL
+from tmm_sheets.methods.velocities import SAME, SIMILAR
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -81,6 +82,10 @@ class Measurable:
         the step that a length is drawn or measured for: where an error would lie.
     signed
         False where a magnitude is asked for.
+    slope
+        of an angle on a diagram: keys of the scale factors of its abscissa and ordinate, which its tangent depends on.
+    squares
+        of an energy, which has no gradient where a point rests: factor, step, position, reading error per mm of each square.
     """
 
     id: str
@@ -97,11 +102,22 @@ class Measurable:
     calculated: float = 0.0
     head: Step | None = None
     signed: bool = False
+    slope: tuple[str, str] | None = None
+    squares: tuple[tuple[float, Step, int, float], ...] = ()
 
     @property
     def steps(self) -> str:
         """Names of the steps it is measured between."""
         return " ".join(dict.fromkeys(spoken(step.name) for step, _, _ in self.terms if not step.name.startswith("∂")))
+
+
+@dataclass(frozen=True)
+class Check:
+    """How a result is computed from other numbers of the same file: ``compute`` takes them in the order of ``needs``."""
+
+    needs: tuple[str, ...]
+    compute: Callable[..., float]
+    scale: str = ""
 
 
 @dataclass
@@ -115,6 +131,11 @@ class Measurables:
     scales: dict[str, Scale] = field(default_factory=dict)
     plans: list[tuple[Plan, str]] = field(default_factory=list)
     on_paper: set[str] = field(default_factory=set)
+    checks: dict[str, Check] = field(default_factory=dict)
+
+    def check(self, result: str, needs: Iterable[str], compute: Callable[..., float], scale: str = "") -> None:
+        """Note how a result follows from other numbers; with a ``scale`` the numbers come multiplied by its factor."""
+        self.checks.setdefault(plain(result), Check(tuple(map(plain, needs)), compute, scale))
 
     def errors(self, factors: Mapping[str, float], pencil: float, reading: float) -> Errors:
         """Error analysis of all plans, drawn with other scale factors where these say so."""
@@ -236,9 +257,13 @@ def _with_head(entry: Measurable, head: Step) -> Measurable:
 
 
 def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = "") -> Iterator[Measurable]:
-    """Vectors of a plan, each once."""
+    """Vectors of a plan and the segments that similarity gives, each once."""
     for s in plan.segments:
         yield length(plan, scales, k, s.tail, s.head, f"{s.tail.name}{between}{s.head.name}")
+    for step in plan:
+        start = step.args[0] if step.rule is SIMILAR else None
+        if isinstance(start, Step) and start.name != plan.pole:
+            yield length(plan, scales, k, start, step, f"{start.name}{step.name}")
 
 
 def size(title: str, entry_id: str, label: str, quantity: str, unit: str, k: int, step: Step, scale: tuple[str, float] = ("", 0.0),
@@ -253,57 +278,110 @@ def size(title: str, entry_id: str, label: str, quantity: str, unit: str, k: int
 def _motion_results(project: Project, found: Measurables, of_velocities: list[int]) -> None:
     """Velocities and angular velocities at the positions with a velocity plan, accelerations at that of the force analysis."""
     study, force = project.study, project.force_index
+    # The tables of a flywheel have all positions of the cycle, also those that are drawn but once.
+    indices = list(range(len(study.labels))) if project.variant.flywheel is not None else of_velocities
     kinds: list[tuple[Any, str, Mapping[str, Step], str, str, str, str, list[int], str]] = [
-        (study.velocities, "V", study.velocities.omega, "ω", "м/с", "рад/с", "velocities", of_velocities, "Скорости"),
+        (study.velocities, "V", study.velocities.omega, "ω", "м/с", "рад/с", "velocities", indices, "Скорости"),
         (study.accelerations, "a", study.accelerations.epsilon, "ε", "м/с²", "рад/с²", "accelerations", [force], "Ускорения"),
     ]
-    for of, letter, turning, greek, unit, angular, key, indices, title in kinds:
+    for of, letter, turning, greek, unit, angular, key, positions, title in kinds:
         if key not in found.scales:
             continue
         mu = found.scales[key].mu
-        for k in indices:
+        for k in positions:
             label = study.labels[k]
-            for name, step in of.points.items():
-                if step is not of.pole:
-                    quantity = f"{letter}_{name}"
-                    found.add(size(title, f"{RESULTS}/{label}/{quantity}", label, quantity, unit, k, step, (key, mu)))
+            vectors = [(re.sub(r"[\u0305{}]", "", s.symbol), s.tail, s.head) for s in of.plan.segments]
+            vectors += [(f"{letter}_{name}", of.pole, step) for name, step in of.points.items() if step is not of.pole]
+            for name, tail, head in vectors:
+                drawn = length(of.plan, found.scales, k, tail, head, name)
+                terms = tuple((s, i, g * mu) for s, i, g in drawn.terms)
+                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, name, unit, "result", drawn.value * mu,
+                                     terms, key, mu))
+                found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float, key)
             for link, step in turning.items():
                 if link != project.mechanism.frame and (step.rule is not SAME or link == project.mechanism.crank.link):
                     name = f"{greek}{link}"
                     found.add(size(title, f"{RESULTS}/{label}/{name}", label, name, angular, k, step, by=step))
     if project.variant.flywheel is not None and "velocities" in found.scales:
-        _reduced(project, found, of_velocities)
+        _reduced(project, found, indices)
 
 
-def _reduced(project: Project, found: Measurables, indices: list[int]) -> None:
-    """Reduced moment and moment of inertia from the velocity plans, as steps of their own: their errors are those of the plans."""
+def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> None:
+    """Reduced moments and energies from the velocity plans: their errors are those of the velocities."""
     study, r = project.study, project.reduced
-    vel, omega1 = study.velocities, project.reduced.omega1
-    points, forces = [], []
-    for f in project.applied:
-        if f.point is not None:
-            points.append(vel.points[f.point])
-            forces.append(f.vector(study.turned, 1))
-    if points and len(points) == len(project.applied):
-        exact = np.asarray(r.moment(study.turned, side=1))
-        for k in indices:
-            label = study.labels[k]
-            found.add(Measurable(f"{RESULTS}/{label}/M_red", RESULTS, "Приведённый момент", label, "M_пр", "Н·м", "result",
-                                 float(exact[k]), tuple((p, k, f[k] / omega1) for p, f in zip(points, forces, strict=True)),
-                                 "velocities", float(sum(abs(f[k]) for f in forces)) / omega1 * found.scales["velocities"].mu,
-                                 signed=True))
+    vel, omega1, mu = study.velocities, project.reduced.omega1, found.scales["velocities"].mu
     links, fixed = project.mechanism.links.values(), project.mechanism.fixed
-    masses = [(link.mass, vel.points[link.centre]) for link in links
-              if link.pivot_inertia is None and link.mass and link.centre is not None and link.centre not in fixed]
-    turning = [(link.pivot_inertia or link.inertia, vel.omega[link.name]) for link in links if link.pivot_inertia or link.inertia]
-    exact = np.asarray(r.inertia(study.turned))
+    title, unit = "Приведённый момент сил", "Н·м"
+    acting: list[tuple[str, Step, Any]] = []
+    for f in project.applied:
+        acting.append((f.name, vel.omega[f.link], f.law(study.turned, 1)) if f.point is None
+                      else (f.name, vel.points[f.point], f.vector(study.turned, 1)))
+    for link in links:
+        if r.gravity and link.mass and link.centre is not None and link.centre not in fixed:
+            acting.append((f"G{link.name}", vel.points[link.centre], np.full(len(study.labels), -1j * link.mass * r.gravity)))
+    exact = np.asarray(r.moment(study.turned, side=1))
     for k in indices:
         label = study.labels[k]
-        terms: list[Term] = [(step, k, 2 * m * complex(value_at(step, k)) / omega1**2) for m, step in masses]
-        terms += [(step, k, complex(2 * j * value_at(step, k) / omega1**2)) for j, step in turning]
-        speeds = [2 * m * abs(complex(value_at(step, k))) / omega1**2 for m, step in masses]
+        parts = [(name, step, complex(f[k]) / omega1) for name, step, f in acting]
+        named = {id(step): name for name, step in (*vel.points.items(), *vel.omega.items())}
+        for name, step, g in parts:
+            moment = float((np.conj(g) * complex(value_at(step, k))).real)
+            speed = abs(complex(value_at(step, k)))
+            if speed > 0:
+                letter = "ω" if step.rule.gives == "number" else "V_"
+                found.check(f"{RESULTS}/{label}/M_{name}", [f"{RESULTS}/{label}/{letter}{named[id(step)]}"],
+                            lambda v, m=moment / speed: m * v)
+            read = abs(g) * mu if step.rule.gives != "number" else 0.0
+            found.add(Measurable(f"{RESULTS}/{label}/M_{name}", RESULTS, title, label, f"M_{name}", unit, "result", moment,
+                                 ((step, k, g),), "velocities", read, signed=True))
+        read = hypot(*(abs(g) * mu for _, step, g in parts if step.rule.gives != "number"))
+        working = [f"{RESULTS}/{label}/M_{name}" for name, _, g in parts if g]
+        found.check(f"{RESULTS}/{label}/M_red", working, lambda *moments: float(sum(moments)))
+        found.add(Measurable(f"{RESULTS}/{label}/M_red", RESULTS, title, label, "M_пр", unit, "result", float(exact[k]),
+                             tuple((step, k, g) for _, step, g in parts), "velocities", read, signed=True))
+    _energies(project, found, indices)
+
+
+def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> None:
+    """Twice the kinetic energy of each link and the reduced moment of inertia."""
+    study, r = project.study, project.reduced
+    vel, mu = study.velocities, found.scales["velocities"].mu
+    title, total = "Удвоенные кинетические энергии звеньев", np.asarray(r.inertia(study.turned))
+    for k in indices:
+        label = study.labels[k]
+        terms: list[Term] = []
+        reads: list[float] = []
+        energies: list[str] = []
+        squares: list[tuple[float, Step, int, float]] = []
+        for link in project.mechanism.links.values():
+            turning = link.pivot_inertia or link.inertia
+            if link.pivot_inertia is None and link.mass and link.centre is not None and link.centre not in project.mechanism.fixed:
+                v = complex(value_at(vel.points[link.centre], k))
+                step, read = vel.points[link.centre], 2 * link.mass * abs(v) * mu
+                name = f"m{link.name}V_{link.centre}²"
+                squares.append((link.mass, step, k, mu))
+                found.add(Measurable(f"{RESULTS}/{label}/m{link.name}V_{link.centre}^2", RESULTS, title, label, name, "кг·м²/с²",
+                                     "result", link.mass * abs(v) ** 2, ((step, k, 2 * link.mass * v),), "velocities", read,
+                                     squares=(squares[-1],)))
+                terms.append((step, k, 2 * link.mass * v / r.omega1**2))
+                reads.append(read / r.omega1**2)
+                energies.append(f"{RESULTS}/{label}/m{link.name}V_{link.centre}^2")
+                found.check(energies[-1], [f"{RESULTS}/{label}/V_{link.centre}"], lambda v, m=link.mass: m * v**2)
+            if turning:
+                w = float(value_at(vel.omega[link.name], k))
+                step, letter = vel.omega[link.name], "J" if link.pivot_inertia is not None else "J_S"
+                name = f"{letter}{link.name}ω{link.name}²"
+                squares.append((turning, step, k, 0.0))
+                found.add(Measurable(f"{RESULTS}/{label}/{letter}{link.name}omega{link.name}^2", RESULTS, title, label, name,
+                                     "кг·м²/с²", "result", turning * w**2, ((step, k, complex(2 * turning * w)),),
+                                     squares=(squares[-1],)))
+                terms.append((step, k, complex(2 * turning * w / r.omega1**2)))
+                energies.append(f"{RESULTS}/{label}/{letter}{link.name}omega{link.name}^2")
+                found.check(energies[-1], [f"{RESULTS}/{label}/ω{link.name}"], lambda w, j=turning: j * w**2)
+        found.check(f"{RESULTS}/{label}/J_red", energies, lambda *parts: float(sum(parts)) / r.omega1**2)
         found.add(Measurable(f"{RESULTS}/{label}/J_red", RESULTS, "Приведённый момент инерции", label, "J_пр", "кг·м²", "result",
-                             float(exact[k]), tuple(terms), "velocities", hypot(*speeds) * found.scales["velocities"].mu))
+                             float(total[k]), tuple(terms), "velocities", hypot(*reads),
+                             squares=tuple((factor / r.omega1**2, step, at, per_mm) for factor, step, at, per_mm in squares)))
 
 
 def _forces(project: Project, found: Measurables) -> None:
@@ -311,6 +389,14 @@ def _forces(project: Project, found: Measurables) -> None:
     study, k = project.study, project.force_index
     f, lever, label = study.forces, study.lever, study.labels[project.force_index]
     given: set[str] = set()
+    for step in study.loads[2]:
+        title = "Силы тяжести и инерции"
+        if step.rule.gives in ("force", "number") and not any(step.name == a.name for a in study.applied):
+            unit = "Н" if step.rule.gives == "force" else "Н·м"
+            found.add(size(title, f"{RESULTS}/{label}/{step.name}", label, step.name, unit, k, step, by=step))
+    for step in f.plan:
+        if step.rule is TANGENTIAL:
+            found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
     for fp in f.plans.values():
         plan = fp.plan
         if plan.name not in found.scales:
@@ -318,6 +404,9 @@ def _forces(project: Project, found: Measurables) -> None:
         found.plans.append((plan, plan.name))
         for entry in _segments(plan, found.scales, k, "–"):
             found.add(entry)
+        for side in plan.segments:
+            name = re.sub(r"[\u0305{}^]", "", side.symbol).replace("F_", "F")
+            found.check(f"{RESULTS}/{label}/{name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float, plan.name)
         for step in plan:
             if step.rule.gives == "force" and step.name not in given and f"F{step.name[2:3]}{step.name[1:2]}" not in given:
                 given.add(step.name)
@@ -376,11 +465,12 @@ def angle_apart(a: float, b: float) -> float:
     return (a - b + 90.0) % 180.0 - 90.0
 
 
-def scalar(found: Measurables, title: str, name: str, value: Any, unit: str, terms: Iterable[Term] = (), *, reading: float = 0.0,
-           calculated: float = CALCULATED, signed: bool = True) -> None:
+def scalar(found: Measurables, title: str, name: str, value: Any, unit: str, terms: Iterable[Term] = (), *, scale: str = "",
+           reading: float = 0.0, calculated: float = CALCULATED, signed: bool = True) -> None:
     """A result of the whole project."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         exact = isinstance(value, int)
-        found.add(Measurable(f"{RESULTS}/{name}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms),
-                             calculated=0.0 if exact else calculated, reading=reading, signed=signed))
+        entry = Measurable(f"{RESULTS}/{name}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms), scale,
+                           calculated=0.0 if exact else calculated, reading=reading, signed=True)
+        found.add(entry if signed else _magnitude(entry))
 

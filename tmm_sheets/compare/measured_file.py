@@ -83,7 +83,7 @@ def template(project: str, found: Measurables) -> bytes:
     out = io.StringIO()
     rows = csv.writer(out, delimiter=";", lineterminator="\r\n")
     rows.writerow([f"# проект: {project}"])
-    rows.writerow([f"# Заполните столбец «{COLUMNS['measured']}», чего не мерили – оставьте пустым. Длины – в миллиметрах чертежа."])
+    rows.writerow([f"# Заполните столбец «{COLUMNS['measured']}», чего не мерили – оставьте пустым. Длины – в мм чертежа."])
     rows.writerow([f"# Строки {FACTOR}/...: масштабные коэффициенты листов. Чертили в своём масштабе – впишите свои."])
     rows.writerow(COLUMNS.values())
     used = {e.scale for e in found.entries.values() if e.scale}
