@@ -92,7 +92,7 @@ class Hand:
             return complex(value[k] if value.ndim else value)
 
         value = e.value
-        if e.kind != "angle" and len(e.terms) == 2 and e.head is not None and not e.signed:
+        if e.is_distance:
             (tail, k, _), (head, _, g) = e.terms
             value = abs(at(head, k) - at(tail, k)) * abs(g)
         else:

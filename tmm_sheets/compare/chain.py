@@ -1,15 +1,14 @@
 """Judging measured numbers, and the first step where a chain of errors starts.
 
-The numbers are taken in the order of drawing. What an earlier mistake does to a later number is told by the Jacobian of the
-construction: if what remains of a deviation is within tolerance, the number follows from that mistake and is not accused on its
-own. Otherwise a new chain starts: of all steps the number goes back to, that one was drawn wrong whose displacement explains most
-of what is left, with the numbers that are in order as witnesses. A number whose deviation explains nothing else was read or
-computed wrong.
+The numbers are taken in the order of drawing. What an earlier mistake does to a later number is told by drawing again with it: if
+what remains of a deviation is within tolerance, the number follows from that mistake and is not accused on its own. Otherwise a
+new chain starts: of all steps the number goes back to, that one was drawn wrong whose displacement explains most of what is left,
+with the numbers that are in order as witnesses. A number whose deviation explains nothing else was read or computed wrong.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import atan, degrees, hypot, isfinite, radians, tan
 from typing import Any
@@ -22,10 +21,10 @@ from tmm_sheets.compare.measured_file import Filled, Line, factor_of
 from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.scale import number
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Step, value_at
 
-CURVED = 0.1
-"""Share of what a mistake explains that may be off, for a mistake is no small displacement and the Jacobian is straight."""
+CURVED = 0.05
+"""Share of what a mistake explains that may be off: its displacement is not known better."""
 SCALED = 4
 """Lengths of a plan from which a wrong scale factor is recognised."""
 ROUNDED = 0.005
@@ -34,6 +33,8 @@ HUBER = 2.0
 """Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
 ALONE = 1.05
 """How much more than one number a mistake has to explain to be one of drawing."""
+TRIED = 8
+"""Steps that are tried by drawing again, of those that explain most by the Jacobian."""
 NEARLY = 0.9
 """Share of the best explanation with which another is as good."""
 SHARE = 0.5
@@ -78,6 +79,7 @@ class Judged:
     mistake: Mistake | None = None
     remark: str = ""
     inconsistent: bool = False
+    size: float = 1.0
 
     @property
     def entry(self) -> Measurable:
@@ -138,7 +140,7 @@ def _judged(line: Line, found: Measurables, factors: Mapping[str, float], errors
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact) if e.kind == "angle" else measured - exact
-    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows)
+    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size)
     if tolerance == float("inf"):
         judged.remark = "the construction degenerates here: no tolerance"
     elif e.signed and judged.verdict == "red" and abs(-measured - exact) <= tolerance:
@@ -246,21 +248,51 @@ class _Sheet:
                          for place, of in gradients.items()}
         self.places = [[_place(step, j.at) for step, g in j.rows if g and isfinite(abs(g))] for j in judged]
 
-    def mistake(self, place: Place) -> Mistake:
+    def mistake(self, place: Place, exact: bool = False) -> Mistake:
         """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
 
-        Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights).
+        Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
+        construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do.
         """
         lines, gradient = self.by_place[place]
         rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
+        x, shares = np.zeros(2), np.zeros(len(lines))
         weights = np.ones(len(lines))
-        x = np.zeros(2)
         for _ in range(8):
-            x, *_ = np.linalg.lstsq(rows * weights[:, None], aims * weights, rcond=1e-6)
-            weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - rows @ x) / HUBER))
-        score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - rows @ x)))
-        step = self.steps[place]
-        return Mistake(place, step, x, np.linalg.pinv(rows.T @ rows, rcond=1e-9), score, self.errors.scale(step))
+            step, *_ = np.linalg.lstsq(rows * weights[:, None], (aims - shares) * weights, rcond=1e-6)
+            if np.abs(rows @ step).max() < 0.01:
+                break
+            x = x + step
+            shares = self.shares(place, x) / self.tolerance[lines] if exact else rows @ x
+            if not np.all(np.isfinite(shares)):
+                return Mistake(place, self.steps[place], x, np.eye(2), 0.0, 0.0)
+            weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
+        score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)))
+        of = self.steps[place]
+        return Mistake(place, of, x, np.linalg.pinv(rows.T @ rows, rcond=1e-9), score, self.errors.scale(of))
+
+    def shares(self, place: Place, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
+        value = self.errors.displaced(self.steps[place], place[1], complex(*x))
+        return np.array([_changed(self.judged[i], value) for i in self.by_place[place][0]])
+
+
+def _changed(j: Judged, value: Callable[[Step], Any]) -> float:
+    """How much a number changes when the steps have other values."""
+    e = j.entry
+
+    def moved(step: Step, k: int) -> complex:
+        now, was = (np.asarray(x) for x in (value(step), step.value))
+        return complex(now[k] - was[k] if now.ndim else now - was)
+
+    if e.is_distance:
+        (tail, k, _), (head, _, g) = e.terms
+        away = complex(value_at(head, k) - value_at(tail, k))
+        change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
+    else:
+        change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
+        change += sum(factor * abs(moved(step, k)) ** 2 for factor, step, k, _ in e.squares)
+    return float(change) * j.size
 
 
 def _loss(r: Any) -> Any:
@@ -281,7 +313,7 @@ def _chains(judged: list[Judged], errors: Errors) -> None:
         if mistake is None:
             continue
         lines, gradient = sheet.by_place[mistake.place]
-        shares = gradient @ mistake.moved
+        shares = sheet.shares(mistake.place, mistake.moved)
         uncertain = np.sqrt(np.einsum("ni,ij,nj->n", gradient, mistake.uncertain, gradient))
         start.mistake = mistake
         for i, share, doubt in zip(lines, shares, uncertain, strict=True):
@@ -298,7 +330,8 @@ def _chains(judged: list[Judged], errors: Errors) -> None:
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:
     """The mistake behind a red number; None when it explains nothing else: a slip in reading or computing this one."""
-    candidates = [sheet.mistake(place) for place in sheet.places[i]]
+    candidates = sorted((sheet.mistake(place) for place in sheet.places[i]), key=lambda m: -m.score)
+    candidates = [sheet.mistake(m.place, exact=True) for m in candidates[:TRIED]]
     alone = float(_loss(sheet.left[i] / sheet.tolerance[i]))
     own = sheet.judged[i].entry.head
     good = [m for m in candidates if m.score > alone * ALONE]

@@ -106,6 +106,11 @@ class Measurable:
     squares: tuple[tuple[float, Step, int, float], ...] = ()
 
     @property
+    def is_distance(self) -> bool:
+        """True for the distance of two points."""
+        return len(self.terms) == 2 and not self.signed and self.terms[0][2] == -self.terms[1][2]
+
+    @property
     def steps(self) -> str:
         """Names of the steps it is measured between."""
         return " ".join(dict.fromkeys(spoken(step.name) for step, _, _ in self.terms if not step.name.startswith("∂")))
@@ -207,8 +212,10 @@ def length(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: St
     label = plan.labels[k] if len(plan.labels) > 1 else ""
     terms = ((tail, k, -u / mu), (head, k, u / mu))
     entry_id = "/".join(filter(None, (plan.name, label, name)))
+    names = list(plan.steps)
+    last = max(tail, head, key=lambda step: names.index(step.name))
     return Measurable(entry_id, plan.name, plan.title, label, f"|{name}|", MILLIMETRES, "length", abs(away) / mu, terms, key, 1.0,
-                      head=head)
+                      head=last)
 
 
 def measured_step(plan: Plan, scales: Mapping[str, Scale], k: int, step: Step, name: str = "", key: str = "") -> Measurable:
@@ -241,19 +248,13 @@ def _position(plan: Plan, scales: Mapping[str, Scale], k: int) -> Iterator[Measu
         pair = frozenset((tail.name, head.name))
         if pair not in seen and len(pair) == 2 and not any("₀" in name for name in pair):
             seen.add(pair)
-            last = head if points.index(head) > points.index(tail) else tail
-            entry = length(plan, scales, k, tail, head, tail.name + head.name)
-            yield entry if last is head else _with_head(entry, last)
+            yield length(plan, scales, k, tail, head, tail.name + head.name)
     for s in plan:
         if s.rule is rules.RAY and np.ndim(s.value):
             u = complex(value_at(s, k))
             label, name = plan.labels[k], f"∠{s.name}"
             yield Measurable(f"{plan.name}/{label}/{name}", plan.name, plan.title, label, name, DEGREES, "angle",
                              degrees(np.angle(u)) % 360, ((s, k, 1j * u * degrees(1)),), reading=degrees(1 / PROTRACTOR), head=s)
-
-
-def _with_head(entry: Measurable, head: Step) -> Measurable:
-    return replace(entry, head=head)
 
 
 def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = "") -> Iterator[Measurable]:

@@ -361,7 +361,7 @@ def _times(unit: str, entry: Measurable) -> float:
     for table, own in ((_LENGTHS, MILLIMETRES), (_ANGLES, DEGREES)):
         if stated in table and (entry.unit == own or entry.unit in table):
             return table[stated] / table[entry.unit]
-    if stated.startswith(("к", "k")) and stated[1:] == _unit(entry.unit):
+    if unit.strip().startswith(("к", "k")) and _unit(unit.strip()[1:]) == _unit(entry.unit):
         return 1000.0
     raise ValueError(f"expected {entry.unit or 'a pure number'}, not {unit}\nwrite the number in {entry.unit or 'no unit'}")
 

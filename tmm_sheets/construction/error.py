@@ -29,7 +29,7 @@ introduction to section 3 (accuracy of drawing).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -181,6 +181,30 @@ class Errors:
                 square = square + row @ owns[number] @ row
         return float(np.sqrt(square[0])), [(self._steps[n], complex(*rows[n])) for n in sorted(rows)]
 
+    def displaced(self, source: Step, k: int, shift: complex) -> Callable[[Step], Any]:
+        """The construction drawn with one step off by ``shift`` at position ``k``: a function that gives any step's value then.
+
+        Nothing is linear here, a mistake may be as large as it likes.
+        """
+        moved = np.array(source.value)
+        moved[(k,) if moved.ndim else ()] += shift if moved.dtype.kind == "c" else shift.real
+        values: dict[int, Any] = {id(source): moved}
+
+        def value(step: Step) -> Any:
+            for s in step.ancestors():
+                if id(s) in values:
+                    continue
+                args = _on_paper(s)
+                if all(not isinstance(a, Step) or values[id(a)] is a.value for a in args):
+                    values[id(s)] = s.value
+                else:
+                    with np.errstate(all="ignore"):
+                        now = [values[id(a)] if isinstance(a, Step) else a for a in args]
+                        values[id(s)] = _replayed(s, now, self._snapped(s, args))
+            return values[id(step)]
+
+        return value
+
     def scale(self, step: Step) -> float:
         """Unit of a step's plan per millimetre of paper; 0 for what is not drawn."""
         return self._mu.get(id(step), 0.0)
@@ -204,7 +228,7 @@ class Errors:
         self._note_lengths(step)
         if not _numeric(step.value) or _beyond_paper(step):
             return None
-        args = tuple(a for a in step.args if not (isinstance(a, Step) and _beyond_paper(a)))
+        args = _on_paper(step)
         base, size = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {})), np.size(step.value)
         if base.shape != (size,):
             return None
@@ -348,6 +372,11 @@ def _beyond_paper(step: Step) -> bool:
     """True for a step that is known better than paper shows, or made from such only."""
     made_of = [a for a in step.args if isinstance(a, Step)]
     return step.rule.beyond_paper or (bool(made_of) and all(_beyond_paper(a) for a in made_of))
+
+
+def _on_paper(step: Step) -> tuple[Any, ...]:
+    """Arguments without those that a pencil does not know; they are optional and stand last."""
+    return tuple(a for a in step.args if not (isinstance(a, Step) and _beyond_paper(a)))
 
 
 def _derivatives(step: Step, args: tuple[Any, ...], base: Any, moves: list[tuple[int, Floats]],

@@ -1,0 +1,206 @@
+"""Drawings with a planted mistake: it is found where it was made, what follows is not accused, a good drawing is left alone."""
+
+import csv
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.compare.manual_tables import opened
+from tests.compare.students import PENCIL, READING, Hand, Plant
+from tmm_sheets.__main__ import run
+from tmm_sheets.compare.chain import judge
+from tmm_sheets.compare.measured import NAME
+
+FEW = ("positions", "velocities", "accelerations", "force-5", "force-2", "lever")
+
+
+@pytest.fixture(scope="module")
+def shaper():
+    return opened("lugansk/shaper")
+
+
+@pytest.fixture(scope="module")
+def some(shaper):
+    """What is measured at position 2, and the velocities of its neighbours."""
+    return {e.id: e for e in shaper.entries.values()
+            if (e.plan in (*FEW, "results", "arms") and e.label == "2") or (e.plan == "velocities" and e.label in "134")}
+
+
+def drawn(found, some, *plants, seed=1, sigma=0.3):
+    hand = Hand(found, np.random.default_rng(seed), plants, sigma)
+    return hand.filled(some)
+
+
+def judged(found, filled):
+    return judge(filled, found, PENCIL, READING)
+
+
+def changed(filled, **numbers):
+    """The file with some numbers written differently, by id with slashes as double underscores."""
+    new = {name.replace("__", "/"): value for name, value in numbers.items()}
+    filled.lines = [replace(line, value=new.get(line.entry.id, line.value)) for line in filled.lines]
+    return filled
+
+
+def starts(of):
+    return [j for j in of if j.starts]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_good_drawing(shaper, some, seed):
+    of = judged(shaper, drawn(shaper, some, seed=seed, sigma=0.5))
+    assert len(of) > 100
+    assert not starts(of)
+    assert sum(j.verdict == "amber" for j in of) < 0.12 * len(of)
+
+
+@pytest.mark.parametrize(("plan", "step", "shift", "followers"), [
+    ("velocities", "d", 3j, 1), ("velocities", "b3", -3, 12), ("positions", "D", 4j, 6), ("velocities", "d5", 4, 6),
+    ("accelerations", "b3", 20, 3), ("force-5", "1", 4 + 3j, 1),
+])
+def test_a_misplaced_point(shaper, some, plan, step, shift, followers):
+    """Its name, its displacement within a quarter, and at least so many numbers that follow from it."""
+    of = judged(shaper, drawn(shaper, some, Plant(plan, "2", step, complex(shift))))
+    begun = starts(of)
+    assert len(begun) == 1
+    mistake = begun[0].mistake
+    assert mistake is not None
+    assert mistake.step.name == step
+    assert abs(complex(*mistake.moved) / mistake.mu) == pytest.approx(abs(shift), rel=0.25)
+    assert sum(j.follows is begun[0] for j in of) >= followers
+    assert all(j.entry.label == "2" for j in of if j.follows is not None)
+
+
+def test_a_wrong_angular_velocity(shaper, some):
+    """Half as large again: accelerations and inertia forces follow."""
+    of = judged(shaper, drawn(shaper, some, Plant("velocities", "2", "ω3", times=1.5)))
+    begun = starts(of)
+    assert [j.entry.id for j in begun] == ["results/2/omega3"]
+    assert {"accelerations/2/bk", "results/2/Fi5"} <= {j.entry.id for j in of if j.follows is begun[0]}
+
+
+def test_a_wrong_scale_factor(shaper, some):
+    """One mistake, not twenty, and the factor is told; stated in the file it is none."""
+    filled = drawn(shaper, some)
+    for i, line in enumerate(filled.lines):
+        if line.entry.plan == "velocities":
+            filled.lines[i] = replace(line, value=1.25 * line.value)
+    begun = starts(judged(shaper, filled))
+    assert len(begun) == 1
+    assert "1.25 times" in begun[0].scale
+    filled.factors["velocities"] = 0.016
+    of = judged(shaper, filled)
+    assert not [j for j in of if j.entry.plan == "velocities" and j.verdict == "red"]
+
+
+def test_a_number_read_wrong(shaper, some):
+    """What was drawn from the point is right: nothing follows, and a factor of ten is recognised."""
+    of = judged(shaper, changed(drawn(shaper, some), positions__2__CB=1312.0))
+    begun = starts(of)
+    assert [j.entry.id for j in begun] == ["positions/2/CB"]
+    assert begun[0].mistake is None
+    assert begun[0].remark == "10 times the exact value"
+    assert not [j for j in of if j.follows is not None]
+
+
+def test_a_result_computed_wrong(shaper, some):
+    """It does not follow from the student's own length, though a pencil could have made it."""
+    filled = drawn(shaper, some)
+    exact = shaper.entries["results/2/V_D"].value
+    mine = next(line.value for line in filled.lines if line.entry.id == "velocities/2/pd") * 0.02
+    of = judged(shaper, changed(filled, results__2__V_D=mine + 0.014 * (1 if mine > exact else -1)))
+    found = next(j for j in of if j.entry.id == "results/2/V_D")
+    assert found.verdict == "amber"
+    assert "does not follow from your own |pd|" in found.remark
+
+
+def test_a_wrong_sign(shaper):
+    name = "work/y_A(5)"
+    filled = Hand(shaper, np.random.default_rng(1), sigma=0.0).filled({name: shaper.entries[name]})
+    found = judged(shaper, changed(filled, **{"work__y_A(5)": 91.0}))[0]
+    assert found.verdict == "red"
+    assert found.remark == "the sign is wrong"
+
+
+def test_own_scale_changes_the_tolerance(shaper):
+    """A plan of half the size is off by the same millimetres: by twice as many metres per second."""
+    entries = {name: shaper.entries[name] for name in ("velocities/2/pd", "results/2/V_D")}
+    filled = Hand(shaper, np.random.default_rng(1), sigma=0.0).filled(entries)
+    small = changed(Hand(shaper, np.random.default_rng(1), sigma=0.0).filled(entries), velocities__2__pd=23.0)
+    small.factors["velocities"] = 0.04
+    length, speed = judged(shaper, filled)
+    half, same = judged(shaper, small)
+    assert half.exact == pytest.approx(length.exact / 2)
+    assert same.exact == speed.exact
+    assert half.tolerance == pytest.approx(length.tolerance, rel=0.3)
+    assert same.tolerance == pytest.approx(2 * speed.tolerance, rel=0.2)
+
+
+# --- commands ---------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def cam(tmp_path_factory):
+    """A template of a project with a cam only."""
+    folder = tmp_path_factory.mktemp("cam")
+    assert run(["compare", "lugansk/cam_flat", "--template", "-o", str(folder)]) == 0
+    return folder / NAME
+
+
+def rows(path):
+    lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if not line.startswith(('#', '"#'))]
+    return list(csv.DictReader(lines, delimiter=";"))
+
+
+def test_template_has_no_answers(cam):
+    """Nothing but scale factors stands in the column to be filled in."""
+    table = rows(cam)
+    assert len(table) > 60
+    assert all(bool(r["измерено"]) == r["обозначение"].startswith("mu/") for r in table)
+    assert all(r["единица"] or r["план"] == "" for r in table)
+    assert len({r["обозначение"] for r in table}) == len(table)
+
+
+def test_a_filled_file_is_not_overwritten(cam, capsys):
+    before = cam.read_bytes()
+    assert run(["compare", "lugansk/cam_flat", "--template", "-o", str(cam.parent)]) == 2
+    assert "may be filled in; nothing was written" in capsys.readouterr().err
+    assert cam.read_bytes() == before
+
+
+def test_measured(cam, tmp_path, capsys):
+    """Table, summary, notes and JSON."""
+    path, target = tmp_path / "m.csv", tmp_path / "m.json"
+    path.write_text("id,измерено\nresults/r0,100\nresults/rho_min,5 cm\n".replace("100", "99999"), encoding="utf-8")
+    assert run(["compare", "lugansk/cam_flat", "--measured", str(path), "--json", str(target)]) == 0
+    out = capsys.readouterr()
+    assert re.search(r"^! +r0 .*red, START", out.out, re.MULTILINE)
+    assert "2 numbers: " in out.out
+    assert "columns separated by commas" in out.err
+    tree = json.loads(target.read_text(encoding="utf-8"))
+    assert {n["id"] for n in tree["numbers"]} == {"results/r0", "results/rho_min"}
+    assert tree["summary"]["red"] >= 1
+    assert tree["starts"][0]["id"] in ("results/r0", "results/rho_min")
+    assert tree["numbers"][0]["exact"] > 0
+
+
+@pytest.mark.parametrize(("text", "message"), [
+    ("id;измерено\nresults/ro;5\n", "did you mean"), ("id;измерено\n", "nothing is filled in"), ("", "empty"),
+    ("# проект: press\nid;измерено\nresults/r0;5\n", "not of lugansk/cam_flat"),
+])
+def test_bad_files(tmp_path, capsys, text, message):
+    path = tmp_path / "m.csv"
+    path.write_text(text, encoding="utf-8")
+    assert run(["compare", "lugansk/cam_flat", "--measured", str(path)]) == 2
+    err = capsys.readouterr().err
+    assert message in err
+    assert "Traceback" not in err
+
+
+def test_one_thing_at_a_time(capsys):
+    assert run(["compare", "lugansk/cam_flat"]) == 2
+    assert run(["compare", "lugansk/cam_flat", "--template", "--measured", "x.csv"]) == 2
+    assert "give one of" in capsys.readouterr().err
