@@ -29,6 +29,8 @@ SCALED = 4
 """Lengths of a plan from which a wrong scale factor is recognised."""
 ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
+USUAL = 10.0
+"""How far a misplaced point usually lies off, mm."""
 HUBER = 2.0
 """Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
 ALONE = 1.05
@@ -80,6 +82,7 @@ class Judged:
     remark: str = ""
     inconsistent: bool = False
     size: float = 1.0
+    order: int = 0
 
     @property
     def entry(self) -> Measurable:
@@ -111,8 +114,9 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     lines = sorted(filled.lines, key=lambda line: numbers[line.entry.id])
     judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
     _check_arithmetic(judged, filled, found)
-    rest = _wrong_scales(judged)
-    _chains(rest, errors)
+    for j in judged:
+        j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
+    _chains(_wrong_scales(judged), errors)
     return judged
 
 
@@ -133,7 +137,7 @@ def _judged(line: Line, found: Measurables, factors: Mapping[str, float], errors
     second = 0.0
     for factor, step, k, per_mm in e.squares:
         of_step = errors.error(step)
-        second += factor * (float(of_step[min(k, len(of_step) - 1)]) ** 2 + (per_mm / ratio * reading) ** 2)
+        second += 2 * factor * (float(of_step[min(k, len(of_step) - 1)]) ** 2 + (per_mm / ratio * reading) ** 2)
     tolerance = hypot(error, max(read, written), e.calculated * exact, second)
     # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
     if not isfinite(tolerance) or (e.kind == "length" and exact > LONG and tolerance > exact):
@@ -206,7 +210,7 @@ def _wrong_scales(judged: list[Judged]) -> list[Judged]:
     for of_plan in plans.values():
         long = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance]
         off = [j for j in long if j.verdict == "red"]
-        if len(long) < SCALED or len(off) < 0.6 * len(long):
+        if len(long) < SCALED or len(off) < 0.6 * len(long) or _has_reason(off, judged):
             continue
         times = float(np.median([j.line.value / j.exact for j in long]))
         explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
@@ -221,6 +225,14 @@ def _wrong_scales(judged: list[Judged]) -> list[Judged]:
     return [j for j in judged if id(j) not in marked]
 
 
+def _has_reason(off: list[Judged], judged: list[Judged]) -> bool:
+    """True when something drawn earlier, on which this plan depends, is red already."""
+    first, plan = min(j.order for j in off), off[0].entry.plan
+    sources = {id(step) for j in off for step, g in j.rows if g}
+    return any(j.verdict == "red" and j.order < first and j.entry.plan != plan and id(j.entry.terms[-1][0]) in sources
+               for j in judged if j.entry.terms)
+
+
 # --- chains -------------------------------------------------------------------------------------------------------------------
 
 
@@ -230,7 +242,6 @@ class _Sheet:
     def __init__(self, judged: list[Judged], errors: Errors) -> None:
         self.judged = judged
         self.errors = errors
-        self.order = np.array([max((errors.order(s) for s, _, _ in j.entry.terms), default=-1) for j in judged])
         self.left = np.array([j.deviation for j in judged])
         self.tolerance = np.array([j.tolerance for j in judged])
         self.steps: dict[Place, Step] = {}
@@ -256,20 +267,23 @@ class _Sheet:
         """
         lines, gradient = self.by_place[place]
         rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
+        of, mu = self.steps[place], self.errors.scale(self.steps[place])
+        # Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself.
+        usual = np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
         x, shares = np.zeros(2), np.zeros(len(lines))
         weights = np.ones(len(lines))
         for _ in range(8):
-            step, *_ = np.linalg.lstsq(rows * weights[:, None], (aims - shares) * weights, rcond=1e-6)
+            step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
+                                       np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
             if np.abs(rows @ step).max() < 0.01:
                 break
             x = x + step
             shares = self.shares(place, x) / self.tolerance[lines] if exact else rows @ x
             if not np.all(np.isfinite(shares)):
-                return Mistake(place, self.steps[place], x, np.eye(2), 0.0, 0.0)
+                return Mistake(place, of, x, np.eye(2), 0.0, mu)
             weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
         score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)))
-        of = self.steps[place]
-        return Mistake(place, of, x, np.linalg.pinv(rows.T @ rows, rcond=1e-9), score, self.errors.scale(of))
+        return Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
 
     def shares(self, place: Place, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
@@ -306,7 +320,7 @@ def _chains(judged: list[Judged], errors: Errors) -> None:
     sheet = _Sheet(judged, errors)
     open_ = np.array([j.verdict == "red" for j in judged])
     while open_.any():
-        first = min(np.flatnonzero(open_), key=lambda i: (sheet.order[i], i))
+        first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         start.starts, open_[first] = True, False
         mistake = _best(sheet, int(first))

@@ -180,6 +180,8 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
     from tmm_sheets.compare import machine_items
 
     machine_items.collect(project, found)
+    titles = list(dict.fromkeys(e.title for e in found.entries.values()))
+    found.entries = dict(sorted(found.entries.items(), key=lambda pair: titles.index(pair[1].title)))
     return found
 
 
@@ -189,7 +191,7 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
 def _linkage(project: Project, found: Measurables, shown: set[str]) -> None:
     study, cycle, force = project.study, project.cycle, project.force_index
     drawn = [i for i, _ in cycle.drawn]
-    of_velocities = [i for i, label in cycle.drawn if f"velocity plan {label}" in shown]
+    of_velocities = [i for i, label in cycle.drawn if {f"velocity plan {label}", f"velocity plan {cycle.labels[i]}"} & shown]
     plans = ((study.positions.plan, drawn), (study.velocities.plan, of_velocities), (study.accelerations.plan, [force]))
     for plan, indices in plans:
         if plan.name not in found.scales:

@@ -125,7 +125,7 @@ def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
     count = {v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")}
     lines = [f"{len(judged)} numbers: {count['green']} green, {count['amber']} amber, {count['red']} red, {len(follow)} following "
              f"from an earlier mistake; {filled.empty} left empty"]
-    starts = [j for j in judged if j.starts]
+    starts = sorted((j for j in judged if j.starts), key=lambda j: j.order)
     for i, j in enumerate(starts, 1):
         after = [f for f in follow if f.follows is j]
         lines.append(f"{i}. {j.entry.title}, {_name(j)}: {_what(j)}")
@@ -144,7 +144,7 @@ def _what(j: Judged) -> str:
         return j.scale
     unit = f" {j.entry.unit}" if j.entry.unit else ""
     times = abs(j.deviation) / j.tolerance
-    text = f"{number(j.line.value, 5)}{unit} instead of {number(j.exact, 4)}, {times:.3g} times the tolerance"
+    text = f"{number(j.line.value, 5)}{unit} instead of {_exact(j)}, {times:.3g} times the tolerance"
     if j.mistake is not None:
         text += f"; {_where(j)}"
     return f"{text}; {j.remark}" if j.remark else text
@@ -173,7 +173,7 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
         "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
                     "following": len(judged) - len(own), "empty": filled.empty},
         "starts": [{"id": j.entry.id, "why": _what(j), "followers": [f.entry.id for f in judged if f.follows is j]}
-                   for j in judged if j.starts],
+                   for j in sorted(judged, key=lambda j: j.order) if j.starts],
         "numbers": [{
             "id": j.entry.id, "plan": j.entry.plan, "position": j.entry.label, "quantity": j.entry.quantity, "unit": j.entry.unit,
             "line": j.line.line, "exact": j.exact, "measured": j.line.value, "deviation": j.deviation, "percent": j.percent,
