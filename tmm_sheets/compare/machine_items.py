@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.compare.measurable import CALCULATED, DEGREES, MILLIMETRES, Measurable, Measurables, length, measured_step, scalar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.protocol import spoken
-from tmm_sheets.construction.step import value_at
+from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.cam_motion import ACROSS, ORDINATE
 from tmm_sheets.methods.integration import CHORD
 
@@ -24,7 +24,7 @@ GEAR_NUMBERS = ("z1", "z2", "x1", "x2", "y", "dy", "eps_alpha", "theta1_greatest
 
 
 def collect(project: Project, found: Measurables) -> None:
-    """Lengths and angles of gear, reducer and cam, each where the project has it and a sheet shows it."""
+    """Lengths and angles of gear, reducer and cam, each where the project has it and a sheet shows it, and of dead positions."""
     v = project.variant
     if v.gear is not None:
         _gear(project, found)
@@ -32,6 +32,26 @@ def collect(project: Project, found: Measurables) -> None:
         _reducer(project, found)
     if v.cam is not None:
         _cam(project, found)
+    _others(project, found)
+
+
+def _others(project: Project, found: Measurables) -> None:
+    """Dead positions and synthesis: points from those they were drawn from; the chord of a tooth."""
+    from tmm_sheets.explain import parts
+
+    for plan in (p for of_part in parts(project).values() for p in of_part or ()):
+        if plan.name not in found.scales:
+            continue
+        if plan.name.startswith("gear-tooth"):
+            found.plans.append((plan, plan.name))
+            found.add(length(plan, found.scales, 0, plan["E"], plan["F"], "EF"))
+        elif plan.name in ("dead-positions", "synthesis"):
+            found.plans.append((plan, plan.name))
+            _lengths(plan, found, plan.name)
+            for head in (s for s in plan if s.rule.gives == "point" and np.ndim(s.value) == 0):
+                for tail in dict.fromkeys(a for a in head.args if isinstance(a, Step) and a.name in plan and plan[a.name] is a):
+                    if tail.rule.gives == "point" and "₀" not in tail.name:
+                        found.add(length(plan, found.scales, 0, tail, head, f"{tail.name}{head.name}"))
 
 
 def _lengths(plan: Plan, found: Measurables, key: str) -> None:

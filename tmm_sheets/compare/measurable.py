@@ -173,6 +173,9 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
         shown |= {str(mark.of) for mark in composed.drawing.marks}
     if project.variant.crank is not None and project.variant.cycle is not None:
         _linkage(project, found, shown)
+        from tmm_sheets.compare import diagram_items
+
+        diagram_items.collect(project, found)
     if project.variant.flywheel is not None:
         from tmm_sheets.compare import flywheel_items
 
