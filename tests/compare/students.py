@@ -73,9 +73,10 @@ class Hand:
             made = np.array(error._replayed(step, values, self.errors._snapped(step, args)))
         known = self.errors._known[id(step)]
         if known is not None:
-            own = np.broadcast_to(np.nan_to_num(known.own), (np.size(made) or 1, 2, 2))
-            size, axes = np.linalg.eigh(own)
-            noise = axes @ (np.sqrt(np.maximum(size, 0)) * self.rng.normal(0, self.sigma, (len(own), 2)))[..., None]
+            source = id(step) in self.errors._numbers
+            own = known.scaled[:, :, -2:] if source else np.zeros((1, 2, 2))
+            own = np.broadcast_to(np.nan_to_num(own), (np.size(made) or 1, 2, 2))
+            noise = own @ self.rng.normal(0, self.sigma, (len(own), 2, 1))
             off = noise[:, 0, 0] + 1j * noise[:, 1, 0]
             off = off if made.dtype.kind == "c" else off.real
             made = made + (off if made.ndim else off[0])

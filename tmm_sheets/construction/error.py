@@ -55,14 +55,14 @@ _BENT = 0.5
 
 @dataclass(frozen=True)
 class _Known:
-    """What is known of a step: its Jacobian by its sources, the covariance of its own error and that of all errors together.
+    """What is known of a step: its Jacobian by its sources, the same times the roots of their covariances, its own covariance.
 
-    ``sources`` are numbers of steps in ascending order; ``jacobian`` has two columns for each.
+    ``sources`` are numbers of steps in ascending order; ``jacobian`` and ``scaled`` have two columns for each.
     """
 
     sources: npt.NDArray[np.intp]
     jacobian: Matrices
-    own: Matrices
+    scaled: Matrices
     covariance: Matrices
     condition: Floats
     linear: npt.NDArray[np.bool_]
@@ -162,24 +162,15 @@ class Errors:
         -------
         The error and the gradient of the quantity by every step it goes back to, in the order of drawing.
         """
-        rows: dict[int, Floats] = {}
-        square = np.zeros(1)
-        owns: dict[int, Matrices] = {}
-        for step, k, g in terms:
-            known = self._of(step)
-            if known is None:
-                continue
-            j = known.jacobian[min(k, len(known.jacobian) - 1)]
-            row = (np.array([g.real, g.imag]) @ j).reshape(-1, 2)
-            for number, part in zip(known.sources, row, strict=True):
-                rows[number] = rows.get(number, np.zeros(2)) + part
-                source = self._known[id(self._steps[number])]
-                if source is not None:
-                    owns[number] = source.own[min(k, len(source.own) - 1)]
-        for number, row in rows.items():
-            if number in owns and owns[number].any():
-                square = square + row @ owns[number] @ row
-        return float(np.sqrt(square[0])), [(self._steps[n], complex(*rows[n])) for n in sorted(rows)]
+        found = [(known, k, g) for step, k, g in terms if (known := self._of(step)) is not None]
+        sources = np.unique(np.concatenate([known.sources for known, _, _ in found] or [np.zeros(0, dtype=np.intp)]))
+        row, scaled = np.zeros(2 * len(sources)), np.zeros(2 * len(sources))
+        for known, k, g in found:
+            at, j = _columns(sources, known.sources), min(k, len(known.jacobian) - 1)
+            row[at] += np.array([g.real, g.imag]) @ known.jacobian[j]
+            scaled[at] += np.array([g.real, g.imag]) @ known.scaled[j]
+        pairs = row.reshape(-1, 2)
+        return float(np.sqrt(scaled @ scaled)), [(self._steps[n], complex(*g)) for n, g in zip(sources, pairs, strict=True)]
 
     def displaced(self, source: Step, k: int, shift: complex) -> Callable[[Step], Any]:
         """The construction drawn with one step off by ``shift`` at position ``k``: a function that gives any step's value then.
@@ -282,43 +273,21 @@ class Errors:
     def _joined(self, step: Step, columns: list[tuple[_Known, Matrices]], own: Matrices, condition: Floats, bend: Floats,
                 source: bool) -> _Known:
         """The Jacobian by all sources of the arguments and, for a ``source``, by the step itself."""
-        sources = np.unique(np.concatenate([k.sources for k, _ in columns] or [np.zeros(0, dtype=np.intp)]))
-        n = max([1, *(len(x) for k, d in columns for x in (k.jacobian, d))])
-        jacobian = np.zeros((n, 2, 2 * len(sources)))
-        for k, d in columns:
-            at = 2 * np.searchsorted(sources, k.sources)
-            jacobian[:, :, np.stack((at, at + 1), axis=-1).ravel()] += d @ k.jacobian
+        sources, (jacobian, scaled) = _summed(columns)
         if source:
             self._numbers[id(step)] = len(self._steps)
             self._steps.append(step)
+            n = max(len(jacobian), len(own))
             sources = np.append(sources, self._numbers[id(step)])
-            jacobian = np.concatenate((jacobian, np.broadcast_to(np.eye(2), (n, 2, 2))), axis=2)
-        covariance = self._covariance(jacobian, sources, own)
-        return _Known(sources, jacobian, own, covariance, condition, ~(bend > _BENT / 2 * _greatest(covariance)))
-
-    def _covariance(self, jacobian: Matrices, sources: npt.NDArray[np.intp], own: Matrices | None = None) -> Matrices:
-        """Sum over the sources of J M J^T with the own covariance M of each."""
-        total = np.zeros((1, 2, 2))
-        for j, number in enumerate(sources):
-            known = self._known.get(id(self._steps[number]))
-            m = own if known is None else known.own
-            if m is not None and m.any():
-                part = jacobian[:, :, 2 * j:2 * j + 2]
-                total = total + part @ m @ part.swapaxes(1, 2)
-        return total
+            jacobian, scaled = (np.concatenate((np.broadcast_to(m, (n, *m.shape[1:])), np.broadcast_to(w, (n, 2, 2))), axis=2)
+                                for m, w in ((jacobian, np.eye(2)), (scaled, _root(own))))
+        covariance = _square(scaled)
+        return _Known(sources, jacobian, scaled, covariance, condition, ~(bend > _BENT / 2 * _greatest(covariance)))
 
     def _combined(self, shares: Mapping[Step, float]) -> Matrices | None:
         """Covariance of a sum of steps, correlations included."""
-        found = [(k, share) for step, share in shares.items() if (k := self._of(step)) is not None]
-        if not found:
-            return None
-        columns = [(k, share * np.eye(2)[None]) for k, share in found]
-        sources = np.unique(np.concatenate([k.sources for k, _ in columns]))
-        jacobian = np.zeros((max(len(k.jacobian) for k, _ in columns), 2, 2 * len(sources)))
-        for k, d in columns:
-            at = 2 * np.searchsorted(sources, k.sources)
-            jacobian[:, :, np.stack((at, at + 1), axis=-1).ravel()] += d @ k.jacobian
-        return self._covariance(jacobian, sources)
+        columns = [(k, share * np.eye(2)[None]) for step, share in shares.items() if (k := self._of(step)) is not None]
+        return _square(_summed(columns)[1][1]) if columns else None
 
     # --- lengths that are known -----------------------------------------------------------------------------------------
     def _note_lengths(self, step: Step) -> None:
@@ -452,6 +421,31 @@ def _all_lines(derivatives: list[Matrices]) -> Any:
     with np.errstate(invalid="ignore"):
         return np.logical_and.reduce(np.broadcast_arrays(*(
             ~(np.abs(np.linalg.det(d)) > 0.05 * np.sum(d**2, axis=(1, 2))) for d in derivatives))) if derivatives else False
+
+
+def _columns(sources: npt.NDArray[np.intp], some: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Numbers of the columns that some of the sources have."""
+    at = 2 * np.searchsorted(sources, some)
+    return np.stack((at, at + 1), axis=-1).ravel()
+
+
+def _summed(columns: list[tuple[_Known, Matrices]]) -> tuple[npt.NDArray[np.intp], tuple[Matrices, Matrices]]:
+    """Sources of several steps together, and the sums of derivative times Jacobian, bare and scaled."""
+    sources = np.unique(np.concatenate([k.sources for k, _ in columns] or [np.zeros(0, dtype=np.intp)]))
+    n = max([1, *(len(x) for k, d in columns for x in (k.jacobian, d))])
+    sums = np.zeros((n, 2, 2 * len(sources))), np.zeros((n, 2, 2 * len(sources)))
+    for k, d in columns:
+        at = _columns(sources, k.sources)
+        for total, part in zip(sums, (k.jacobian, k.scaled), strict=True):
+            total[:, :, at] += d @ part
+    return sources, sums
+
+
+def _root(covariance: Matrices) -> Matrices:
+    """Symmetric root of symmetric 2 x 2 matrices, in closed form (Cayley and Hamilton's theorem)."""
+    det = np.sqrt(np.maximum(np.linalg.det(covariance), 0.0) + 0 * covariance[:, 0, 0])
+    t = np.sqrt(np.trace(covariance, axis1=1, axis2=2) + 2 * det)[:, None, None]
+    return np.where(t != 0, (covariance + det[:, None, None] * np.eye(2)) / np.where(t != 0, t, 1), 0.0)
 
 
 def _square(d: Matrices) -> Matrices:
