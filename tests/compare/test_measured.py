@@ -184,6 +184,7 @@ def test_measured(cam, tmp_path, capsys):
     assert {n["id"] for n in tree["numbers"]} == {"results/r0", "results/rho_min"}
     assert tree["summary"]["red"] >= 1
     assert tree["starts"][0]["id"] in ("results/r0", "results/rho_min")
+    assert tree["starts"][0]["off_mm"] is None
     assert tree["numbers"][0]["exact"] > 0
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.compare import measured_file
-from tmm_sheets.compare.chain import Judged, judge
+from tmm_sheets.compare.chain import Judged, Mistake, judge
 from tmm_sheets.compare.measurable import measurables
 from tmm_sheets.compare.report import Report
-from tmm_sheets.construction.protocol import spoken
+from tmm_sheets.construction.protocol import sentence, spoken
 from tmm_sheets.construction.scale import fixed, number
 from tmm_sheets.errors import BadInput, Problem
 
@@ -129,6 +129,8 @@ def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
     for i, j in enumerate(starts, 1):
         after = [f for f in follow if f.follows is j]
         lines.append(f"{i}. {j.entry.title}, {_name(j)}: {_what(j)}")
+        if j.mistake is not None:
+            lines.append(f"   {_sentence(j.mistake)}")
         if after:
             some = ", ".join(_name(f) for f in after[:6]) + (" ..." if len(after) > 6 else "")
             lines.append(f"   {len(after)} follow from it: {some}")
@@ -150,14 +152,23 @@ def _what(j: Judged) -> str:
     return f"{text}; {j.remark}" if j.remark else text
 
 
+def _sentence(mistake: Mistake) -> str:
+    """The step to be done again, as the protocol says it."""
+    mu = mistake.mu
+    return sentence(mistake.step, mistake.place[1], (lambda x: x / mu) if mu else float, "мм" if mu else "")
+
+
 def _where(j: Judged) -> str:
     """Which step was drawn wrong, and by how much where that is a point on paper."""
     assert j.mistake is not None
-    step, moved = j.mistake.step, complex(*j.mistake.moved)
-    name = spoken(step.name)
-    if step.rule.gives in ("point", "vector") and j.mistake.mu:
-        return f"point {name} lies {number(abs(moved) / j.mistake.mu, 2)} mm off"
-    return f"it starts with {name}"
+    name, off = spoken(j.mistake.step.name), _off(j)
+    return f"it starts with {name}" if off is None else f"point {name} lies {number(off, 2)} mm off"
+
+
+def _off(j: Judged) -> float | None:
+    """How far a point was misplaced, mm; None for what is no point on paper."""
+    m = j.mistake
+    return None if m is None or not m.mu or m.step.rule.gives not in ("point", "vector") else abs(complex(*m.moved)) / m.mu
 
 
 # --- tree ------------------------------------------------------------------------------------------------------------------
@@ -172,7 +183,8 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
         "scales": dict(filled.factors),
         "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
                     "following": len(judged) - len(own), "empty": filled.empty},
-        "starts": [{"id": j.entry.id, "why": _what(j), "followers": [f.entry.id for f in judged if f.follows is j]}
+        "starts": [{"id": j.entry.id, "why": _what(j), "step": None if j.mistake is None else j.mistake.step.name,
+                    "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}
                    for j in sorted(judged, key=lambda j: j.order) if j.starts],
         "numbers": [{
             "id": j.entry.id, "plan": j.entry.plan, "position": j.entry.label, "quantity": j.entry.quantity, "unit": j.entry.unit,

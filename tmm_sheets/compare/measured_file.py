@@ -356,7 +356,7 @@ def _number(written: str, unit: str, entry: Measurable, filled: Filled, place: s
 def _times(unit: str, entry: Measurable) -> float:
     """How many of the entry's units one of the stated units has."""
     stated = _unit(unit)
-    if not stated or stated == _unit(entry.unit):
+    if not stated or stated == _unit(entry.unit) or "?" in unit:  # a code page without superscripts writes м/с?
         return 1.0
     for table, own in ((_LENGTHS, MILLIMETRES), (_ANGLES, DEGREES)):
         if stated in table and (entry.unit == own or entry.unit in table):

@@ -23,8 +23,7 @@ Where it cannot be linear
     error is then on the safe side, up to twice what chance would make it. A step that cannot be built has the error NaN: it cannot
     be drawn.
 
-Sources: J. R. Taylor, An Introduction to Error Analysis, 2nd ed., 3.11 (propagation step by step, correlated errors); manual 000,
-introduction to section 3 (accuracy of drawing).
+Source: JCGM 100:2008, Guide to the expression of uncertainty in measurement, 5.2 (correlated input quantities).
 """
 
 from __future__ import annotations
