@@ -48,6 +48,7 @@ class Hand:
         self.rng = rng
         self.sigma = sigma
         self.drawn: dict[int, Any] = {}
+        self.misread: dict[str, float] = {}
         self.plants: dict[int, list[tuple[int, Plant, float]]] = {}
         for plan, key in found.plans:
             mu = 1.0 if plan.unit == "mm" else found.scales[key].mu
@@ -101,7 +102,7 @@ class Hand:
                 exact = np.asarray(step.value)
                 value += (np.conj(g) * (at(step, k) - complex(exact[k] if exact.ndim else exact))).real
         # A scatter of 0.2 mm and rounding to half a millimetre are together sigma = 0.25 mm.
-        value += self.rng.normal(0, 0.8 * self.sigma * READING) * e.reading
+        value += self.rng.normal(0, 0.8 * self.sigma * READING) * e.reading + self.misread.get(e.id, 0.0)
         if e.kind == "result":
             return float(f"{value:.3g}") if e.calculated else value
         return float(f"{value:.3g}") if e.kind == "result" else round(2 * value) / 2
@@ -138,18 +139,53 @@ def opened(project: str) -> Measurables:
 
 
 def planted(found: Measurables, rng: np.random.Generator) -> Plant:
-    """A point of a kinematic or force plan that lengths are measured to, off by 3 to 6 mm in any direction."""
+    """A point of a kinematic plan that lengths are measured to, off by 3 to 6 mm in any direction."""
     heads = [e for e in found.entries.values() if e.kind == "length" and e.head is not None and e.scale not in found.on_paper
              and e.plan in ("positions", "velocities", "accelerations") and len(e.head.args) > 1]
     e = heads[rng.integers(len(heads))]
+    assert e.head is not None
     return Plant(e.plan, e.label, e.head.name, rng.uniform(3, 6) * np.exp(2j * np.pi * rng.random()))
 
 
+def turning(found: Measurables, rng: np.random.Generator) -> Plant:
+    """An angular velocity computed wrong by 20 to 50 %, at a position where something was drawn with it."""
+    plans = {plan.name: plan for plan, _ in found.plans}
+    labels = {e.label for e in found.entries.values() if e.plan == "accelerations"}
+    speeds = [e for e in found.entries.values() if e.unit == "рад/с" and e.quantity in plans["velocities"]]
+    fastest = max(e.value for e in speeds)
+    some = [e for e in speeds if e.label in labels and e.quantity != "ω1" and e.value > 0.1 * fastest]
+    e = some[rng.integers(len(some))]
+    return Plant("velocities", e.label, e.quantity, times=rng.uniform(1.2, 1.5))
+
+
+@dataclass
+class Counts:
+    """What became of mistakes: seen at all, the start named, its step named, starts that have nothing to do with it."""
+
+    seen: int = 0
+    named: int = 0
+    step: int = 0
+    others: int = 0
+
+    def add(self, found: Measurables, judged: list[Judged], plants: tuple[Plant, ...]) -> None:
+        """Count one drawing."""
+        begun = [j for j in judged if j.starts]
+        mine = [[j for j in begun if _touched(j, p, found)] for p in plants]
+        self.seen += all(any(j.verdict == "red" for j in judged if _touched(j, p, found)) for p in plants)
+        self.named += all(mine)
+        self.step += all(any(j.mistake is not None and j.mistake.step.name == p.step for j in of)
+                         for p, of in zip(plants, mine, strict=True))
+        self.others += sum(not any(_touched(j, p, found) for p in plants) for j in begun)
+
+    def row(self, count: int) -> str:
+        """Percentages and the mean number of other starts."""
+        shares = "".join(f"{100 * n / count:8.0f}%" for n in (self.seen, self.named, self.step))
+        return f"{shares}{self.others / count:10.2f}"
+
+
 def main(count: int) -> None:
-    """Statistics over projects: clean drawings, then one misplaced point each."""
+    """Statistics over projects: clean drawings, then one mistake each, then two."""
     rng = np.random.default_rng(7)
-    print("project                      clean: numbers  amber %   red %   starts per drawing | planted: seen  named  same point  "
-          "other starts")
     for name in PROJECTS:
         found = opened(name)
         colours: Counter[str] = Counter()
@@ -159,30 +195,40 @@ def main(count: int) -> None:
             colours.update(j.verdict for j in judged)
             starts += sum(j.starts for j in judged)
         total = sum(colours.values())
-        seen = named = exact = others = 0
+        print(f"{name}: {total / count:.0f} numbers, {count} clean drawings: {100 * colours['amber'] / total:.2f} % amber, "
+              f"{100 * colours['red'] / total:.3f} % red, {starts / count:.2f} starts per drawing")
+        print("   mistake                     seen    named     step    others")
+        for title, makers in (("point off by 3 to 6 mm", (planted,)), ("angular velocity wrong", (turning,)),
+                              ("two points", (planted, planted))):
+            counts = Counts()
+            for _ in range(count):
+                plants = tuple(make(found, rng) for make in makers)
+                counts.add(found, compared(found, rng, plants), plants)
+            print(f"   {title:22}{counts.row(count)}")
+        counts = Counts()
         for _ in range(count):
-            plant = planted(found, rng)
-            judged = compared(found, rng, (plant,))
+            judged, wrong = misread(found, rng)
             begun = [j for j in judged if j.starts]
-            mine = [j for j in begun if _about(j, plant, found)]
-            seen += any(j.verdict == "red" for j in judged if _touched(j, plant, found))
-            named += bool(mine)
-            exact += any(j.mistake is not None and j.mistake.step.name == plant.step for j in mine)
-            others += len(begun) - len(mine)
-        print(f"{name:28} {total / count:14.0f} {100 * colours['amber'] / total:8.2f} {100 * colours['red'] / total:7.3f} "
-              f"{starts / count:20.2f} | {100 * seen / count:13.0f}% {100 * named / count:5.0f}% {100 * exact / count:10.0f}% "
-              f"{others / count:13.2f}")
+            counts.seen += any(j.entry is wrong and j.verdict == "red" for j in judged)
+            counts.named += any(j.entry is wrong for j in begun)
+            counts.step += any(j.entry is wrong and j.mistake is None for j in begun)
+            counts.others += sum(j.entry is not wrong for j in begun)
+        print(f"   {'number read wrong':22}{counts.row(count)}", flush=True)
+
+
+def misread(found: Measurables, rng: np.random.Generator) -> tuple[list[Judged], Measurable]:
+    """A good drawing on which one length was read 4 to 8 mm wrong; what is computed from it is wrong with it."""
+    hand = Hand(found, rng)
+    lengths = [e for e in found.entries.values() if e.plan in ("positions", "velocities", "accelerations") and e.kind == "length"]
+    wrong = lengths[rng.integers(len(lengths))]
+    hand.misread[wrong.id] = float(rng.choice([-1, 1]) * rng.uniform(4, 8))
+    return judge(hand.filled(), found, PENCIL, READING), wrong
 
 
 def _touched(j: Judged, plant: Plant, found: Measurables) -> bool:
-    """True for a number that depends on the planted step."""
+    """True for a number that depends on the planted step, at its position."""
     step = next(plan[plant.step] for plan, _ in found.plans if plan.name == plant.plan)
     return j.entry.label == plant.label and any(s is step for s, _ in j.rows)
-
-
-def _about(j: Judged, plant: Plant, found: Measurables) -> bool:
-    """True for a start that the planted step explains: the first number to show it, at its position."""
-    return _touched(j, plant, found)
 
 
 if __name__ == "__main__":

@@ -113,10 +113,16 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     # In the order of the sheets, so that steps are numbered plan after plan as they are drawn.
     lines = sorted(filled.lines, key=lambda line: numbers[line.entry.id])
     judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
-    _check_arithmetic(judged, filled, found)
+    computed = _check_arithmetic(judged, filled, found)
     for j in judged:
         j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
-    _chains(_wrong_scales(judged), errors)
+    # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
+    _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors)
+    for j in judged:
+        wrong = [n for n in computed.get(id(j), ()) if n.verdict != "green"]
+        if j.verdict != "green" and wrong:
+            worst = max(wrong, key=lambda n: abs(n.deviation) / n.tolerance)
+            j.follows = worst.follows or worst
     return judged
 
 
@@ -171,11 +177,13 @@ def _slip(measured: float, exact: float, tolerance: float) -> str:
 # --- arithmetic --------------------------------------------------------------------------------------------------------------
 
 
-def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) -> None:
+def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) -> dict[int, list[Judged]]:
     """Compute results again from the numbers they should have come from: only rounding may stand between them.
 
-    A result that is exact but for rounding is right, wherever it came from.
+    A result that is exact but for rounding is right, wherever it came from. Returns the numbers that each result, by its id(),
+    was rightly computed from.
     """
+    computed: dict[int, list[Judged]] = {}
     by_id = {j.entry.id: j for j in judged}
     for result, check in found.checks.items():
         j = by_id.get(result)
@@ -190,11 +198,14 @@ def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) 
             moved = [*values[:i], values[i] + n.line.half_digit * times, *values[i + 1:]]
             allowed += abs(check.compute(*moved) - expected)
         apart = j.line.value - expected if j.entry.signed else abs(j.line.value) - abs(expected)
-        if abs(apart) > allowed and abs(j.deviation) > ROUNDED * abs(j.exact) + j.line.half_digit:
+        if abs(apart) <= allowed:
+            computed[id(j)] = needs
+        elif abs(j.deviation) > ROUNDED * abs(j.exact) + j.line.half_digit:
             j.inconsistent = True
             own = ", ".join(f"{n.entry.quantity} = {number(n.line.value, 5)}" for n in needs)
             said = f"does not follow from your own {own}: that gives {number(expected, 4)}"
             j.remark = f"{j.remark}; {said}" if j.remark else said
+    return computed
 
 
 # --- scale factors ------------------------------------------------------------------------------------------------------------
