@@ -13,6 +13,7 @@ from tests.compare.students import PENCIL, READING, Hand, Plant
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.chain import judge
 from tmm_sheets.compare.measured import NAME
+from tmm_sheets.compare.measured_file import Filled, Line
 
 FEW = ("positions", "velocities", "accelerations", "force-5", "force-2", "lever")
 
@@ -55,6 +56,31 @@ def test_a_good_drawing(shaper, some, seed):
     assert len(of) > 100
     assert not starts(of)
     assert sum(j.verdict == "amber" for j in of) < 0.12 * len(of)
+
+
+def test_exact_numbers_are_green(shaper):
+    """Everything on the sheets, lengths to half a millimetre, results to four digits; no id twice, all in ASCII."""
+    def written(e):
+        return float(f"{e.value:.4g}") if e.kind == "result" else round(2 * e.value) / 2
+
+    lines = [Line(e, written(e), 0.0, 1) for e in shaper.entries.values()]
+    of = judged(shaper, Filled(lines))
+    assert len(of) > 600
+    assert {j.verdict for j in of} == {"green"}
+    assert all(name.isascii() and name == e.id for name, e in shaper.entries.items())
+    # Three points of the profile that lie nearly on a line: its least radius cannot be measured so.
+    assert [j.entry.id for j in of if not np.isfinite(j.tolerance)] == ["cam-profile/rho_min"]
+
+
+def test_pencil_and_reading(shaper, some):
+    """Errors twice as large are twice as large tolerances where nothing is computed."""
+    filled = drawn(shaper, some)
+    one, two = judge(filled, shaper, PENCIL, READING), judge(filled, shaper, 2 * PENCIL, 2 * READING)
+    plans = ("positions", "velocities")
+    lengths = [(a, b) for a, b in zip(one, two, strict=True) if a.entry.kind == "length" and a.entry.plan in plans]
+    assert len(lengths) > 20
+    for a, b in lengths:
+        assert b.tolerance == pytest.approx(2 * a.tolerance, rel=0.05), a.entry.id
 
 
 @pytest.mark.parametrize(("plan", "step", "shift", "followers"), [

@@ -109,6 +109,36 @@ def test_slider_crank_drawn_many_times():
         assert found.error(vel.omega["2"])[k] == pytest.approx(np.std(omega), rel=CHANCE)
 
 
+def test_drawn_with_a_mistake():
+    """A pin 4 mm off: the rest is the construction from there, at that position only; the Jacobian is its limit."""
+    phi = np.radians([20.0, 75.0])
+    pos, vel = slider_crank(phi)
+    found = Errors([(pos.plan, 0.001), (vel.plan, 1.0)])
+    b, c = pos.points["B"], pos.points["C"]
+    moved = complex(b.value[1]) + 0.004j
+    value = found.displaced(b, 1, 0.004j)
+    assert value(c)[0] == c.value[0]
+    assert value(c)[1] == pytest.approx(moved.real + np.sqrt(0.01 - (0.01 - moved.imag) ** 2) + 0.01j, abs=1e-12)
+    assert value(pos.points["A"]) is pos.points["A"].value
+    # The crank keeps its length on the plan of velocities, whatever was drawn.
+    assert abs(value(vel.points["B"])[1]) == pytest.approx(30.0)
+    assert value(vel.points["B"])[1] == pytest.approx(30j * moved / abs(moved))
+    small = found.displaced(b, 1, 1e-7)(vel.points["C"])[1] - vel.points["C"].value[1]
+    assert small / 1e-7 == pytest.approx(complex(*found.sensitivity(vel.points["C"], b)[1, :, 0]), rel=1e-3)
+
+
+def test_error_of_a_sum():
+    """Along the segment for a distance; the gradient goes back to every point that was drawn."""
+    plan = Plan("p", "", "mm")
+    a, b = plan.add("A", rules.GIVEN, 0j), plan.add("B", rules.GIVEN, 40 + 0j)
+    c = plan.add("C", rules.LINE_LINE, a, 1 + 0j, b, 1j)
+    found = Errors([(plan, 1.0)], PENCIL)
+    error, gradient = found.of_sum([(a, 0, -1 + 0j), (c, 0, 1 + 0j)])
+    assert error == pytest.approx(PENCIL * 3**0.5)  # both ends, and the line that C is on
+    assert [(s.name, g) for s, g in gradient] == [("A", pytest.approx(-1)), ("B", pytest.approx(1)), ("C", pytest.approx(1))]
+    assert found.of_sum([]) == (0.0, [])
+
+
 def test_what_only_spares_rounding_is_not_known_to_a_pencil():
     """The half-chord from the crank angle keeps digits; a drawing without it has the same errors."""
     phi = np.radians([20.0, 100.0])

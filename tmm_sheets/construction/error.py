@@ -181,6 +181,7 @@ class Errors:
         values: dict[int, Any] = {id(source): moved}
 
         def value(step: Step) -> Any:
+            self._of(step)  # which lengths are known
             for s in step.ancestors():
                 if id(s) in values:
                     continue
