@@ -380,21 +380,21 @@ def photograph(ink: Any, drawing: Drawing, camera: Camera, rng: Any, scale: floa
     inside = cv2.GaussianBlur(inside, (0, 0), 0.7)
     del x, y
     # Light: a slope, a broad shadow, the lens.
-    u, v = np.meshgrid(np.linspace(-1, 1, columns, dtype=np.float32), np.linspace(-1, 1, rows, dtype=np.float32))
+    u, v = np.meshgrid(np.linspace(-1, 1, columns // 8, dtype=np.float32), np.linspace(-1, 1, rows // 8, dtype=np.float32))
     a, b, c, d = rng.normal(0, 1, 4)
     light = 1 + camera.shade * (0.35 * (a * u + b * v) / 2 - 0.5 / (1 + np.exp(-(c * u + d * v - 0.3) * 6)))
     light *= 1 - camera.vignette * (u**2 + v**2) / 2
-    del u, v
+    light = cv2.resize(light.astype(np.float32), (columns, rows), interpolation=cv2.INTER_LINEAR)
     grain = cv2.resize(rng.normal(0, 1, (rows // 3, columns // 3)).astype(np.float32), (columns, rows))
-    white = camera.paper * (1 + 0.008 * grain)
     # Pencil is not black and catches the grain of the paper.
-    dark = white * (1 - (0.72 / 255) * seen * (1 + 0.12 * grain))
-    wood = camera.desk * (1 + 0.1 * grain)
-    picture = (inside * dark + (1 - inside) * wood) * light
-    del white, dark, wood, grain, inside, light, seen
-    picture = cv2.GaussianBlur(picture, (0, 0), camera.blur)
+    dark = np.float32(camera.paper) * (1 + np.float32(0.008) * grain)
+    dark *= 1 - np.float32(0.72 / 255) * seen * (1 + np.float32(0.12) * grain)
+    wood = np.float32(camera.desk) * (1 + np.float32(0.1) * grain)
+    wood += inside * (dark - wood)
+    wood *= light
+    picture = cv2.GaussianBlur(wood, (0, 0), camera.blur)
     picture += camera.noise * rng.standard_normal(picture.shape, dtype=np.float32)
-    grey = np.clip(picture, 0, 255).astype(np.uint8)
+    grey = cv2.convertScaleAbs(np.maximum(picture, 0))
     if camera.mirrored:
         grey = np.ascontiguousarray(grey[:, ::-1])
     grey = np.ascontiguousarray(np.rot90(grey, camera.quarter))

@@ -1,7 +1,7 @@
 """Many simulated photographs with planted errors: what the comparison finds, what it makes up, how well it rectifies, what it
 costs.
 
-Usage: python -m tests.compare.trial [-n 200] [--first 0] [--errors 4] [--time]
+Usage: python -m tests.compare.trial [-n 200] [--first 0] [--errors 4] [--minutes M] [--time] [--show]
 """
 
 import argparse
@@ -129,6 +129,7 @@ def main():
     parser.add_argument("-n", type=int, default=200)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--errors", type=int, default=4)
+    parser.add_argument("--minutes", type=float, default=600.0, help="stop after so long")
     parser.add_argument("--time", action="store_true")
     parser.add_argument("--show", action="store_true", help="tell every miss and false alarm")
     options = parser.parse_args()
@@ -147,6 +148,7 @@ def main():
             sheet = composed(project, n)
             shot = shoot(sheet.drawing, seed, options.errors)
             path.write_bytes(shot.data)
+            print(f"{seed} at {perf_counter() - start:.0f} s", file=sys.stderr)
             label = f"{project.variant.project.name} {n} seed {seed}"
             known = elements(sheet)
             try:
@@ -157,9 +159,9 @@ def main():
                 tally.refused.append(f"{label}: {e.args[0]}")
                 continue
             tally.add(label, sheet, shot, found, *judged(found, known))
-            if sys.stderr.isatty():
-                print(f"\r{seed + 1 - options.first} of {options.n}, {perf_counter() - start:.0f} s", end="", file=sys.stderr)
-    tally.report(options.n)
+            if perf_counter() - start > 60 * options.minutes:
+                break
+    tally.report(seed + 1 - options.first)
     if options.show:
         print("\n".join(tally.examples))
 

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 LEAST_SCALE, FAIR_SCALE = 2.0, 3.0
 """Pixels per mm of the sheet below which a photograph is refused, or warned of."""
-BLURRED = 2.4  # mm a frame line 0.8 mm wide may seem to have
+BLURRED, SOFT = 0.36, 0.31
+"""Standard deviation of the smear, mm, above which a picture is refused, or warned of; a fair photograph has 0.2 to 0.3."""
 MATCH, CERTAIN = 0.5, 0.12
 """Share of a sheet's lines that must be in the picture where they belong, and by how much another sheet must do better."""
 RECTIFIED = 0.15
@@ -125,27 +126,29 @@ def rectify(
     say("looking for the frame")
     try:
         found = rectification.find(picture.grey, frame_lines(known))
+        m, scatter, smear = rectification.fit_frame(picture.grey, found)
     except CannotBuild as e:
         raise CannotBuild(f"{path}: {e.args[0]}", hint=e.hint) from None
     scale = float(np.abs(np.diff(found.corners)).min() / rectification.FRAME.height)
     if scale < LEAST_SCALE:
         raise CannotBuild(f"{path}: the sheet is {scale:.1f} pixels per millimetre: too few to measure lines 0.2 mm wide",
                           hint="go nearer, or use more pixels: an A1 sheet that fills 12 million pixels has 4.5")  # fmt: skip
-    say("following the frame")
-    m, scatter, width = rectification.fit_frame(picture.grey, found)
-    if width > BLURRED:
-        raise CannotBuild(f"{path}: the picture is blurred: the frame's lines, 0.8 mm wide, are smeared over {width:.1f} mm",
-                          hint="hold the camera still and wait for it to focus, in more light; or scan the sheet")  # fmt: skip
+    if smear > BLURRED:
+        raise CannotBuild(f"{path}: the picture is blurred: edges of lines are smeared over {2 * smear:.1f} mm",
+                          hint=rectification.SHARP)  # fmt: skip
     notes = []
     if found.turned:
         notes.append(f"{path.name} was turned by {TURNS[found.turned]} (the title block is known)")
     if scale < FAIR_SCALE:
         notes.append(f"{path.name} has {scale:.1f} pixels per millimetre only: thin lines may be missed")
+    if smear > SOFT:
+        notes.append(f"{path.name} is not sharp (edges of lines are smeared over {2 * smear:.1f} mm): thin lines may be missed")
     ink = rectification.straighten(picture.grey, m)
     level = tracing.noise_level(ink)
+    pale = tracing.line_level(ink)
     say("correcting by the drawing's lines")
     lines = tracing.as_lines([e for e in known if e.length < 2500 and (by_lines or e.of == "title block")])
-    better, _, match = rectification.refine(m, ink, lines, level)
+    better, _, match = rectification.refine(m, ink, lines, pale)
     if by_lines and match >= MATCH:
         m = better
         ink = rectification.straighten(picture.grey, m)

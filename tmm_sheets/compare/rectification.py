@@ -45,6 +45,12 @@ ORDER = 4  # half waves of the smooth correction
 SIDE_TERMS = 7  # of the polynomial of a side's bending
 FOUND = 0.5  # share of the title block's lines that must be there ...
 SURE, TRIED = 0.85, 0.25  # ... with which no further guess is tried; below which a guess is not worth improving
+PALE = 45.0  # darkness below which nothing is a line
+WANTED = (
+    "the whole frame must be in the picture, flat and sharp, on a background that is not as light as the paper; the title block is "
+    "form 1 or 2a of GOST 2.104 in the lower right corner"
+)
+SHARP = "hold the camera still and wait for it to focus, in more light; or scan the sheet"
 NODE = 6.0  # mm between the points at which the map is calculated
 
 
@@ -430,11 +436,12 @@ def find(grey: Grey, block: Lines) -> Found:
                 break
     if best is None or best.score < FOUND:
         share = 0.0 if best is None else max(best.score, 0.0)
+        if float(np.percentile(ink, 99.7)) < PALE:
+            raise CannotBuild("nothing in the picture is as dark as a drawn line: it is blurred, or the lines are too pale",
+                              hint=SHARP)  # fmt: skip
         raise CannotBuild(
             "no frame with a title block was found in the picture "
-            f"(at best {100 * share:.0f} % of the title block's lines are where they belong)",
-            hint="the whole frame must be in the picture, flat, on a background that is not as light as the paper, and sharp; "
-            "form 1 or 2a of GOST 2.104 in the lower right corner",
+            f"(at best {100 * share:.0f} % of the title block's lines are where they belong)", hint=WANTED,
         )
     if best.mirrored:
         raise CannotBuild("the picture is mirrored: the title block is on the wrong side",
@@ -472,7 +479,7 @@ def peaks(profile: Any, offsets: Floats, centre: Any, reach: float, half: float)
     k = masked.argmax(1)
     top = masked[np.arange(len(k)), k]
     near = np.abs(offsets[None, :] - offsets[k][:, None]) <= half
-    weight = np.where(near, np.clip(profile - 0.25 * np.maximum(top, 1)[:, None], 0, None), 0.0)
+    weight = np.where(near, np.clip(profile - 0.25 * np.maximum(top, 1e-3)[:, None], 0, None), 0.0)
     total = weight.sum(1)
     return (weight * offsets).sum(1) / np.where(total > 0, total, 1), np.where(total > 0, top, 0.0)
 
@@ -492,10 +499,10 @@ def fit_frame(grey: Grey, found: Found) -> tuple[Map, float, float]:
 
     Returns
     -------
-    The map, the scatter of the sides' points about it and the width the frame's lines seem to have, mm.
+    The map, the scatter of the sides' points about it and how far the picture is smeared (standard deviation), mm.
     """
     m = _rough(found.corners, found.sides, grey.shape)
-    scatter, wide = 1.0, 0.0
+    scatter, smear = 1.0, 0.0
     p, n, side = _side_points()
     step = 0.1
     for width in (2.5, 1.5, 2.0):
@@ -508,10 +515,21 @@ def fit_frame(grey: Grey, found: Found) -> tuple[Map, float, float]:
             centre[mine] = offsets[follow(profile[mine], 3)]
         o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
         use = strength > 0.4 * np.median(strength)
+        if min(np.bincount(side[use], minlength=4)) < STATIONS / 4:
+            raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
         m, scatter = _fit_sides(m, m.to_picture(p + n * o), side, use)
-        about = np.where(np.abs(offsets - o[:, None]) < 1.5, profile, 0.0)
-        wide = float(np.median(about.sum(1)[use] * step / np.maximum(about.max(1)[use], 1e-3)))
-    return m, scatter, wide
+        smear = _smear(profile[use], offsets, o[use])
+    return m, scatter, smear
+
+
+def _smear(profile: Any, offsets: Floats, at: Floats) -> float:
+    """Standard deviation of the blur of lines crossed by profiles, from the steepest of their sides, mm: however wide they are."""
+    reach = np.arange(-1.2, 1.25, 0.1)
+    rows = np.stack([np.interp(reach + a, offsets, row) for row, a in zip(profile, at, strict=True)])
+    size = 8  # neighbours together, against noise
+    mean = rows[: len(rows) // size * size].reshape(-1, size, len(reach)).mean(1)
+    steepest = np.abs(np.diff(mean, axis=1)).max(1) / 0.1
+    return float(np.median(mean.max(1) / np.maximum(steepest, 1e-6)) / np.sqrt(2 * pi))
 
 
 def _local_ink(grey: Any, at: Points) -> Floats:

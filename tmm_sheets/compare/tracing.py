@@ -113,26 +113,46 @@ def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 4000) 
 
 
 def noise_level(ink: Any) -> float:
-    """Darkness from which on a place counts as ink."""
-    some = ink[::7, ::7].astype(np.float64)
-    middle = float(np.median(some))
-    noise = 1.4826 * float(np.median(np.abs(some - middle)))
+    """Darkness from which on a single place counts as ink: six standard deviations of bare paper."""
+    middle, noise = _noise(ink)
     return float(np.clip(middle + 6 * noise, 18.0, 45.0))
+
+
+def line_level(ink: Any) -> float:
+    """The same for the mean of some places along a line: pale thin lines show there."""
+    middle, noise = _noise(ink)
+    return float(np.clip(middle + 3.5 * noise, 10.0, 35.0))
+
+
+def _noise(ink: Any) -> tuple[float, float]:
+    """Median and standard deviation of bare paper: from differences of places near each other, most of which have no ink."""
+    some = ink[::5].astype(np.float64)
+    some += np.random.default_rng(1).uniform(-0.5, 0.5, some.shape)  # whole numbers have no fine percentiles
+    d = np.abs(some[:, 4::3] - some[:, :-4:3])
+    # What is lighter than paper counts as paper, so half of the noise is cut off: the half that is left spreads less.
+    return float(np.median(some)), float(np.median(d)) / 0.6745 / np.sqrt(2) / 0.7
+
+
+def _along(profile: Any) -> Any:
+    """Profiles averaged with their neighbours along the line."""
+    import cv2
+
+    return cv2.blur(profile, (1, 5)) if len(profile) >= 5 else profile
 
 
 def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extra]]:
     """Measure all elements in a rectified picture (see ``rectification.straighten``); also the ink that belongs to none."""
     import cv2
 
-    level = noise_level(ink)
+    level, pale = noise_level(ink), line_level(ink)
     known = np.zeros_like(ink)
     for e in elements:
         if e.kind != "text":
             _paint(known, e, e.points, 0.0)
-    taken = known.copy()
+    words = np.zeros_like(ink)
     for e in elements:
         if e.kind == "text":
-            cv2.fillPoly(taken, [_fixed(_grown(e, 1.2))], 255, cv2.LINE_8, 4)
+            cv2.fillPoly(words, [_fixed(_grown(e, 1.2))], 255, cv2.LINE_8, 4)
     out: dict[int, Trace] = {}
     left = ink.copy()
     wiped = np.zeros_like(ink)
@@ -144,7 +164,7 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
     for e in elements:
         if measurable(e):
             # A curve in place is off here and there rather than too large.
-            near = _near(e, _stations(e, e.kind in ("circle", "arc")), ink, known, level)
+            near = _near(e, _stations(e, e.kind in ("circle", "arc")), ink, known, pale)
             if near is None:
                 open_.append((e, _stations(e, e.kind != "line")))
             else:
@@ -157,14 +177,14 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
             _paint(wiped, t.element, t.at, DENSE_ROOM if t.status == "dense" else ROOM)
     left[wiped > 0] = 0
     for e, s in sorted(open_, key=lambda pair: -pair[0].length):
-        t = _far(e, s, left, wiped, ink, level)
+        t = _far(e, s, left, wiped, ink, pale)
         found.append(t)
         if t.at is not None:
             _paint(wiped, e, t.at, DENSE_ROOM if t.status == "dense" else ROOM)
             left[wiped > 0] = 0
     for t in found:
         if t.status == "measured" and t.element.kind in ("line", "arc", "curve"):
-            t = _with_ends(t, ink, taken, left, level)
+            t = _with_ends(t, ink, known, left, words, pale)
         out[t.element.number] = t
     for e in elements:  # a hand may have written here
         if e.kind == "text":
@@ -263,7 +283,7 @@ def _near(e: Element, s: Stations, ink: Any, known: Any, level: float) -> Trace 
     width = line_type(e.style).width
     offsets = np.arange(-NEAR, NEAR + STEP / 2, STEP)
     at = pixels(s.points[:, None] + s.normals[:, None] * offsets)
-    profile, others = sample(ink, at), sample(known, at) > 100
+    profile, others = _along(sample(ink, at)), sample(known, at) > 100
     # The way to the next known line on either side, and how far to look; where another line runs here nothing can be told.
     own = np.abs(offsets) <= width / 2 + 0.25
     away = np.where(others & ~own, np.abs(offsets), NEAR + 0.5).min(1)
@@ -331,7 +351,7 @@ def _far(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: float)
     reach = min(FAR, max(0.6 * e.length, 3.0))
     offsets = np.arange(-reach, reach + STEP / 2, STEP)
     at = pixels(s.points[:, None] + s.normals[:, None] * offsets)
-    profile, unknown = sample(left, at), sample(wiped, at) > 100
+    profile, unknown = _along(sample(left, at)), sample(wiped, at) > 100
     expected = _expected(e)
     hit = cv2.dilate((profile > level).astype(np.uint8), np.ones((1, 7), np.uint8)) > 0  # within 0.3 mm
     base = s.base()
@@ -381,7 +401,7 @@ def _far(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: float)
             return _measured(e, s, base @ y, np.ones(n, bool), float(share[best] / expected))
     # At its own place: hidden by what is there, or nowhere?
     own = np.abs(offsets) <= 0.5
-    ink_there = (sample(ink, at[:, own]) > level).any(1)
+    ink_there = (_along(sample(ink, at[:, own])) > level).any(1)
     hidden = unknown[:, own].all(1)
     bare = ~ink_there
     if bare.mean() > 0.35 * expected and (bare & ~hidden).sum() * (e.length / n) > 2.5:
@@ -393,7 +413,7 @@ def _peaks_about(profile: Any, offsets: Floats, centre: Floats, reach: float) ->
     return peaks(profile, offsets, centre, reach, 0.4)
 
 
-def _with_ends(t: Trace, ink: Any, known: Any, left: Any, level: float) -> Trace:
+def _with_ends(t: Trace, ink: Any, known: Any, left: Any, words: Any, level: float) -> Trace:
     """Where the line begins and ends."""
     assert t.at is not None
     e, z = t.element, t.at
@@ -403,12 +423,16 @@ def _with_ends(t: Trace, ink: Any, known: Any, left: Any, level: float) -> Trace
     ends = []
     for way in (z, z[::-1]):
         pen, reach = 0.5 * line_type(e.style).width, min(FAR, 0.4 * e.length)
-        ends.append(_end(way, ink, known, left, level, pen, reach, 3.5 if patterned else 1.6))
+        ends.append(_end(way, ink, known, left, words, level, pen, reach, 3.5 if patterned else 1.6))
     return replace(t, ends=(ends[0], ends[1]))
 
 
-def _end(z: Points, ink: Any, known: Any, left: Any, level: float, pen: float, reach: float, gap: float) -> float:
+def _end(
+    z: Points, ink: Any, known: Any, left: Any, words: Any, level: float, pen: float, reach: float, gap: float,
+) -> float:
     """How far a line drawn with a pen of half width ``pen`` runs beyond its first point, nan when others hide it."""
+    import cv2
+
     step = 0.2
     run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
     u = z[0] - z[min(int(np.searchsorted(run, 1.0)) + 1, len(z) - 1)]
@@ -420,7 +444,8 @@ def _end(z: Points, ink: Any, known: Any, left: Any, level: float, pen: float, r
     along = np.gradient(p)
     n = 1j * along / np.maximum(np.abs(along), 1e-9)
     side = np.linspace(-0.3, 0.3, 5)
-    dark = sample(ink, pixels(p[:, None] + n[:, None] * side)).max(1) > level
+    depth = cv2.blur(sample(ink, pixels(p[:, None] + n[:, None] * side)), (1, 3)).max(1)
+    dark = depth > max(level, 0.5 * float(np.median(depth[t < 0])))
     beyond = t > 0.5
     # Others that go on where it ends: nothing can be told beyond.
     others = sample(known, pixels(p[:, None] + n[:, None] * np.linspace(-0.4, 0.4, 5))).max(1) > 100
@@ -430,16 +455,18 @@ def _end(z: Points, ink: Any, known: Any, left: Any, level: float, pen: float, r
     last = 0
     for i in range(len(t)):
         if dark[i]:
-            if (i - last) * step > gap + 1e-9 and i > 0:
+            # Beyond its end nothing but its own unbroken ink counts: letters stand near, a millimetre off.
+            if (i - last) * step > (gap if t[i] <= 0.3 else 0.5) + 1e-9 and i > 0:
                 break
             last = i
     end = float(t[last])
     if end > 0:  # round ends, and the blur that counts as ink
-        end = max(end - pen - 0.15, 0.0)
+        end = max(end - pen - 0.25, 0.0)
     if end > 0.3:
         # Beyond its end: is that its own ink, or a line that crosses or goes on there? What far out was wiped is another's.
-        free = beyond & (t <= end + 0.1) & ~others
-        rest = (t > pen + ROOM / 2 + 0.3) & (t <= end)
+        letters = sample(words, pixels(p)) > 100
+        free = beyond & (t <= end + 0.1) & ~others & ~letters
+        rest = (t > pen + ROOM / 2 + 0.3) & (t <= end) & ~letters
         unknown = sample(left, pixels(p[rest])) > level
         if free.sum() * step < 0.6 * max(end - 0.5, 0.1) or (len(unknown) > 2 and unknown.mean() < 0.6):
             return float("nan")
