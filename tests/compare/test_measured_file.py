@@ -132,6 +132,8 @@ def test_scale_factors(filled):
     assert result.lines[0].factor == 0.025
     assert "did you mean mu/velocities" in problems(filled, row("mu/velocity", "1"))[0].hint
     assert "positive number" in problems(filled, row("mu/velocities", "0"))[0].message
+    assert "is it in (м/с)/мм?" in problems(filled, row("mu/velocities", "20"))[0].hint
+    assert "is it in (м/с)/мм?" in problems(filled, "velocities/2/pb;24;25", head="id;измерено;мю")[0].hint
 
 
 def test_problems_name_line_and_column(filled):
@@ -143,6 +145,7 @@ def test_problems_name_line_and_column(filled):
     assert "expected a number" in found[1].message
     assert "expected м/с, not мм" in found[2].message
     assert "expected one number" in found[4].message
+    assert "a sheet can have" in problems(filled, row("velocities/2/pb", "1e300"))[0].message
     assert all(p.file.endswith("measured.csv") for p in found)
 
 

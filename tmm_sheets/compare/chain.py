@@ -167,8 +167,8 @@ def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: M
 
 
 def _slip(measured: float, exact: float, tolerance: float) -> str:
-    """Slips of the pen that are recognised at sight: a factor of two or ten."""
-    for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01):
+    """Slips of the pen that are recognised at sight: a factor of two or ten, metres for millimetres."""
+    for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01, 1000.0, 0.001):
         if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
             return f"{factor:g} times the exact value"
     return ""
@@ -293,7 +293,7 @@ class _Sheet:
             if not np.all(np.isfinite(shares)):
                 return Mistake(place, of, x, np.eye(2), 0.0, mu)
             weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
-        score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)))
+        score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
         return Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
 
     def shares(self, place: Place, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

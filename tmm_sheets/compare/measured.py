@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.compare import measured_file
-from tmm_sheets.compare.chain import Judged, Mistake, judge
+from tmm_sheets.compare.chain import EXACT, Judged, Mistake, judge
 from tmm_sheets.compare.measurable import measurables
 from tmm_sheets.compare.report import Report
 from tmm_sheets.construction.protocol import sentence, spoken
@@ -89,7 +89,7 @@ MARKS = {"green": " ", "amber": "?", "red": "!"}
 def _row(j: Judged) -> tuple[str, ...]:
     e = j.entry
     percent = "–" if j.percent is None or abs(j.percent) >= 1000 else fixed(j.percent, 1)
-    tolerance = f"±{number(j.tolerance, 2)}" if isfinite(j.tolerance) else "–"
+    tolerance = f"±{number(j.tolerance, 2)}" if EXACT < j.tolerance < float("inf") else "0" if j.tolerance <= EXACT else "–"
     said: list[str] = [j.verdict]
     if j.follows is not None:
         said = [f"{j.verdict}, follows from {_name(j.follows)}"]
@@ -99,8 +99,14 @@ def _row(j: Judged) -> tuple[str, ...]:
         said.append(j.remark)
     mark = "·" if j.follows is not None else MARKS[j.verdict]
     unit = f" {e.unit}" if e.unit else ""
-    return (mark, e.label, e.quantity, _exact(j), f"{number(j.line.value, 5)}{unit}", _deviation(j), percent, tolerance,
+    return (mark, e.label, e.quantity, _exact(j), f"{_written(j)}{unit}", _deviation(j), percent, tolerance,
             "; ".join(said))
+
+
+def _written(j: Judged) -> str:
+    """The measured number; one that no sheet has in the notation of computers."""
+    x = j.line.value
+    return number(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else f"{x:.3g}"
 
 
 def _exact(j: Judged) -> str:
@@ -145,8 +151,9 @@ def _what(j: Judged) -> str:
     if j.scale:
         return j.scale
     unit = f" {j.entry.unit}" if j.entry.unit else ""
-    times = abs(j.deviation) / j.tolerance
-    text = f"{number(j.line.value, 5)}{unit} instead of {_exact(j)}, {times:.3g} times the tolerance"
+    text = f"{_written(j)}{unit} instead of {_exact(j)}"
+    if j.tolerance > EXACT:
+        text += f", {abs(j.deviation) / j.tolerance:.3g} times the tolerance"
     if j.mistake is not None:
         text += f"; {_where(j)}"
     return f"{text}; {j.remark}" if j.remark else text

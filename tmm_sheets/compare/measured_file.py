@@ -39,6 +39,10 @@ FACTOR = "mu"
 """In place of a plan's name in the id of a line that states a scale factor."""
 LARGEST = 5_000_000
 """Bytes of the largest file that is read; a whole project has some 50,000."""
+APART = 300.0
+"""How many times as large or small as on the sheet a scale factor may be: metres for millimetres are more."""
+ABSURD = 1e12
+"""No number on a sheet is as large."""
 SHOWN = 20
 """Problems told at once."""
 
@@ -272,7 +276,8 @@ def _read_rows(rows: Iterable[Row], columns: Mapping[Column, int], name: str, fo
                 continue
             entry = _entry(key, found, filled, name, number)
             value, half = _number(written, cell("unit"), entry, filled, f"{name}:{number}")
-            factor = _positive(cell("factor")) if cell("factor") and entry.scale else None
+            own = cell("factor") if entry.scale else ""
+            factor = _like(_positive(own), found.scales[entry.scale]) if own else None
         except ValueError as e:
             message, _, hint = str(e).partition("\n")
             where = COLUMNS["id"] if message.startswith("unknown") else COLUMNS["measured"]
@@ -299,7 +304,7 @@ def _factor(key: str, written: str, found: Measurables, filled: Filled, used: se
     if wanted not in known:
         near = get_close_matches(wanted, sorted(known), n=1)
         raise ValueError(f"unknown scale factor {key}" + (f"\ndid you mean {FACTOR}/{near[0]}?" if near else ""))
-    filled.factors[known[wanted]] = _positive(written)
+    filled.factors[known[wanted]] = _like(_positive(written), found.scales[known[wanted]])
 
 
 def _positive(written: str) -> float:
@@ -308,6 +313,14 @@ def _positive(written: str) -> float:
     if not (isfinite(value) and value > 0):
         raise ValueError(f"expected a scale factor, a positive number, not {written!r}")
     return value
+
+
+def _like(factor: float, scale: Scale) -> float:
+    """A scale factor that may be meant: not hundreds of times that of the sheet."""
+    if not 1 / APART < factor / scale.mu < APART:
+        raise ValueError(f"the scale factor {factor:g} is far from that of the sheet, {scale.mu:g} {scale.unit}\n"
+                         f"is it in {scale.unit}?")
+    return factor
 
 
 def _plain(written: str) -> str:
@@ -341,8 +354,8 @@ def _number(written: str, unit: str, entry: Measurable, filled: Filled, place: s
     if own and not re.match(r"[A-Za-zА-Яа-я°%/(]", own):
         raise ValueError(f"expected one number, not {written!r}\nwrite for example 46,5")
     value = float(match[0].replace(",", "."))
-    if not isfinite(value):
-        raise ValueError(f"expected a finite number, not {written!r}")
+    if not abs(value) < ABSURD:
+        raise ValueError(f"expected a number that a sheet can have, not {written!r}")
     mantissa, _, exponent = match[0].lower().partition("e")
     decimals = len(mantissa.replace(",", ".").partition(".")[2])
     half = 0.5 * 10.0 ** (int(exponent or 0) - decimals)
