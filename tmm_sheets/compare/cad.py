@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,9 +12,10 @@ import numpy as np
 
 from tmm_sheets.compare import cad_file, cad_overlay, layout, view_places
 from tmm_sheets.compare.cad_ink import CadInk, Entity, Space
-from tmm_sheets.compare.elements import Element, View, elements, views
+from tmm_sheets.compare.elements import Element, View, elements
+from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.matching import Finding, Outcome, match, placed
-from tmm_sheets.compare.placing import Placing, candidates, lines, refine, search, snapped
+from tmm_sheets.compare.placing import HIT, Lines, Placing, candidates, lines, refine, search, snapped
 from tmm_sheets.compare.report import Report
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, Problem
@@ -27,6 +28,8 @@ SIDES = (816.0, 841.0, 584.0, 594.0)
 """Lengths of the frame's and the paper's sides, mm."""
 SURE = 0.5
 """Share of our lines found at which a placing is beyond doubt."""
+POOR = 0.25
+"""Share of chance: lines of any sheet cross so many places of another."""
 LOST = 0.2
 """Share of the elements found below which the drawing is not of this sheet."""
 SHOWN = 60
@@ -47,8 +50,33 @@ class Laid:
     share: float
 
 
-def compare(project: Project, sheet: int | None, path: Path, views_file: Path | None, pencil: float,
+@dataclass(frozen=True)
+class Examined:
+    """A drawing compared with a sheet: how it was laid over it, where its views stand, what was found; ``notes`` in words."""
+
+    laid: Laid
+    places: layout.Layout
+    outcome: Outcome
+    notes: tuple[str, ...]
+
+
+def compare(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
             say: Callable[[str], None]) -> Report:
+    """Compare a DXF drawing with a sheet of a project; the report has the table, the tree for JSON and two overlays."""
+    found = examine(project, sheet, path, views, pencil, say)
+    say("overlay")
+    outcome, laid = found.outcome, found.laid
+    shown = [f for f in _worst(outcome.findings) if f.element.view not in _gone(outcome)]
+    marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
+        [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
+    exact = _exact(laid.elements, found.places.moves)
+    files = cad_overlay.files(laid.n, laid.sheet.drawing, exact, placed(laid.space, laid.placing), marked)
+    name = project.variant.project.name
+    return Report(text(name, path, found, pencil), tree(name, path, found, pencil), files, found.notes)
+
+
+def examine(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
+            say: Callable[[str], None] = lambda _: None) -> Examined:
     """Compare a DXF drawing with a sheet of a project; with the sheet it fits best when none is named.
 
     Raises
@@ -66,53 +94,93 @@ def compare(project: Project, sheet: int | None, path: Path, views_file: Path | 
     for n in numbers:
         say(f"sheet {n}")
         sheets[n] = composed(project, n)
-    if views_file is not None and sheet is None and count > 1:
+    if views is not None and sheet is None and count > 1:
         raise BadInput("--views needs --sheet N: its views are those of one sheet")
     say("laying it over the sheet")
     laid = _lay(sheets, ink)
-    given = view_places.read(views_file, views(laid.sheet)) if views_file is not None else ()
+    given = view_places.read(views, views_of(laid.sheet)) if views is not None else ()
     space = placed(laid.space, laid.placing)
     say("placing the views")
-    places = layout.find(laid.elements, lines(s.points for s in space.strokes), [(p, laid.placing) for p in given])
+    places = layout.find(laid.elements, lines(s.points for s in space.strokes), space.writings, [(p, laid.placing) for p in given])
     outcome = match(laid.elements, space, places.moves, pencil, say)
     _refuse(project, laid, outcome, ink, sheet, path)
-    notes = (*ink.notes, *_how(laid, ink), *places.notes)
-    say("overlay")
-    shown = [f for f in _worst(outcome.findings) if f.element.view not in _gone(outcome)]
-    marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
-        [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
-    files = cad_overlay.files(laid.n, laid.sheet.drawing, _exact(laid.elements, places.moves), space, marked)
-    name = project.variant.project.name
-    return Report(_text(name, path, laid, outcome, pencil), _tree(name, path, laid, places, outcome, pencil), files, notes)
+    return Examined(laid, places, outcome, (*ink.notes, *_how(laid, ink), *places.notes))
 
 
 # --- placing ----------------------------------------------------------------------------------------------------------
 
 
-def _lay(sheets: dict[int, Composed], ink: CadInk) -> Laid:
+def _lay(sheets: Mapping[int, Composed], ink: CadInk, thorough: bool = True) -> Laid:
     """The sheet and the space that fit best, with the placing of the drawing as a whole."""
-    tried: list[Laid] = []
     known = {n: elements(sheet) for n, sheet in sheets.items()}
-    for mirrored in (False, True):
-        for n, sheet in sheets.items():
-            ours = layout.ink(known[n])
+    ours = {n: layout.ink(found) for n, found in known.items()}
+    frame = _frame(next(iter(known.values())))
+    tried: list[Laid] = []
+    for space in ink.spaces:
+        theirs = lines(s.points for s in space.strokes)
+        for placing in _by_frame(frame, theirs, ink.unit):
+            for n, sheet in sheets.items():
+                picked = ours[n][:: max(len(ours[n]) // 3000, 1)]
+                share = theirs.share(placing.back(picked), HIT / placing.scale)
+                tried.append(Laid(n, sheet, known[n], space, placing, share))
+        # The first of those that are equal: model space, not mirrored.
+        if tried and _best(tried).share >= SURE:
+            return _settled(_best(tried), ours, theirs, ink.unit)
+    framed = _best(tried) if tried else None
+    if framed is None or (framed.share < POOR and thorough):
+        # Where there is a frame it was looked at from behind already.
+        for mirrored in (False, True) if framed is None and thorough else (False,):
             for space in ink.spaces:
                 theirs = lines(s.points for s in space.strokes)
-                scales = candidates(theirs, ink.unit, float(np.ptp(ours.real)), SIDES)
-                trial = search(ours, theirs, scales, mirrored=mirrored)
-                tried.append(Laid(n, sheet, known[n], space, trial.placing, trial.share))
-        # The first of those that are equal: model space, not mirrored.
-        best = max(tried, key=lambda laid: round(laid.share, 2))
-        if best.share >= SURE:
-            break
-    ours = layout.ink(best.elements)
-    picked = ours[:: max(len(ours) // 4000, 1)]
-    theirs = lines(s.points for s in best.space.strokes)
-    fitted = refine(picked, theirs, best.placing)
-    if fitted.share < best.share - 0.1:  # too little to go by: the whole has no one place
-        return best
-    placing = snapped(picked, theirs, fitted.placing, ink.unit)
-    return Laid(best.n, best.sheet, best.elements, best.space, placing, fitted.share)
+                for n, sheet in sheets.items():
+                    scales = candidates(theirs, ink.unit, float(np.ptp(ours[n].real)), SIDES)
+                    found = search(ours[n], theirs, scales, mirrored=mirrored)
+                    tried.append(Laid(n, sheet, known[n], space, found.placing, found.share))
+                    if found.share > 0.8:
+                        break
+            if _best(tried).share >= SURE:
+                break
+    best = _best(tried)
+    if framed is not None and framed.share > best.share - 0.15:
+        best = framed  # a layout of one's own stands in its frame
+    return _settled(best, ours, lines(s.points for s in best.space.strokes), ink.unit)
+
+
+def _best(tried: Sequence[Laid]) -> Laid:
+    return max(tried, key=lambda laid: round(laid.share, 2))
+
+
+def _settled(laid: Laid, ours: Mapping[int, Points], theirs: Lines, unit: float | None) -> Laid:
+    """The placing refined: on everything where most is in its place, else on the frame if there is one."""
+    z = ours[laid.n]
+    free = True
+    if laid.share < SURE:
+        frame = _frame(laid.elements)
+        if theirs.share(laid.placing.back(frame), HIT / laid.placing.scale) > 0.9:
+            z = frame
+        else:
+            free = False  # too little to go by: scale and angle stay as they were found
+    z = z[:: max(len(z) // 1500, 1)]
+    placing = snapped(z, theirs, refine(z, theirs, laid.placing, free=free).placing, unit)
+    return replace(laid, placing=placing)
+
+
+def _frame(found: Sequence[Element]) -> Points:
+    """Places along the frame: the largest rectangle of main lines."""
+    rectangles = [e for e in found if e.view.n == 0 and e.kind == "curve" and e.style == "main"]
+    return lines([max(rectangles, key=lambda e: e.length).points]).points(2.0)
+
+
+def _by_frame(frame: Points, theirs: Lines, unit: float | None) -> list[Placing]:
+    """Placings by the frame alone, all ways round; nothing when there is none."""
+    scales = candidates(theirs, unit, float(np.ptp(frame.real)), SIDES)[:8]
+    long = theirs.only(theirs.length > 0.02 * theirs.length.max())
+    trial = search(frame, long, scales, (0, 1), enough=0.97)
+    if trial.share < 0.95:
+        return []
+    x, y = frame.real.min() + frame.real.max(), frame.imag.min() + frame.imag.max()
+    ways = (Placing(), Placing(-1 + 0j, complex(x, y)), Placing(-1 + 0j, complex(x, 0), True), Placing(1 + 0j, complex(0, y), True))
+    return [way.after(trial.placing) for way in ways]
 
 
 def _how(laid: Laid, ink: CadInk) -> list[str]:
@@ -156,7 +224,7 @@ def _refuse(project: Project, laid: Laid, outcome: Outcome, ink: CadInk, asked: 
     hint = "is it the right project and variant? a drawing with a layout of its own can be told with --views where its views are"
     count = len(project.variant.sheets)
     if asked is not None and count > 1:
-        others = _lay({n: composed(project, n) for n in range(1, count + 1) if n != asked}, ink)
+        others = _lay({n: composed(project, n) for n in range(1, count + 1) if n != asked}, ink, False)
         if others.share > max(laid.share + 0.15, 0.4):
             hint = f"it looks like sheet {others.n}: use --sheet {others.n}, or leave --sheet out"
     what = f"sheet {laid.n}" if asked is not None or count == 1 else f"any of the {count} sheets"
@@ -213,7 +281,9 @@ def _found_by(entities: Sequence[Entity]) -> str:
     return f"{entities[0]}{more}"
 
 
-def _text(name: str, path: Path, laid: Laid, outcome: Outcome, pencil: float) -> str:
+def text(name: str, path: Path, found: Examined, pencil: float) -> str:
+    """The outcome for the terminal."""
+    laid, outcome = found.laid, found.outcome
     gone = _gone(outcome)
     colours = Counter(f.verdict for f in outcome.findings)
     out = [f"{name}, sheet {laid.n}: {path.name} ({laid.space.name}), {len(outcome.findings)} elements, tolerance {pencil:g} mm",
@@ -259,7 +329,9 @@ def _rounded(x: float | None) -> float | None:
     return None if x is None else round(x, 4)
 
 
-def _tree(name: str, path: Path, laid: Laid, places: layout.Layout, outcome: Outcome, pencil: float) -> dict[str, Any]:
+def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any]:
+    """The outcome for other programs."""
+    laid, places, outcome = found.laid, found.places, found.outcome
     colours = Counter(f.verdict for f in outcome.findings)
     p = laid.placing
 

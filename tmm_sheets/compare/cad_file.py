@@ -87,11 +87,11 @@ def _open(path: Path) -> tuple[Document, list[str]]:
     before = log.level
     log.setLevel(logging.CRITICAL)
     try:
-        if not head.startswith(b"AutoCAD Binary DXF"):
-            try:  # most files need no repair, and this is quicker
-                return readfile(path), []
-            except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError):
-                pass
+        try:  # most files need no repair, and binary ones cannot be repaired
+            return readfile(path), []
+        except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError):
+            if head.startswith(b"AutoCAD Binary DXF"):
+                raise
         document, auditor = recover.readfile(path)
     except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError) as e:
         raise BadInput(Problem(f"this is not a DXF file or it is damaged beyond repair ({e or type(e).__name__})", str(path),
@@ -391,28 +391,20 @@ COLOURS = {"SHEET": 3, "DRAWN": 8, "FOUND": 1}
 """Layers of the overlay with their AutoCAD colours: the exact sheet green, what was compared grey, findings red."""
 
 
-def overlay(size: tuple[float, float], exact: Sequence[Points], drawn: Sequence[Points],
-            found: Sequence[tuple[complex, float, str]]) -> bytes:
-    """A DXF file with the exact sheet and the drawing over each other, findings circled and numbered; all in mm of the sheet.
+def overlay(exact: Sequence[Points], drawn: Sequence[Points], found: Sequence[tuple[complex, float, str]]) -> bytes:
+    """A DXF file (R12: every program reads it) with the exact sheet over the drawing, findings circled and numbered; in mm.
 
     ``found`` has centre, radius and number of each.
     """
-    from ezdxf.filemanagement import new
-    from ezdxf.units import MM
+    from ezdxf.addons.r12writer import r12writer
 
-    document = new("R2010", units=MM)
-    for name, colour in COLOURS.items():
-        document.layers.add(name, color=colour)
-    space = document.modelspace()
-    for layer, lines in (("DRAWN", drawn), ("SHEET", exact)):
-        for z in lines:
-            space.add_lwpolyline(np.column_stack((z.real, z.imag)).tolist(), dxfattribs={"layer": layer})
-    for centre, radius, number in found:
-        at = (centre.real, centre.imag)
-        space.add_circle(at, radius, dxfattribs={"layer": "FOUND", "lineweight": 50})
-        corner = (centre.real + 0.72 * radius, centre.imag + 0.72 * radius)
-        space.add_text(number, height=3.5, dxfattribs={"layer": "FOUND", "insert": corner})
-    document.set_modelspace_vport(height=size[1] * 1.05, center=(size[0] / 2, size[1] / 2))
     text = StringIO()
-    document.write(text)
-    return text.getvalue().encode("utf-8")
+    with r12writer(text) as dxf:
+        for layer, lines in (("DRAWN", drawn), ("SHEET", exact)):
+            for z in lines:
+                dxf.add_polyline_2d(np.column_stack((z.real, z.imag)).tolist(), layer=layer, color=COLOURS[layer])
+        for centre, radius, number in found:
+            dxf.add_circle((centre.real, centre.imag), radius, layer="FOUND", color=COLOURS["FOUND"])
+            corner = (centre.real + 0.72 * radius, centre.imag + 0.72 * radius)
+            dxf.add_text(number, corner, height=3.5, layer="FOUND", color=COLOURS["FOUND"])
+    return text.getvalue().encode("ascii")

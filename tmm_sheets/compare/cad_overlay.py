@@ -33,7 +33,7 @@ def files(n: int, sheet: Drawing, exact: Sequence[Points], space: Space,
     layers = [(Drawing(sheet.width, sheet.height, sheet.title, tuple(theirs.marks)), GREY), (ours, GREEN),
               (Drawing(sheet.width, sheet.height, sheet.title, tuple(marked.marks)), RED)]
     return {f"sheet{n}-dxf.pdf": pdf.render_coloured(layers),
-            f"sheet{n}-overlay.dxf": cad_file.overlay((sheet.width, sheet.height), exact, drawn, found)}
+            f"sheet{n}-overlay.dxf": cad_file.overlay(exact, drawn, found)}
 
 
 def _write(canvas: Canvas, text: str, at: complex, height: float, width: float, angle: float) -> None:

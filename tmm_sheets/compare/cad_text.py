@@ -67,7 +67,9 @@ def read(wanted: Sequence[Wanted], writings: Sequence[Writing]) -> dict[int, Rea
             u = (want.corners[1] - want.corners[0]) / max(abs(want.corners[1] - want.corners[0]), 1e-9)
             near.sort(key=lambda k: ((writings[k].at - want.middle) * np.conj(u)).real)
             joined = meant("".join(writings[k].text for k in near))
-            if joined == meant(want.text) or sorted(joined) == sorted(meant(want.text)):
+            # Indices may have been written in another order than ours, but numbers keep their digits.
+            jumbled = len(near) > 1 and sorted(joined) == sorted(meant(want.text)) and _digits(joined) == _digits(meant(want.text))
+            if joined == meant(want.text) or jumbled:
                 found[n] = Read(tuple(near))
                 free.difference_update(near)
     for n, want in enumerate(wanted):
@@ -75,8 +77,7 @@ def read(wanted: Sequence[Wanted], writings: Sequence[Writing]) -> dict[int, Rea
             continue
         for k, w in enumerate(writings):
             away = (want.middle - w.at) * np.exp(-1j * w.angle)
-            if abs(away.real) < w.width and abs(away.imag) < 1.5 * w.height and len(words[k]) > len(meant(want.text)) > 1 \
-                    and meant(want.text) in words[k]:
+            if abs(away.real) < w.width and abs(away.imag) < 1.5 * w.height and _has(w.text, want.text):
                 found[n] = Read((k,))
                 free.discard(k)
                 break
@@ -94,6 +95,16 @@ def read(wanted: Sequence[Wanted], writings: Sequence[Writing]) -> dict[int, Rea
 def meant(text: str) -> str:
     """Text as compared: normal, and numbers without idle zeros (0,50 is 0,5)."""
     return re.sub(r"\d+\.\d+", lambda m: m.group().rstrip("0").rstrip("."), normal(text))
+
+
+def _has(text: str, part: str) -> bool:
+    """Whether some words of a text, one after another, are those of a part."""
+    words, wanted = [meant(w) for w in text.split()], [meant(w) for w in part.split()]
+    return any(words[k : k + len(wanted)] == wanted for k in range(len(words) - len(wanted) + 1))
+
+
+def _digits(text: str) -> str:
+    return "".join(c for c in text if c.isdigit())
 
 
 def _inside(want: Wanted, z: complex, margin: float) -> bool:

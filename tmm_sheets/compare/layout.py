@@ -7,14 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tmm_sheets.compare.cad_ink import Writing
+from tmm_sheets.compare.cad_text import meant
 from tmm_sheets.compare.elements import Element, View
-from tmm_sheets.compare.overlaps import left, overlaps, pieces
 from tmm_sheets.compare.placing import Lines, Placing, lines, refine, search
 from tmm_sheets.compare.view_places import ViewPlace, mu_of
 from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput
 
+MOST = 800
+"""Points of a view that are looked at."""
+MOST_STEP = 6.0
+"""About how far apart they are at most, mm."""
 NEAR = 0.3
 """A point of ours this near to ink, mm, counts as found."""
 SCALES = tuple(sorted({a / b * 10.0**k for a in HANDY for b in HANDY for k in (-1, 0, 1) if 0.15 < a / b * 10.0**k < 7},
@@ -38,80 +43,134 @@ def ink(elements: Sequence[Element]) -> Points:
     return lines([e.points for e in elements if e.kind not in ("text", "hatch", "fill")]).points(1.0)
 
 
-def find(elements: Sequence[Element], theirs: Lines, given: Sequence[tuple[ViewPlace, Placing]] = (),
-         elsewhere: bool = True) -> Layout:
+def find(elements: Sequence[Element], theirs: Lines, writings: Sequence[Writing] = (),
+         given: Sequence[tuple[ViewPlace, Placing]] = ()) -> Layout:
     """Place every view of a sheet.
+
+    A view may be in its place, a little aside, where its texts stand in the drawing, or anywhere in the ink the others leave.
 
     Parameters
     ----------
     elements : of the sheet
-    theirs : lines of the drawing, laid on the sheet as a whole, mm
+    theirs, writings : lines and texts of the drawing, laid on the sheet as a whole, mm
     given : places from a file, each with the placing of the whole drawing (drawing to sheet); they are refined, not searched
-    elsewhere : whether a view may stand anywhere else; if not, near its place only
     """
-    views = list(dict.fromkeys(e.view for e in elements))
-    points = {v: ink([e for e in elements if e.view == v]) for v in views}
-    moves: dict[View, Placing] = {}
-    share: dict[View, float] = {}
-    notes: list[str] = []
-    for place, whole in given:
-        moves[place.view] = _given(place, whole, elements, theirs, points[place.view])
-        share[place.view] = _share(points[place.view], theirs, moves[place.view])
-        notes.append(f"{_where(place.view, moves[place.view])}, as --views says")
-    lost: list[View] = []
-    for v in views:
-        if v in moves:
-            continue
-        share[v] = _share(points[v], theirs, Placing())
-        if v.n == 0 or len(points[v]) < 30 or share[v] > 0.9:
-            continue
-        near = refine(points[v], theirs, Placing(), (6.0, 3.0, 1.5, 0.8, 0.4, 0.25), False)
-        back = _inverse(near.placing)
-        better = _share(points[v], theirs, back)
-        if better > max(share[v] + 0.15, 0.5) and abs(near.placing.shift) > 0.1:
-            moves[v], share[v] = back, better
-            notes.append(f"{_where(v, back)}; compared there")
-        elif share[v] < 0.6:
-            lost.append(v)
-    if elsewhere and lost:
-        _search(lost, points, theirs, moves, share, notes)
-    return Layout(moves, share, tuple(notes))
+    return _Finder(elements, theirs, writings).layout(given)
 
 
-def _search(lost: Sequence[View], points: Mapping[View, Points], theirs: Lines, moves: dict[View, Placing],
-            share: dict[View, float], notes: list[str]) -> None:
-    """Look for views anywhere in what the others leave, the larger ones first."""
-    good = [(v, moves.get(v, Placing())) for v, s in share.items() if s >= 0.6]
-    for v in sorted(lost, key=lambda v: -len(points[v])):
-        known = [m(points[g]) for g, m in good]
-        free = _unused(theirs, known)
-        if len(free.a) < 4 or len(points[v]) < 60:
-            continue
-        found = search(points[v], free, [1 / r for r in SCALES], (0,), enough=0.92, tries=6)
-        if found.share < 0.6:
-            continue
-        near = refine(points[v], free, found.placing, (3.0, 1.5, 0.8, 0.4, 0.25))
-        back = _inverse(near.placing)
-        for r in SCALES:
-            if abs(back.scale / r - 1) < 2e-3:
-                middle = complex(points[v].mean())
-                start = _inverse(Placing(complex(r), complex(back(middle)) - r * middle))
-                back = _inverse(refine(points[v], free, start, (1.0, 0.5, 0.25, 0.15), False).placing)
-        better = _share(points[v], theirs, back)
-        if better > max(share[v] + 0.2, 0.55):
-            moves[v], share[v] = back, better
-            good.append((v, back))
-            notes.append(f"{_where(v, back)}; compared there")
+class _Finder:
+    """The views of a sheet with what has been found of them."""
+
+    def __init__(self, elements: Sequence[Element], theirs: Lines, writings: Sequence[Writing]) -> None:
+        self.elements, self.theirs = elements, theirs
+        self.views = list(dict.fromkeys(e.view for e in elements))
+        every = {v: ink([e for e in elements if e.view == v]) for v in self.views}
+        self.points = {v: z[:: max(len(z) // MOST, 1)] for v, z in every.items()}
+        self.texts = {v: [(meant(e.text), complex(e.points.mean())) for e in elements if e.view == v and e.kind == "text"]
+                      for v in self.views}
+        self.words: dict[str, list[complex]] = {}
+        for w in writings:
+            self.words.setdefault(meant(w.text), []).append(w.at)
+        self.moves: dict[View, Placing] = {}
+        self.share: dict[View, float] = {}
+        self.notes: list[str] = []
+
+    def layout(self, given: Sequence[tuple[ViewPlace, Placing]]) -> Layout:
+        """Every view in turn, those that are nowhere near last."""
+        for place, whole in given:
+            v = place.view
+            self.moves[v] = _given(place, whole, self.elements, self.theirs, self.points[v])
+            self.share[v] = self._inked(v, self.moves[v])
+            self.notes.append(f"{_where(v, self.moves[v])}, as --views says")
+        lost = []
+        for v in self.views:
+            if v in self.moves:
+                continue
+            self.share[v] = self._inked(v, Placing())
+            if v.n == 0 or self.share[v] > 0.93:
+                continue
+            starts = [Placing(shift=d) for d in (0j, *self._by_texts(v))]
+            trials = [self._nudged(v, s) for s in starts] if len(self.points[v]) >= 30 else starts[1:]
+            if not self._accept(v, trials) and self.share[v] < 0.6 and len(self.points[v]) >= 60:
+                lost.append(v)
+        self._search(lost)
+        return Layout(self.moves, self.share, tuple(self.notes))
+
+    def _accept(self, v: View, trials: Sequence[Placing]) -> bool:
+        """Take the best of several places when it is clearly better than its own."""
+        if not trials:
+            return False
+        before = self._score(v, Placing())
+        best = max(trials, key=lambda m: self._score(v, m))
+        inked, read = self._inked(v, best), self._read(v, best)
+        sure = inked > 0.85 or (inked > 0.5 and read > 0.3) or (len(self.points[v]) < 30 and read > 0.5)
+        still = abs(complex(best(v.box.centre)) - v.box.centre) < 0.1 and abs(best.scale - 1) < 1e-3
+        if not sure or still or self._score(v, best) < before + 0.12:
+            return False
+        self.moves[v], self.share[v] = best, inked
+        self.notes.append(f"{_where(v, best)}; compared there")
+        return True
+
+    def _inked(self, v: View, move: Placing) -> float:
+        return _share(self.points[v], self.theirs, move)
+
+    def _read(self, v: View, move: Placing) -> float:
+        """Share of a view's texts that stand where they should."""
+        texts = self.texts[v]
+        near = sum(any(abs(at - complex(move(z))) < 8.0 for at in self.words.get(word, ())) for word, z in texts)
+        return near / len(texts) if texts else 0.0
+
+    def _score(self, v: View, move: Placing) -> float:
+        return self._inked(v, move) + 0.5 * self._read(v, move)
+
+    def _by_texts(self, v: View) -> list[complex]:
+        """The shift most texts of a view agree on, when several do."""
+        shifts = np.array([at - z for word, z in self.texts[v] for at in self.words.get(word, ())], dtype=complex)
+        if len(shifts) < 2:
+            return []
+        votes = (np.abs(shifts[:, None] - shifts[None, :]) < 3.0).sum(axis=1)
+        k = int(votes.argmax())
+        if votes[k] < max(2, 0.25 * len(self.texts[v])):
+            return []
+        return [complex(np.median(near.real), np.median(near.imag)) for near in [shifts[np.abs(shifts - shifts[k]) < 3.0]]]
+
+    def _nudged(self, v: View, start: Placing) -> Placing:
+        """A move made better on the lines, without changing its size."""
+        return _inverse(refine(self.points[v], self.theirs, _inverse(start), (6.0, 3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing)
+
+    def _search(self, lost: Sequence[View]) -> None:
+        """Look for views anywhere in what the others leave, the larger ones first."""
+        if not lost:
+            return
+        free = self.theirs
+        for v, s in self.share.items():
+            if s >= 0.6:
+                free = _unused(free, self.moves.get(v, Placing())(self.points[v]))
+        for v in sorted(lost, key=lambda v: -len(self.points[v])):
+            if len(free.a) < 4:
+                return
+            found = search(self.points[v], free, [1 / r for r in SCALES], (0,), enough=0.95, tries=6)
+            back = _inverse(found.placing)
+            scale = min(SCALES, key=lambda r: abs(back.scale / r - 1))
+            middle = complex(self.points[v].mean())
+            start = _inverse(Placing(complex(scale), complex(back(middle)) - scale * middle))
+            nudged = refine(self.points[v], free, start, (3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing
+            if self._accept(v, [_inverse(nudged)]):
+                free = _unused(free, self.moves[v](self.points[v]))
 
 
-def _unused(theirs: Lines, known: Sequence[Points]) -> Lines:
-    """Their lines without those on which points of placed views lie."""
-    if not known:
+def _unused(theirs: Lines, known: Points) -> Lines:
+    """Their lines without those on which the points of a placed view lie."""
+    import shapely
+
+    if not len(theirs.a) or not len(known):
         return theirs
-    z = np.concatenate(known)
-    # Short strokes through the points stand for what is known.
-    cross = lines([p for d in (0.6, 0.6j, 0.42 + 0.42j, 0.42 - 0.42j) for p in np.stack((z - d, z + d), axis=1)])
-    return pieces(theirs, left(theirs, overlaps(cross, theirs, 0.3, 0.5, 0.5), 1.0))
+    _, j = theirs.tree.query(shapely.points(known.real, known.imag), predicate="dwithin", distance=NEAR)
+    keep = np.ones(len(theirs.a), bool)
+    hits = np.bincount(j, minlength=len(keep))
+    keep[hits * MOST_STEP >= 0.5 * theirs.length] = False
+    keep[hits == 0] = True
+    return theirs.only(keep)
 
 
 def _share(points: Points, theirs: Lines, move: Placing) -> float:

@@ -157,9 +157,9 @@ class _Matcher:
             return []
         if e.kind == "hatch":
             return [move(p) for p in e.pieces]
-        if e.kind == "circle" and e.radius <= SYMBOL and move.scale != 1:
-            return [move(e.centre) + (e.points - e.centre)]
         ink = [m for m in e.marks if not isinstance(m, Fill | Text)]
+        if ink and e.kind == "circle" and e.radius <= SYMBOL:
+            return [move(e.centre) + (e.points - e.centre)]
         if e.kind == "line" and len(ink) == 1 and isinstance(ink[0], Line):
             return [move(np.array([ink[0].a, ink[0].b]))]  # the shaft of an arrow, without its head
         return [move(e.points)] if ink else []
@@ -342,19 +342,28 @@ class _Matcher:
         made = runs(free, 0.1)
         wide = [r for r in runs(free, 4.5) if len(r.parts) > 1]
         plain = {r.parts for r in made}
+        first_wide = len(made)
         made += [r for r in wide if r.parts not in plain]
         if not made or not wanted:
             return
         a, b = np.array([r.a for r in made]), np.array([r.b for r in made])
-        tips = [self._tip(r, -1) for r in made], [self._tip(r, 1) for r in made]
-        tip_a, tip_b = np.array(tips[0]), np.array(tips[1])
+        along = (b - a) / np.abs(b - a)
+        # Where other elements have claimed a stretch at its end, the line goes on under them.
+        before, after = (np.array(x) for x in zip(*(self._under(r, rest) for r in made), strict=True))
+        tip_a, tip_b = np.array([self._tip(r, -1) for r in made]), np.array([self._tip(r, 1) for r in made])
         pairs = []
         for n in wanted:
             p, q = (complex(z) for z in self.moves[n](self.elements[n].points))
             u = (q - p) / abs(q - p)
             farthest = min(max(3.0, 0.35 * abs(q - p)), FARTHEST)
             straight = np.abs(((b - a) * np.conj(u)).imag) < 0.4 * np.abs(b - a)
-            for c, d in ((a, b), (b, a), (tip_a, tip_b), (tip_b, tip_a)):
+            if not line_type(self.elements[n].style).pattern:
+                straight[first_wide:] = False  # only what is dashed may have gaps
+            to_p, to_q = ((z - a) * np.conj(along) for z in (p, q))
+            size = np.abs(b - a)
+            forth = a + along * np.clip(to_p.real, before, 0), b + along * np.clip(to_q.real - size, 0, after)
+            back = b + along * np.clip(to_p.real - size, 0, after), a + along * np.clip(to_q.real, before, 0)
+            for c, d in (forth, back, (tip_a, tip_b), (tip_b, tip_a)):
                 off = np.maximum(np.abs(c - p), np.abs(d - q))
                 near = np.flatnonzero(straight & (off < farthest)).tolist()
                 pairs += [(float(off[k]), n, k, complex(c[k]), complex(d[k])) for k in near]
@@ -369,6 +378,13 @@ class _Matcher:
                     continue  # more of it is in its place
                 used.update(made[k].parts)
                 self._line(n, one, other, made[k], rest)
+
+    def _under(self, run: Run, rest: list[Left]) -> tuple[float, float]:
+        """How far the lines of a run go on before its beginning (negative) and after its end, mm."""
+        u = (run.b - run.a) / abs(run.b - run.a)
+        j = [rest[k].piece for k in run.parts]
+        t = ((np.concatenate((self.theirs.a[j], self.theirs.b[j])) - run.a) * np.conj(u)).real
+        return min(float(t.min()), 0.0), max(float(t.max()) - abs(run.b - run.a), 0.0)
 
     def _tip(self, run: Run, end: int) -> complex:
         """The end of a run, produced to the point of an arrow head that sits on it."""
@@ -406,7 +422,7 @@ class _Matcher:
         if abs(np.radians(turn)) * abs(q - p) / 2 > max(self.tolerance, 0.3 * across):
             said.append(f"turned {turn:+.2f}°")
         if abs(size) > self.tolerance:
-            said.append(f"{_more(size)} long")
+            said.append(f"{abs(size):.2f} mm too {'long' if size > 0 else 'short'}")
         elif abs((shift * np.conj(u)).real) > self.tolerance:
             said.append(f"{abs((shift * np.conj(u)).real):.2f} mm along itself")
         entities = tuple(dict.fromkeys(int(self.entity[rest[k].piece]) for k in run.parts))
@@ -532,9 +548,15 @@ class _Matcher:
                 # The line stands elsewhere, and so does its head.
                 tip += finding.shift + (tip - self.moves[n](self.elements[n].middle)) * (
                     np.exp(1j * np.radians(finding.turn or 0.0)) - 1)
-            if none_at_all or self._head_at(tip, 1.5 + (0.6 * abs(finding.size or 0.0) if finding.verdict != "green" else 0.0)):
-                continue
-            if self._open_head(tip):
+            reach = 1.5 + (0.6 * abs(finding.size or 0.0) if finding.verdict != "green" else 0.0)
+            back = complex(h.mean() - h[0])
+            of_others = ours[np.abs(ours - complex(h.mean())) > 0.3]
+            off = self._head_at(tip, back / abs(back), reach, of_others)
+            if off is not None and finding.verdict == "green" and off > self.tolerance:
+                # The line of a hand drawing goes on under the head: only the head tells where it ends.
+                self.found[n] = replace(finding, deviation=off, verdict=verdict(off, self.tolerance),
+                                        what=f"the tip is {off:.2f} mm off", at=tip, reach=5.0)
+            if none_at_all or off is not None or self._open_head(tip):
                 continue
             z = self.moves[n](self.elements[n].points)
             tail = complex(z[0] if abs(z[0] - tip) > abs(z[-1] - tip) else z[-1])
@@ -551,18 +573,26 @@ class _Matcher:
             self.found[n] = replace(finding, verdict=verdict(max(deviation, finding.deviation), self.tolerance),
                                     deviation=max(deviation, finding.deviation), what=said)
 
-    def _head_at(self, tip: complex, reach: float) -> bool:
-        found = False
+    def _head_at(self, tip: complex, back: complex, reach: float, of_others: Points) -> float | None:
+        """How far from the tip the head is that lies in the direction ``back`` of it: something filled, not the head of another."""
+        best: float | None = None
         for k in np.flatnonzero(np.abs(self.areas - tip) < 6.0 + reach):
-            if np.abs(self.space.areas[k].points - tip).min() < reach:
-                self.used_areas.add(int(k))
-                found = True
-        return found
+            z = self.space.areas[k].points
+            corner = complex(z[np.abs(z - tip).argmin()])
+            way = (complex(self.areas[k]) - corner) * back.conjugate()
+            if abs(corner - tip) >= reach or way.real <= 1.5 * abs(way.imag):
+                continue
+            if len(of_others) and np.abs(of_others - self.areas[k]).min() < 0.3:
+                continue
+            self.used_areas.add(int(k))
+            best = min(abs(corner - tip), reach if best is None else best)
+        return best
 
     def _open_head(self, tip: complex) -> bool:
         """Two short lines that meet at the tip."""
         ends = (np.abs(self.theirs.a - tip) < 0.6) | (np.abs(self.theirs.b - tip) < 0.6)
-        return int((ends & (self.theirs.length < 8.0) & (self.theirs.length > 1.0)).sum()) >= 2
+        whole = np.bincount(self.theirs.owner, self.theirs.length)[self.theirs.owner]
+        return int((ends & (whole < 16.0) & (self.theirs.length < 8.0) & (self.theirs.length > 1.0)).sum()) >= 2
 
     def _hatching(self) -> None:
         """Hatched regions: their own strokes, or anything hatched there."""
@@ -695,7 +725,7 @@ class _Matcher:
             if ends[0] is not None and ends[1] is not None and size < 4.5:
                 continue  # one line drawn through where ours are two
             n = ends[0] if ends[0] is not None else ends[1]
-            if n is not None and self.elements[n].kind in ("line", "arc", "curve") and self._continues(n, chain):
+            if n is not None and self.elements[n].kind in ("line", "arc", "curve") and self._continues(n, chain, owners):
                 self._too_long(n, size, chain)
             elif size > LEAST:
                 extra.append((chain, size))
@@ -789,14 +819,23 @@ class _Matcher:
     def _same_line(self, j: int, k: int) -> bool:
         return 0 <= k < len(self.theirs.owner) and bool(self.theirs.owner[j] == self.theirs.owner[k])
 
-    def _continues(self, n: int, chain: list[Left]) -> bool:
+    def _continues(self, n: int, chain: list[Left], owners: Mapping[int, list[tuple[float, float, int]]]) -> bool:
         """Whether the chain goes on as the element ended: straight on, or in the same curve."""
+        # What only crosses or touches it for a short way is another line.
+        j = chain[0].piece
+        same = self.theirs.owner == self.theirs.owner[j]
+        mine = sum(b - a for k, parts in owners.items() if same[k] for a, b, m in parts if m == n)
+        if mine < 0.5 * self._whole(n) and mine < 0.3 * float(self.theirs.length[same].sum()):
+            return False
         if self.elements[n].kind != "line":
             return True
         z = self.moves[n](self.elements[n].points)
         u = (z[-1] - z[0]) / abs(z[-1] - z[0])
         d = self.theirs.b[chain[0].piece] - self.theirs.a[chain[0].piece]
-        return bool(abs((d * np.conj(u)).imag) < 0.1 * abs(d)) and len(chain) == 1
+        middle = complex(self._ends(chain[0]).mean())
+        if 0 < ((middle - z[0]) * np.conj(u)).real < abs(z[-1] - z[0]):
+            return False  # beside it, not beyond its end
+        return bool(abs((d * np.conj(u)).imag) < 0.03 * abs(d)) and len(chain) == 1
 
     def _too_long(self, n: int, size: float, chain: list[Left]) -> None:
         e, old = self.elements[n], self.found[n]
@@ -822,9 +861,14 @@ class _Matcher:
         for chain, size in extra:
             by_entity.setdefault(int(self.entity[chain[0].piece]), []).append((chain, size))
         small: list[tuple[int, float, Points]] = []
+        whole = np.zeros(len(self.space.entities))
+        np.add.at(whole, self.entity, self.theirs.length)
         for k, found in by_entity.items():
             z = np.concatenate([self._ends(r) for chain, _ in found for r in chain])
             size = sum(s for _, s in found)
+            if size > 0.5 * whole[k]:  # the rest runs along lines of the sheet by chance
+                mine = self.entity == k
+                z, size = np.concatenate((self.theirs.a[mine], self.theirs.b[mine])), float(whole[k])
             if np.ptp(z.real) + np.ptp(z.imag) < 14.0:
                 small.append((k, size, z))
             else:
@@ -878,7 +922,9 @@ def _add_unions(covered: npt.NDArray[np.float64], near: Overlaps, ours: Lines) -
     """Adds to each of our lines how much of it the overlaps cover, every place once."""
     order = np.argsort(near.ours, kind="stable")
     i = near.ours[order]
-    first = np.flatnonzero(np.concatenate(([True], i[1:] != i[:-1]))) if len(i) else np.zeros(0, np.int64)
+    if not len(i):
+        return
+    first = np.flatnonzero(np.concatenate(([True], i[1:] != i[:-1])))
     s0, s1 = near.s0[order].tolist(), near.s1[order].tolist()
     for p, q in zip(first.tolist(), [*first[1:].tolist(), len(i)], strict=True):
         covered[ours.owner[i[p]]] += sum(b - a for a, b in union(zip(s0[p:q], s1[p:q], strict=True), 0.02))

@@ -1,0 +1,279 @@
+"""CAD drawings of sheets: right ones in any shape are not accused, planted errors are found and told by name."""
+
+import random
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.compare.cad_plants import Way, draw
+from tmm_sheets.backends import dxf
+from tmm_sheets.catalogue import read
+from tmm_sheets.compare import cad, cad_file
+from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.placing import Placing, lines
+from tmm_sheets.compare.report import Report
+from tmm_sheets.errors import BadInput
+from tmm_sheets.project import Project
+from tmm_sheets.sheets.sheet import composed
+
+SHAPER = Project(read("lugansk/shaper"))
+SHEET = composed(SHAPER, 2)
+EXACT = elements(SHEET)
+
+
+def compare(data, tmp_path, sheet=2, views=None, project=SHAPER):
+    """Notes and tree of a comparison, without its overlays."""
+    path = tmp_path / "student.dxf"
+    path.write_bytes(data)
+    if views is not None:
+        (tmp_path / "views.toml").write_text(views, encoding="utf-8")
+        views = tmp_path / "views.toml"
+    found = cad.examine(project, sheet, path, views, 0.25)
+    return Report(cad.text("shaper", path, found, 0.25), cad.tree("shaper", path, found, 0.25), notes=found.notes)
+
+
+def drawn(found, seed=1, **way):
+    return draw(list(found), Way(**way), random.Random(seed))
+
+
+def summary(report):
+    return tuple(report.tree["summary"][k] for k in ("green", "amber", "red", "skipped", "extra"))
+
+
+def judged(report, number):
+    return report.tree["elements"][number - 1]
+
+
+def changed(number, **fields):
+    """The elements with one of them altered."""
+    return [replace(e, **fields) if e.number == number else e for e in EXACT]
+
+
+def one(test):
+    """The first element of a view (not the frame) that passes."""
+    return next(e for e in EXACT if e.view.n and test(e))
+
+
+ALL_GREEN = (len(EXACT), 0, 0, 0, 0)
+
+
+@pytest.mark.parametrize(("n", "asked"), [(1, 1), (3, None)])
+def test_our_own_drawing_has_no_deviation(tmp_path, n, asked):
+    report = compare(dxf.render(composed(SHAPER, n).drawing), tmp_path, asked)
+    assert report.tree["sheet"] == n
+    assert {e["verdict"] for e in report.tree["elements"]} == {"green"}
+    assert max(e["deviation"] for e in report.tree["elements"]) < 0.002
+    assert report.tree["extra"] == []
+    assert report.notes == ()
+
+
+@pytest.mark.parametrize("way", [
+    {"turn": -2 / 25.4, "unit": 1, "block": True, "split": 0.5, "polylines": 0.7, "shift": 12.5 - 3j},  # inches, upside down
+    {"frame": False, "shift": -1000 - 1000j},
+])  # fmt: skip
+def test_a_right_drawing_in_another_shape(tmp_path, way):
+    report = compare(drawn(EXACT, **way), tmp_path)
+    absent = EXACT[0].view.name if not way.get("frame", True) else ""
+    assert [e for e in report.tree["elements"] if e["verdict"] != "green" and e["view"] != absent] == []
+    assert report.tree["extra"] == []
+
+
+def test_wrong_units_and_turns_are_mended_and_said(tmp_path):
+    report = compare(drawn(EXACT, turn=0.001j, unit=4), tmp_path)
+    assert summary(report) == ALL_GREEN
+    assert "the drawing lies turned by 90 degrees; it was turned back" in report.notes
+    assert "the drawing is in metres though the file declares millimetres; it was scaled accordingly" in report.notes
+
+
+def test_a_mirrored_drawing_at_half_size_is_turned_over_and_said(tmp_path):
+    report = compare(drawn(EXACT, mirrored=True, turn=0.5, shift=500), tmp_path)
+    assert "the drawing is mirrored; it was turned over for the comparison" in report.notes
+    assert "the drawing is at scale 1:2; it was scaled to 1:1" in report.notes
+    assert summary(report) == ALL_GREEN
+
+
+LINE = one(lambda e: e.kind == "line" and e.length > 60 and e.style == "thin" and abs(e.points[0].real - e.points[1].real) < 1e-6)
+CIRCLE = one(lambda e: e.kind == "circle" and e.radius > 10)
+CURVE = one(lambda e: e.kind == "curve" and len(e.points) > 50)
+TEXT = one(lambda e: e.kind == "text" and e.text == "H = 142")
+
+
+GREENISH, AMBER, GONE, TURNED = (
+    [e for e in EXACT if e.view.n and e.kind == "line" and e.length > 60 and e.style == "thin" and e is not LINE
+     and e.points[0].imag == e.points[1].imag][k] for k in range(4))  # fmt: skip
+ARROW = one(lambda e: e.kind == "line" and len(e.fills) == 1 and e.length > 30)
+STRAY = np.array([500 + 430j, 540 + 445j])
+TURN = np.exp(1j * np.radians(2))
+
+
+def bulged(curve):
+    n = len(curve.points)
+    across = 1j * np.gradient(curve.points)
+    return curve.points + 1.2 * np.exp(-((np.arange(n) - n // 2) / (0.04 * n)) ** 2) * across / np.abs(across)
+
+
+SPOILED = {
+    LINE: {"points": LINE.points + 1.5},
+    GREENISH: {"points": GREENISH.points + 0.2j},
+    AMBER: {"points": AMBER.points + 0.4j},
+    TURNED: {"points": TURNED.points[0] + (TURNED.points - TURNED.points[0]) * TURN},
+    CIRCLE: {"centre": CIRCLE.centre + 2j, "radius": CIRCLE.radius - 1},
+    CURVE: {"points": bulged(CURVE)},
+    TEXT: {"text": "H = 124"},
+    ARROW: {"points": ARROW.points[::-1], "fills": (ARROW.points.sum() - ARROW.fills[0],)},
+}
+
+
+@pytest.fixture(scope="module")
+def spoiled(tmp_path_factory):
+    """One drawing with an error of each kind: its path and the report."""
+    found = [replace(e, **SPOILED.get(e, {})) for e in EXACT if e is not GONE]
+    found.append(replace(LINE, number=-1, points=STRAY))
+    path = tmp_path_factory.mktemp("spoiled") / "student.dxf"
+    path.write_bytes(drawn(found))
+    return path, cad.compare(SHAPER, 2, path, None, 0.25, lambda _: None)
+
+
+def test_only_what_was_spoiled_is_accused(spoiled):
+    wrong = {e["number"] for e in spoiled[1].tree["elements"] if e["verdict"] != "green"}
+    assert wrong == {e.number for e in (*SPOILED, GONE)} - {GREENISH.number}
+
+
+def test_a_shifted_line_is_found_with_its_shift_and_its_handle(spoiled):
+    path, report = spoiled
+    found = judged(report, LINE.number)
+    assert (found["verdict"], found["deviation"]) == ("red", pytest.approx(1.5, abs=0.01))
+    assert found["shift"] == pytest.approx([1.5, 0], abs=0.01)
+    (entity,) = found["entities"]
+    (space,) = cad_file.read(path).spaces
+    stroke = next(s for s in space.strokes if space.entities[s.entity].handle == entity["handle"])
+    assert stroke.points[0].real == pytest.approx(LINE.points[0].real + 1.5)
+    assert f'{entity["handle"]} on layer "{entity["layer"]}"' in report.text
+
+
+def test_the_verdict_follows_the_pencil(spoiled):
+    assert [judged(spoiled[1], e.number)["verdict"] for e in (GREENISH, AMBER, LINE)] == ["green", "amber", "red"]
+    assert judged(spoiled[1], GREENISH.number)["deviation"] == pytest.approx(0.2, abs=0.01)
+
+
+def test_a_turned_line(spoiled):
+    found = judged(spoiled[1], TURNED.number)
+    assert found["turn"] == pytest.approx(2.0, abs=0.02)
+    assert found["deviation"] == pytest.approx(TURNED.length * np.radians(2), rel=0.01)
+
+
+def test_a_missing_and_an_extra_line(spoiled):
+    assert judged(spoiled[1], GONE.number)["missing"]
+    (extra,) = spoiled[1].tree["extra"]
+    assert extra["length"] == pytest.approx(abs(40 + 15j), abs=0.1)
+    assert extra["at"] == pytest.approx([520, 437.5], abs=0.1)
+
+
+def test_a_circle_off_its_centre_and_of_another_size(spoiled):
+    found = judged(spoiled[1], CIRCLE.number)
+    assert found["shift"] == pytest.approx([0, 2], abs=0.02)
+    assert found["size"] == pytest.approx(-1, abs=0.02)
+
+
+def test_a_bulging_curve(spoiled):
+    assert judged(spoiled[1], CURVE.number)["deviation"] == pytest.approx(1.2, abs=0.1)
+
+
+def test_a_wrong_number(spoiled):
+    assert judged(spoiled[1], TEXT.number)["what"] == 'reads "H = 124" instead of "H = 142"'
+
+
+def test_an_arrow_the_wrong_way_round(spoiled):
+    found = judged(spoiled[1], ARROW.number)
+    assert (found["verdict"], found["what"]) == ("red", "points the other way")
+
+
+def test_a_wrong_letter_drawn_with_strokes(tmp_path):
+    marks = list(SHEET.drawing.marks)
+    k = next(k for k, m in enumerate(marks) if getattr(m, "text", "") == "H = 142")
+    marks[k] = marks[k]._replace(text="H = 147")
+    found = judged(compare(dxf.render(replace(SHEET.drawing, marks=tuple(marks))), tmp_path), TEXT.number)
+    assert (found["verdict"], found["what"]) == ("red", 'the letters are not those of "H = 142"')
+
+
+def test_a_layout_of_ones_own(tmp_path):
+    """Views that stand elsewhere are compared there; an error in one of them is still found."""
+    rng = random.Random(5)
+    shifts = {v: complex(rng.uniform(-30, 30), rng.uniform(-30, 30)) for v in {e.view.n for e in EXACT} if v}
+    found = [replace(e, points=e.points + (d := shifts.get(e.view.n, 0)), centre=e.centre + d, fills=tuple(f + d for f in e.fills),
+                     pieces=tuple(p + d for p in e.pieces)) for e in EXACT]
+    found[LINE.number - 1] = replace(found[LINE.number - 1], points=found[LINE.number - 1].points + 1.5)
+    report = compare(drawn(found), tmp_path)
+    assert judged(report, LINE.number)["verdict"] == "red"
+    assert report.tree["summary"]["red"] + report.tree["summary"]["amber"] <= 3
+    assert any(f'"{LINE.view.name}" stands' in note for note in report.notes)
+
+
+def test_views_given_by_a_file(tmp_path):
+    view = CIRCLE.view
+    place = Placing(0.5, 300 + 20j)
+
+    def moved(e):
+        points = e.points + place(e.middle) - e.middle if e.kind == "text" else place(e.points)
+        return replace(e, points=points, centre=place(e.centre), radius=e.radius * (0.5 if e.radius > 2.6 else 1),
+                       fills=tuple(map(place, e.fills)), pieces=tuple(map(place, e.pieces)))
+
+    found = [moved(e) if e.view == view else e for e in EXACT]
+    ours = [CIRCLE.centre, CIRCLE.centre + 50]
+    pairs = ", ".join(f"[{z.real}, {z.imag}]" for z in ours), ", ".join(f"[{z.real}, {z.imag}]" for z in map(place, ours))
+    given = f'[[view]]\nname = "{view.name}"\nours = [{pairs[0]}]\ntheirs = [{pairs[1]}]\n'
+    report = compare(drawn(found), tmp_path, views=given)
+    told = next(v for v in report.tree["views"] if v["view"] == view.name)
+    assert told["size"] == pytest.approx(0.5, abs=1e-3)
+    assert judged(report, CIRCLE.number)["verdict"] == "green"
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    ("", "has no .*view.* table"),
+    ("[[view]]\nname = 'Схема'\nours = [[1, 2], [3, 4]]\ntheirs = [[1, 2], [3, 4]]", 'the sheet has no view "Схема"'),
+    ("[[view]]\nname = 'Эскиз маховика'\nours = [[1, 2], [30, 4]]\ntheirs = [[1, 2]]", "1 points, ours has 2"),
+    ("[[view]]\nname = 'Эскиз маховика'\nours = [1, 2]\ntheirs = [[1, 2]]\nmu = -1", "expected points(.|\n)*a positive number"),
+    ("[[view]]\nname = 'Эскиз маховика'\nours = [[1, 2]]\ntheirs = [[1, 2]]\nsize = 2", "is not known here"),
+    ("[[view", "Expected|expected"),
+])  # fmt: skip
+def test_a_bad_file_of_views(tmp_path, text, said):
+    with pytest.raises(BadInput, match=said):
+        compare(drawn(EXACT), tmp_path, views=text)
+
+
+def test_the_wrong_sheet_is_told_and_the_right_one_named(tmp_path):
+    with pytest.raises(BadInput, match=r"only \d+% of the lines of sheet 3 are in this drawing") as e:
+        compare(drawn(EXACT), tmp_path, 3)
+    assert "it looks like sheet 2: use --sheet 2" in e.value.problems[0].hint
+
+
+def test_a_drawing_of_something_else(tmp_path):
+    rng = np.random.default_rng(1)
+    z = rng.uniform(0, 800, 60) + 1j * rng.uniform(0, 500, 60)
+    other = [replace(LINE, points=np.array([a, b]), number=-1) for a, b in pairwise(z)]
+    with pytest.raises(BadInput, match="of the lines of sheet 1 are in this drawing"):
+        compare(drawn(other), tmp_path, 1, project=Project(read("lugansk/cam_flat")))
+
+
+def test_no_such_sheet(tmp_path):
+    with pytest.raises(BadInput, match="--sheet 5: lugansk/shaper has 4 sheets"):
+        compare(b"", tmp_path, 5)
+
+
+def test_the_overlay_shows_both_and_the_findings(spoiled, tmp_path):
+    report = spoiled[1]
+    assert set(report.files) == {"sheet2-dxf.pdf", "sheet2-overlay.dxf"}
+    assert report.files["sheet2-dxf.pdf"].startswith(b"%PDF")
+    path = Path(tmp_path) / "overlay.dxf"
+    path.write_bytes(report.files["sheet2-overlay.dxf"])
+    (space,) = cad_file.read(path).spaces
+    assert {w.text for w in space.writings} == {*(str(e.number) for e in (*SPOILED, GONE) if e is not GREENISH), "+1"}
+    exact = lines([s.points for s in space.strokes if space.entities[s.entity].layer == "SHEET"])
+    theirs = lines([s.points for s in space.strokes if space.entities[s.entity].layer == "DRAWN"])
+    middle = np.array([LINE.points.mean()])
+    assert exact.share(middle, 0.01) == 1
+    assert theirs.share(middle, 0.5) == 0
+    assert theirs.share(middle + 1.5, 0.01) == 1

@@ -1,0 +1,190 @@
+"""Reading DXF files of all kinds, and what is said of those that are none."""
+
+from io import BytesIO, StringIO
+from math import pi
+
+import ezdxf
+import numpy as np
+import pytest
+from ezdxf.enums import TextEntityAlignment
+
+from tmm_sheets.compare import cad_file
+from tmm_sheets.compare.cad_ink import normal
+from tmm_sheets.errors import BadInput
+
+
+def saved(doc, path, binary=False):
+    if binary:
+        data = BytesIO()
+        doc.write(data, fmt="bin")
+        path.write_bytes(data.getvalue())
+    else:
+        text = StringIO()
+        doc.write(text)
+        path.write_text(text.getvalue(), encoding="utf-8")
+    return path
+
+
+def drawing(unit=4):
+    doc = ezdxf.new("R2010")
+    doc.header["$INSUNITS"] = unit
+    return doc, doc.modelspace()
+
+
+def length(space):
+    return sum(float(np.abs(np.diff(s.points)).sum()) for s in space.strokes)
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "drawing.dxf"
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_every_entity_with_lines(path, binary):
+    doc, msp = drawing()
+    msp.add_line((0, 0), (30, 40))
+    msp.add_circle((0, 0), 10)
+    msp.add_arc((0, 0), 10, 350, 80)
+    msp.add_ellipse((0, 0), (20, 0), 0.999999999)
+    msp.add_lwpolyline([(0, 0, 0, 0, 1), (20, 0, 0, 0, 0), (20, 7)], format="xyseb")
+    msp.add_polyline2d([(0, 0), (3, 4), (3, 14)])
+    msp.add_polyline3d([(0, 0, 1), (3, 4, 1)])
+    msp.add_spline([(0, 0), (10, 0), (20, 0), (30, 0)])
+    ink = cad_file.read(saved(doc, path, binary))
+    assert ink.unit == 1.0
+    kinds = {}
+    for s in ink.spaces[0].strokes:
+        kind = ink.spaces[0].entities[s.entity].kind
+        kinds[kind] = kinds.get(kind, 0) + float(np.abs(np.diff(s.points)).sum())
+    want = {"LINE": 50, "CIRCLE": 20 * pi, "ARC": 10 * pi / 2, "ELLIPSE": 40 * pi, "LWPOLYLINE": 10 * pi + 7, "SPLINE": 30,
+            "POLYLINE": 20}
+    assert kinds == pytest.approx(want, rel=1e-3)
+    assert ink.notes == ("some of the drawing has heights (z): it is seen from above",)
+
+
+def test_blocks_in_blocks_turned_and_scaled(path):
+    doc, msp = drawing()
+    inner = doc.blocks.new("inner")
+    inner.add_line((0, 0), (1, 0), dxfattribs={"layer": "0"})
+    outer = doc.blocks.new("outer")
+    outer.add_blockref("inner", (5, 0), dxfattribs={"xscale": 2, "yscale": 2, "layer": "deep"})
+    ref = msp.add_blockref("outer", (100, 0), dxfattribs={"rotation": 90, "layer": "top"})
+    space = cad_file.read(saved(doc, path)).spaces[0]
+    (stroke,) = space.strokes
+    assert stroke.points == pytest.approx(np.array([100 + 5j, 100 + 7j]))
+    entity = space.entities[stroke.entity]
+    assert (entity.kind, entity.handle) == ("INSERT", ref.dxf.handle)
+
+
+def test_text_with_its_middle(path):
+    doc, msp = drawing()
+    msp.add_text("AB", height=10).set_placement((50, 50), align=TextEntityAlignment.MIDDLE_CENTER)
+    msp.add_text("CD", height=10, rotation=90).set_placement((0, 0), align=TextEntityAlignment.BOTTOM_LEFT)
+    msp.add_mtext("one\\P{\\fArial|b0;two}", dxfattribs={"char_height": 3, "insert": (0, 100), "attachment_point": 1})
+    msp.add_line((0, 0), (1, 1))
+    space = cad_file.read(saved(doc, path)).spaces[0]
+    ab, cd, one, two = space.writings
+    assert (ab.text, ab.at) == ("AB", pytest.approx(50 + 50j))
+    assert cd.at.real < 0 < cd.at.imag  # it reads upwards, its letters stand to the left
+    assert (one.text, two.text) == ("one", "two")
+    assert 90 < two.at.imag < one.at.imag < 100
+
+
+def test_dimensions_hatches_and_solids(path):
+    doc, msp = drawing()
+    msp.add_linear_dim(base=(0, 10), p1=(0, 0), p2=(50, 0)).render()
+    msp.add_hatch(color=1).paths.add_polyline_path([(0, 0), (10, 0), (10, 10), (0, 10)], is_closed=True)
+    lined = msp.add_hatch()
+    lined.set_pattern_fill("ANSI31", scale=1)
+    lined.paths.add_polyline_path([(100, 0), (120, 0), (120, 20), (100, 20)], is_closed=True)
+    msp.add_solid([(0, 0), (1, 0), (0, 1)])
+    space = cad_file.read(saved(doc, path)).spaces[0]
+    assert [w.text for w in space.writings] == ["50"]
+    assert len([s for s in space.strokes if space.entities[s.entity].kind == "DIMENSION"]) >= 3
+    assert [a.solid for a in space.areas if space.entities[a.entity].kind == "HATCH"] == [True, False]
+    slanting = [s for s in space.strokes if space.entities[s.entity].kind == "HATCH"]
+    assert len(slanting) > 4
+    assert all(abs((s.points[-1] - s.points[0]).real - (s.points[-1] - s.points[0]).imag) < 1e-6 for s in slanting)
+
+
+def test_paper_space_with_what_its_viewport_shows(path):
+    doc, msp = drawing(6)
+    msp.add_line((0, 0), (1, 0))  # a metre, of which the viewport shows the first half
+    layout = doc.layout("Layout1")
+    layout.add_line((0, 0), (841, 0))
+    layout.add_viewport(center=(200, 100), size=(100, 100), view_center_point=(0, 0), view_height=1.0)
+    spaces = cad_file.read(saved(doc, path)).spaces
+    assert [s.name for s in spaces] == ["model space", 'layout "Layout1"']
+    shown = spaces[1].strokes[1].points
+    assert shown == pytest.approx(np.array([200 + 100j, 250 + 100j]))
+
+
+def test_hidden_layers_do_not_count(path):
+    doc, msp = drawing()
+    doc.layers.add("off").off()
+    doc.layers.add("frozen").freeze()
+    msp.add_line((0, 0), (1, 0))
+    for layer in ("off", "frozen", "Defpoints"):
+        msp.add_line((0, 0), (9, 9), dxfattribs={"layer": layer})
+    msp.add_line((0, 0), (9, 9), dxfattribs={"invisible": 1})
+    ink = cad_file.read(saved(doc, path))
+    assert length(ink.spaces[0]) == 1
+    assert ink.notes == ("left out, on layers that are off or frozen: 3 entities",)
+
+
+def test_damaged_files_are_read_as_far_as_they_go(path):
+    doc, msp = drawing()
+    msp.add_line((0, 0), (30, 40))
+    saved(doc, path)
+    text = path.read_text()
+    broken = text.replace("ENDSEC\n  0\nSECTION\n  2\nOBJECTS", "ENDSEC\n  0\nSECTION\n  2\nOBJECTZ").replace("AcDbLine\n", "\n")
+    path.write_text(broken.replace("  0\nEOF\n", ""))
+    assert length(cad_file.read(path).spaces[0]) == pytest.approx(50)
+
+
+@pytest.mark.parametrize(("data", "said"), [
+    (b"", "the file is empty"),
+    (b"AC1032\0\0\0", "this is a DWG file, only DXF can be read"),
+    (b"%PDF-1.4", "this is a PDF file, not DXF"),
+    (b"\x89PNG\r\n", "this is a PNG file, not DXF"),
+    (b"hello\nworld\n", "this is not a DXF file or it is damaged beyond repair"),
+    (b"\0\1\2\3" * 100, "this is not a DXF file or it is damaged beyond repair"),
+])  # fmt: skip
+def test_what_is_no_dxf(path, data, said):
+    path.write_bytes(data)
+    with pytest.raises(BadInput) as e:
+        cad_file.read(path)
+    assert said in str(e.value)
+    assert str(path) in str(e.value)
+    assert "DXF" in e.value.problems[0].hint
+
+
+def test_no_such_file_and_nothing_drawn(path):
+    with pytest.raises(BadInput, match="cannot be read: No such file"):
+        cad_file.read(path)
+    doc, msp = drawing()
+    doc.layers.add("off").off()
+    msp.add_line((0, 0), (1, 1), dxfattribs={"layer": "off"})
+    with pytest.raises(BadInput, match=r"nothing is drawn in it \(left out, on layers that are off or frozen: 1 entities"):
+        cad_file.read(saved(doc, path))
+
+
+@pytest.mark.parametrize(("a", "b"), [
+    ("μ_l = 0,0025 м/мм", "μl=0.0025 м/мм"), ("F_{21}", "F₂₁"), ("В", "B"), ("a′", "a'"), ("−5", "-5"), ("Н·м", "Н*м"),
+    ("m²", "m2"),
+])  # fmt: skip
+def test_writing_that_means_the_same(a, b):
+    assert normal(a) == normal(b)
+
+
+@pytest.mark.parametrize(("a", "b"), [("A", "B"), ("10", "1,0"), ("a", "A"), ("b3", "b2")])
+def test_writing_that_does_not(a, b):
+    assert normal(a) != normal(b)
+
+
+def test_the_overlay_can_be_read_again(path):
+    path.write_bytes(cad_file.overlay([np.array([0, 100 + 50j])], [np.array([1, 99 + 50j])], [(50 + 20j, 5.0, "7")]))
+    (space,) = cad_file.read(path).spaces
+    assert {e.layer for e in space.entities} == {"SHEET", "DRAWN", "FOUND"}
+    assert [w.text for w in space.writings] == ["7"]
