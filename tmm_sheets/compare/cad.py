@@ -12,6 +12,7 @@ import numpy as np
 
 from tmm_sheets.compare import cad_file, cad_overlay, layout, view_places
 from tmm_sheets.compare.cad_ink import CadInk, Entity, Space
+from tmm_sheets.compare.cad_text import meant
 from tmm_sheets.compare.elements import Element, View, elements
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.matching import Finding, Outcome, match, placed
@@ -123,13 +124,11 @@ def _lay(sheets: Mapping[int, Composed], ink: CadInk, thorough: bool = True) -> 
                 picked = ours[n][:: max(len(ours[n]) // 3000, 1)]
                 share = theirs.share(placing.back(picked), HIT / placing.scale)
                 tried.append(Laid(n, sheet, known[n], space, placing, share))
-        # The first of those that are equal: model space, not mirrored.
         if tried and _best(tried).share >= SURE:
             return _settled(_best(tried), ours, theirs, ink.unit)
     framed = _best(tried) if tried else None
-    if framed is None or (framed.share < POOR and thorough):
-        # Where there is a frame it was looked at from behind already.
-        for mirrored in (False, True) if framed is None and thorough else (False,):
+    if framed is None:
+        for mirrored in (False, True) if thorough else (False,):
             for space in ink.spaces:
                 theirs = lines(s.points for s in space.strokes)
                 for n, sheet in sheets.items():
@@ -140,14 +139,23 @@ def _lay(sheets: Mapping[int, Composed], ink: CadInk, thorough: bool = True) -> 
                         break
             if _best(tried).share >= SURE:
                 break
-    best = _best(tried)
-    if framed is not None and framed.share > best.share - 0.15:
-        best = framed  # a layout of one's own stands in its frame
+    # With a frame the rest may have a layout of its own: then what is written tells the sheet.
+    best = framed or _best(tried)
     return _settled(best, ours, lines(s.points for s in best.space.strokes), ink.unit)
 
 
 def _best(tried: Sequence[Laid]) -> Laid:
-    return max(tried, key=lambda laid: round(laid.share, 2))
+    """The first of those that are equal: model space, not mirrored; where little fits, of the sheet with more of the words."""
+    if max(laid.share for laid in tried) >= SURE:
+        return max(tried, key=lambda laid: round(laid.share, 2))
+    return max(tried, key=lambda laid: round(laid.share + _said(laid), 2))
+
+
+def _said(laid: Laid) -> float:
+    """Share of the words of a sheet that are somewhere in the drawing."""
+    there = {meant(w.text) for w in laid.space.writings}
+    ours = {meant(e.text) for e in laid.elements if e.kind == "text" and len(e.text) > 3}
+    return len(ours & there) / max(len(ours), 1)
 
 
 def _settled(laid: Laid, ours: Mapping[int, Points], theirs: Lines, unit: float | None) -> Laid:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -23,7 +24,7 @@ class Wanted:
     corners: Points
     height: float
 
-    @property
+    @cached_property
     def middle(self) -> complex:
         """Middle of the rectangle."""
         return complex(self.corners.mean())
@@ -59,10 +60,16 @@ def read(wanted: Sequence[Wanted], writings: Sequence[Writing]) -> dict[int, Rea
             free.discard(k)
     if not len(at):
         return found
+
+    def about(want: Wanted, reach: float = 5.0) -> list[int]:
+        """Texts whose middle is not far from the rectangle."""
+        size = abs(complex(want.corners[2] - want.corners[0])) / 2
+        return np.flatnonzero(np.abs(at - want.middle) < size + reach).tolist()
+
     for n, want in enumerate(wanted):
         if n in found:
             continue
-        near = [k for k in free if _inside(want, writings[k].at, 0.5 * want.height + 0.5)]
+        near = [k for k in about(want) if k in free and _inside(want, writings[k].at, 0.5 * want.height + 0.5)]
         if near:
             u = (want.corners[1] - want.corners[0]) / max(abs(want.corners[1] - want.corners[0]), 1e-9)
             near.sort(key=lambda k: ((writings[k].at - want.middle) * np.conj(u)).real)
@@ -75,7 +82,8 @@ def read(wanted: Sequence[Wanted], writings: Sequence[Writing]) -> dict[int, Rea
     for n, want in enumerate(wanted):
         if n in found:
             continue
-        for k, w in enumerate(writings):
+        for k in about(want, 150.0):
+            w = writings[k]
             away = (want.middle - w.at) * np.exp(-1j * w.angle)
             if abs(away.real) < w.width and abs(away.imag) < 1.5 * w.height and _has(w.text, want.text):
                 found[n] = Read((k,))
@@ -84,7 +92,7 @@ def read(wanted: Sequence[Wanted], writings: Sequence[Writing]) -> dict[int, Rea
     pairs = []
     for n, want in enumerate(wanted):
         if n not in found:
-            pairs += [(_beyond(want, writings[k]), n, k) for k in free if _inside(want, writings[k].at, 3.0)]
+            pairs += [(_beyond(want, writings[k]), n, k) for k in about(want) if k in free and _inside(want, writings[k].at, 3.0)]
     for _, n, k in sorted(pairs):
         if n not in found and k in free:
             found[n] = Read((k,), writings[k].text.strip())
