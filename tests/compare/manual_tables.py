@@ -65,8 +65,7 @@ def rows(name: str) -> list[dict[str, str]]:
 SHAPER = {
     "positions": 0.006, "velocities": 0.02, "accelerations": 0.05, "force-5": 40.0, "force-4": 40.0, "force-2": 100.0,
     "force-3": 100.0, "force-1": 200.0, "scheme-4-5": 0.006, "scheme-2-3": 0.006, "scheme-crank": 0.006, "lever": 0.02 / 1.5,
-    "reduced-moment": 12.5, "work": 17.45, "driving-moment": 17.45, "total-work": 8.725, "energy-mass": 8.725,
-    "reduced-inertia": 0.0875,
+    "moment": 12.5, "work": 17.45, "energy": 8.725, "inertia": 0.0875,
 }
 SHAPER_TABLES = {
     "shaper_table_3_2": {"pb3_mm": "velocities/{}/pb3", "CB_mm": "positions/{}/CB", "cd_mm": "velocities/{}/pd"},
@@ -140,8 +139,8 @@ def shaper() -> list[Table]:
 
 ENGINE = {
     "positions": 0.0024, "velocities": 0.5, "accelerations": 100.0, "force-4–5": 50.0, "force-2–3": 200.0, "force-1": 600.0,
-    "scheme-4-5": 0.0024, "scheme-2-3": 0.0024, "scheme-crank": 0.002, "lever": 13.572 / 40.5, "reduced-moment": 25.0, "work": 47.1,
-    "driving-moment": 47.1, "total-work": 23.55, "energy-mass": 23.55, "reduced-inertia": 0.00015,
+    "scheme-4-5": 0.0024, "scheme-2-3": 0.0024, "scheme-crank": 0.002, "lever": 13.572 / 40.5, "moment": 25.0, "work": 47.1,
+    "energy": 23.55, "inertia": 0.00015,
 }
 _RODS = {
     "VS2_m_s": "results/{}/V_S2", "VS4_m_s": "results/{}/V_S4", "omega2_rad_s": "results/{}/omega2",
@@ -249,7 +248,7 @@ def cams() -> list[Table]:
 
 
 PRESS_OMEGA = 5 * 3.14159265358979
-PRESS = {"velocities": 1.8849 / 70, "positions": 0.0034, "first-energy": 199.4063 / 180, "work": 56.59}
+PRESS = {"velocities": 1.8849 / 70, "positions": 0.0034, "energy": 199.4063 / 180, "work": 56.59}
 PRESS_COLUMNS = {
     "pb_mm": ("velocities/{}/pb", 1.0), "ps2_mm": ("velocities/{}/ps2", 1.0), "ab_mm": ("velocities/{}/ab", 1.0),
     "M_F_N_m": ("results/{}/M_Fpc", 1.0), "M_G2_N_m": ("results/{}/M_G2", 1.0),
@@ -276,7 +275,7 @@ def press() -> list[Table]:
     scalars = {r["id"]: r for r in rows("press_scalars")}
     for key, entry in (("pr.Md", "results/M_const"), ("pr.ab", "first-energy/ab")):
         speed.cells.append(Cell(key, entry, scalars[key]["value"], scalars[key]["errata"]))
-    speed.scales = {**PRESS, "first-energy": PRESS["work"]}
+    speed.scales = {**PRESS, "energy": PRESS["work"]}
     return [table, speed]
 
 

@@ -296,6 +296,12 @@ class _Sheet:
         score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
         return Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
 
+    def helps(self, mistake: Mistake, i: int) -> bool:
+        """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
+        shares = self.shares(mistake.place, mistake.moved)
+        return any(j != i and self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])
+                   for j, share in zip(self.by_place[mistake.place][0], shares, strict=True))
+
     def shares(self, place: Place, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
         value = self.errors.displaced(self.steps[place], place[1], complex(*x))
@@ -359,7 +365,7 @@ def _best(sheet: _Sheet, i: int) -> Mistake | None:
     candidates = [sheet.mistake(m.place, exact=True) for m in candidates[:TRIED]]
     alone = float(_loss(sheet.left[i] / sheet.tolerance[i]))
     own = sheet.judged[i].entry.head
-    good = [m for m in candidates if m.score > alone * ALONE]
+    good = [m for m in candidates if m.score > alone * ALONE and sheet.helps(m, i)]
     if not good:
         return None
     best = max(m.score for m in good)

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.compare.measurable import RESULTS, Measurable, Measurables, Term, measured_step, scalar, size
+from tmm_sheets.compare.measurable import RESULTS, Measurables, Term, measured_step, scalar, size
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.methods.integration import CHORD, smooth
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.methods.flywheel import Flywheel
     from tmm_sheets.project import Project
 
 TITLE = "Маховик"
+MOMENT, WORK, ENERGY, INERTIA = "moment", "work", "energy", "inertia"
+"""Keys of the scale factors: diagrams of one quantity have one."""
 
 
 def collect(project: Project, found: Measurables) -> None:
@@ -25,43 +26,40 @@ def collect(project: Project, found: Measurables) -> None:
     f = project.flywheel
     s = f.scales
     plans = f.plans
-    keys: dict[str, tuple[Scale, dict[str, str]]] = {
-        "reduced-moment": (s.moment, {"M": "y_M"}),
-        "work": (s.work, {step.name: f"y_A({step.name})" for step in f.work_plan if step.rule is CHORD}),
-        "driving-moment": (s.work, {"K": "y_K"}),
-        "total-work": (s.energy, {"ΔE": "y_ΔE"}),
-        "reduced-inertia": (s.inertia, {"J": "y_J"}),
-        "energy-mass": (s.energy, {"ab": "ab", "ψ_max": "ψ_max", "ψ_min": "ψ_min"}),
-        "first-energy": (s.energy, {"T_II": "y_T2", "T_I": "y_T1", "ab": "ab"}),
+    work = {step.name: f"y_A({step.name})" for step in f.work_plan if step.rule is CHORD}
+    diagrams: dict[str, tuple[str, Scale, dict[str, str]]] = {
+        "reduced-moment": (MOMENT, s.moment, {"M": "y_M"}),
+        "work": (WORK, s.work, work),
+        "driving-moment": (WORK, s.work, {"K": "y_K"}),
+        "total-work": (ENERGY, s.energy, {"ΔE": "y_ΔE"}),
+        "reduced-inertia": (INERTIA, s.inertia, {"J": "y_J"}),
+        "energy-mass": (ENERGY, s.energy, {"ab": "ab", "ψ_max": "ψ_max", "ψ_min": "ψ_min"}),
+        "first-energy": (ENERGY, s.energy, {"T_II": "y_T2", "T_I": "y_T1", "ab": "ab"}),
     }
-    for name, (scale, steps) in keys.items():
+    for name, (key, scale, steps) in diagrams.items():
         if name not in plans:
             continue
         plan = plans[name]
-        found.scales[name] = scale
-        found.plans.append((plan, name))
-        found.on_paper.add(name)
+        found.scales[key] = scale
+        found.plans.append((plan, key))
+        found.on_paper.add(key)
         extra = _touching(f) if name in ("energy-mass", "first-energy") else ()
         for step_name, quantity in steps.items():
             step = plan[step_name]
             for k in range(len(plan.labels) if np.ndim(step.value) else 1):
                 if quantity.startswith("y_") and k == len(plan.labels) - 1 and len(plan.labels) > 1:
                     continue  # the position that closes the cycle
-                found.add(_entry(plan, found, k, step, quantity, extra if step_name == "ab" else ()))
+                entry = measured_step(plan, found.scales, k, step, quantity, key)
+                slope = (INERTIA, ENERGY) if entry.kind == "angle" else None
+                found.add(replace(entry, terms=(*entry.terms, *(extra if step_name == "ab" else ())), slope=slope))
     _results(f, found, _touching(f))
     if "crank-speed" in plans:
         plan = plans["crank-speed"]
-        found.plans.append((plan, "first-energy"))
+        found.plans.append((plan, ENERGY))
         for k, label in enumerate(plan.labels[:-1]):
             step = plan["ω1"]
             entry_id = f"{RESULTS}/{label}/omega_I"
             found.add(size("Угловая скорость начального звена", entry_id, label, "ω_I", "рад/с", k, step, by=step))
-
-
-def _entry(plan: Plan, found: Measurables, k: int, step: Step, quantity: str, extra: tuple[Term, ...]) -> Measurable:
-    entry = measured_step(plan, found.scales, k, step, quantity)
-    slope = ("reduced-inertia", "energy-mass") if entry.kind == "angle" else None
-    return replace(entry, terms=(*entry.terms, *extra), slope=slope)
 
 
 def _touching(f: Flywheel) -> tuple[Term, ...]:
@@ -96,9 +94,9 @@ def _results(f: Flywheel, found: Measurables, touching: tuple[Term, ...]) -> Non
     per_mm = f.scales.energy.mu / (f.data.delta * f.reduced.omega1**2)
     terms = tuple((step, k, g * per_mm) for step, k, g in ((plan["ab"], 0, 1 + 0j), *touching))
     scalar(found, TITLE, "M_const", f.M_constant, "Н·м", [(f.driving_plan["dK"], 0, 1j * f.scales.moment.mu)],
-           scale="reduced-moment", reading=f.scales.moment.mu, signed=False)
+           scale=MOMENT, reading=f.scales.moment.mu, signed=False)
     for name, value in (("J_I", f.J_first), ("J_flywheel", f.J_flywheel)):
-        scalar(found, TITLE, name, value, "кг·м²", terms, scale=plan.name, reading=per_mm)
+        scalar(found, TITLE, name, value, "кг·м²", terms, scale=ENERGY, reading=per_mm)
     if not f.J_flywheel > 0:
         return
     wheel = f.wheel
@@ -107,5 +105,5 @@ def _results(f: Flywheel, found: Measurables, touching: tuple[Term, ...]) -> Non
     for name, value in {**lengths, "m": wheel.mass}.items():
         unit, power = ("м", 0.2) if name in lengths else ("кг", 0.6)
         share = power * value / f.J_flywheel
-        scalar(found, TITLE, name, value, unit, [(s, k, g * share) for s, k, g in terms], scale=plan.name,
+        scalar(found, TITLE, name, value, unit, [(s, k, g * share) for s, k, g in terms], scale=ENERGY,
                reading=per_mm * share)
