@@ -846,14 +846,25 @@ class _Matcher:
         r = chain[0]
         piece = self.theirs.b[r.piece] - self.theirs.a[r.piece]
         at = complex(self.theirs.a[r.piece] + (r.a + r.b) / 2 * piece / abs(piece))
-        said = ", ".join(x for x in (old.what, f"{size:.1f} mm too long at ({at.real:.0f}, {at.imag:.0f})") if x)
+        what = f"{size:.1f} mm too long at ({at.real:.0f}, {at.imag:.0f})"
+        if e.kind != "line":
+            # A loop beside a curve that is there as well, as when one way of a path there and back is wrong.
+            ends = np.concatenate([self._ends(r) for r in chain])
+            foot, _, near = lines(self.paths[n]).nearest(ends, CURVE_REACH)
+            ends_at = np.concatenate([p[[0, -1]] for p in self.paths[n]])
+            if near.all() and np.abs(ends_at - at).min() > size:
+                size = float(np.abs(foot - ends).max())
+                at = complex(ends[np.abs(foot - ends).argmax()])
+                what = f"up to {size:.2f} mm off at ({at.real:.0f}, {at.imag:.0f})"
+        said = ", ".join(x for x in (old.what, what) if x)
         deviation = max(old.deviation, size)
         judged = verdict(deviation, self.tolerance)
         if judged == "red" and e.style in LOOSE_STYLES and old.verdict != "red":
             judged = "amber"
         entity = int(self.entity[r.piece])
-        self.found[n] = replace(old, deviation=deviation, verdict=judged, what=said, size=(old.size or 0.0) + size,
-                                entities=tuple(dict.fromkeys((*old.entities, entity))))
+        where = (at, 5.0) if old.verdict == "green" else (old.at, old.reach)
+        self.found[n] = replace(old, deviation=deviation, verdict=judged, what=said, at=where[0], reach=where[1],
+                                size=(old.size or 0.0) + size, entities=tuple(dict.fromkeys((*old.entities, entity))))
 
     def _heaps(self, extra: list[tuple[list[Left], float]]) -> Iterator[Extra]:
         """Extra ink by entity; small strokes that lie together (letters of a drawn text, a symbol) as one."""
