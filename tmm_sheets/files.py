@@ -11,20 +11,33 @@ from tmm_sheets.errors import BadInput, Problem
 
 
 def write_all(files: Mapping[Path, bytes]) -> None:
-    """Write a set of files: each beside its place under a passing name; all are renamed at the end.
+    """Write a set of files, making their folders.
 
     Raises
     ------
     BadInput
         when a folder or a file cannot be written; nothing new is left behind then.
     """
+    try:
+        for path in files:
+            check_folder(path.parent)
+            path.parent.mkdir(parents=True, exist_ok=True)
+        put(files)
+    except OSError as e:
+        raise BadInput(_unwritable(Path(e.filename or ""), e)) from None
+
+
+def put(files: Mapping[Path, bytes]) -> None:
+    """Write a set of files into folders that are there: each beside its place under a passing name; all are renamed at the end.
+
+    When anything fails (disk full, no permission) nothing new is left behind, older files stay as they were, and the ``OSError``
+    goes on to the caller with the name of the file.
+    """
     passing: dict[Path, Path] = {}
     current = Path()
     try:
         for path, data in files.items():
             current = path
-            check_folder(path.parent)
-            path.parent.mkdir(parents=True, exist_ok=True)
             if path.is_dir():
                 raise IsADirectoryError(0, "expected a file, this is a folder")
             if path.exists() and not path.is_file():  # a pipe or a device: nothing to rename onto
@@ -37,7 +50,8 @@ def write_all(files: Mapping[Path, bytes]) -> None:
             current = target
             part.replace(target)
     except OSError as e:
-        raise BadInput(_unwritable(current, e)) from None
+        e.filename = str(current)
+        raise
     finally:
         for part in passing.values():
             with suppress(OSError):

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 import pytest
 
 from tmm_sheets.backends import dxf, hpgl, pdf, png, svg
-from tmm_sheets.backends.whole_file import write_whole
+from tmm_sheets.files import put
 
 
 @contextmanager
@@ -27,8 +27,8 @@ def full_disk():
 
 def test_writes_and_replaces(tmp_path):
     path = tmp_path / "a.bin"
-    write_whole(path, b"1")
-    write_whole(path, b"22")
+    put({path: b"1"})
+    put({path: b"22"})
     assert path.read_bytes() == b"22"
     assert [p.name for p in tmp_path.iterdir()] == ["a.bin"]
     mask = os.umask(0o022)
@@ -38,7 +38,7 @@ def test_writes_and_replaces(tmp_path):
 
 def test_full_disk_leaves_nothing_behind(tmp_path):
     with full_disk(), pytest.raises(OSError, match="too large"):
-        write_whole(tmp_path / "a.bin", bytes(100_000))
+        put({tmp_path / "a.bin": bytes(100_000)})
     assert list(tmp_path.iterdir()) == []
 
 
@@ -54,7 +54,7 @@ def test_full_disk_leaves_the_older_sheet_as_it_was(tmp_path, drawing, backend):
 
 def test_missing_folder_is_the_callers_error(tmp_path):
     with pytest.raises(FileNotFoundError):
-        write_whole(tmp_path / "none" / "a.bin", b"1")
+        put({tmp_path / "none" / "a.bin": b"1"})
 
 
 @pytest.mark.parametrize("backend", [pdf, dxf, svg, png, hpgl])

@@ -27,11 +27,11 @@ from ezdxf.filemanagement import new
 from ezdxf.lldxf.const import VALID_DXF_LINEWEIGHTS
 from ezdxf.units import MM
 
-from tmm_sheets.backends.whole_file import write_whole
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.lettering import PEN, glyph
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, Mark, Points, Polyline, Text
 from tmm_sheets.drawing.styles import line_type, line_types
+from tmm_sheets.files import put
 
 VIEWPORT_LAYER = "VIEWPORT"
 
@@ -46,7 +46,7 @@ def write(drawing: Drawing, path: Path) -> None:
     OSError
         When the file cannot be written; nothing is left behind.
     """
-    write_whole(path, render(drawing))
+    put({path: render(drawing)})
 
 
 def render(drawing: Drawing) -> bytes:
@@ -215,7 +215,8 @@ def _lettering(texts: list[Text], owner: str, handles: Iterator[int]) -> Iterato
     counts = [len(p) for p in parts]
     points = np.concatenate(parts) * np.repeat(factors, counts) + np.repeat(origins, counts)
     form = [f"0\nLWPOLYLINE\n5\n{h:X}\n{head}{n}\n70\n0\n{_vertices(n)}" for head, n, h in zip(heads, counts, handles, strict=False)]
-    yield "".join(form) % _xy(points)  # one formatting of all numbers: three times quicker than one of each stroke
+    # One formatting of all numbers: three times quicker than one of each stroke.
+    yield "".join(form) % _xy(points)
 
 
 def plot_styles() -> bytes:

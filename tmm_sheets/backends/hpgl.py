@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from tmm_sheets.backends.whole_file import write_whole
 from tmm_sheets.drawing.marks import Drawing
 from tmm_sheets.drawing.pen_paths import STEP, Layer, PenPlan, Step, plan
 from tmm_sheets.drawing.plotters import Plotter, plotter
+from tmm_sheets.files import put
 
 PAIRS = 30  # coordinates in one command: old machines have small buffers
 UEL = "\x1b%-12345X"  # leaves whatever language the printer is in
@@ -28,7 +28,7 @@ def write(drawing: Drawing, path: Path, machine: Plotter | None = None) -> None:
     OSError
         When the file cannot be written; nothing is left behind.
     """
-    write_whole(path, render(drawing, machine))
+    put({path: render(drawing, machine)})
 
 
 def render(drawing: Drawing, machine: Plotter | None = None) -> bytes:

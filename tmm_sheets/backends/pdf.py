@@ -17,10 +17,10 @@ from reportlab.pdfbase import pdfdoc, pdfmetrics
 from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.pdfgen.canvas import Canvas
 
-from tmm_sheets.backends.whole_file import write_whole
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Text
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.files import put
 from tmm_sheets.resources import template
 
 MM = 72 / 25.4
@@ -47,7 +47,7 @@ def write(drawing: Drawing, path: Path) -> None:
     OSError
         When the file cannot be written; nothing is left behind.
     """
-    write_whole(path, render(drawing))
+    put({path: render(drawing)})
 
 
 def render(drawing: Drawing) -> bytes:

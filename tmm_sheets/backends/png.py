@@ -19,10 +19,10 @@ from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.path import Path as AggPath
 from matplotlib.transforms import Affine2D
 
-from tmm_sheets.backends.whole_file import write_whole
 from tmm_sheets.drawing.clipping import polyline_inside
 from tmm_sheets.drawing.ink import SAGITTA, Stroke, ink
 from tmm_sheets.drawing.marks import Box, Drawing, Points
+from tmm_sheets.files import put
 
 DPI = 150.0
 LEAST_DPI, MOST_DPI = 10.0, 1200.0
@@ -40,7 +40,7 @@ def write(drawing: Drawing, path: Path, dpi: float = DPI) -> None:
     OSError
         When the file cannot be written; nothing is left behind.
     """
-    write_whole(path, render(drawing, dpi))
+    put({path: render(drawing, dpi)})
 
 
 def render(drawing: Drawing, dpi: float = DPI) -> bytes:

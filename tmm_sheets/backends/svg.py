@@ -12,12 +12,12 @@ from collections.abc import Iterable
 from math import ceil, pi
 from pathlib import Path
 
-from tmm_sheets.backends.whole_file import write_whole
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.ink import check, letters
 from tmm_sheets.drawing.lettering import PEN
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Polyline, Text
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.files import put
 
 PIECE = pi / 2  # an arc is written in pieces: the centre of a half turn hangs on the last digit of its ends
 
@@ -32,7 +32,7 @@ def write(drawing: Drawing, path: Path) -> None:
     OSError
         When the file cannot be written; nothing is left behind.
     """
-    write_whole(path, render(drawing))
+    put({path: render(drawing)})
 
 
 def render(drawing: Drawing) -> bytes:
