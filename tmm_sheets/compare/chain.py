@@ -33,9 +33,11 @@ USUAL = 10.0
 """How far a misplaced point usually lies off, mm."""
 HUBER = 2.0
 """Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
-ALONE = 1.05
-"""How much more than one number a mistake has to explain to be one of drawing."""
-TRIED = 8
+ALONE = 0.9
+"""Share of the number it is looked for that a mistake has to explain, besides most of another one."""
+NEAR = 0.1
+"""Displacement for derivatives where a mistake has led to, mm, or as a share of a number."""
+TRIED = 6
 """Steps that are tried by drawing again, of those that explain most by the Jacobian."""
 NEARLY = 0.9
 """Share of the best explanation with which another is as good."""
@@ -289,8 +291,15 @@ class _Sheet:
             if np.abs(rows @ step).max() < 0.01:
                 break
             x = x + step
-            shares = self.shares(place, x) / self.tolerance[lines] if exact else rows @ x
-            if not np.all(np.isfinite(shares)):
+            if exact:
+                shares = self.shares(place, x) / self.tolerance[lines]
+                near = np.diag([1.0, 1.0]) * (NEAR * mu if mu else NEAR * max(abs(x[0]), 1e-9))
+                beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
+                rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
+                rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
+            else:
+                shares = rows @ x
+            if not (np.all(np.isfinite(shares)) and np.all(np.isfinite(rows))):
                 return Mistake(place, of, x, np.eye(2), 0.0, mu)
             weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
         score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
@@ -327,8 +336,8 @@ def _changed(j: Judged, value: Callable[[Step], Any]) -> float:
 
 
 def _loss(r: Any) -> Any:
-    """Huber's loss: square for what chance brings, straight beyond."""
-    size = np.abs(r)
+    """Huber's loss of what is beyond the tolerance: square, and straight for what is far off."""
+    size = np.maximum(np.abs(r) - 1, 0)
     return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
 
 
