@@ -5,6 +5,7 @@ Usage: python -m tests.compare.trial [-n 200] [--first 0] [--errors 4] [--minute
 """
 
 import argparse
+import pickle
 import resource
 import sys
 import tempfile
@@ -50,8 +51,9 @@ class Tally:
         self.found = defaultdict(Counter)  # (kind, size class) -> outcome
         self.elements = Counter()
         self.false = Counter()
-        self.errors, self.worst, self.medians = [], [], []
+        self.errors = []
         self.refused = []
+        self.sheets = 0
         self.examples = []
 
     def add(self, label, sheet, shot, found, findings, extra):
@@ -89,8 +91,14 @@ class Tally:
         e = position_errors(found.map, shot)
         self.errors.append(e)
 
-    def report(self, sheets):
-        print(f"{sheets} sheets, {len(self.refused)} refused {self.refused}")
+    def merge(self, other):
+        for key, c in other.found.items():
+            self.found[key] += c
+        for name in ("elements", "false", "errors", "refused", "examples", "sheets"):
+            setattr(self, name, getattr(self, name) + getattr(other, name))
+
+    def report(self):
+        print(f"{self.sheets} sheets, {len(self.refused)} refused {self.refused}")
         if not self.errors:
             return
         e = np.concatenate(self.errors)
@@ -132,7 +140,17 @@ def main():
     parser.add_argument("--minutes", type=float, default=600.0, help="stop after so long")
     parser.add_argument("--time", action="store_true")
     parser.add_argument("--show", action="store_true", help="tell every miss and false alarm")
+    parser.add_argument("--save", type=Path, help="keep what was counted, to be merged")
+    parser.add_argument("--merge", type=Path, nargs="+", help="report what several runs have kept")
     options = parser.parse_args()
+    if options.merge:
+        tally = Tally()
+        for path in options.merge:
+            tally.merge(pickle.loads(path.read_bytes()))
+        tally.report()
+        if options.show:
+            print("\n".join(tally.examples))
+        return
     if options.time:
         timing()
         return
@@ -151,6 +169,7 @@ def main():
             print(f"{seed} at {perf_counter() - start:.0f} s", file=sys.stderr)
             label = f"{project.variant.project.name} {n} seed {seed}"
             known = elements(sheet)
+            tally.sheets += 1
             try:
                 found = image.rectify(read(path), known, path)
                 if found.match < image.MATCH:
@@ -159,9 +178,11 @@ def main():
                 tally.refused.append(f"{label}: {e.args[0]}")
                 continue
             tally.add(label, sheet, shot, found, *judged(found, known))
+            if options.save:
+                options.save.write_bytes(pickle.dumps(tally))
             if perf_counter() - start > 60 * options.minutes:
                 break
-    tally.report(seed + 1 - options.first)
+    tally.report()
     if options.show:
         print("\n".join(tally.examples))
 

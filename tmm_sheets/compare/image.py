@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.compare import overlay, rectification, tracing
+from tmm_sheets.compare import overlay, photographed_views, rectification, tracing, view_places
 from tmm_sheets.compare.elements import Element, dashed, elements
+from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.photograph import Picture, read
 from tmm_sheets.compare.report import Report, Verdict, verdict
 from tmm_sheets.compare.tracing import LOOSE_STYLES, Extra, Trace
@@ -83,12 +84,23 @@ def compare(
     say("composing the sheet")
     sheet = composed(project, n)
     known = elements(sheet)
-    found = rectify(picture, known, path, say, views is None)
-    if views is None and found.match < MATCH:
+    # The file first: it is quickly read, and what is wrong with it is quickly told.
+    places = view_places.read(views, views_of(sheet)) if views is not None else ()
+    found = rectify(picture, known, path, say, not places)
+    notes = (*picture.notes, *found.notes)
+    whole = True
+    if places:
+        say("placing the views")
+        placed = photographed_views.place(known, places, found.map, found.ink)
+        known, notes, whole = placed.elements, (*notes, *placed.notes), not placed.left_out
+        if all(e.view.n == 0 for e in known):
+            raise CannotBuild(f"{path}: none of the views of sheet {n} was found", hint="; ".join(placed.notes))
+    elif found.match < MATCH:
         _wrong_sheet(project, n, found, path, say)
     say("measuring the elements")
     traces, extra = tracing.trace(known, found.ink)
-    return _report(project, n, path, found, traces, extra, pencil, (*picture.notes, *found.notes))
+    # Ink of views that were left out is not too much.
+    return _report(project, n, path, found, traces, extra if whole else (), pencil, notes)
 
 
 @dataclass(frozen=True)

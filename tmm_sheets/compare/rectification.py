@@ -54,8 +54,7 @@ SHARP = "hold the camera still and wait for it to focus, in more light; or scan 
 NODE = 6.0  # mm between the points at which the map is calculated
 
 
-@dataclass(frozen=True)
-class Lines:
+class Lines(NamedTuple):
     """Points along known lines with their unit normals, mm; ``line`` numbers the line each belongs to."""
 
     points: Points
@@ -93,6 +92,14 @@ class Map:
             r2 = np.abs(z) ** 2
             z = u / (1 + self.bend[0] * r2 + self.bend[1] * r2**2)
         return z * self.reach + self.middle
+
+    def to_sheet(self, q: Points) -> Points:
+        """Picture to sheet."""
+        base = self.to_base(q)
+        p = base
+        for _ in range(8):
+            p = base - self.correction(p)
+        return p
 
     def correction(self, p: Points) -> Points:
         """What is added to a point of the sheet before homography and lens are inverted, mm."""

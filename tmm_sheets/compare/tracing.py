@@ -281,7 +281,7 @@ def _fit(base: Floats, o: Floats, use: Any, loose: float) -> Floats:
 def _near(e: Element, s: Stations, ink: Any, known: Any, level: float) -> Trace | None:
     """An element at its own place, or None when it is not there."""
     width = line_type(e.style).width
-    offsets = np.arange(-NEAR, NEAR + STEP / 2, STEP)
+    offsets = np.arange(-NEAR - 1, NEAR + 1 + STEP / 2, STEP)
     at = pixels(s.points[:, None] + s.normals[:, None] * offsets)
     profile, others = _along(sample(ink, at)), sample(known, at) > 100
     # The way to the next known line on either side, and how far to look; where another line runs here nothing can be told.
@@ -289,7 +289,7 @@ def _near(e: Element, s: Stations, ink: Any, known: Any, level: float) -> Trace 
     away = np.where(others & ~own, np.abs(offsets), NEAR + 0.5).min(1)
     reach = np.clip(0.5 * away, 0.3, NEAR)
     free = away > width / 2 + 0.6
-    o, strength = _peaks_within(profile, offsets, reach, max(width / 2 + 0.1, 0.25))
+    o, strength = _peaks_within(profile, offsets, reach, max(width / 2 + 0.1, 0.25), level)
     there = strength > level
     expected = _expected(e)
     use = there & free
@@ -310,6 +310,11 @@ def _near(e: Element, s: Stations, ink: Any, known: Any, level: float) -> Trace 
     halves = [good[k].sum() / max(free[k].sum(), 1) for k in (slice(0, half), slice(half, None)) if free[k].sum() > 3]
     if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
         return None
+    if np.abs(base @ x).max() > 0.6:
+        # Off its place: once more, about where it is, however near that is to the half way to the next line.
+        o, strength = peaks(profile, offsets, base @ x, 0.7, 0.5)
+        use = (strength > level) & free
+        x = _fit(base, o, use, 0.3)
     t = _measured(e, s, base @ x, free, float(share / expected))
     if e.kind == "curve":
         t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
@@ -327,10 +332,12 @@ def _local(o: Floats, use: Any, step: float) -> float:
     return worst
 
 
-def _peaks_within(profile: Any, offsets: Floats, reach: Floats, half: float) -> tuple[Floats, Floats]:
-    """The darkest place of each profile within its own reach."""
+def _peaks_within(profile: Any, offsets: Floats, reach: Floats, half: float, level: float) -> tuple[Floats, Floats]:
+    """The line of each profile within its own reach: rather one near by than a blacker one farther off."""
     p = np.where(np.abs(offsets)[None, :] <= reach[:, None] + 1e-9, profile, 0)
-    return peaks(p, offsets, 0.0, float(np.abs(offsets).max()) + 1, half)
+    likely = np.minimum(p, 2 * level) * (1 - 0.5 * np.abs(offsets) / NEAR)
+    centre = offsets[likely.argmax(1)]
+    return peaks(p, offsets, centre, 0.4, half)
 
 
 def _measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> Trace:
