@@ -72,13 +72,33 @@ def test_flank_is_the_involute_and_the_trochoid(r):
             # near the base circle the angle is known to the root of the rounding of the radius only, but times its sine
             assert abs(off) < 1e-15 + 3e-16 * r.r
         below = -mpmath.mpf(r.tip_centre.imag) - r.shift * mpmath.mpf(r.module)
-        for k, p in enumerate(got[: 47]):
-            # the trochoid by its equation, with the normal as parameter
-            normal = mpmath.mpf(pi / 2) + (mpmath.mpf(r.last_normal(start)) - mpmath.mpf(pi / 2)) * k / 47
+
+        def trochoid(normal):
+            """By its equation, with the normal as parameter."""
             roll = (below / mpmath.tan(normal) - mpmath.mpf(r.tip_centre.real)) / r.r
             string = (below / mpmath.sin(normal) + mpmath.mpf(r.tip_radius)) * mpmath.expj(-normal)
-            point = (1j * mpmath.mpf(r.r) + string) * mpmath.expj(roll) * mpmath.expj(mpmath.pi / r.teeth - mpmath.pi / 2)
-            assert abs(mpmath.mpc(p) - point) < 1e-13 * r.r
+            return (1j * mpmath.mpf(r.r) + string) * mpmath.expj(roll) * mpmath.expj(mpmath.pi / r.teeth - mpmath.pi / 2)
+
+        step = mpmath.mpf("1e-12")
+        normals = np.linspace(pi / 2, r.last_normal(start), 400)
+        near = np.array([complex(trochoid(mpmath.mpf(n))) for n in normals])
+        for p in got[~on_involute]:
+            # the nearest point of the trochoid: Newton on the parameter, from the nearest of many
+            normal = mpmath.mpf(float(normals[np.abs(near - p).argmin()]))
+            for _ in range(4):
+                slope = (trochoid(normal + step) - trochoid(normal - step)) / (2 * step)
+                normal += mpmath.re((mpmath.mpc(p) - trochoid(normal)) / slope)
+            assert abs(mpmath.mpc(p) - trochoid(normal)) < 1e-15 + 1e-14 * r.r
+
+
+@pytest.mark.parametrize("r", RACKS)
+def test_chords_of_the_fillet_are_even_and_short(r):
+    chords = np.abs(np.diff(flank(r, tip(r))))[:-31]  # the involute has 32 points
+    fillet = chords[:-1] / r.module  # the last leads over to the involute
+    assert fillet.min() > 0.03
+    assert fillet.max() < 0.04
+    assert fillet.max() / fillet.min() < 1.02
+    assert chords[-1] < 0.04 * r.module * (1 + 1e-9)
 
 
 def cut(r, positions, chords):
@@ -171,7 +191,7 @@ def fine(gear, w):
     """The tooth with ten times as many points on its fillet: the drawn chords of a hollow fillet lie on the side of the metal,
     and where the mate's tip touches next to it they alone would share some 1e-5 mm2 with it."""
     shape = gear.shape(w)
-    points = flank(w.rack, w.ra, fillet=480)
+    points = flank(w.rack, w.ra, chord=0.004)
     return replace(shape, flank=shape.centre + shape.axis * (np.conj(points) if shape.side < 0 else points))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from math import asin, pi, radians, tan
+from math import asin, inf, pi, radians, tan
 from typing import Any
 
 import numpy as np
@@ -254,7 +254,7 @@ def _racks(bench: Bench) -> None:
     for n in bench.upto((20, 60, 120, 300, 600), 60):
 
         def touched(n: int = n) -> Complex:
-            return flank(RACK, TIP, n, 2)[1:]
+            return flank(RACK, TIP, n, inf)[1:]
 
         def off(found: Complex) -> float:
             with mp.workdps(DIGITS):

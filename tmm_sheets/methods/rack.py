@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from dataclasses import dataclass
-from math import acos, cos, pi, sin, sqrt, tan
+from math import acos, ceil, cos, pi, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
@@ -235,17 +235,25 @@ def fillet_steps(rack: Rack, normals: Any) -> Step:
     return plan.add("G", ALONG, plan["C"], normal, rack.tip_radius)
 
 
-def flank(rack: Rack, tip: float, involute: int = 32, fillet: int = 48) -> Points:
+def _even_normals(rack: Rack, low: float, chord: float) -> npt.NDArray[np.float64]:
+    """Normals from a right angle to ``low`` whose cuts stand equally far apart, at most ``chord`` modules."""
+    trial = np.linspace(pi / 2, low, 257)
+    along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(np.asarray(fillet_steps(rack, trial).value))))))
+    n = max(ceil(1.01 * along[-1] / (chord * rack.module)), 1)  # the trial's chords are not quite even
+    return np.interp(np.linspace(0.0, along[-1], n + 1), along, trial)
+
+
+def flank(rack: Rack, tip: float, involute: int = 32, chord: float = 0.04) -> Points:
     """Flank of the tooth on the right from the root circle to the tip circle (radius ``tip``), relative to its axis.
 
-    The axis of the tooth is the real one and the flank lies on the side of positive angles; by the same steps as the
-    positions that are drawn, taken at as many more as the curve needs.
+    Its involute has ``involute`` points, the chords of its fillet are equal and at most ``chord`` modules long. The axis of
+    the tooth is the real one and the flank lies on the side of positive angles; by the same steps as the positions that are
+    drawn, taken at as many more as the curve needs.
     """
     start = rack.involute_from()
     lengths = np.sqrt(np.linspace(max(start, 0.0) ** 2, (tip - rack.rb) * (tip + rack.rb), involute))
     touched = np.asarray(generating_plan(rack, rack.roll_of_flank(lengths))["K"].value)
     low = rack.last_normal(max(start, 0.0))
-    normals = np.linspace(pi / 2, low, fillet)
-    cut = np.asarray(fillet_steps(rack, normals).value)
-    joined = cut[:-1] if start > 0 else cut
+    cut = np.asarray(fillet_steps(rack, _even_normals(rack, low, chord)).value)
+    joined = cut[:-1] if abs(cut[-1] - touched[0]) < 1e-6 * rack.module else cut  # else the involute is cut off at its base
     return np.asarray(np.concatenate([joined, touched]) * rect(1, pi / rack.teeth - pi / 2))
