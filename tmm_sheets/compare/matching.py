@@ -148,6 +148,7 @@ class _Matcher:
         self.used_areas: set[int] = set()
         self.used_writings: set[int] = set()
         self.zones: list[Points] = []
+        self.drawn_letters: list[tuple[int, cad_text.Wanted]] = []
 
     # --- our side -------------------------------------------------------------------------------------------------
 
@@ -647,11 +648,9 @@ class _Matcher:
             self.zones.append(_grown(wanted[k].corners, 0.8))
         self._strokes_of_letters(rest)
 
-    def _bars(self, n: int) -> list[Overlaps]:
+    def _bars(self, n: int) -> None:
         """Overbars and leader lines of lettering are the draughtsman's: they are looked for only to be no extras."""
-        found = [overlaps(lines([self.moves[n](p)]), self.theirs, 1.0) for p in self.elements[n].pieces]
-        self.claims += found
-        return found
+        self.claims += [overlaps(lines([self.moves[n](p)]), self.theirs, 1.0) for p in self.elements[n].pieces]
 
     def _strokes_of_letters(self, rest: Sequence[tuple[int, cad_text.Wanted]]) -> None:
         """Lettering that is drawn with lines, letter by letter."""
@@ -680,39 +679,39 @@ class _Matcher:
             lost = (size[mine] - covered[mine])[size[mine] > 0.3 * want.height]
             if whole > 0 and share > 0.85 * whole and (not len(lost) or lost.max() < 0.25 * want.height):
                 assert near is not None
-                mine_near = near.only(of[ours.owner[near.ours]] == n)
-                self.claims.append(mine_near)
-                if self._strange_ink(want, [mine_near, *self._bars(n)]) > 0.45 * want.height:
-                    self.found[n] = self._finding(n, 4 * self.tolerance, f'the letters are not those of "{self.elements[n].text}"')
-                else:
-                    self.found[n] = self._finding(n, 0.0, "")
+                self.claims.append(near.only(of[ours.owner[near.ours]] == n))
+                self._bars(n)
+                self.drawn_letters.append((n, want))
+                self.found[n] = self._finding(n, 0.0, "")
             elif share > 0.4 * whole > 0:
-                self.found[n] = self._finding(n, 4 * self.tolerance, f'the letters are not those of "{self.elements[n].text}"')
+                self.found[n] = self._other_letters(n)
                 self.zones.append(_grown(want.corners, 0.8))
             else:
                 self.found[n] = self._finding(n, 2 * self.tolerance, f'text "{self.elements[n].text}" missing', missing=True)
 
-    def _strange_ink(self, want: cad_text.Wanted, known: Sequence[Overlaps]) -> float:
-        """Length of short strokes inside the rectangle of lettering that are none of its letters, mm."""
+    def _strange_ink(self, rest: Sequence[Left]) -> None:
+        """Letters with short strokes inside their rectangle that belong to nothing: they are other letters."""
         import shapely
 
-        box = shapely.Polygon(np.column_stack((want.corners.real, want.corners.imag))).buffer(-0.1)
-        inside = self.theirs.tree.query(box, predicate="contains")
-        strange = 0.0
-        parts: dict[int, list[tuple[float, float]]] = {}
-        for near in known:
-            for j, a, b in zip(near.theirs.tolist(), near.w0.tolist(), near.w1.tolist(), strict=True):
-                parts.setdefault(j, []).append((a, b))
-        for j in inside.tolist():
-            whole = float(np.abs(np.diff(self.space.strokes[self.theirs.owner[j]].points)).sum())
-            if whole < 4 * want.height:
-                strange += sum(b - a for a, b in gaps(union(parts.get(j, []), 0.1), float(self.theirs.length[j])) if b - a > 0.1)
-        return strange
+        free = np.zeros(len(self.theirs.a))
+        for r in rest:
+            free[r.piece] += r.b - r.a if r.b - r.a > 0.1 else 0.0
+        whole = np.bincount(self.theirs.owner, self.theirs.length)
+        for n, want in self.drawn_letters:
+            box = shapely.Polygon(np.column_stack((want.corners.real, want.corners.imag))).buffer(-0.1)
+            inside = self.theirs.tree.query(box, predicate="contains")
+            inside = inside[whole[self.theirs.owner[inside]] < 4 * want.height]
+            if free[inside].sum() > 0.45 * want.height:
+                self.found[n] = self._other_letters(n)
+
+    def _other_letters(self, n: int) -> Finding:
+        return self._finding(n, 4 * self.tolerance, f'the letters are not those of "{self.elements[n].text}"')
 
     # --- extras ---------------------------------------------------------------------------------------------------
 
     def _extra(self) -> tuple[Extra, ...]:
         rest = left(self.theirs, self._claimed())
+        self._strange_ink(rest)
         rest = self._outside_zones(rest)
         chains = list(self._chains(rest))
         owners = self._owners()
