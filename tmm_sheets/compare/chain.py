@@ -307,6 +307,8 @@ class _Sheet:
 
     def helps(self, mistake: Mistake, i: int) -> bool:
         """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
+        if np.hypot(*mistake.moved) < 2 * self.errors.pencil * mistake.mu:
+            return False  # that is the pencil
         shares = self.shares(mistake.place, mistake.moved)
         return any(j != i and self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])
                    for j, share in zip(self.by_place[mistake.place][0], shares, strict=True))
@@ -361,7 +363,9 @@ def _chains(judged: list[Judged], errors: Errors) -> None:
             if j.verdict == "green" and abs(before) <= j.tolerance:
                 continue  # the mistake did not reach it
             sheet.left[i] -= share
-            explained = abs(sheet.left[i]) <= hypot(j.tolerance, float(doubt), CURVED * float(share))
+            # What is left need not be better than other numbers: amber is accused of nothing.
+            allowed = (2 if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt), CURVED * float(share))
+            explained = abs(sheet.left[i]) <= allowed
             if explained and abs(share) > SHARE * j.tolerance and not j.starts and abs(sheet.left[i]) < abs(before):
                 open_[i] = False
                 if j.follows is None:
