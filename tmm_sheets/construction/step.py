@@ -86,13 +86,9 @@ class Step:
     @cached_property
     def value(self) -> Any:
         """The step's value, computed once; the time spent on this step alone is kept for ``--explain``."""
-        self._evaluate_arguments()
-        values = [value_of(a) for a in self.args]
-        start = perf_counter()
         with np.errstate(invalid="ignore", divide="ignore"):
-            result = self.rule.compute(*values)
-        self.seconds.append(perf_counter() - start)
-        return result
+            self._evaluate_arguments()
+            return self._computed()
 
     def _evaluate_arguments(self) -> None:
         """Arguments before results with a list instead of the call stack: a chain of chords may be thousands long."""
@@ -102,8 +98,15 @@ class Step:
             before = [a for a in step.args if isinstance(a, Step) and not a.evaluated]
             if before:
                 pending += before
-            else:
-                pending.pop().value  # noqa: B018 (reading it computes and keeps it)
+            elif not pending.pop().evaluated:  # it may have stood in the list twice
+                step.__dict__["value"] = step._computed()
+
+    def _computed(self) -> Any:
+        values = [value_of(a) for a in self.args]
+        start = perf_counter()
+        result = self.rule.compute(*values)
+        self.seconds.append(perf_counter() - start)
+        return result
 
     @property
     def evaluated(self) -> bool:
