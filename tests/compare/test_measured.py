@@ -50,7 +50,7 @@ def starts(of):
     return [j for j in of if j.starts]
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_a_good_drawing(shaper, some, seed):
     of = judged(shaper, drawn(shaper, some, seed=seed, sigma=0.5))
     assert len(of) > 100
@@ -84,7 +84,7 @@ def test_pencil_and_reading(shaper, some):
 
 
 @pytest.mark.parametrize(("plan", "step", "shift", "followers"), [
-    ("velocities", "d", 3j, 1), ("velocities", "b3", -3, 12), ("positions", "D", 4j, 6), ("velocities", "d5", 4, 6),
+    ("velocities", "d", 3j, 1), ("velocities", "b3", -3, 12), ("positions", "D", 4j, 6),
     ("accelerations", "b3", 20, 3), ("force-5", "1", 4 + 3j, 1),
 ])
 def test_a_misplaced_point(shaper, some, plan, step, shift, followers):
