@@ -212,6 +212,17 @@ def test_a_layout_of_ones_own(tmp_path):
     assert any(f'"{LINE.view.name}" stands' in note for note in report.notes)
 
 
+def test_a_single_view(tmp_path):
+    """A drawing may have one view only: the others are told as missing, in a row each."""
+    view = CIRCLE.view
+    report = compare(drawn([e for e in EXACT if e.view == view], turn=0.5, shift=70), tmp_path)
+    mine = [e for e in report.tree["elements"] if e["view"] == view.name]
+    assert {e["verdict"] for e in mine} == {"green"}
+    others = {e.view.name for e in EXACT if e.view != view}
+    assert set(report.tree["summary"]["missing_views"]) == others
+    assert f"{len(mine)} green (up to 0.00 mm), 0 amber, 0 red; 0 extra; {len(others)} of " in report.text
+
+
 def test_views_given_by_a_file(tmp_path):
     view = CIRCLE.view
     place = Placing(0.5, 300 + 20j)

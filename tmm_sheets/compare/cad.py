@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ from tmm_sheets.compare.cad_text import meant
 from tmm_sheets.compare.elements import Element, View, elements
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.matching import Finding, Outcome, match, placed
-from tmm_sheets.compare.placing import HIT, Lines, Placing, candidates, lines, refine, search, snapped
+from tmm_sheets.compare.placing import HIT, RATIOS, Lines, Placing, candidates, lines, refine, search, snapped
 from tmm_sheets.compare.report import Report
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, Problem
@@ -33,6 +33,8 @@ POOR = 0.25
 """Share of chance: lines of any sheet cross so many places of another."""
 LOST = 0.2
 """Share of the elements found below which the drawing is not of this sheet."""
+PART = 100.0
+"""Width and height together of the least part of a sheet that is looked for, mm."""
 SHOWN = 60
 """Rows of a table in the terminal; all of them are in the JSON."""
 VIEW_GONE = 0.15
@@ -139,9 +141,26 @@ def _lay(sheets: Mapping[int, Composed], ink: CadInk, thorough: bool = True) -> 
                         break
             if _best(tried).share >= SURE:
                 break
+        if _best(tried).share < SURE and thorough:
+            tried += [part for n, sheet in sheets.items() for part in _parts(n, sheet, known[n], ink)]
     # With a frame the rest may have a layout of its own: then what is written tells the sheet.
     best = framed or _best(tried)
     return _settled(best, ours, lines(s.points for s in best.space.strokes), ink.unit)
+
+
+def _parts(n: int, sheet: Composed, found: tuple[Element, ...], ink: CadInk) -> Iterator[Laid]:
+    """Placings of a drawing of some views only: with most of its own lines on ours."""
+    ours = lines([e.points for e in found if e.view.n and e.kind not in ("text", "hatch", "fill")])
+    for space in ink.spaces:
+        theirs = lines(s.points for s in space.strokes)
+        for ratio in RATIOS:
+            scale = Placing(complex((ink.unit or 1.0) * ratio))
+            z = theirs.moved(scale).points(1.0)
+            if not 30 < len(z) < 60_000 or np.ptp(z.real) + np.ptp(z.imag) < PART:
+                continue
+            trial = search(z, ours, [1.0], tries=4)
+            if trial.share >= SURE:
+                yield Laid(n, sheet, found, space, trial.placing.inverse().after(scale), trial.share)
 
 
 def _best(tried: Sequence[Laid]) -> Laid:
@@ -227,7 +246,11 @@ def _refuse(project: Project, laid: Laid, outcome: Outcome, ink: CadInk, asked: 
     """Stop where the drawing is of another sheet."""
     lines_only = [f for f in outcome.findings if f.element.kind != "text" and f.element.view.n and f.verdict is not None]
     right = sum(f.verdict == "green" for f in lines_only) / max(len(lines_only), 1)
-    if right >= LOST:
+    by_view: dict[View, list[Finding]] = {}
+    for f in lines_only:
+        by_view.setdefault(f.element.view, []).append(f)
+    one = any(len(found) > 10 and sum(f.verdict == "green" for f in found) > 0.7 * len(found) for found in by_view.values())
+    if right >= LOST or one:  # a drawing may be of a single view
         return
     hint = "is it the right project and variant? a drawing with a layout of its own can be told with --views where its views are"
     count = len(project.variant.sheets)
@@ -293,14 +316,14 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
     """The outcome for the terminal."""
     laid, outcome = found.laid, found.outcome
     gone = _gone(outcome)
-    colours = Counter(f.verdict for f in outcome.findings)
+    there = [f for f in outcome.findings if f.element.view not in gone]
+    colours = Counter(f.verdict for f in there)
     out = [f"{name}, sheet {laid.n}: {path.name} ({laid.space.name}), {len(outcome.findings)} elements, tolerance {pencil:g} mm",
            ""]
     rows = []
-    for f in _worst(outcome.findings):
-        if f.element.view not in gone:
-            where = _found_by([laid.space.entities[k] for k in f.entities])
-            rows.append((str(f.element.number), f.element.view.name, _called(f.element), f.what, str(f.verdict), where))
+    for f in _worst(there):
+        where = _found_by([laid.space.entities[k] for k in f.entities])
+        rows.append((str(f.element.number), f.element.view.name, _called(f.element), f.what, str(f.verdict), where))
     if rows:
         out += _table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows)
         out.append("")
@@ -314,9 +337,10 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
         out += ["extra, on no element of the sheet:", *_table(("no.", "what", "about, mm", "verdict", "in the drawing"), extra), ""]
     skipped = colours[None]
     also = f", {skipped} not compared" if skipped else ""
-    worst = max((f.deviation for f in outcome.findings if f.verdict == "green"), default=0.0)
+    worst = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
+    views = f"; {len(gone)} of {len({f.element.view for f in outcome.findings})} views missing" if gone else ""
     out.append(f"{colours['green']} green (up to {worst:.2f} mm), {colours['amber']} amber, {colours['red']} red{also}; "
-               f"{len(outcome.extras)} extra")
+               f"{len(outcome.extras)} extra{views}")
     return "\n".join(out)
 
 
@@ -366,6 +390,6 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
         "extra": [{"number": k, "what": x.text or "line", "length": round(x.length, 3), "at": _point(x.at), "verdict": x.verdict,
                    "count": x.count, "entity": entity(x.entity)} for k, x in enumerate(outcome.extras, 1)],
         "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
-                    "extra": len(outcome.extras)},
+                    "extra": len(outcome.extras), "missing_views": [v.name for v in sorted(_gone(outcome), key=lambda v: v.n)]},
     }
 

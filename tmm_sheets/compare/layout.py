@@ -96,14 +96,16 @@ class _Finder:
         self._search(lost)
         return Layout(self.moves, self.share, tuple(self.notes))
 
-    def _accept(self, v: View, trials: Sequence[Placing]) -> bool:
-        """Take the best of several places when it is clearly better than its own."""
+    def _accept(self, v: View, trials: Sequence[Placing], anywhere: bool = False) -> bool:
+        """Take the best of several places when it is clearly better than its own; ``anywhere`` else its words must be there too."""
         if not trials:
             return False
         before = self._score(v, Placing())
         best = max(trials, key=lambda m: self._score(v, m))
         inked, read = self._inked(v, best), self._read(v, best)
         sure = inked > 0.85 or (inked > 0.5 and read > 0.3) or (len(self.points[v]) < 30 and read > 0.5)
+        if anywhere and self.words and self.texts[v] and read < 0.2:
+            return False
         still = abs(complex(best(v.box.centre)) - v.box.centre) < 0.1 and abs(best.scale - 1) < 1e-3
         if not sure or still or self._score(v, best) < before + 0.12:
             return False
@@ -136,7 +138,7 @@ class _Finder:
 
     def _nudged(self, v: View, start: Placing) -> Placing:
         """A move made better on the lines, without changing its size."""
-        return _inverse(refine(self.points[v], self.theirs, _inverse(start), (6.0, 3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing)
+        return refine(self.points[v], self.theirs, start.inverse(), (6.0, 3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing.inverse()
 
     def _search(self, lost: Sequence[View]) -> None:
         """Look for views anywhere in what the others leave, the larger ones first."""
@@ -150,12 +152,12 @@ class _Finder:
             if len(free.a) < 4:
                 return
             found = search(self.points[v], free, [1 / r for r in SCALES], (0,), enough=0.95, tries=6)
-            back = _inverse(found.placing)
+            back = found.placing.inverse()
             scale = min(SCALES, key=lambda r: abs(back.scale / r - 1))
             middle = complex(self.points[v].mean())
-            start = _inverse(Placing(complex(scale), complex(back(middle)) - scale * middle))
+            start = Placing(complex(scale), complex(back(middle)) - scale * middle).inverse()
             nudged = refine(self.points[v], free, start, (3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing
-            if self._accept(v, [_inverse(nudged)]):
+            if self._accept(v, [nudged.inverse()], True):
                 free = _unused(free, self.moves[v](self.points[v]))
 
 
@@ -177,10 +179,6 @@ def _share(points: Points, theirs: Lines, move: Placing) -> float:
     return theirs.share(move(points), NEAR)
 
 
-def _inverse(p: Placing) -> Placing:
-    return Placing(1 / p.turn, -p.shift / p.turn)
-
-
 def _given(place: ViewPlace, whole: Placing, elements: Sequence[Element], theirs: Lines, points: Points) -> Placing:
     """The move two points (or one and a scale factor) ask for, refined where the ink allows it."""
     at = [complex(whole(z)) for z in place.theirs]
@@ -194,8 +192,8 @@ def _given(place: ViewPlace, whole: Placing, elements: Sequence[Element], theirs
     move = Placing(turn, at[0] - turn * place.ours[0])
     if len(points) < 30:
         return move
-    near = refine(points, theirs, _inverse(move), (4.0, 2.0, 1.0, 0.5, 0.25), place.mu is None)
-    better = _inverse(near.placing)
+    near = refine(points, theirs, move.inverse(), (4.0, 2.0, 1.0, 0.5, 0.25), place.mu is None)
+    better = near.placing.inverse()
     return better if _share(points, theirs, better) > _share(points, theirs, move) else move
 
 

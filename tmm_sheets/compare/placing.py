@@ -40,6 +40,12 @@ class Placing(NamedTuple):
         z = (z - self.shift) / self.turn
         return np.conj(z) if self.mirrored else z
 
+    def inverse(self) -> Placing:
+        """The placing that takes the sheet to the drawing."""
+        turn = np.conj(1 / self.turn) if self.mirrored else 1 / self.turn
+        shift = np.conj(self.shift) if self.mirrored else self.shift
+        return Placing(complex(turn), complex(-turn * shift), self.mirrored)
+
     @property
     def scale(self) -> float:
         """Millimetres of the sheet per unit of the drawing."""
