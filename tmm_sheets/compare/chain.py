@@ -31,13 +31,15 @@ ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
 USUAL = 10.0
 """How far a misplaced point usually lies off, mm."""
+MOST = 10
+"""Mistakes that are looked for; where there are more, another mechanism was drawn."""
 HUBER = 2.0
 """Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
 ALONE = 0.9
 """Share of the number it is looked for that a mistake has to explain, besides most of another one."""
 NEAR = 0.1
 """Displacement for derivatives where a mistake has led to, mm, or as a share of a number."""
-TRIED = 6
+TRIED = 4
 """Steps that are tried by drawing again, of those that explain most by the Jacobian."""
 NEARLY = 0.9
 """Share of the best explanation with which another is as good."""
@@ -285,7 +287,7 @@ class _Sheet:
         usual = np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
         x, shares = np.zeros(2), np.zeros(len(lines))
         weights = np.ones(len(lines))
-        for _ in range(8):
+        for _ in range(5 if exact else 8):
             step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
                                        np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
             if np.abs(rows @ step).max() < 0.01:
@@ -347,11 +349,13 @@ def _chains(judged: list[Judged], errors: Errors) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
     sheet = _Sheet(judged, errors)
     open_ = np.array([j.verdict == "red" for j in judged])
+    tried = 0
     while open_.any():
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         start.starts, open_[first] = True, False
-        mistake = _best(sheet, int(first))
+        tried += 1
+        mistake = _best(sheet, int(first)) if tried <= MOST else None
         if mistake is None:
             continue
         lines, gradient = sheet.by_place[mistake.place]

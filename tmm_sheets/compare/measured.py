@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.compare import measured_file
-from tmm_sheets.compare.chain import EXACT, Judged, Mistake, judge
+from tmm_sheets.compare.chain import EXACT, MOST, Judged, Mistake, judge
 from tmm_sheets.compare.measurable import measurables
 from tmm_sheets.compare.report import Report
 from tmm_sheets.construction.protocol import sentence, spoken
@@ -132,7 +132,7 @@ def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
     lines = [f"{len(judged)} numbers: {count['green']} green, {count['amber']} amber, {count['red']} red, {len(follow)} following "
              f"from an earlier mistake; {filled.empty} left empty"]
     starts = sorted((j for j in judged if j.starts), key=lambda j: j.order)
-    for i, j in enumerate(starts, 1):
+    for i, j in enumerate(starts[:MOST], 1):
         after = [f for f in follow if f.follows is j]
         lines.append(f"{i}. {j.entry.title}, {_name(j)}: {_what(j)}")
         if j.mistake is not None:
@@ -140,7 +140,9 @@ def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
         if after:
             some = ", ".join(_name(f) for f in after[:6]) + (" ..." if len(after) > 6 else "")
             lines.append(f"   {len(after)} follow from it: {some}")
-    if starts:
+    if len(starts) > MOST:
+        lines.append("So many mistakes: was another variant drawn, or with other scale factors than stated?")
+    elif starts:
         lines.append("Mend the first one first: what follows from it is right as soon as that is.")
     elif not count["amber"]:
         lines.append("All within a pencil's reach.")

@@ -182,7 +182,7 @@ class Errors:
 
         def value(step: Step) -> Any:
             self._of(step)  # which lengths are known
-            for s in step.ancestors():
+            for s in step.ancestors() if id(step) not in values else ():
                 if id(s) in values:
                     continue
                 args = _on_paper(s)
