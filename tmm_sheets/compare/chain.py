@@ -364,8 +364,8 @@ def _chains(judged: list[Judged], errors: Errors) -> None:
         start.mistake = mistake
         for i, share, doubt in zip(lines, shares, uncertain, strict=True):
             j, before = judged[i], sheet.left[i]
-            if j.verdict == "green" and abs(before) <= j.tolerance:
-                continue  # the mistake did not reach it
+            if (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
+                continue  # the mistake did not reach it, or with it nothing could be drawn
             sheet.left[i] -= share
             # What is left need not be better than other numbers: amber is accused of nothing.
             allowed = (2 if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt), CURVED * float(share))
