@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.compare import cad_file, cad_overlay, layout, view_places
+from tmm_sheets.compare.cad_findings import Finding, Outcome
 from tmm_sheets.compare.cad_ink import CadInk, Entity, Space
 from tmm_sheets.compare.cad_text import meant
 from tmm_sheets.compare.elements import Element, View, elements
 from tmm_sheets.compare.elements import views as views_of
-from tmm_sheets.compare.matching import Finding, Outcome, match, placed
+from tmm_sheets.compare.matching import match, placed
 from tmm_sheets.compare.placing import HIT, RATIOS, Lines, Placing, candidates, lines, refine, search, snapped
 from tmm_sheets.compare.report import Report
 from tmm_sheets.drawing.marks import Points
