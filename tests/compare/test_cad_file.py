@@ -148,8 +148,9 @@ def test_damaged_files_are_read_as_far_as_they_go(path):
     (b"AC1032\0\0\0", "this is a DWG file, only DXF can be read"),
     (b"%PDF-1.4", "this is a PDF file, not DXF"),
     (b"\x89PNG\r\n", "this is a PNG file, not DXF"),
-    (b"hello\nworld\n", "this is not a DXF file or it is damaged beyond repair"),
-    (b"\0\1\2\3" * 100, "this is not a DXF file or it is damaged beyond repair"),
+    (b"hello\nworld\n", "this is not a DXF file"),
+    (b"\0\1\2\3" * 100, "this is not a DXF file"),
+    (b"0\nSECTION\n1\n2\n3\n" * 9, "this is not a DXF file or it is damaged beyond repair"),
 ])  # fmt: skip
 def test_what_is_no_dxf(path, data, said):
     path.write_bytes(data)

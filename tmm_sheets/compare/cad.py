@@ -223,7 +223,8 @@ def _how(laid: Laid, ink: CadInk) -> list[str]:
     rest = (p.degrees + 45) % 90 - 45
     if abs(rest) > 0.02:
         found.append(f"the drawing is askew by {-rest:.2f} degrees; it was straightened")
-    unit = ink.unit or 1.0
+    declared_unit = ink.unit if laid.space.name == "model space" else 1.0  # paper space is in millimetres
+    unit = declared_unit or 1.0
     ratio = p.scale / unit
     if abs(ratio - 1) > 1e-3:
         usual = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}
@@ -231,8 +232,8 @@ def _how(laid: Laid, ink: CadInk) -> list[str]:
         words = {1000.0: "metres", 25.4: "inches", 10.0: "centimetres", 1.0: "millimetres"}
         word = next((w for s, w in words.items() if abs(p.scale / s - 1) < 1e-3), None)
         declared = next((w for s, w in words.items() if s == unit), f"units of {unit:g} mm")
-        if word is not None and (size is None or ink.unit != 1.0):
-            declares = f"the file declares {declared}" if ink.unit else "the file declares no units"
+        if word is not None and (size is None or declared_unit != 1.0):
+            declares = f"the file declares {declared}" if declared_unit else "the file declares no units"
             found.append(f"the drawing is in {word} though {declares}; it was scaled accordingly")
         elif size is not None:
             found.append(f"the drawing is at scale {size}; it was scaled to 1:1")

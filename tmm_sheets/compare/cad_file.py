@@ -70,7 +70,7 @@ def _open(path: Path) -> tuple[Document, list[str]]:
     hint = "save the drawing as DXF (AutoCAD: DXFOUT or Save as; KOMPAS: Сохранить как, DXF)"
     try:
         with path.open("rb") as file:
-            head = file.read(64)
+            head = file.read(1 << 16)
     except OSError as e:
         raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path))) from None
     if not head:
@@ -82,6 +82,8 @@ def _open(path: Path) -> tuple[Document, list[str]]:
         if head.startswith(mark):
             also = "; photographs and scans are compared with --image" if name in ("PDF", "PNG", "JPEG") else ""
             raise BadInput(Problem(f"this is a {name} file, not DXF", str(path), hint=hint + also))
+    if b"SECTION" not in head:
+        raise BadInput(Problem("this is not a DXF file", str(path), hint=hint))
     # The library tells its log of every small repair; what matters is told in the notes.
     log = logging.getLogger("ezdxf")
     before = log.level
