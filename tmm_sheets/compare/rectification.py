@@ -423,6 +423,8 @@ def find(grey: Grey, block: Lines) -> Found:
     small = cv2.resize(grey, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
     ink = darkness(small, 8)
     level = max(5 * 1.4826 * float(np.median(np.abs(ink.astype(np.int16) - int(np.median(ink))))) + float(np.median(ink)), 20.0)
+    if float(np.percentile(ink, 99.7)) < PALE:
+        raise CannotBuild("nothing in the picture is as dark as a drawn line: it is blurred, or the lines are too pale", hint=SHARP)
     best: Found | None = None
     for guess in _guesses(small, ink):
         best = _better(best, ink, guess, block, level)
@@ -443,9 +445,6 @@ def find(grey: Grey, block: Lines) -> Found:
                 break
     if best is None or best.score < FOUND:
         share = 0.0 if best is None else max(best.score, 0.0)
-        if float(np.percentile(ink, 99.7)) < PALE:
-            raise CannotBuild("nothing in the picture is as dark as a drawn line: it is blurred, or the lines are too pale",
-                              hint=SHARP)  # fmt: skip
         raise CannotBuild(
             "no frame with a title block was found in the picture "
             f"(at best {100 * share:.0f} % of the title block's lines are where they belong)", hint=WANTED,

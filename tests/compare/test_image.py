@@ -1,0 +1,188 @@
+"""Photographs of hand drawings against the exact sheet: rectified, measured, judged; the photographs are simulated."""
+
+import io
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.compare.simulation import Camera, paper, photograph, plant
+from tmm_sheets import catalogue
+from tmm_sheets.backends import pdf, png
+from tmm_sheets.compare import image, rectification, tracing
+from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.photograph import Picture, read
+from tmm_sheets.drawing.marks import Arc
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.project import Project
+from tmm_sheets.sheets.sheet import composed
+
+CAMERA = Camera(megapixels=8.0, tilt=0.2, curl=4.0, k1=-0.04, waves=(1.0, 0.3, -0.1), desk=110.0)
+SCALE = 6.0
+N = 4
+
+
+@cache
+def project():
+    return Project(catalogue.read("lugansk/shaper"))
+
+
+@cache
+def sheet():
+    return composed(project(), N)
+
+
+@cache
+def known():
+    return elements(sheet())
+
+
+@cache
+def drawn():
+    """The sheet by hand, with a circle too large, a line moved, a line left out and one too many."""
+    marks = sheet().drawing.marks
+    rng = np.random.default_rng(4)
+    changed, planted, extra = plant(sheet().drawing, rng, 4, ("moved", "missing"))
+    circles = (i for i, m in enumerate(marks) if isinstance(m, Arc) and m.end - m.start > 6 and 20 < m.radius < 60)
+    circle = next(i for i in circles if i not in changed)
+    changed[circle] = marks[circle]._replace(radius=marks[circle].radius + 2.5)
+    ink = paper(sheet().drawing, rng, 0.12, changed, extra, SCALE)
+    return ink, [p.mark for p in planted] + [circle]
+
+
+@cache
+def shot(**changes):
+    ink, _ = drawn()
+    return photograph(ink, sheet().drawing, replace(CAMERA, **changes), np.random.default_rng(1), SCALE)
+
+
+@cache
+def rectified():
+    return image.rectify(Picture(grey()), known(), Path("photo.jpg"))
+
+
+def test_places_after_rectification():
+    grid = (np.linspace(20, 836, 21)[None, :] + 1j * np.linspace(5, 589, 15)[:, None]).ravel()
+    truth = shot().place(grid)
+    scale = np.abs(shot().place(grid + 0.5) - shot().place(grid - 0.5))
+    off = np.abs(rectified().map.to_picture(grid) - truth) / scale
+    assert np.median(off) < 0.3
+    assert off.max() < 0.8
+    back = rectified().map.to_sheet(truth)
+    assert np.abs(back - grid).max() < 0.8
+
+
+def test_planted_errors_are_found_and_nothing_else():
+    _, planted = drawn()
+    traces, extra = tracing.trace(known(), rectified().ink)
+    marks = sheet().drawing.marks
+    red = {f.trace.element.number for f in (image.judge(t, 0.25, rectified().uncertainty) for t in traces) if f.verdict == "red"}
+    guilty = {e.number for e in known() if any(m is marks[i] for i in planted for m in e.marks)}
+    assert len(guilty) == len(planted) == 5
+    assert red == guilty
+    by_number = {t.element.number: t for t in traces}
+    circle = next(by_number[n] for n in guilty if any(m is marks[planted[-1]] for m in by_number[n].element.marks))
+    assert circle.growth == pytest.approx(2.5, abs=0.3)
+    # A line that is moved farther than it can be told from others leaves ink behind; nothing else does.
+    assert len(extra) <= 4
+
+
+@cache
+def grey():
+    return cv2.imdecode(np.frombuffer(shot().data, np.uint8), cv2.IMREAD_GRAYSCALE)
+
+
+@cache
+def frame():
+    return rectification.find(grey(), image.frame_lines(known()))
+
+
+@pytest.mark.parametrize(("quarter", "told"), [(1, 3), (2, 2)])
+def test_turned_pictures_are_known(quarter, told):
+    found = rectification.find(np.ascontiguousarray(np.rot90(grey(), quarter)), image.frame_lines(known()))
+    assert found.turned == told
+    rows, columns = grey().shape
+    upright = frame().corners
+    back = upright.imag + 1j * (columns - 1 - upright.real) if quarter == 1 else columns - 1 + 1j * (rows - 1) - upright
+    assert np.abs(back - found.corners).max() < 8  # pixels: the frame is followed at two fifths of the resolution here
+
+
+def test_mirrored_picture_is_refused():
+    seen = np.ascontiguousarray(grey()[:, ::-1])
+    with pytest.raises(CannotBuild, match="mirrored"):
+        rectification.find(seen, image.frame_lines(known()))
+
+
+def test_wrong_sheet_is_told(tmp_path):
+    file = tmp_path / "photo.png"
+    file.write_bytes(png.render(sheet().drawing, 75))
+    with pytest.raises(CannotBuild, match="does not show sheet 3 but sheet 4"):
+        image.compare(project(), 3, file)
+
+
+def test_own_png_has_no_deviation(tmp_path):
+    file = tmp_path / "sheet.png"
+    file.write_bytes(png.render(sheet().drawing, 150))
+    found = image.rectify(read(file), known(), file)
+    traces, extra = tracing.trace(known(), found.ink)
+    assert {image.judge(t, 0.1, found.uncertainty).verdict for t in traces} == {"green"}
+    assert extra == []
+
+
+def test_own_pdf_has_no_deviation(tmp_path):
+    file = tmp_path / "sheet.pdf"
+    file.write_bytes(pdf.render(sheet().drawing))
+    report = image.compare(project(), N, file)
+    count = report.tree["count"]
+    assert count["amber"] == count["red"] == 0
+    assert count["green"] > 200
+    assert report.tree["extra"] == []
+    assert {row["verdict"] for row in report.tree["elements"]} == {"green"}
+    worst = max(row["deviation"] for row in report.tree["elements"] if row["deviation"] is not None)
+    assert worst < 0.4
+    overlay = cv2.imdecode(np.frombuffer(report.files[f"compare_sheet_{N}.png"], np.uint8), cv2.IMREAD_COLOR)
+    assert overlay.shape == (2376, 3364, 3)
+    import pypdfium2
+
+    document = pypdfium2.PdfDocument(io.BytesIO(report.files[f"compare_sheet_{N}.pdf"]))
+    assert document[0].get_size() == pytest.approx((841 / 25.4 * 72, 594 / 25.4 * 72), abs=0.01)
+    document.close()
+
+
+def blank(tmp_path):
+    done, data = cv2.imencode(".png", np.full((1500, 2000), 220, np.uint8))
+    assert done
+    file = tmp_path / "blank.png"
+    file.write_bytes(data.tobytes())
+    return file
+
+
+def test_bad_files(tmp_path):
+    files = (("none.jpg", None, "no such file"), ("empty.png", b"", "empty"), ("text.jpg", b"hello", "not an image"),
+             ("bad.pdf", b"%PDF-1.4 rubbish", "not a PDF"))  # fmt: skip
+    for name, data, told in files:
+        file = tmp_path / name
+        if data is not None:
+            file.write_bytes(data)
+        with pytest.raises(BadInput, match=told) as caught:
+            read(file)
+        assert str(file) in str(caught.value)
+        assert "JPG, PNG or PDF" in str(caught.value)
+    with pytest.raises(CannotBuild, match=r"blank\.png: nothing in the picture is as dark as a drawn line"):
+        image.compare(project(), N, blank(tmp_path))
+    with pytest.raises(BadInput, match="no sheet 9"):
+        image.compare(project(), 9, tmp_path / "none.jpg")
+    small = tmp_path / "small.png"
+    small.write_bytes(cv2.imencode(".png", np.full((600, 800), 220, np.uint8))[1].tobytes())
+    with pytest.raises(CannotBuild, match="800 x 600 pixels are too few"):
+        read(small)
+
+
+def test_blurred_picture_is_refused(monkeypatch):
+    monkeypatch.setattr(rectification, "find", lambda *_: frame())
+    assert rectification.fit_frame(grey(), frame())[2] < image.SOFT
+    with pytest.raises(CannotBuild, match="blurred: edges of lines are smeared over"):
+        image.rectify(Picture(cv2.GaussianBlur(grey(), (0, 0), 2.6)), known(), Path("photo.jpg"))
