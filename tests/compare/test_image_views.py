@@ -1,0 +1,119 @@
+"""A photographed sheet with a layout of its own: views placed by points and scale factors, fitted to the ink."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from tests.compare.simulation import paper
+from tmm_sheets import catalogue
+from tmm_sheets.compare import image, tracing, view_places
+from tmm_sheets.compare import photographed_views as placing
+from tmm_sheets.compare.elements import elements, views
+from tmm_sheets.drawing.marks import Arc, Drawing, Line, Text
+from tmm_sheets.errors import BadInput
+from tmm_sheets.project import Project
+from tmm_sheets.sheets.sheet import composed
+
+PIXEL = 5.0  # of the made-up picture, per mm
+WHEEL, PLAN = "Эскиз маховика", "План скоростей, положение 4"
+TURN = {WHEEL: 0.8 + 0j, PLAN: 1.25 * np.exp(1j * np.radians(2))}
+ABOUT = {WHEEL: 740 + 170j, PLAN: 68 + 250j}
+SHIFT = {WHEEL: -12 - 15j, PLAN: 15 + 8j}
+
+
+class Flat:
+    """A picture that is the sheet itself: pixels from the upper left corner."""
+
+    def to_sheet(self, q):
+        return q.real / PIXEL + 1j * (594 - q.imag / PIXEL)
+
+
+def to_pixels(z):
+    return [float(z.real * PIXEL), float((594 - z.imag) * PIXEL)]
+
+
+@cache
+def sheet():
+    return composed(Project(catalogue.read("press")), 1)
+
+
+@cache
+def known():
+    return elements(sheet())
+
+
+def by(name, z):
+    return (z - ABOUT[name]) * TURN[name] + ABOUT[name] + SHIFT[name]
+
+
+def shifted(mark, name):
+    """A mark where the student's layout has it; written anew, not by what is tested."""
+    size, angle = abs(TURN[name]), float(np.angle(TURN[name]))
+    if isinstance(mark, Line):
+        return mark._replace(a=by(name, mark.a), b=by(name, mark.b))
+    if isinstance(mark, Arc):
+        return mark._replace(centre=by(name, mark.centre), radius=size * mark.radius,
+                             start=mark.start + angle, end=mark.end + angle)  # fmt: skip
+    if isinstance(mark, Text):
+        return mark._replace(at=by(name, mark.at), height=size * mark.height, angle=mark.angle + angle)
+    return mark._replace(points=by(name, np.asarray(mark.points)))
+
+
+@cache
+def drawn():
+    """Ink of the sheet with two views elsewhere, and the element of the wheel that is 2 mm too large."""
+    belongs = {id(m): e.view.name for e in known() for m in e.marks}
+    rim = max((e for e in known() if e.view.name == WHEEL and e.kind == "circle" and e.style == "main"), key=lambda e: e.radius)
+    marks = []
+    for m in sheet().drawing.marks:
+        new = shifted(m, belongs[id(m)]) if belongs.get(id(m)) in TURN else m
+        marks.append(new._replace(radius=new.radius + 2.0) if m is rim.marks[0] else new)
+    drawing = Drawing(841.0, 594.0, "", tuple(marks))
+    return paper(drawing, np.random.default_rng(3), 0.1, scale=6.0), rim.number
+
+
+@pytest.fixture
+def file(tmp_path):
+    text = ""
+    rng = np.random.default_rng(2)
+    for name, ours, mu in ((WHEEL, (713 + 148j, 787 + 148j), ""), (PLAN.lower(), (91 + 242j, 51 + 266j), "mu = 0.032")):
+        title = WHEEL if name == WHEEL else PLAN
+        theirs = [to_pixels(by(title, z) + complex(*rng.normal(0, 0.4, 2))) for z in ours]  # clicked by hand
+        text += f'[[view]]\nname = "{name}"\nours = {[[z.real, z.imag] for z in ours]}\ntheirs = {theirs}\n{mu}\n'
+    path = tmp_path / "views.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_views_are_placed_and_fitted(file):
+    ink, rim = drawn()
+    places = view_places.read(file, views(sheet()))
+    placed = placing.place(known(), places, Flat(), ink)
+    assert placed.left_out == ()
+    assert len(placed.elements) == len(known())
+    assert any(PLAN in note and "ought to be 1.2500" in note for note in placed.notes)
+    for e, ours in zip(sorted(placed.elements, key=lambda e: e.number), known(), strict=True):
+        if ours.view.name in TURN and ours.kind == "line":
+            assert np.abs(e.points - by(ours.view.name, ours.points)).max() < 0.5
+    traces, extra = tracing.trace(placed.elements, ink)
+    red = {t.element.number: t for t in traces if image.judge(t, 0.25, 0.3).verdict == "red"}
+    assert set(red) == {rim}
+    assert red[rim].growth == pytest.approx(2.0, abs=0.3)
+    assert extra == []
+
+
+def test_a_view_that_is_not_named_and_not_there_is_left_out():
+    ink, _ = drawn()
+    placed = placing.place(known(), (), Flat(), ink)
+    assert set(placed.left_out) == set(TURN)
+    assert WHEEL not in {e.view.name for e in placed.elements}
+    assert "left out" in placed.notes[-1]
+
+
+def test_scale_factor_of_a_view_without_one(tmp_path):
+    path = tmp_path / "views.toml"
+    path.write_text(f'[[view]]\nname = "{WHEEL}"\nours = [[713, 148]]\ntheirs = [[100, 100]]\nmu = 0.01\n', encoding="utf-8")
+    places = view_places.read(path, views(sheet()))
+    with pytest.raises(BadInput, match="no scale factor of its own"):
+        placing.place(known(), places, Flat(), drawn()[0])
