@@ -50,7 +50,8 @@ class Comparison:
         self.areas = np.array([complex(a.points.mean()) for a in space.areas], dtype=complex)
         self.used_areas: set[int] = set()
         self.used_writings: set[int] = set()
-        self.zones: list[Points] = []
+        self.zones: list[Points] = []  # where any ink may lie
+        self.lettered: list[Points] = []  # where short strokes may
         self.drawn_letters: list[tuple[int, cad_text.Wanted]] = []
 
     def _paths(self, e: Element, move: Placing) -> list[Points]:

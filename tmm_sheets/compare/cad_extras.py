@@ -15,6 +15,8 @@ from tmm_sheets.compare.placing import lines, shapes
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
 
+SHORT = 12.0
+"""Strokes up to this length may belong to somebody's lettering, mm."""
 LEAST = 1.0
 """Stretches of extra ink shorter than this do not count, mm."""
 
@@ -64,17 +66,21 @@ def _outside_zones(state: Comparison, rest: list[Left]) -> list[Left]:
     for a in state.space.areas:  # their own heads
         if np.ptp(a.points.real) + np.ptp(a.points.imag) < 20:
             zones.append(shapely.MultiPoint(np.column_stack((a.points.real, a.points.imag))).convex_hull.buffer(0.05))
+    short = np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner] < SHORT
+    first_lettered = len(zones)
+    zones += [shapely.Polygon(np.column_stack((z.real, z.imag))) for z in state.lettered]
     if not zones:
         return rest
     tree = shapely.STRtree(zones)
     ink = shapes(free.a, free.b)
-    i, _ = tree.query(ink, predicate="within")
-    drop = set(i.tolist())
+    allowed = np.array([short[r.piece] for r in rest])
+    i, k = tree.query(ink, predicate="within")
+    drop = set(i[(k < first_lettered) | allowed[i]].tolist())
     # Partly inside: what sticks out counts.
     out = []
     touching: dict[int, list[int]] = {}
     for p, q in zip(*tree.query(ink, predicate="intersects").tolist(), strict=True):
-        if p not in drop:
+        if p not in drop and (q < first_lettered or allowed[p]):
             touching.setdefault(p, []).append(q)
     for k, r in enumerate(rest):
         if k in drop:

@@ -37,7 +37,7 @@ def lettering(state: Comparison) -> None:
             state.found[n] = state.finding(n, 4 * state.tolerance, f'reads "{answer.says}" instead of "{state.elements[n].text}"',
                                           entities=entities)
         _bars(state, n)
-        state.zones.append(grown(wanted[k].corners, 0.8))
+        state.lettered.append(grown(wanted[k].corners, 0.8))
     _strokes_of_letters(state, rest)
 
 
@@ -79,7 +79,7 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.Wa
             state.found[n] = state.finding(n, 0.0, "")
         elif share > 0.4 * whole > 0:
             state.found[n] = _other_letters(state, n)
-            state.zones.append(grown(want.corners, 0.8))
+            state.lettered.append(grown(want.corners, 0.8))
         else:
             state.found[n] = state.finding(n, 2 * state.tolerance, f'text "{state.elements[n].text}" missing', missing=True)
 
