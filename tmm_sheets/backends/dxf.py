@@ -214,7 +214,8 @@ def _lettering(texts: list[Text], owner: str, handles: Iterator[int]) -> Iterato
         return
     counts = [len(p) for p in parts]
     points = np.concatenate(parts) * np.repeat(factors, counts) + np.repeat(origins, counts)
-    form = [f"0\nLWPOLYLINE\n5\n{h:X}\n{head}{n}\n70\n0\n{_vertices(n)}" for head, n, h in zip(heads, counts, handles, strict=False)]
+    form = [f"0\nLWPOLYLINE\n5\n{handle:X}\n{head}{n}\n70\n0\n{_vertices(n)}"
+            for head, n, handle in zip(heads, counts, handles, strict=False)]
     # One formatting of all numbers: three times quicker than one of each stroke.
     yield "".join(form) % _xy(points)
 
