@@ -17,7 +17,7 @@ Pictures are arrays with row 0 at the top; points of pictures and of the sheet a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
@@ -166,6 +166,10 @@ def sample(picture: Any, p: Points) -> Any:
 
     if not np.size(p):
         return np.zeros(np.shape(p), picture.dtype)
+    if np.ndim(p) <= 2 and max(np.shape(p)) < 32767:
+        flat = np.atleast_2d(p)
+        return cv2.remap(picture, flat.real.astype(np.float32), flat.imag.astype(np.float32), cv2.INTER_LINEAR,
+                         borderMode=cv2.BORDER_CONSTANT, borderValue=0).reshape(np.shape(p))  # fmt: skip
     flat = np.atleast_2d(p)
     wide = 8192  # cv2 takes at most 32767 rows and columns
     x, y = flat.real.astype(np.float32).ravel(), flat.imag.astype(np.float32).ravel()
@@ -229,12 +233,12 @@ class Guess(NamedTuple):
     """Positions in which it may be: quarter turns, and 4 more for those in a mirror."""
 
 
-def _guesses(grey: Any, ink: Any) -> list[Guess]:
+def _guesses(grey: Any, ink: Any) -> Iterator[Guess]:
     """What may be the frame: the largest things made of straight lines, then what the paper's edge tells."""
     import cv2
 
     rows, columns = grey.shape
-    out: list[Guess] = []
+    papers: list[tuple[Points, Floats]] = []
     straight = _straight_lines(ink)
     for level in (14, 9):
         strokes = cv2.dilate((straight > level).astype(np.uint8), np.ones((3, 3), np.uint8))
@@ -244,28 +248,33 @@ def _guesses(grey: Any, ink: Any) -> list[Guess]:
             if area[i - 1] < 0.15 * rows * columns:
                 break
             x, y, w, h = stats[i, :4]
-            part = labels[y : y + h, x : x + w] == i
-            outline = np.argwhere(part)[:, ::-1].astype(np.int32) + np.array([x, y], np.int32)
-            if (quad := _quadrilateral(outline)) is not None:
-                out.append(Guess(quad, _bends((labels == i).astype(np.uint8), quad), 5.0))
+            if (quad := _quadrilateral(_outline(labels[y : y + h, x : x + w] == i) + np.array([x, y], np.int32))) is not None:
+                bends = _bends((labels == i).astype(np.uint8), quad)
+                papers.append((quad, bends))  # it may be the paper's edge as well
+                yield Guess(quad, bends, 5.0)
     # The paper against the desk; a scan may show nothing but paper.
     soft = cv2.GaussianBlur(grey, (0, 0), 3)
     _, bright = cv2.threshold(soft, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)
     bright = cv2.morphologyEx(bright, cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8))
     count, labels, stats, _ = cv2.connectedComponentsWithStats(bright, connectivity=4)
-    papers: list[tuple[Points, Floats]] = [(np.array([1j * rows, columns + 1j * rows, columns, 0j]), np.zeros((4, STATIONS)))]
     if count > 1:
         i = int(np.argmax(stats[1:, cv2.CC_STAT_AREA])) + 1
         if stats[i, cv2.CC_STAT_AREA] > 0.15 * rows * columns:
-            quad = _quadrilateral(np.argwhere(labels == i)[:, ::-1].astype(np.int32))
+            quad = _quadrilateral(_outline(labels == i))
             if quad is not None:
-                papers.insert(0, (quad, _bends((labels == i).astype(np.uint8), quad)))
+                papers.append((quad, _bends((labels == i).astype(np.uint8), quad)))
+    papers.append((np.array([1j * rows, columns + 1j * rows, columns, 0j]), np.zeros((4, STATIONS))))
     edge = np.array([PAPER.x0 + 1j * PAPER.y0, PAPER.x1 + 1j * PAPER.y0, PAPER.x1 + 1j * PAPER.y1, PAPER.x0 + 1j * PAPER.y1])
-    # What has been found may be the paper's edge as well.
-    for quad, bends in [*((g.corners, g.bends) for g in out), *papers]:
+    for quad, bends in papers:
         for turn in range(4):  # the wide margin is on one side only
-            out.append(Guess(_apply(homography(edge, np.roll(quad, turn)), CORNERS), np.roll(bends, turn, 0), 7.0, (0, 4)))
-    return out
+            yield Guess(_apply(homography(edge, np.roll(quad, turn)), CORNERS), np.roll(bends, turn, 0), 7.0, (0, 4))
+
+
+def _outline(mask: Any) -> Any:
+    """First and last pixel (x, y) of every row of a region: its hull is theirs."""
+    rows = np.flatnonzero(mask.any(1))
+    first, last = mask[rows].argmax(1), mask.shape[1] - 1 - mask[rows][:, ::-1].argmax(1)
+    return np.column_stack((np.concatenate((first, last)), np.concatenate((rows, rows)))).astype(np.int32)
 
 
 def _bends(mask: Any, quad: Points) -> Floats:

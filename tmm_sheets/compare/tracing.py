@@ -180,8 +180,9 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
         t = _far(e, s, left, wiped, ink, pale)
         found.append(t)
         if t.at is not None:
-            _paint(wiped, e, t.at, DENSE_ROOM if t.status == "dense" else ROOM)
-            left[wiped > 0] = 0
+            room = DENSE_ROOM if t.status == "dense" else ROOM
+            _paint(wiped, e, t.at, room)
+            _paint(left, e, t.at, room, 0)
     for t in found:
         if t.status == "measured" and t.element.kind in ("line", "arc", "curve"):
             t = _with_ends(t, ink, known, left, words, pale)
@@ -197,21 +198,21 @@ def _fixed(p: Points) -> Any:
     return np.round(np.column_stack((q.real, q.imag)) * 16).astype(np.int32)
 
 
-def _paint(picture: Any, e: Element, points: Points, margin: float) -> None:
+def _paint(picture: Any, e: Element, points: Points, margin: float, value: int = 255) -> None:
     """Draw an element (along ``points``) with ``margin`` mm to spare, its heads too."""
     import cv2
 
     if e.kind == "hatch":
         for p in e.pieces:
-            cv2.polylines(picture, [_fixed(p)], False, 255, max(round((0.2 + margin) * SCALE), 1), cv2.LINE_8, 4)
+            cv2.polylines(picture, [_fixed(p)], False, value, max(round((0.2 + margin) * SCALE), 1), cv2.LINE_8, 4)
         return
     if e.kind != "fill" and not (e.kind == "circle" and e.fills):
         wide = max(round((line_type(e.style).width + margin) * SCALE), 1)
-        cv2.polylines(picture, [_fixed(points)], False, 255, wide, cv2.LINE_8, 4)
+        cv2.polylines(picture, [_fixed(points)], False, value, wide, cv2.LINE_8, 4)
     for f in e.fills:
-        cv2.fillPoly(picture, [_fixed(f)], 255, cv2.LINE_8, 4)
+        cv2.fillPoly(picture, [_fixed(f)], value, cv2.LINE_8, 4)
         if margin:
-            cv2.polylines(picture, [_fixed(f)], True, 255, round(2 * margin * SCALE), cv2.LINE_8, 4)
+            cv2.polylines(picture, [_fixed(f)], True, value, round(2 * margin * SCALE), cv2.LINE_8, 4)
 
 
 def _grown(e: Element, margin: float) -> Points:
