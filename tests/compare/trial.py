@@ -40,10 +40,11 @@ def judged(found, known, pencil=0.25):
     return [image.judge(t, pencil, found.uncertainty) for t in traces], extra
 
 
-def near(z, x, room=4.0):
-    """Share of the points z within an extra's box."""
-    d = z - x.middle
-    return float(((np.abs(d.real) < x.width / 2 + room) & (np.abs(d.imag) < x.height / 2 + room)).mean())
+def near(z, extra, room=4.0):
+    """Share of the points z within the boxes of extra ink: lines that cross it cut a line into several."""
+    inside = [(np.abs(z.real - x.middle.real) < x.width / 2 + room) & (np.abs(z.imag - x.middle.imag) < x.height / 2 + room)
+              for x in extra]  # fmt: skip
+    return float(np.any(inside, axis=0).mean()) if inside else 0.0
 
 
 class Tally:
@@ -62,7 +63,7 @@ class Tally:
         touched = set()
         for p in shot.planted:
             if p.kind == "extra":
-                hit = any(near(p.drawn, x) > 0.5 for x in extra)
+                hit = near(p.drawn, extra) > 0.5
                 self.found["extra", "15-60 mm"]["red" if hit else "missed"] += 1
                 continue
             f = of_mark[id(marks[p.mark])]
@@ -85,7 +86,7 @@ class Tally:
                 if f.verdict == "red":
                     self.examples.append(f"false {label}: element {f.trace.element.number} {f.trace.element.kind} {f.said}")
         for x in extra:
-            if not any(p.drawn is not None and near(p.drawn, x) > 0 for p in shot.planted):
+            if not any(p.drawn is not None and near(p.drawn, [x]) > 0 for p in shot.planted):
                 self.false["extra ink"] += 1
                 self.examples.append(f"false {label}: extra {x.width:.0f} x {x.height:.0f} at {x.middle:.0f}")
         e = position_errors(found.map, shot)
