@@ -182,7 +182,8 @@ def test_bad_files(tmp_path):
 
 
 def test_blurred_picture_is_refused(monkeypatch):
-    monkeypatch.setattr(rectification, "find", lambda *_: frame())
-    assert rectification.fit_frame(grey(), frame())[2] < image.SOFT
+    found = frame()
+    monkeypatch.setattr(rectification, "find", lambda *_: found)
+    assert rectification.fit_frame(grey(), found)[2] < image.SOFT
     with pytest.raises(CannotBuild, match="blurred: edges of lines are smeared over"):
         image.rectify(Picture(cv2.GaussianBlur(grey(), (0, 0), 2.6)), known(), Path("photo.jpg"))

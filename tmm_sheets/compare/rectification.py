@@ -545,6 +545,8 @@ def fit_frame(grey: Grey, found: Found) -> tuple[Map, float, float]:
             raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
         m, scatter = _fit_sides(m, m.to_picture(p + n * o), side, use)
         smear = _smear(profile[use], offsets, o[use])
+        if not smear < 2:  # mm: there is no line at all
+            raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
     return m, scatter, smear
 
 
