@@ -1,7 +1,9 @@
 """Many simulated photographs with planted errors: what the comparison finds, what it makes up, how well it rectifies, what it
 costs.
 
-Usage: python -m tests.compare.trial [-n 200] [--first 0] [--errors 4] [--minutes M] [--time] [--show]
+Usage: python -m tests.compare.trial [-n 200] [--first 0] [--errors 4] [--minutes M] [--time] [--show] [--photographs FOLDER]
+
+With --photographs the simulated photographs are kept in a folder, or taken from there: half of the time goes into them.
 """
 
 import argparse
@@ -10,12 +12,14 @@ import resource
 import sys
 import tempfile
 from collections import Counter, defaultdict
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter, process_time
+from typing import Any
 
 import numpy as np
 
-from tests.compare.simulation import shoot
+from tests.compare.simulation import Planted, shoot
 from tmm_sheets import catalogue
 from tmm_sheets.compare import image, tracing
 from tmm_sheets.compare.elements import elements
@@ -29,10 +33,33 @@ GRID = (np.linspace(20, 836, 41)[None, :] + 1j * np.linspace(5, 589, 31)[:, None
 BINS = ((1, 1.5), (1.5, 2), (2, 3), (3, 5))
 
 
+@dataclass
+class Photograph:
+    """What is known of a simulated photograph: the file's bytes, where GRID is in it, its pixels per mm there, what was planted."""
+
+    data: bytes
+    places: Any
+    scale: Any
+    planted: list[Planted]
+
+
+def photograph(seed, sheet, errors, folder=None):
+    """The photograph of a seed, from ``folder`` if it is there, else taken and kept there."""
+    kept = folder / f"{seed}-{errors}.pickle" if folder else None
+    if kept and kept.exists():
+        return pickle.loads(kept.read_bytes())
+    shot = shoot(sheet.drawing, seed, errors)
+    scale = np.abs(shot.place(GRID + 0.5) - shot.place(GRID - 0.5))
+    out = Photograph(shot.data, shot.place(GRID), scale, shot.planted)
+    if kept:
+        folder.mkdir(parents=True, exist_ok=True)
+        kept.write_bytes(pickle.dumps(out))
+    return out
+
+
 def position_errors(m, shot):
     """Distance between where places of the sheet are in the picture and are thought to be, in mm of the sheet."""
-    pixels = np.abs(shot.place(GRID + 0.5) - shot.place(GRID - 0.5))
-    return np.abs(m.to_picture(GRID) - shot.place(GRID)) / pixels
+    return np.abs(m.to_picture(GRID) - shot.places) / shot.scale
 
 
 def judged(found, known, pencil=0.25):
@@ -142,6 +169,7 @@ def main():
     parser.add_argument("--time", action="store_true")
     parser.add_argument("--show", action="store_true", help="tell every miss and false alarm")
     parser.add_argument("--save", type=Path, help="keep what was counted, to be merged")
+    parser.add_argument("--photographs", type=Path, help="folder of simulated photographs")
     parser.add_argument("--merge", type=Path, nargs="+", help="report what several runs have kept")
     options = parser.parse_args()
     if options.merge:
@@ -165,7 +193,7 @@ def main():
             project = Project(catalogue.read(names[seed % len(names)]))
             n = int(rng.integers(len(project.variant.sheets))) + 1
             sheet = composed(project, n)
-            shot = shoot(sheet.drawing, seed, options.errors)
+            shot = photograph(seed, sheet, options.errors, options.photographs)
             path.write_bytes(shot.data)
             print(f"{seed} at {perf_counter() - start:.0f} s", file=sys.stderr)
             label = f"{project.variant.project.name} {n} seed {seed}"
