@@ -31,7 +31,9 @@ KINDS = ("shift", "end", "turn", "remove", "extra", "text", "radius", "centre", 
 
 @dataclass(frozen=True)
 class Way:
-    """How a drawing is made: ``turn`` is units of the drawing per mm of the sheet (complex), ``unit`` the $INSUNITS code."""
+    """How a drawing is made: ``turn`` is units of the drawing per mm of the sheet (complex), ``unit`` the $INSUNITS code; ``looks``
+    whether lines have types and widths (else all is continuous, of default width).
+    """
 
     turn: complex = 1 + 0j
     shift: complex = 0j
@@ -41,6 +43,18 @@ class Way:
     polylines: float = 0.0
     mirrored: bool = False
     frame: bool = True
+    looks: bool = False
+
+
+PATTERNS = {"centre": "CENTER", "hidden": "DASHED", "twodot": "PHANTOM"}
+
+
+def look_of(e: Element, place: int) -> dict:
+    """Line type and weight of an element, said by itself (0) or by its layer (1)."""
+    wide = e.style in ("main", "curve", "vector")
+    if place == 1:
+        return {"layer": f"{PATTERNS.get(e.style, 'Continuous')}-{'wide' if wide else 'thin'}"}
+    return {"linetype": PATTERNS.get(e.style, "Continuous"), "lineweight": 70 if wide else 25}
 
 
 def some_way(rng: random.Random) -> Way:
@@ -54,11 +68,14 @@ def some_way(rng: random.Random) -> Way:
 
 def draw(found: list[Element], way: Way, rng: random.Random) -> bytes:
     """A DXF file of elements, none of it made by the project's own writer."""
-    doc = ezdxf.new("R2010")
+    doc = ezdxf.new("R2010", setup=way.looks)
     doc.header["$INSUNITS"] = way.unit
     names = ("0", "Линии", "тонкие", "Layer3", "Размеры")
     for name in names[1:]:
         doc.layers.add(name, color=rng.randrange(1, 8))
+    for name in ("Continuous", *PATTERNS.values()) if way.looks else ():
+        for suffix, weight in (("wide", 70), ("thin", 25)):
+            doc.layers.add(f"{name}-{suffix}", linetype=name, lineweight=weight)
     space = doc.modelspace()
     if way.block:
         space = doc.blocks.new("SHEET")
@@ -75,6 +92,8 @@ def draw(found: list[Element], way: Way, rng: random.Random) -> bytes:
         if not way.frame and e.view.n == 0:
             continue
         look = {"layer": rng.choice(names)}
+        if way.looks:
+            look = look_of(e, e.number % 2)
         for f in e.fills:
             points = [xy(z) for z in f]
             if len(points) == 3:

@@ -53,6 +53,8 @@ def by_cad(project, n, path):
                         f"{f.what}"))
         elif f.deviation > 0.01:
             said.append(("off", f"element {e.number} {e.kind} {e.style} {f.deviation:.3f} mm"))
+    said += [("look", f"{len(x.elements)} {x.lines} {x.what}: {x.elements[:5]} in {x.view and x.view.name!r}") for x in
+             found.outcome.looks]
     said += [("extra", f"{x.length:.1f} mm about ({x.at.real:.1f}, {x.at.imag:.1f}) {x.text}") for x in found.outcome.extras]
     return said, len(found.outcome.findings)
 

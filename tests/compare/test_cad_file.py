@@ -189,3 +189,21 @@ def test_the_overlay_can_be_read_again(path):
     (space,) = cad_file.read(path).spaces
     assert {e.layer for e in space.entities} == {"SHEET", "DRAWN", "FOUND"}
     assert [w.text for w in space.writings] == ["7"]
+
+
+def test_line_types_and_weights_of_layers_and_blocks(path):
+    doc = ezdxf.new("R2010", setup=True)
+    doc.layers.add("axes", linetype="CENTER", lineweight=20)
+    inner, outer = doc.blocks.new("inner"), doc.blocks.new("outer")
+    inner.add_line((0, 0), (1, 0))  # as its layer, 0: that of the reference
+    inner.add_line((0, 0), (1, 1), dxfattribs={"linetype": "BYBLOCK", "lineweight": -2})
+    outer.add_blockref("inner", (0, 0), dxfattribs={"layer": "axes", "linetype": "BYBLOCK", "lineweight": -2})
+    msp = doc.modelspace()
+    msp.add_blockref("outer", (0, 0), dxfattribs={"linetype": "PHANTOM", "lineweight": 80})
+    msp.add_line((0, 0), (2, 0), dxfattribs={"linetype": "DASHED", "lineweight": 50, "layer": "axes"})
+    msp.add_line((0, 0), (3, 0))
+    msp.add_lwpolyline([(0, 0), (4, 0)], dxfattribs={"const_width": 0.8})
+    space = cad_file.read(saved(doc, path)).spaces[0]
+    assert [(e.pattern, e.weight, e.width) for e in space.entities] == [
+        ("dash-dot", 0.2, 0.2), ("dash-two-dots", 0.8, 0.8), ("dashed", 0.5, 0.5), ("continuous", None, None),
+        ("continuous", None, 0.8)]  # fmt: skip

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.compare import cad_file, cad_overlay, layout, view_places
+from tmm_sheets.compare import cad_file, cad_overlay, cad_report, layout, view_places
+from tmm_sheets.compare.cad_examined import Examined, Laid
 from tmm_sheets.compare.cad_findings import Finding, Outcome
-from tmm_sheets.compare.cad_ink import CadInk, Entity, Space
+from tmm_sheets.compare.cad_ink import CadInk
 from tmm_sheets.compare.cad_text import meant
 from tmm_sheets.compare.elements import Element, View, elements
 from tmm_sheets.compare.elements import views as views_of
@@ -36,32 +36,6 @@ LOST = 0.2
 """Share of the elements found below which the drawing is not of this sheet."""
 PART = 100.0
 """Width and height together of the least part of a sheet that is looked for, mm."""
-SHOWN = 60
-"""Rows of a table in the terminal; all of them are in the JSON."""
-VIEW_GONE = 0.15
-"""A view of which less than this is right, and most missing, is told as missing in one row."""
-
-
-@dataclass(frozen=True)
-class Laid:
-    """A drawing laid over a sheet."""
-
-    n: int
-    sheet: Composed
-    elements: tuple[Element, ...]
-    space: Space
-    placing: Placing
-    share: float
-
-
-@dataclass(frozen=True)
-class Examined:
-    """A drawing compared with a sheet: how it was laid over it, where its views stand, what was found; ``notes`` in words."""
-
-    laid: Laid
-    places: layout.Layout
-    outcome: Outcome
-    notes: tuple[str, ...]
 
 
 def compare(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
@@ -70,13 +44,15 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     found = examine(project, sheet, path, views, pencil, say)
     say("overlay")
     outcome, laid = found.outcome, found.laid
-    shown = [f for f in _worst(outcome.findings) if f.element.view not in _gone(outcome)]
+    gone = cad_report.gone(outcome)
+    shown = [f for f in cad_report.worst(outcome.findings) if f.element.view not in gone]
     marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
         [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
+    looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
     exact = _exact(laid.elements, found.places.moves)
-    files = cad_overlay.files(laid.n, laid.sheet.drawing, exact, placed(laid.space, laid.placing), marked)
+    files = cad_overlay.files(laid.n, laid.sheet.drawing, exact, placed(laid.space, laid.placing), marked, looks)
     name = project.variant.project.name
-    return Report(text(name, path, found, pencil), tree(name, path, found, pencil), files, found.notes)
+    return Report(cad_report.text(name, path, found, pencil), cad_report.tree(name, path, found, pencil), files, found.notes)
 
 
 def examine(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
@@ -108,7 +84,7 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     places = layout.find(laid.elements, lines(s.points for s in space.strokes), space.writings, [(p, laid.placing) for p in given])
     outcome = match(laid.elements, space, places.moves, pencil, say)
     _refuse(project, laid, outcome, ink, sheet, path)
-    return Examined(laid, places, outcome, (*ink.notes, *_how(laid, ink), *places.notes))
+    return Examined(laid, places, outcome, (*ink.notes, *_how(laid, ink), *places.notes, *outcome.notes))
 
 
 # --- placing ----------------------------------------------------------------------------------------------------------
@@ -274,124 +250,3 @@ def _exact(found: Sequence[Element], moves: Any) -> list[Points]:
         elif e.kind != "text":
             out.append(move(e.points))
     return out
-
-
-# --- the report -------------------------------------------------------------------------------------------------------
-
-
-def _worst(findings: Sequence[Finding]) -> list[Finding]:
-    """What is not right, red first, the largest deviation first."""
-    rank = {"red": 0, "amber": 1}
-    return sorted((f for f in findings if f.verdict in rank), key=lambda f: (rank[str(f.verdict)], -f.deviation, f.element.number))
-
-
-def _gone(outcome: Outcome) -> set[View]:
-    """Views that are not in the drawing at all."""
-    by_view: dict[View, list[Finding]] = {}
-    for f in outcome.findings:
-        by_view.setdefault(f.element.view, []).append(f)
-    return {v for v, found in by_view.items() if len(found) > 5 and sum(f.missing for f in found) > 0.6 * len(found)
-            and sum(f.verdict == "green" for f in found) < VIEW_GONE * len(found)}
-
-
-def _called(e: Element) -> str:
-    if e.kind == "text":
-        return "text"
-    what: str = e.kind
-    if e.arrow and e.kind == "line":
-        what = "arrow"
-    elif e.kind == "circle" and e.fills:
-        what = "dot"
-    elif e.kind == "hatch":
-        what = "hatching"
-    return f"{what} {e.name}".strip()
-
-
-def _found_by(entities: Sequence[Entity]) -> str:
-    if not entities:
-        return ""
-    more = f" and {len(entities) - 1} more" if len(entities) > 1 else ""
-    return f"{entities[0]}{more}"
-
-
-def text(name: str, path: Path, found: Examined, pencil: float) -> str:
-    """The outcome for the terminal."""
-    laid, outcome = found.laid, found.outcome
-    gone = _gone(outcome)
-    there = [f for f in outcome.findings if f.element.view not in gone]
-    colours = Counter(f.verdict for f in there)
-    out = [f"{name}, sheet {laid.n}: {path.name} ({laid.space.name}), {len(outcome.findings)} elements, tolerance {pencil:g} mm",
-           ""]
-    rows = []
-    for f in _worst(there):
-        where = _found_by([laid.space.entities[k] for k in f.entities])
-        rows.append((str(f.element.number), f.element.view.name, _called(f.element), f.what, str(f.verdict), where))
-    if rows:
-        out += _table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows)
-        out.append("")
-    out += [f'missing altogether: view "{v.name}", {sum(f.element.view == v for f in outcome.findings)} elements'
-            for v in sorted(gone, key=lambda v: v.n)]
-    extra = []
-    for k, x in enumerate(outcome.extras, 1):
-        what = f'text "{x.text}"' if x.text else f"{x.length:.1f} mm of line" + (f" in {x.count} entities" if x.count > 1 else "")
-        extra.append((f"+{k}", what, f"({x.at.real:.0f}, {x.at.imag:.0f})", str(x.verdict), str(x.entity)))
-    if extra:
-        out += ["extra, on no element of the sheet:", *_table(("no.", "what", "about, mm", "verdict", "in the drawing"), extra), ""]
-    skipped = colours[None]
-    also = f", {skipped} not compared" if skipped else ""
-    worst = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
-    views = f"; {len(gone)} of {len({f.element.view for f in outcome.findings})} views missing" if gone else ""
-    out.append(f"{colours['green']} green (up to {worst:.2f} mm), {colours['amber']} amber, {colours['red']} red{also}; "
-               f"{len(outcome.extras)} extra{views}")
-    return "\n".join(out)
-
-
-def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
-    shown = [tuple(c if len(c) <= 74 else c[:73] + "…" for c in row) for row in rows[:SHOWN]]
-    widths = [max(len(row[k]) for row in (head, *shown)) for k in range(len(head))]
-    out = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (head, *shown)]
-    if len(rows) > SHOWN:
-        out.append(f"... and {len(rows) - SHOWN} more; --json has all")
-    return out
-
-
-def _point(z: complex | None) -> list[float] | None:
-    return None if z is None else [round(z.real, 3), round(z.imag, 3)]
-
-
-def _rounded(x: float | None) -> float | None:
-    return None if x is None else round(x, 4)
-
-
-def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any]:
-    """The outcome for other programs."""
-    laid, places, outcome = found.laid, found.places, found.outcome
-    colours = Counter(f.verdict for f in outcome.findings)
-    p = laid.placing
-
-    def entity(e: Entity) -> dict[str, str]:
-        return {"type": e.kind, "layer": e.layer, "handle": e.handle}
-
-    return {
-        "project": name,
-        "sheet": laid.n,
-        "drawing": path.name,
-        "space": laid.space.name,
-        "tolerance": pencil,
-        "placing": {"scale": p.scale, "degrees": round(p.degrees, 4), "shift": _point(p.shift), "mirrored": p.mirrored,
-                    "share": round(laid.share, 4)},
-        "views": [{"view": v.name, "share": round(s, 4), **(
-            {"shift": _point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
-            if v in places.moves else {})} for v, s in places.share.items()],
-        "elements": [{
-            "number": f.element.number, "view": f.element.view.name, "kind": f.element.kind, "name": f.element.name,
-            "step": f.element.of, "verdict": f.verdict, "deviation": round(f.deviation, 4), "shift": _point(f.shift),
-            "turn": _rounded(f.turn), "size": _rounded(f.size), "missing": f.missing, "what": f.what, "at": _point(f.at),
-            "entities": [entity(laid.space.entities[k]) for k in f.entities],
-        } for f in outcome.findings],
-        "extra": [{"number": k, "what": x.text or "line", "length": round(x.length, 3), "at": _point(x.at), "verdict": x.verdict,
-                   "count": x.count, "entity": entity(x.entity)} for k, x in enumerate(outcome.extras, 1)],
-        "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
-                    "extra": len(outcome.extras), "missing_views": [v.name for v in sorted(_gone(outcome), key=lambda v: v.n)]},
-    }
-

@@ -6,6 +6,7 @@ Elements with ink all along claim it; the next steps look only among what is lef
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -45,7 +46,8 @@ class Comparison:
         self.heads = [tuple(m(f) for f in e.fills) for e, m in zip(elements, self.moves, strict=True)]
         self.found: dict[int, Finding] = {}
         self.claims: list[Overlaps] = []
-        self.pass_one: tuple[Overlaps, npt.NDArray[np.int64]]
+        self.pass_one: tuple[Overlaps, npt.NDArray[np.int64]]  # what lies along the elements in their places, and along which
+        self.along: tuple[Numbers, Numbers]  # where along the elements' paths that begins and ends, mm
         self.owned: dict[int, list[tuple[int, float, float]]] = {}
         self.areas = np.array([complex(a.points.mean()) for a in space.areas], dtype=complex)
         self.used_areas: set[int] = set()
@@ -79,6 +81,12 @@ class Comparison:
         start = np.full(len(self.elements), np.inf)
         np.minimum.at(start, of, along)
         return made, of, along - start[of]
+
+    @cached_property
+    def everything(self) -> tuple[Lines, npt.NDArray[np.int64]]:
+        """Straight pieces of all elements' paths and the element of each."""
+        made, of, _ = self.ours([n for n in range(len(self.elements)) if self.paths[n]])
+        return made, of
 
     def whole(self, n: int) -> float:
         """Length of an element's path, mm."""

@@ -10,14 +10,15 @@ import logging
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from io import StringIO
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import isfinite, radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.cad_ink import Area, CadInk, Entity, Space, Stroke, Writing
+from tmm_sheets.compare.cad_ink import Area, CadInk, Entity, Space, Stroke, Writing, resized
+from tmm_sheets.compare.cad_patterns import Pattern, of_dashes
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, Problem
 
@@ -32,6 +33,9 @@ FINE = 5e-6
 NARROW = 0.62
 """Average width of a letter in heights, where the font is not known."""
 UNREAD = {"3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "IMAGE", "OLE2FRAME", "ACAD_PROXY_ENTITY", "PDFUNDERLAY", "WIPEOUT"}
+BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
+"""Codes of line weights."""
+PRIMITIVE = {"LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"}
 SILENT = {"POINT", "VIEWPORT", "ATTDEF", "RAY", "XLINE", "LIGHT", "SUN"}
 
 
@@ -106,15 +110,31 @@ def _open(path: Path) -> tuple[Document, list[str]]:
     return document, [told if lost else "the file was damaged and was mended"]
 
 
+class _Look(NamedTuple):
+    """Layer, name of the line type in small letters, line weight in hundredths of a millimetre or one of the codes below 0."""
+
+    layer: str
+    linetype: str
+    weight: int
+
+
 class _Reader:
     """Takes entities apart, counting what it cannot read."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
         self.hidden = {"defpoints"}
+        self.frozen: set[str] = set()
+        self.patterns = {line.dxf.name.lower(): _pattern(line) for line in document.linetypes}
+        self.layers: dict[str, _Look] = {}
         for layer in document.layers:
+            name = layer.dxf.name
+            self.layers[name.lower()] = _Look(name, layer.dxf.get("linetype", "Continuous").lower(),
+                                              int(layer.dxf.get("lineweight", DEFAULT)))
             if layer.is_off() or layer.is_frozen():
                 self.hidden.add(layer.dxf.name.lower())
+            if layer.is_frozen():
+                self.frozen.add(layer.dxf.name.lower())
         self.unread: Counter[str] = Counter()
         self.skipped = 0
         self.heights: list[float] = []
@@ -138,16 +158,15 @@ class _Reader:
         areas: list[Area] = []
         writings: list[Writing] = []
         parts = list(self._parts(layout))
-        fine = self._fine(e for _, e in parts)
-        for outer, e in parts:
+        fine = self._fine(e for _, e, _ in parts)
+        for outer, e, look in parts:
             kind = e.dxftype()
-            layer = e.dxf.get("layer", "0")
-            if layer == "0" and outer is not e:
-                layer = outer.dxf.get("layer", "0")
-            if layer.lower() in self.hidden or e.dxf.get("invisible", 0):
-                self.skipped += layer.lower() != "defpoints"
+            if look.layer.lower() in self.hidden or e.dxf.get("invisible", 0):
+                self.skipped += look.layer.lower() != "defpoints"
                 continue
-            entities.append(Entity(outer.dxftype(), layer, str(outer.dxf.get("handle", "") or "?")))
+            entities.append(Entity(outer.dxftype(), look.layer, str(outer.dxf.get("handle", "") or "?"),
+                                   self.patterns.get(look.linetype, "continuous"),
+                                   look.weight / 100 if look.weight >= 0 else None, _breadth(e, kind)))
             n = len(entities) - 1
             try:
                 if kind in ("TEXT", "ATTRIB"):
@@ -189,18 +208,43 @@ class _Reader:
             space = _shown(space, model, turn, shift, low, high)
         return space
 
-    def _parts(self, layout: Any) -> Iterator[tuple[DXFEntity, DXFEntity]]:
-        """(entity of the layout, primitive it consists of)."""
-        from ezdxf.disassemble import recursive_decompose
-
+    def _parts(self, layout: Any) -> Iterator[tuple[DXFEntity, DXFEntity, _Look]]:
+        """(entity of the layout, primitive it consists of, how that looks)."""
         for e in layout:
-            if e.dxftype() in ("LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"):
-                yield e, e
-                continue
             try:
-                yield from ((e, part) for part in recursive_decompose([e]))
+                yield from ((e, part, look) for part, look in self._apart(e, None))
             except (ValueError, TypeError, AttributeError, KeyError, ZeroDivisionError, RecursionError):
                 self.unread[e.dxftype()] += 1
+
+    def _apart(self, e: Any, of: _Look | None) -> Iterator[tuple[DXFEntity, _Look]]:
+        """Primitives of an entity; ``of`` is the look of the block reference or dimension it is part of."""
+        from ezdxf.protocols import SupportsVirtualEntities, virtual_entities
+
+        kind, look = e.dxftype(), self._look(e, of)
+        if kind in PRIMITIVE or not (kind == "INSERT" or isinstance(e, SupportsVirtualEntities)):
+            yield e, look
+            return
+        if kind == "INSERT" and look.layer.lower() in self.frozen:  # unlike one on a layer that is only off
+            self.skipped += 1
+            return
+        if kind == "INSERT" and e.mcount > 1:
+            inner = e.multi_insert()
+        else:
+            inner = chain(e.attribs if kind == "INSERT" else (), virtual_entities(e))
+        for part in inner:
+            yield from self._apart(part, look)
+
+    def _look(self, e: Any, of: _Look | None) -> _Look:
+        """What an entity does not say itself is told by its layer or, when it says so, by what it is part of."""
+        layer = e.dxf.get("layer", "0")
+        if layer == "0" and of is not None:
+            layer = of.layer
+        line, weight = e.dxf.get("linetype", "BYLAYER").lower(), int(e.dxf.get("lineweight", BYLAYER))
+        of_layer = self.layers.get(layer.lower(), _Look(layer, "continuous", DEFAULT))
+        by_block = of if of is not None else _Look(layer, "continuous", DEFAULT)
+        line = of_layer.linetype if line == "bylayer" else by_block.linetype if line == "byblock" else line
+        weight = of_layer.weight if weight == BYLAYER else by_block.weight if weight == BYBLOCK else weight
+        return _Look(layer, line, weight)
 
     def _fine(self, parts: Iterator[DXFEntity]) -> float:
         """Sagitta for flattening, from a rough size of the drawing."""
@@ -340,6 +384,27 @@ def _wide(e: Any, kind: str) -> Iterator[Points]:
             yield np.array([a + start * n, a - start * n, b - end * n, b + end * n])
 
 
+def _breadth(e: Any, kind: str) -> float:
+    """Width of a polyline that is equally broad all along, drawing units; 0 for a line."""
+    if kind == "LWPOLYLINE":
+        if e.dxf.hasattr("const_width") and e.dxf.const_width > 0:
+            return float(e.dxf.const_width)
+        rows = e.get_points("se")
+        widths = {float(w) for row in (rows if e.closed else rows[:-1]) for w in row}
+    elif kind == "POLYLINE":
+        widths = {float(e.dxf.get("default_start_width", 0.0)), float(e.dxf.get("default_end_width", 0.0))}
+    else:
+        return 0.0
+    return widths.pop() if len(widths) == 1 else 0.0
+
+
+def _pattern(line: Any) -> Pattern:
+    """Class of a line type of the file."""
+    if line.pattern_tags.is_complex_type():
+        return "other"
+    return of_dashes([float(tag.value) for tag in line.pattern_tags.tags if tag.code == 49])
+
+
 def _shown(paper: Space, model: Space, turn: complex, shift: complex, low: complex, high: complex) -> Space:
     """Paper space with one viewport's contents: the model turned, scaled and shifted, what lies outside its edges cut off."""
     first = len(paper.entities)
@@ -354,7 +419,7 @@ def _shown(paper: Space, model: Space, turn: complex, shift: complex, low: compl
     writings = [Writing(w.text, complex(turn * w.at + shift), w.height * size, w.width * size, w.angle + angle, w.entity + first)
                 for w in model.writings if inside(complex(turn * w.at + shift))]
     return Space(paper.name, paper.strokes + tuple(strokes), paper.areas + tuple(areas), paper.writings + tuple(writings),
-                 paper.entities + model.entities)
+                 paper.entities + resized(model.entities, size))
 
 
 def _clipped(z: Points, low: complex, high: complex) -> Iterator[Points]:
@@ -389,14 +454,17 @@ def _clipped(z: Points, low: complex, high: complex) -> Iterator[Points]:
         yield np.array(run)
 
 
-COLOURS = {"SHEET": 3, "DRAWN": 8, "FOUND": 1}
-"""Layers of the overlay with their AutoCAD colours: the exact sheet green, what was compared grey, findings red."""
+COLOURS = {"SHEET": 3, "DRAWN": 8, "FOUND": 1, "LOOKS": 30}
+"""Layers of the overlay with their AutoCAD colours: the exact sheet green, what was compared grey, findings red, lines of another
+type or width orange.
+"""
 
 
-def overlay(exact: Sequence[Points], drawn: Sequence[Points], found: Sequence[tuple[complex, float, str]]) -> bytes:
+def overlay(exact: Sequence[Points], drawn: Sequence[Points], found: Sequence[tuple[complex, float, str]],
+            looks: Sequence[tuple[Points, str]] = ()) -> bytes:
     """A DXF file (R12: every program reads it) with the exact sheet over the drawing, findings circled and numbered; in mm.
 
-    ``found`` has centre, radius and number of each.
+    ``found`` has centre, radius and number of each, ``looks`` lines of another type or width with a number or an empty text.
     """
     from ezdxf.addons.r12writer import r12writer
 
@@ -405,6 +473,11 @@ def overlay(exact: Sequence[Points], drawn: Sequence[Points], found: Sequence[tu
         for layer, lines in (("DRAWN", drawn), ("SHEET", exact)):
             for z in lines:
                 dxf.add_polyline_2d(np.column_stack((z.real, z.imag)).tolist(), layer=layer, color=COLOURS[layer])
+        for z, number in looks:
+            dxf.add_polyline_2d(np.column_stack((z.real, z.imag)).tolist(), layer="LOOKS", color=COLOURS["LOOKS"])
+            if number:
+                at = z[len(z) // 2] if len(z) > 2 else z.mean()
+                dxf.add_text(number, (at.real + 1.5, at.imag + 1.5), height=3.5, layer="LOOKS", color=COLOURS["LOOKS"])
         for centre, radius, number in found:
             dxf.add_circle((centre.real, centre.imag), radius, layer="FOUND", color=COLOURS["FOUND"])
             corner = (centre.real + 0.72 * radius, centre.imag + 0.72 * radius)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from tmm_sheets.compare.cad_ink import Entity
-from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.elements import Element, View
 from tmm_sheets.compare.report import Verdict
+from tmm_sheets.drawing.marks import Points
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +51,31 @@ class Extra:
 
 
 @dataclass(frozen=True)
+class Look:
+    """Elements of one view (of several: None) drawn with a wrong type or width of line.
+
+    ``lines`` is what they are on the sheet, ``what`` how they are drawn; ``elements`` are their numbers, ``entities`` those of the
+    drawing; ``places`` their lines, the longest first.
+    """
+
+    view: View | None
+    lines: str
+    what: str
+    elements: tuple[int, ...]
+    entities: tuple[int, ...]
+    places: tuple[Points, ...]
+
+    verdict: ClassVar[Verdict] = "amber"
+
+
+@dataclass(frozen=True)
 class Outcome:
-    """Findings for every element in its order, extras longest first."""
+    """Findings for every element in its order, extras longest first; wrong types and widths of lines; ``notes`` on these."""
 
     findings: tuple[Finding, ...]
     extras: tuple[Extra, ...]
+    looks: tuple[Look, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def moved(shift: complex, tolerance: float, how: str = "") -> list[str]:

@@ -8,17 +8,29 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tmm_sheets.compare.cad_patterns import Pattern
 from tmm_sheets.drawing.marks import Points
 
 
 class Entity(NamedTuple):
     """Where something comes from, in words by which it is found again in the CAD program: the outermost entity (a block, a
     dimension) and its handle; the layer is that of the innermost.
+
+    ``pattern`` is the class of its line type, ``weight`` its line weight, mm, None when it is the program's default; ``broad``
+    the width of a broad polyline, drawing units. Those of layers and blocks are resolved.
     """
 
     kind: str
     layer: str
     handle: str
+    pattern: Pattern = "continuous"
+    weight: float | None = None
+    broad: float = 0.0
+
+    @property
+    def width(self) -> float | None:
+        """How wide its lines are, mm, when the drawing units are; None when nothing says so."""
+        return max(self.weight or 0.0, self.broad) if self.broad else self.weight
 
     def __str__(self) -> str:
         return f'{self.kind} {self.handle} on layer "{self.layer}"'
@@ -86,6 +98,11 @@ _PLAIN = str.maketrans({
     "−": "-", "–": "-", "—": "-", "’": "'", "′": "'", "`": "'", '"': "''", "″": "''", ",": ".", "×": "x", "х": "x",
     "⋅": "", "·": "", "*": "", "_": "", "^": "", "{": "", "}": "", "~": "", "\u0305": "", "\u0304": "",
 })  # fmt: skip
+
+
+def resized(entities: tuple[Entity, ...], by: float) -> tuple[Entity, ...]:
+    """The entities of a drawing that is scaled: broad polylines grow with it, line weights do not."""
+    return tuple(e._replace(broad=by * e.broad) if e.broad else e for e in entities)
 
 
 def normal(text: str) -> str:

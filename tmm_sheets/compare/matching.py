@@ -5,6 +5,7 @@ In this order, so that nothing is taken for what it is not:
 1. Elements with ink all along, within the tolerance, are right, whatever entities the ink is made of. They claim it.
 2. The others look among what is left for the line, circle or curve that was meant: shifted, turned, too long, with a gap.
 3. What no element claims is too long an end of one that does, or it is extra.
+4. The ink of every element has its line type and width (``cad_looks.py``).
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare import cad_extras, cad_lettering, cad_meant, cad_symbols
+from tmm_sheets.compare import cad_extras, cad_lettering, cad_looks, cad_meant, cad_symbols
 from tmm_sheets.compare.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad_findings import Finding, Outcome
-from tmm_sheets.compare.cad_ink import Area, Space, Stroke, Writing
+from tmm_sheets.compare.cad_ink import Area, Space, Stroke, Writing, resized
 from tmm_sheets.compare.elements import Element, View
 from tmm_sheets.compare.overlaps import Numbers, Overlaps, gaps, left, overlaps, union
 from tmm_sheets.compare.placing import Placing
@@ -35,6 +36,7 @@ def placed(space: Space, placing: Placing) -> Space:
         areas=tuple(Area(placing(a.points), a.entity, a.solid) for a in space.areas),
         writings=tuple(Writing(w.text, complex(placing(w.at)), w.height * size, w.width * size, sign * w.angle + angle, w.entity)
                        for w in space.writings),
+        entities=resized(space.entities, size),
     )
 
 
@@ -77,7 +79,9 @@ def _outcome(state: Comparison, say: Callable[[str], None]) -> Outcome:
         if n not in state.found:
             state.found[n] = state.finding(n, 0.0, "")
         assert state.found[n].element is e
-    return Outcome(tuple(state.found[n] for n in range(len(state.elements))), extras)
+    say("comparing line types and widths")
+    looks, notes = cad_looks.looks(state)
+    return Outcome(tuple(state.found[n] for n in range(len(state.elements))), extras, looks, notes)
 
 
 def _not_compared(state: Comparison) -> None:
@@ -118,6 +122,7 @@ def _right(state: Comparison, numbers: list[int], every: Overlaps, of: npt.NDArr
             partly[n] = parts
     state.claims.append(every.only(right[of[every.ours]]))
     state.pass_one = every, of[every.ours]
+    state.along = base[every.ours] + every.s0, base[every.ours] + every.s1
     return wrong, partly
 
 
