@@ -86,9 +86,10 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
     also = f", {skipped} not compared" if skipped else ""
     most = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
     views = f"; {len(lost)} of {len({f.element.view for f in outcome.findings})} views missing" if lost else ""
+    unlike = len({n for look in outcome.looks for n in look.elements})
     out.append(f"{colours['green']} green (up to {most:.2f} mm), {colours['amber']} amber, {colours['red']} red{also}; "
                f"{len(outcome.extras)} extra{views}"
-               + (f"; {sum(len(look.elements) for look in outcome.looks)} of another type or width of line" if looks else ""))
+               + (f"; {unlike} of another type or width of line" if looks else ""))
     return "\n".join(out)
 
 
@@ -96,8 +97,8 @@ def _looks(found: Examined) -> list[tuple[str, ...]]:
     """A row for every group of lines of another type or width."""
     rows: list[tuple[str, ...]] = []
     for k, look in enumerate(found.outcome.looks, 1):
-        more = ", ..." if len(look.elements) > MANY else ""
-        which = f"{len(look.elements)} {look.lines}: no. {', '.join(map(str, look.elements[:MANY]))}{more}"
+        size, first = len(look.elements), ", ".join(map(str, look.elements[:MANY]))
+        which = f"{look.lines}, {size}: no. {first}, ..." if size > MANY else f"{look.lines}: no. {first}"
         where = _found_by([found.laid.space.entities[i] for i in look.entities])
         rows.append((f"~{k}", look.view.name if look.view is not None else "all views", which, look.what, str(look.verdict), where))
     return rows
