@@ -12,8 +12,9 @@ import pytest
 from tests.compare.simulation import Camera, paper, photograph, plant
 from tmm_sheets import catalogue
 from tmm_sheets.backends import pdf, png
-from tmm_sheets.compare import image, rectification, tracing
+from tmm_sheets.compare import frame_fit, frame_search, image, rectification, tracing
 from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.judging import judge
 from tmm_sheets.compare.photograph import Picture, read
 from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -61,7 +62,7 @@ def shot(**changes):
 
 @cache
 def rectified():
-    return image.rectify(Picture(grey()), known(), Path("photo.jpg"))
+    return rectification.rectify(Picture(grey()), known(), Path("photo.jpg"))
 
 
 def test_places_after_rectification():
@@ -79,7 +80,7 @@ def test_planted_errors_are_found_and_nothing_else():
     _, planted = drawn()
     traces, extra = tracing.trace(known(), rectified().ink)
     marks = sheet().drawing.marks
-    red = {f.trace.element.number for f in (image.judge(t, 0.25, rectified().uncertainty) for t in traces) if f.verdict == "red"}
+    red = {f.trace.element.number for f in (judge(t, 0.25, rectified().uncertainty) for t in traces) if f.verdict == "red"}
     guilty = {e.number for e in known() if any(m is marks[i] for i in planted for m in e.marks)}
     assert len(guilty) == len(planted) == 5
     assert red == guilty
@@ -97,12 +98,12 @@ def grey():
 
 @cache
 def frame():
-    return rectification.find(grey(), image.frame_lines(known()))
+    return frame_search.find(grey(), rectification.frame_lines(known()))
 
 
 @pytest.mark.parametrize(("quarter", "told"), [(1, 3), (2, 2)])
 def test_turned_pictures_are_known(quarter, told):
-    found = rectification.find(np.ascontiguousarray(np.rot90(grey(), quarter)), image.frame_lines(known()))
+    found = frame_search.find(np.ascontiguousarray(np.rot90(grey(), quarter)), rectification.frame_lines(known()))
     assert found.turned == told
     rows, columns = grey().shape
     upright = frame().corners
@@ -113,7 +114,7 @@ def test_turned_pictures_are_known(quarter, told):
 def test_mirrored_picture_is_refused():
     seen = np.ascontiguousarray(grey()[:, ::-1])
     with pytest.raises(CannotBuild, match="mirrored"):
-        rectification.find(seen, image.frame_lines(known()))
+        frame_search.find(seen, rectification.frame_lines(known()))
 
 
 def test_wrong_sheet_is_told(tmp_path):
@@ -126,9 +127,9 @@ def test_wrong_sheet_is_told(tmp_path):
 def test_own_png_has_no_deviation(tmp_path):
     file = tmp_path / "sheet.png"
     file.write_bytes(png.render(sheet().drawing, 150))
-    found = image.rectify(read(file), known(), file)
+    found = rectification.rectify(read(file), known(), file)
     traces, extra = tracing.trace(known(), found.ink)
-    assert {image.judge(t, 0.1, found.uncertainty).verdict for t in traces} == {"green"}
+    assert {judge(t, 0.1, found.uncertainty).verdict for t in traces} == {"green"}
     assert extra == []
 
 
@@ -183,7 +184,7 @@ def test_bad_files(tmp_path):
 
 def test_blurred_picture_is_refused(monkeypatch):
     found = frame()
-    monkeypatch.setattr(rectification, "find", lambda *_: found)
-    assert rectification.fit_frame(grey(), found)[2] < image.SOFT
+    monkeypatch.setattr(frame_search, "find", lambda *_: found)
+    assert frame_fit.fit_frame(grey(), found.corners, found.sides)[2] < rectification.SOFT
     with pytest.raises(CannotBuild, match="blurred: edges of lines are smeared over"):
-        image.rectify(Picture(cv2.GaussianBlur(grey(), (0, 0), 2.6)), known(), Path("photo.jpg"))
+        rectification.rectify(Picture(cv2.GaussianBlur(grey(), (0, 0), 2.6)), known(), Path("photo.jpg"))

@@ -1,0 +1,140 @@
+"""An element sought at its own place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.owners import Owners
+from tmm_sheets.compare.profiles import peaks, pixels, sample
+from tmm_sheets.compare.stations import ENOUGH, STEP, Floats, Stations, expected_ink, fit, measured, smoothed, stations
+from tmm_sheets.compare.traces import Trace
+from tmm_sheets.drawing.styles import line_type
+
+NEAR = 2.0  # mm about its own place within which an element is sought first
+OFFSETS = np.arange(-NEAR - 1, NEAR + 1 + STEP / 2, STEP)
+APART = 4  # steps of bare paper that part two lines to the eye
+BROAD = 18  # steps: what lies together wider than this is not measured as one
+FREE = 0.25  # share of a line that must be free of others for it to be measured by itself
+SHARED = 0.4  # share of a line that must be free or lie with others in one stroke for it to be measured with them
+
+
+class Strip(NamedTuple):
+    """An element, places along it, the ink across it at :data:`OFFSETS` and where other elements are there."""
+
+    element: Element
+    stations: Stations
+    profile: Any
+    others: Any
+
+
+def strips(elements: Sequence[Element], ink: Any, owners: Owners) -> list[Strip]:
+    """The ink across all elements."""
+    if not elements:
+        return []
+    # A curve in place is off here and there rather than too large.
+    along = [stations(e, e.kind in ("circle", "arc")) for e in elements]
+    ends = np.cumsum([0, *(len(s.points) for s in along)])
+    at = np.concatenate([s.points[:, None] + s.normals[:, None] * OFFSETS for s in along])
+    numbers = np.repeat([e.number for e in elements], np.diff(ends))
+    profile, others = sample(ink, pixels(at)), owners.others(numbers[:, None], at)
+    return [Strip(e, s, smoothed(profile[a:b]), others[a:b])
+            for e, s, a, b in zip(elements, along, ends[:-1], ends[1:], strict=True)]  # fmt: skip
+
+
+def in_place(strip: Strip, level: float) -> Trace | None:
+    """An element at its own place, or None when it is not there."""
+    e, s, profile, others = strip
+    width = line_type(e.style).width
+    # The way to the next known line on either side, and how far to look; where another line runs here nothing can be told.
+    own = np.abs(OFFSETS) <= width / 2 + 0.25
+    away = np.where(others & ~own, np.abs(OFFSETS), NEAR + 0.5).min(1)
+    reach = np.clip(0.5 * away, 0.3, NEAR)
+    free = away > width / 2 + 0.6
+    o, strength = _peaks_within(profile, reach, max(width / 2 + 0.1, 0.25), level)
+    there = strength > level
+    expected = expected_ink(e)
+    use = there & free
+    if free.sum() < max(4, FREE * len(free)):
+        # Beside or under others nearly everywhere: it is there, or not, but its place is theirs.
+        if there.mean() > 0.75 * expected:
+            return _shared(strip, o, use, level) or Trace(e, "dense", covered=float(there.mean()), at=e.points)
+        return None
+    if use.sum() < 3 or use.sum() < 0.45 * expected * free.sum():
+        return None
+    base = s.base(use)
+    x = fit(base, o, use, 0.3)
+    r = np.abs(o - base @ x)
+    good = use & (r < 0.45)
+    share = good.sum() / free.sum()
+    # Both halves must be there, or it may be another line that crosses at a small angle.
+    half = len(free) // 2
+    halves = [good[k].sum() / max(free[k].sum(), 1) for k in (slice(0, half), slice(half, None)) if free[k].sum() > 3]
+    if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
+        return None
+    if np.abs(base @ x).max() > 0.6:
+        # Off its place: once more, about where it is, however near that is to the half way to the next line.
+        o, strength = peaks(profile, OFFSETS, base @ x, 0.7, 0.5)
+        use = (strength > level) & free
+        x = fit(base, o, use, 0.3)
+    t = measured(e, s, base @ x, free, float(share / expected))
+    if e.kind == "curve":
+        t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
+    return t
+
+
+def _shared(strip: Strip, o: Floats, use: Any, level: float) -> Trace | None:
+    """An element that lies with others in one stroke: the stroke measured against where all of them together ought to be."""
+    import cv2
+
+    e, s, profile, others = strip
+    width = line_type(e.style).width
+    meant = others | (np.abs(OFFSETS) <= width / 2)
+    closed = cv2.morphologyEx(meant.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((1, APART + 1), np.uint8)) > 0
+    middle = len(OFFSETS) // 2
+    below, above = (np.where(side.all(1), side.shape[1], side.argmin(1)) for side in (closed[:, middle::-1], closed[:, middle:]))
+    column = np.arange(len(OFFSETS))
+    low, high = (middle - below + 1)[:, None], (middle + above - 1)[:, None]
+    inside = (column >= low) & (column <= high)
+    stroke = (low[:, 0] > 4) & (high[:, 0] < len(OFFSETS) - 5) & (high - low <= BROAD)[:, 0]
+    about = (column >= low - APART) & (column <= high + APART)
+    dark = np.where(about, profile, 0).astype(np.float64)
+    top = dark.max(1)
+    weight = np.clip(dark - 0.25 * top[:, None], 0, None)
+    seen = (weight * OFFSETS).sum(1) / np.maximum(weight.sum(1), 1e-9)
+    ought = (inside & meant) @ OFFSETS / np.maximum((inside & meant).sum(1), 1)
+    able = stroke & (top > level)
+    offsets = np.where(use, o, seen - ought)
+    able |= use
+    if able.sum() < max(4, SHARED * len(able)):
+        return None
+    base = s.base(able)
+    x = fit(base, offsets, able, 0.3)
+    good = able & (np.abs(offsets - base @ x) < 0.45)
+    if good.sum() < ENOUGH * able.sum():
+        return None
+    t = measured(e, s, base @ x, able, float(good.sum() / able.sum()))
+    return replace(t, status="shared")
+
+
+def _local(o: Floats, use: Any, step: float) -> float:
+    """Largest offset that a stretch of ten millimetres agrees on."""
+    size = max(round(10 / step), 5)
+    worst = 0.0
+    for i in range(0, len(o) - size + 1, max(size // 2, 1)):
+        some = o[i : i + size][use[i : i + size]]
+        if len(some) > 0.7 * size and np.ptp(np.percentile(some, (20, 80))) < 0.5:
+            worst = max(worst, abs(float(np.median(some))))
+    return worst
+
+
+def _peaks_within(profile: Any, reach: Floats, half: float, level: float) -> tuple[Floats, Floats]:
+    """The line of each profile within its own reach: rather one near by than a blacker one farther off."""
+    p = np.where(np.abs(OFFSETS)[None, :] <= reach[:, None] + 1e-9, profile, 0)
+    likely = np.minimum(p, 2 * level) * (1 - 0.5 * np.abs(OFFSETS) / NEAR)
+    centre = OFFSETS[likely.argmax(1)]
+    return peaks(p, OFFSETS, centre, 0.4, half)

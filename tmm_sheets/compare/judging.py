@@ -1,0 +1,90 @@
+"""What was found of an element judged: what is off by how much, in words, and whether a pencil may be off so far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import degrees
+
+import numpy as np
+
+from tmm_sheets.compare.report import Verdict, verdict
+from tmm_sheets.compare.traces import Trace
+
+LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
+"""Lines whose ends mean nothing exact: by hand they are drawn over."""
+LOOSE = 2.5  # mm by which those may be too long or too short
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A trace judged: what is off by how much, and whether that is within a pencil's reach."""
+
+    trace: Trace
+    verdict: Verdict
+    said: str
+    off: float
+    tolerance: float
+    place: complex
+
+    @property
+    def share(self) -> float:
+        """Deviation by tolerance."""
+        return self.off / self.tolerance
+
+
+def judge(t: Trace, pencil: float, uncertainty: float) -> Finding:
+    """What a trace tells, in words, and how bad it is."""
+    e, tolerance = t.element, pencil + uncertainty
+    middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
+    if t.status == "missing":
+        return Finding(t, "red", "missing", e.length, tolerance, middle)
+    if t.status == "absent lettering":
+        return Finding(t, "amber", "no lettering here", 0.0, tolerance, complex(e.points.mean()))
+    if t.status == "shared" and t.deviation <= tolerance:
+        return Finding(t, "green", "within a pencil's reach, with others in one stroke", t.deviation, tolerance, middle)
+    if t.status != "measured":
+        word = "not measurable: too near to others" if t.status in ("dense", "shared") else "there"
+        return Finding(t, "green", word, 0.0, tolerance, middle)
+    said, worst, off, limit, place = [], 0.0, t.deviation, tolerance, middle
+    if t.at is not None and len(t.at) == len(e.points):
+        place = complex(e.points[int(np.abs(t.at - e.points).argmax())])
+    if t.deviation > tolerance:
+        said.append(_displaced(t, tolerance))
+    worst = t.deviation / tolerance
+    loose = e.style in LOOSE_STYLES
+    for end, which, at in ((t.ends[0], "beginning", e.points[0]), (t.ends[1], "end", e.points[-1])):
+        if not np.isfinite(end):
+            continue
+        allowed = LOOSE if loose else 2 * pencil + uncertainty + 0.2  # 0.2 mm: the steps in which ends are seen
+        if abs(end) > allowed:
+            said.append(f"{abs(end):.1f} mm too {'long' if end > 0 else 'short'} at its {which}")
+        if abs(end) / allowed > worst:
+            worst, off, limit, place = abs(end) / allowed, abs(end), allowed, complex(at)
+    return Finding(t, verdict(off, limit), "; ".join(said) or "within a pencil's reach", off, limit, place)
+
+
+def _displaced(t: Trace, tolerance: float) -> str:
+    e = t.element
+    said = []
+    if e.kind in ("circle", "arc") and abs(t.growth) > 0.5 * tolerance:
+        word = "large" if t.growth > 0 else "small"
+        said.append(f"radius {abs(t.growth):.1f} mm too {word} ({e.radius + t.growth:.1f} for {e.radius:.1f})")
+    elif e.kind == "curve" and abs(t.growth) > 0.5 * tolerance:
+        half = float(np.abs(e.points - e.points.mean()).max())
+        said.append(f"{100 * abs(t.growth) / half:.1f} % too {'large' if t.growth > 0 else 'small'}")
+    if abs(t.shift) > 0.5 * tolerance:
+        said.append(f"{abs(t.shift):.1f} mm too far {_direction(t.shift)}")
+    half = 0.5 * e.length if e.kind == "line" else float(np.abs(e.points - e.points.mean()).max())
+    if e.kind != "circle" and abs(t.turn) * half > 0.5 * tolerance:
+        said.append(f"turned by {abs(degrees(t.turn)):.2f}° {'counter-clockwise' if t.turn > 0 else 'clockwise'}")
+    return ", ".join(said) or f"off by up to {t.deviation:.1f} mm"
+
+
+def _direction(shift: complex) -> str:
+    """Where to: right and up, to a fraction that matters."""
+    parts = []
+    if abs(shift.imag) > 0.25 * abs(shift):
+        parts.append("up" if shift.imag > 0 else "down")
+    if abs(shift.real) > 0.25 * abs(shift):
+        parts.append("right" if shift.real > 0 else "left")
+    return " and ".join(parts)

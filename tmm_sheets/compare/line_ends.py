@@ -1,0 +1,136 @@
+"""Where a line begins and ends.
+
+Along the line and on beyond its end every place is bare, or has ink that is the line's own for sure, or ink that may be another's
+(one that crosses there, a letter). So a line reaches at least to the last ink that is surely its own and at most to the first bare
+place after that. It is too long or too short by what both say; when its right end lies between the two, nothing is wrong, and
+when they are far apart, nothing is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.compare.displaced import FAR
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.owners import Owners
+from tmm_sheets.compare.profiles import pixels, sample
+from tmm_sheets.compare.stations import Floats
+from tmm_sheets.compare.traces import Trace
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.drawing.styles import line_type
+
+STEP = 0.2  # mm along the line
+SHORTEST = 8.0  # mm of line from which on its ends are looked for
+ASIDE = np.linspace(-0.3, 0.3, 5)  # mm to either side where its ink may be
+BESIDE = np.linspace(-0.7, 0.7, 13)  # mm to either side where another's ink may come from; less than a pixel apart
+GAP, PATTERN_GAP, BEYOND_GAP = 1.6, 3.5, 0.3
+"""Bare stretches a line may have where it ought to be: a solid one, a dashed one; and beyond its end: letters stand near."""
+CLEAR, CLEARER = 0.5, 0.6
+"""mm beyond its pen at either side at which ink must be paler than this share of the middle's for the ink to be a line's own."""
+TORN = 0.4  # mm of bare paper after which ink that may be another's is another's
+VAGUE = 1.2  # mm between least and most from which on the end counts as unknown
+SEEN, SHARE = 0.6, 0.4  # mm of its own ink beyond its end that make it too long, and how much of all that must be its own
+BLUR = 0.25  # mm by which blurred ink looks longer
+
+
+class _Way(NamedTuple):
+    """The way from inside a line out over its end: ``t`` mm, negative inside."""
+
+    element: Element
+    tip: bool
+    """Whether an arrow's tip is there."""
+    t: Floats
+    places: Points
+    normals: Points
+
+
+def with_ends(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, level: float) -> list[Trace]:
+    """Traces with their ends.
+
+    Parameters
+    ----------
+    traces
+        Of open lines, with ``at``.
+    ink
+        The rectified picture.
+    owners
+        Who is where, the displaced where they were found too.
+    words
+        Picture of the places of lettering.
+    level
+        Darkness of ink.
+    """
+    chosen = [k for k, t in enumerate(traces)
+              if t.at is not None and t.element.length >= SHORTEST and abs(t.at[0] - t.at[-1]) > 1e-6]  # fmt: skip
+    ways = [w for k in chosen for w in _ways(traces[k])]
+    out = list(traces)
+    if not ways:
+        return out
+    cuts = np.cumsum([len(w.t) for w in ways])[:-1]
+    p, n = np.concatenate([w.places for w in ways])[:, None], np.concatenate([w.normals for w in ways])[:, None]
+    numbers = np.concatenate([np.full(len(w.t), w.element.number) for w in ways])[:, None]
+    aside = np.concatenate([np.full(len(w.t), 0.5 * line_type(w.element.style).width + CLEAR) for w in ways])[:, None]
+    across = sample(ink, pixels(np.hstack((p + n * ASIDE, p - n * aside, p + n * aside))))
+    hidden = owners.others(numbers, p + n * BESIDE).any(1) | (sample(words, pixels(p[:, 0])) > 100)
+    ends = [_end(w, a, h, level) for w, a, h in zip(ways, np.split(across, cuts), np.split(hidden, cuts), strict=True)]
+    for i, k in enumerate(chosen):
+        out[k] = replace(traces[k], ends=(ends[2 * i], ends[2 * i + 1]))
+    return out
+
+
+def _ways(t: Trace) -> tuple[_Way, _Way]:
+    assert t.at is not None
+    reach = min(FAR, 0.4 * t.element.length)
+    return _way(t.element, t.at, reach), _way(t.element, t.at[::-1], reach)
+
+
+def _way(e: Element, z: Points, reach: float) -> _Way:
+    run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
+    u = z[0] - z[min(int(np.searchsorted(run, 1.0)) + 1, len(z) - 1)]
+    u /= max(abs(u), 1e-9)
+    t = np.arange(-min(reach + 2.0, run[-1] / 2), reach + STEP / 2, STEP)
+    p = np.where(t <= 0, np.interp(-t, run, z.real) + 1j * np.interp(-t, run, z.imag), z[0] + u * np.maximum(t, 0))
+    along = np.gradient(p)
+    tip = any(abs(f[0] - z[0]) < FAR for f in e.fills) and e.arrow
+    return _Way(e, tip, t, p, 1j * along / np.maximum(np.abs(along), 1e-9))
+
+
+def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
+    """How far the line runs beyond its end, negative when it stops short, nan when others hide it, mm."""
+    import cv2
+
+    kind = line_type(way.element.style)
+    t, pen = way.t, 0.0 if way.tip else 0.5 * kind.width
+    gap, torn = (PATTERN_GAP, PATTERN_GAP) if kind.pattern else (GAP, TORN)
+    across = cv2.blur(across, (1, 3))
+    depth, beside = across[:, : len(ASIDE)].max(1), across[:, len(ASIDE) :].max(1)
+    hidden = cv2.morphologyEx(hidden.astype(np.uint8)[:, None], cv2.MORPH_CLOSE, np.ones((5, 1), np.uint8))[:, 0] > 0
+    plain = (t < 0) & ~hidden
+    dark = depth > max(level, 0.5 * float(np.median(depth[plain if plain.sum() > 4 else t < 0])))
+    own = dark & ~hidden & (beside < CLEARER * depth)
+    low, last = -1, 0
+    for i in np.flatnonzero(dark):
+        if (i - last) * STEP > (gap if t[i] <= 0.3 else BEYOND_GAP) + 1e-9:
+            break
+        last = int(i)
+        if own[i]:
+            low = last
+    if low < 0:
+        return float("nan")
+    high = low
+    for i in np.flatnonzero(dark[low:]) + low:
+        if (i - high) * STEP > torn + 1e-9:
+            break
+        high = int(i)
+    if t[high] < 0:
+        weak = own[(np.arange(len(t)) > high + 1) & (t < 0)]
+        return float("nan") if len(weak) and weak.mean() > 0.3 else float(t[high])
+    least = float(t[low]) - pen - BLUR  # round ends, and the blur that counts as ink
+    seen = own[(t > pen + BLUR) & (t <= t[low])]
+    if least > 0 and seen.sum() * STEP >= min(SEEN, least) and seen.mean() > SHARE:
+        return least
+    return float("nan") if t[high] - min(t[low], 0.0) > VAGUE else 0.0

@@ -1,0 +1,48 @@
+"""What is found of an element in a picture, and ink that belongs to none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.drawing.marks import Points
+
+Status = Literal["measured", "shared", "missing", "dense", "lettering", "absent lettering", "small"]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """What was found of an element.
+
+    ``shift`` is that of its middle, mm; ``turn`` rad; ``growth`` mm at the radius or half length; ``deviation`` the largest
+    distance between where its line is and ought to be, mm; ``ends`` how far the line runs beyond its beginning and end (negative:
+    it stops short; nan: cannot be told), mm; ``covered`` the share of it that has ink; ``at`` its line as it was found.
+    """
+
+    element: Element
+    status: Status
+    shift: complex = 0j
+    turn: float = 0.0
+    growth: float = 0.0
+    deviation: float = 0.0
+    ends: tuple[float, float] = (np.nan, np.nan)
+    covered: float = 0.0
+    at: Points | None = None
+
+    @property
+    def lengthened(self) -> float:
+        """How much too long its line is, mm; 0 when that cannot be told."""
+        known = [e for e in self.ends if np.isfinite(e)]
+        return float(sum(known))
+
+
+class Extra(NamedTuple):
+    """Ink where nothing is known: its box on the sheet's middle, its extent and how much line there is, mm."""
+
+    middle: complex
+    width: float
+    height: float
+    length: float
