@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.compare.simulation import Planted, shoot
+from tests.compare.simulation import Planted, resample, shoot
 from tmm_sheets import catalogue
 from tmm_sheets.compare import image, tracing
 from tmm_sheets.compare.elements import elements
@@ -99,7 +99,7 @@ class Tally:
         touched = set()
         for p in shot.planted:
             if p.kind == "extra":
-                hit = near(p.drawn, extra) > 0.5
+                hit = near(resample(p.drawn), extra) > 0.5
                 self.found["extra", "15-60 mm"]["red" if hit else "missed"] += 1
                 continue
             f = of_mark[id(marks[p.mark])]
@@ -119,10 +119,10 @@ class Tally:
             self.elements["dense" if "not measurable" in f.said else "judged"] += 1
             if f.verdict != "green":
                 self.false[f.verdict] += 1
-                if f.verdict == "red":
-                    self.examples.append(f"false {label}: element {f.trace.element.number} {f.trace.element.kind} {f.said}")
+                e = f.trace.element
+                self.examples.append(f"false {label}: {f.verdict} element {e.number} {e.kind} {e.style} {f.said}")
         for x in extra:
-            if not any(p.drawn is not None and near(p.drawn, [x]) > 0 for p in shot.planted):
+            if not any(p.drawn is not None and near(resample(p.drawn), [x]) > 0 for p in shot.planted):
                 self.false["extra ink"] += 1
                 self.examples.append(f"false {label}: extra {x.width:.0f} x {x.height:.0f} at {x.middle:.0f}")
         e = position_errors(found.map, shot)

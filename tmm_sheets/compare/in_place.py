@@ -19,6 +19,8 @@ NEAR = 2.0  # mm about its own place within which an element is sought first
 OFFSETS = np.arange(-NEAR - 1, NEAR + 1 + STEP / 2, STEP)
 APART = 4  # steps of bare paper that part two lines to the eye
 BROAD = 18  # steps: what lies together wider than this is not measured as one
+OFF = 0.6  # mm off its place from which on a line is looked at once more
+AS_DARK = 0.6  # share of the darkness where a line is found: its own place is not bare
 FREE = 0.25  # share of a line that must be free of others for it to be measured by itself
 SHARED = 0.4  # share of a line that must be free or lie with others in one stroke for it to be measured with them
 
@@ -76,15 +78,27 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     halves = [good[k].sum() / max(free[k].sum(), 1) for k in (slice(0, half), slice(half, None)) if free[k].sum() > 3]
     if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
         return None
-    if np.abs(base @ x).max() > 0.6:
+    if np.abs(base @ x).max() > OFF:
         # Off its place: once more, about where it is, however near that is to the half way to the next line.
         o, strength = peaks(profile, OFFSETS, base @ x, 0.7, 0.5)
         use = (strength > level) & free
         x = fit(base, o, use, 0.3)
+        if _at_home(profile, base @ x):
+            return Trace(e, "dense", covered=float(there.mean()), at=e.points)
     t = measured(e, s, base @ x, free, float(share / expected))
     if e.kind == "curve":
         t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
     return t
+
+
+def _at_home(profile: Any, o: Floats) -> bool:
+    """Whether there is ink at its own place, too, wherever a line seems to be off by ``o``: then it may be another's, or a blur."""
+    away = np.abs(o) > OFF
+    column = np.clip(np.round((o - OFFSETS[0]) / STEP).astype(int), 1, len(OFFSETS) - 2)
+    row, middle = np.arange(len(o)), len(OFFSETS) // 2
+    found = np.max([profile[row, column + k] for k in (-1, 0, 1)], axis=0)
+    here = profile[:, middle - 1 : middle + 2].max(1)
+    return bool(away.any() and (here > AS_DARK * found)[away].mean() > 0.7)
 
 
 def _shared(strip: Strip, o: Floats, use: Any, level: float) -> Trace | None:

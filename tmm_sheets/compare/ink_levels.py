@@ -25,8 +25,9 @@ def ink_levels(ink: Any) -> tuple[float, float]:
 
 def _noise(ink: Any) -> tuple[float, float]:
     """Median and standard deviation of bare paper: from differences of places near each other, most of which have no ink."""
-    some = ink[::5].astype(np.float64)
-    some += np.random.default_rng(1).uniform(-0.5, 0.5, some.shape)  # whole numbers have no fine percentiles
-    d = np.abs(some[:, 4::3] - some[:, :-4:3])
+    # Whole numbers have no fine percentiles, so a little is added to them. Some 200 000 places tell enough.
+    rng = np.random.default_rng(1)
+    one, other = (part + rng.uniform(-0.5, 0.5, part.shape) for part in (ink[::12, 4::7], ink[::12, :-4:7]))
+    d = np.abs(one - other)
     # What is lighter than paper counts as paper, so half of the noise is cut off: the half that is left spreads less.
-    return float(np.median(some)), float(np.median(d)) / 0.6745 / np.sqrt(2) / 0.7
+    return float(np.median(one)), float(np.median(d)) / 0.6745 / np.sqrt(2) / 0.7
