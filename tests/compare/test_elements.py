@@ -176,3 +176,9 @@ def test_views_of_the_shaper():
                          "Структура механизма", "Планы скоростей"]  # fmt: skip
     assert "План скоростей, положение 7" in names
     assert len(set(names)) == len(names)
+
+
+def test_the_last_part_of_a_view_keeps_its_title_when_the_same_is_drawn_again():
+    names = [v.name for v in views(composed(Project(read("sixbar/3:1")), 1)) if v.draw == "kinetics.group"]
+    assert names == ["Группа Ассура 4–5 (4-й вид)", "План сил группы 4–5", "Группа Ассура 2–3 (3-й вид)", "План сил звена 2",
+                     "План сил звена 3"]

@@ -7,10 +7,12 @@ import pytest
 
 from tests.compare.simulation import paper
 from tmm_sheets import catalogue
-from tmm_sheets.compare import image, tracing, view_places
 from tmm_sheets.compare import photographed_views as placing
+from tmm_sheets.compare import tracing, view_places
 from tmm_sheets.compare.elements import elements, views
-from tmm_sheets.drawing.marks import Arc, Drawing, Line, Text
+from tmm_sheets.compare.judging import judge
+from tmm_sheets.compare.traces import Extra
+from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Text
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -47,27 +49,31 @@ def by(name, z):
     return (z - ABOUT[name]) * TURN[name] + ABOUT[name] + SHIFT[name]
 
 
-def shifted(mark, name):
-    """A mark where the student's layout has it; written anew, not by what is tested."""
-    size, angle = abs(TURN[name]), float(np.angle(TURN[name]))
+def shifted(mark, e, name):
+    """A mark where the student's layout has it, lettering, dots and heads as large as ever; written anew, not by what is tested."""
+    size, turn = abs(TURN[name]), TURN[name] / abs(TURN[name])
+    angle = float(np.angle(turn))
     if isinstance(mark, Line):
         return mark._replace(a=by(name, mark.a), b=by(name, mark.b))
     if isinstance(mark, Arc):
-        return mark._replace(centre=by(name, mark.centre), radius=size * mark.radius,
+        return mark._replace(centre=by(name, mark.centre), radius=mark.radius * (size if mark.radius > 2.6 else 1),
                              start=mark.start + angle, end=mark.end + angle)  # fmt: skip
     if isinstance(mark, Text):
-        return mark._replace(at=by(name, mark.at), height=size * mark.height, angle=mark.angle + angle)
-    return mark._replace(points=by(name, np.asarray(mark.points)))
+        middle = e.points.mean()
+        return mark._replace(at=by(name, middle) + turn * (mark.at - middle), angle=mark.angle + angle)
+    z = np.asarray(mark.points)
+    return mark._replace(points=by(name, z[0]) + turn * (z - z[0]) if isinstance(mark, Fill) else by(name, z))
 
 
 @cache
 def drawn():
     """Ink of the sheet with two views elsewhere, and the element of the wheel that is 2 mm too large."""
-    belongs = {id(m): e.view.name for e in known() for m in e.marks}
+    belongs = {id(m): e for e in known() for m in e.marks}
     rim = max((e for e in known() if e.view.name == WHEEL and e.kind == "circle" and e.style == "main"), key=lambda e: e.radius)
     marks = []
     for m in sheet().drawing.marks:
-        new = shifted(m, belongs[id(m)]) if belongs.get(id(m)) in TURN else m
+        e = belongs[id(m)]
+        new = shifted(m, e, e.view.name) if e.view.name in TURN else m
         marks.append(new._replace(radius=new.radius + 2.0) if m is rim.marks[0] else new)
     drawing = Drawing(841.0, 594.0, "", tuple(marks))
     return paper(drawing, np.random.default_rng(3), 0.1, scale=6.0), rim.number
@@ -94,10 +100,10 @@ def test_views_are_placed_and_fitted(file):
     assert len(placed.elements) == len(known())
     assert any(PLAN in note and "ought to be 1.2500" in note for note in placed.notes)
     for e, ours in zip(sorted(placed.elements, key=lambda e: e.number), known(), strict=True):
-        if ours.view.name in TURN and ours.kind == "line":
+        if ours.view.name in TURN and e.kind == "line":
             assert np.abs(e.points - by(ours.view.name, ours.points)).max() < 0.5
     traces, extra = tracing.trace(placed.elements, ink)
-    red = {t.element.number: t for t in traces if image.judge(t, 0.25, 0.3).verdict == "red"}
+    red = {t.element.number: t for t in traces if judge(t, 0.25, 0.3).verdict == "red"}
     assert set(red) == {rim}
     assert red[rim].growth == pytest.approx(2.0, abs=0.3)
     assert extra == []
@@ -109,6 +115,29 @@ def test_a_view_that_is_not_named_and_not_there_is_left_out():
     assert set(placed.left_out) == set(TURN)
     assert WHEEL not in {e.view.name for e in placed.elements}
     assert "left out" in placed.notes[-1]
+
+
+def test_symbols_and_lettering_keep_their_size_in_another_scale():
+    where = placing.Similarity(1.5 * np.exp(0.1j), 20 - 10j)
+    ours = {kind: next(e for e in known() if e.view.name == PLAN and e.kind == kind) for kind in ("text", "circle", "line")}
+    text, circle, line = (placing.moved(e, where) for e in ours.values())
+    assert (text.height, circle.radius, line.length) == pytest.approx(
+        (ours["text"].height, ours["circle"].radius, 1.5 * ours["line"].length))
+    assert complex(text.points.mean()) == pytest.approx(where(complex(ours["text"].points.mean())))
+    assert circle.centre == pytest.approx(where(ours["circle"].centre))
+    assert np.ptp(np.abs(circle.points - circle.centre)) < 1e-9
+    assert [abs(f - f[0]).max() for f in line.fills] == pytest.approx([abs(f - f[0]).max() for f in ours["line"].fills])
+    rims = [e for e in known() if e.view.name == WHEEL and e.kind == "hatch"]
+    assert {placing.moved(e, where).kind for e in rims} == {"hatch"}
+
+
+def test_strange_ink_where_a_view_was_left_out():
+    """Ink of the view left out may be anywhere but inside the others."""
+    ink, _ = drawn()
+    placed = placing.place(known(), (), Flat(), ink)
+    middle = next(v for v in placed.similarities if v.draw == "kinematics.position_plans").box.centre
+    assert placed.strange(Extra(middle, 20.0, 20.0, 28.0))
+    assert not placed.strange(Extra(ABOUT[WHEEL], 20.0, 20.0, 28.0))
 
 
 def test_scale_factor_of_a_view_without_one(tmp_path):

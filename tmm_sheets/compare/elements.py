@@ -180,12 +180,13 @@ def _views(sheet: Composed) -> tuple[tuple[View, ...], list[int]]:
     untitled = False
     for n, (part, end) in enumerate(zip(sheet.parts, [*firsts[1:], firsts[-1]], strict=True)):
         title = said(part.title) if part.title else ""
+        before = len(found)
         if title and untitled and found[-1][1] == part.draw:
             found[-1] = (title, part.draw, found[-1][2])
         elif end > part.first or n in lettered or not found:
             found.append((title or NAMES.get(part.draw, part.draw), part.draw, part.box))
         of_part.append(len(found) - 1)
-        untitled = not title and found[-1][1] == part.draw
+        untitled = not title and len(found) > before
     count: Counter[str] = Counter()
     named = []
     for n, (name, draw, box) in enumerate(found):

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from math import hypot, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import photographed_views, rectification, tracing, view_places
-from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.elements import Element, elements
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.image_report import image_report
-from tmm_sheets.compare.photograph import read
-from tmm_sheets.compare.rectification import MATCH, Rectified, rectify
+from tmm_sheets.compare.ink_levels import line_level, noise_level
+from tmm_sheets.compare.photograph import Picture, read
+from tmm_sheets.compare.rectification import MATCH, RECTIFIED, Rectified, rectify
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.stations import as_lines
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -20,6 +23,10 @@ from tmm_sheets.sheets.sheet import composed
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
+LONGEST = 2500.0
+"""Lines longer than this, mm, do not correct the sheet: they are curves back and forth."""
+PLACED = 0.2
+"""Error of a place after the rectification by lines of views that were placed, mm."""
 CERTAIN = 0.12
 """By how much another sheet must do better for a picture to be called a picture of it."""
 
@@ -61,19 +68,33 @@ def compare(
     places = view_places.read(views, views_of(sheet)) if views is not None else ()
     found = rectify(picture, known, path, say, not places)
     notes = (*picture.notes, *found.notes)
-    whole = True
+    placed = None
     if places:
         say("placing the views")
         placed = photographed_views.place(known, places, found.map, found.ink)
-        known, notes, whole = placed.elements, (*notes, *placed.notes), not placed.left_out
-        if all(e.view.n == 0 for e in known):
+        if not placed.similarities:
             raise CannotBuild(f"{path}: none of the views of sheet {n} was found", hint="; ".join(placed.notes))
+        say("correcting by the lines of the views")
+        found = _corrected(picture, found, placed.elements)
+        placed = photographed_views.place(known, places, found.map, found.ink)
+        known, notes = placed.elements, (*notes, *placed.notes)
     elif found.match < MATCH:
         _wrong_sheet(project, n, found, path, say)
     say("measuring the elements")
     traces, extra = tracing.trace(known, found.ink)
-    # Ink of views that were left out is not too much.
-    return image_report(project.variant.project.name, n, path, found, traces, extra if whole else (), pencil, notes)
+    extra = [x for x in extra if placed is None or placed.strange(x)]
+    return image_report(project.variant.project.name, n, path, found, traces, extra, pencil, notes)
+
+
+def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> Rectified:
+    """The sheet corrected by its lines once more, when it is known where they stand."""
+    lines = as_lines([e for e in known if e.length < LONGEST])
+    better, _, match = rectification.refine(found.map, found.ink, lines, line_level(found.ink))
+    if match < MATCH:
+        return found
+    ink = rectification.straighten(picture.grey, better)
+    scatter = sqrt(max(found.uncertainty**2 - (2 * RECTIFIED) ** 2, 0.0))
+    return replace(found, ink=ink, map=better, level=noise_level(ink), match=match, uncertainty=hypot(PLACED, scatter))
 
 
 def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Callable[[str], None]) -> None:
@@ -89,7 +110,7 @@ def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
         if k == n:
             continue
         say(f"trying sheet {k}")
-        lines = as_lines([e for e in elements(composed(project, k)) if e.length < 2500], most=2500)
+        lines = as_lines([e for e in elements(composed(project, k)) if e.length < LONGEST], most=2500)
         _, _, match = rectification.refine(found.map, found.ink, lines, found.level)
         if match > share:
             best, share = k, match

@@ -21,6 +21,7 @@ from tmm_sheets.compare.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad_findings import Finding, Outcome
 from tmm_sheets.compare.cad_ink import Area, Space, Stroke, Writing, resized
 from tmm_sheets.compare.elements import Element, View
+from tmm_sheets.compare.links import links
 from tmm_sheets.compare.overlaps import Numbers, Overlaps, gaps, left, overlaps, union
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.styles import line_type
@@ -73,6 +74,7 @@ def _outcome(state: Comparison, say: Callable[[str], None]) -> Outcome:
     cad_meant.partly(state, wrong, partly)
     cad_symbols.filled(state)
     cad_symbols.arrows(state)
+    _leading_elsewhere(state)
     say("looking for what is extra")
     extras = cad_extras.extra(state)
     for n, e in enumerate(state.elements):
@@ -93,6 +95,14 @@ def _not_compared(state: Comparison) -> None:
         small = e.kind in ("hatch", "fill") or (e.kind in ("curve", "arc") and size < 40)
         if small or (e.kind == "line" and e.length < 16 and e.style != "vector"):
             state.found[n] = Finding(e, None, 0.0, "a symbol in a view of another scale", complex(m(e.middle)), 5.0)
+
+
+def _leading_elsewhere(state: Comparison) -> None:
+    """Lines from one view to another that are not there, where a view stands elsewhere, say nothing."""
+    leading = links(state.elements)
+    for n, (e, m) in enumerate(zip(state.elements, state.moves, strict=True)):
+        if e.number in leading and m != Placing() and state.found[n].missing:
+            state.found[n] = Finding(e, None, 0.0, "leads to another view, which stands elsewhere", complex(m(e.middle)), 5.0)
 
 
 def _right(state: Comparison, numbers: list[int], every: Overlaps, of: npt.NDArray[np.int64], base: npt.NDArray[np.float64],

@@ -8,20 +8,36 @@ exactness of two points matters: what is told of its elements is relative to the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, View
-from tmm_sheets.compare.rectification import Map, peaks, profiles
-from tmm_sheets.compare.tracing import as_lines, line_level
+from tmm_sheets.compare.ink_levels import line_level
+from tmm_sheets.compare.links import links
+from tmm_sheets.compare.profiles import peaks, profiles
+from tmm_sheets.compare.sheet_map import FRAME, Map
+from tmm_sheets.compare.stations import as_lines
+from tmm_sheets.compare.traces import Extra
 from tmm_sheets.compare.view_places import ViewPlace, mu_of
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
 from tmm_sheets.errors import BadInput
 
 FOUND = 0.5  # share of a view's lines that must be in its place
+INKED = 0.5
+"""Share of a line that leads to another view that must have ink for it to be compared."""
+SAME = 0.02
+"""A view whose size is off by less than this share is at our scale."""
+HINGE, SYMBOL = 2.6, 15.0
+"""Circles up to this radius, and other elements that are not larger than this, mm, are symbols."""
+FIGURE = {"vector", "construction", "centre"}
+"""Styles of lines that belong to no symbol, however short."""
+BESIDE = 8.0
+"""Ink this near to a symbol of a view with another scale may be the symbol, mm."""
 COARSE_TO_FINE = ((4.0, 1.0), (2.5, 0.7), (1.5, 0.5), (1.0, 0.3), (0.8, 0.2))
 """How far lines are sought, mm, and how far off they still count."""
 
@@ -39,11 +55,36 @@ class Similarity(NamedTuple):
 
 @dataclass(frozen=True)
 class Placed:
-    """Elements where they stand on the photographed sheet, names of views that were not found, and what is worth telling."""
+    """Elements where they stand on the photographed sheet, names of views that were not found, and what is worth telling.
+
+    ``similarities`` tells where the views went that were found.
+    """
 
     elements: tuple[Element, ...]
     left_out: tuple[str, ...]
     notes: tuple[str, ...]
+    similarities: Mapping[View, Similarity]
+
+    def strange(self, extra: Extra) -> bool:
+        """Whether ink that belongs to no element is too much: not that of a view left out, nor of a symbol in another scale."""
+        inside = not self.left_out or any(box.contains(extra.middle) for box in self._boxes)
+        return inside and not (extra.length < 2 * SYMBOL and any(box.contains(extra.middle, BESIDE) for box in self._symbols))
+
+    @cached_property
+    def _boxes(self) -> list[Box]:
+        """Of the views that were found."""
+        return [_box([e.points for e in self.elements if e.view == view]) for view in self.similarities]
+
+    @cached_property
+    def _symbols(self) -> list[Box]:
+        """Of the symbols in views of another scale than ours."""
+        scaled = {view for view, where in self.similarities.items() if abs(abs(where.turn) - 1) > SAME}
+        return [_box([e.points]) for e in self.elements if e.view in scaled and e.kind in ("hatch", "fill")]
+
+
+def _box(lines: Sequence[Points]) -> Box:
+    z = np.concatenate(lines)
+    return Box(float(z.real.min()), float(z.imag.min()), float(z.real.max()), float(z.imag.max()))
 
 
 def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: Any) -> Placed:
@@ -62,13 +103,16 @@ def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: An
     level = line_level(ink)
     out: list[Element] = []
     lost, notes = [], []
+    similarities: dict[View, Similarity] = {}
+    leading, leads = links(known), 0
     for view in dict.fromkeys(e.view for e in known):
         mine = [e for e in known if e.view == view]
         if view.n == 0:
             out += mine
             continue
         start = _start(given[view], known, m) if view in given else Similarity()
-        where, share = _fit(mine, start, ink, level, free=view in given)
+        body = [e for e in mine if view not in given or e.number not in leading]
+        where, share = _fit(body, start, ink, level, free=view in given)
         if share < FOUND:
             lost.append(view.name)
             if view in given:
@@ -76,12 +120,19 @@ def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: An
             continue
         if view in given:
             notes.append(_told(view, where, given[view], known))
-        out += [moved(e, where) for e in mine]
+        here = [moved(e, where) for e in mine]
+        elsewhere = [e for e in here if view in given and e.number in leading
+                     and not (all(FRAME.contains(z) for z in e.points.tolist()) and _inked(e, ink, level))]
+        leads += len(elsewhere)
+        out += [e for e in here if e not in elsewhere]
+        similarities[view] = where
     absent = [name for name in lost if name not in {p.view.name for p in places}]
     if absent:
         names = ", ".join(f'"{n}"' for n in absent)
         notes.append(f"not in their places, and left out: {names}; --views can tell where they stand")
-    return Placed(tuple(out), tuple(lost), tuple(notes))
+    if leads:
+        notes.append(f"{leads} lines that lead from one view to another are not where they are on our sheet, and were not compared")
+    return Placed(tuple(out), tuple(lost), tuple(notes), similarities)
 
 
 def _start(p: ViewPlace, known: Sequence[Element], m: Map) -> Similarity:
@@ -137,6 +188,15 @@ def _fit(mine: Sequence[Element], start: Similarity, ink: Any, level: float, fre
     return now, hit
 
 
+def _inked(e: Element, ink: Any, level: float) -> bool:
+    """Whether a line has ink along most of it."""
+    lines = as_lines([e], least=0.0)
+    if not len(lines.points):
+        return False
+    _, strength = peaks(profiles(ink, lines, np.arange(-1.0, 1.05, 0.1)), np.arange(-1.0, 1.05, 0.1), 0.0, 1.0, 0.4)
+    return float((strength > level).mean()) > INKED
+
+
 def _told(view: View, where: Similarity, given: ViewPlace, known: Sequence[Element]) -> str:
     """How large a view was drawn, against ours or against the scale factor it was given."""
     size, degrees = abs(where.turn), float(np.degrees(np.angle(where.turn)))
@@ -148,13 +208,40 @@ def _told(view: View, where: Similarity, given: ViewPlace, known: Sequence[Eleme
 
 
 def moved(e: Element, by: Similarity) -> Element:
-    """An element somewhere else, turned and of another size."""
+    """An element somewhere else, turned and of another size; symbols, heads of arrows and lettering keep their own size.
+
+    A symbol of a view with another scale (the block of a slider, a support) becomes a hatching: it is drawn as large as it always
+    is, but who draws it decides which of its points stays in place, so it is not measured.
+    """
     size, angle = abs(by.turn), float(np.angle(by.turn))
+    own = abs(size - 1) > SAME
+    if own and (e.kind == "text" or (e.kind == "circle" and e.radius <= HINGE)):
+        by, size = _sized(by, complex(e.points.mean()) if e.kind == "text" else e.centre), 1.0
+    elif own and symbol(e):
+        by, size = _sized(by, e.middle), 1.0
+        e = replace(e, kind="hatch", pieces=e.pieces or (e.points,))
     return replace(
         e, points=by(e.points), centre=complex(by(e.centre)), radius=e.radius * size, start=e.start + angle, end=e.end + angle,
-        height=e.height * size, angle=e.angle + angle, fills=tuple(by(f) for f in e.fills), pieces=tuple(by(p) for p in e.pieces),
-        marks=tuple(_moved(mark, by) for mark in e.marks),
+        height=e.height * size, angle=e.angle + angle, fills=tuple(_head(f, by) for f in e.fills),
+        pieces=tuple(by(p) for p in e.pieces), marks=tuple(_moved(mark, by) for mark in e.marks),
     )  # fmt: skip
+
+
+def symbol(e: Element) -> bool:
+    """Whether an element is part of a symbol rather than of the figure: it is the same in every scale."""
+    extent = abs(complex(np.ptp(e.points.real), np.ptp(e.points.imag)))
+    return e.kind in ("hatch", "fill") or (e.kind in ("arc", "curve", "line") and extent < SYMBOL and e.style not in FIGURE)
+
+
+def _sized(by: Similarity, fixed: complex) -> Similarity:
+    """The same turn without a change of size: ``fixed`` goes where it goes."""
+    turn = by.turn / abs(by.turn)
+    return Similarity(turn, complex(by(fixed)) - turn * fixed)
+
+
+def _head(points: Points, by: Similarity) -> Points:
+    """A filled area keeps its size and goes with its first point, the tip of an arrow."""
+    return np.asarray(_sized(by, complex(points[0]))(points))
 
 
 def _moved(mark: Mark, by: Similarity) -> Mark:
@@ -166,4 +253,5 @@ def _moved(mark: Mark, by: Similarity) -> Mark:
     if isinstance(mark, Text):
         return mark._replace(at=by(mark.at), height=mark.height * size, angle=mark.angle + angle)
     assert isinstance(mark, Polyline | Fill)
-    return mark._replace(points=by(np.asarray(mark.points)))
+    points = np.asarray(mark.points)
+    return mark._replace(points=_head(points, by) if isinstance(mark, Fill) else by(points))
