@@ -15,9 +15,11 @@ import numpy as np
 
 from tmm_sheets import catalogue
 from tmm_sheets.backends import dxf, pdf, png
-from tmm_sheets.compare import cad, image, tracing
+from tmm_sheets.compare import cad, tracing
 from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.judging import judge
 from tmm_sheets.compare.photograph import read
+from tmm_sheets.compare.rectification import MATCH, rectify
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -27,12 +29,12 @@ def by_image(project, n, path):
     """Findings (verdict, words) of a print, as ``compare --image`` has them, and how many elements were judged."""
     known = elements(composed(project, n))
     picture = read(path)
-    found = image.rectify(picture, known, path)
+    found = rectify(picture, known, path)
     said = [("note", note) for note in (*picture.notes, *found.notes)]
-    if found.match < image.MATCH:
+    if found.match < MATCH:
         return [*said, ("refused", f"match {found.match:.2f}")], 0
     traces, extra = tracing.trace(known, found.ink)
-    findings = [image.judge(t, 0.25, found.uncertainty) for t in traces]
+    findings = [judge(t, 0.25, found.uncertainty) for t in traces]
     for f in findings:
         if f.verdict != "green":
             e = f.trace.element
