@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.rectification import PAPER, pixels
+from tmm_sheets.compare.profiles import pixels
+from tmm_sheets.compare.sheet_map import PAPER
 from tmm_sheets.drawing.marks import Points
 
 INK = (40, 70, 160)

@@ -1,0 +1,107 @@
+"""Where the points of a sheet are in a photograph of it, and the way back.
+
+Points of pictures and of the sheet are complex numbers, pixels (rows count downwards) and millimetres (y upwards).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.box import Box
+from tmm_sheets.drawing.marks import Points
+
+Floats = npt.NDArray[np.floating[Any]]
+
+PAPER = Box(0.0, 0.0, 841.0, 594.0)
+FRAME = Box(20.0, 5.0, 836.0, 589.0)
+CORNERS = np.array([20 + 5j, 836 + 5j, 836 + 589j, 20 + 589j])
+"""Of the frame, from the lower left one counter-clockwise."""
+ORDER = 4  # half waves of the smooth correction
+SIDE_TERMS = 7  # of the polynomial of a side's bending
+
+
+@dataclass
+class Map:
+    """Where the points of the sheet are in the picture.
+
+    ``matrix`` takes undistorted picture coordinates (centre 0, half diagonal 1) to the sheet, ``bend`` are the coefficients of
+    radius**2 and radius**4 that undistort; ``sides`` the polynomials of the sides' bending; ``waves`` the smooth correction.
+    """
+
+    middle: complex
+    reach: float
+    matrix: Floats
+    bend: tuple[float, float]
+    sides: Floats
+    waves: Floats
+
+    def to_base(self, q: Points) -> Points:
+        """Picture to sheet by homography and lens alone."""
+        z = (q - self.middle) / self.reach
+        r2 = np.abs(z) ** 2
+        return projected(self.matrix, z * (1 + self.bend[0] * r2 + self.bend[1] * r2**2))
+
+    def to_picture(self, p: Points) -> Points:
+        """Sheet to picture."""
+        p = np.asarray(p, dtype=np.complex128)
+        u = projected(np.linalg.inv(self.matrix), p + self.correction(p))
+        z = u
+        for _ in range(12):
+            r2 = np.abs(z) ** 2
+            z = u / (1 + self.bend[0] * r2 + self.bend[1] * r2**2)
+        return z * self.reach + self.middle
+
+    def to_sheet(self, q: Points) -> Points:
+        """Picture to sheet."""
+        base = self.to_base(q)
+        p = base
+        for _ in range(8):
+            p = base - self.correction(p)
+        return p
+
+    def correction(self, p: Points) -> Points:
+        """What is added to a point of the sheet before homography and lens are inverted, mm."""
+        u, v = (p.real - FRAME.x0) / FRAME.width, (p.imag - FRAME.y0) / FRAME.height
+        bottom, right, top, left = (
+            np.polynomial.chebyshev.chebval(2 * np.clip(t, 0, 1) - 1, c)
+            for t, c in zip((u, v, u, v), self.sides, strict=True)
+        )
+        dx, dy = (1 - u) * left + u * right, (1 - v) * bottom + v * top
+        if self.waves.any():
+            x, y = waves(p)
+            dx = dx + x @ self.waves[: x.shape[-1]]
+            dy = dy + y @ self.waves[x.shape[-1] :]
+        return np.asarray(dx + 1j * dy)
+
+
+def waves(p: Points, order: int = ORDER) -> tuple[Floats, Floats]:
+    """Base functions of the smooth correction in x and in y at points of the sheet: none crosses the side it is zero at."""
+    u = np.clip((p.real - FRAME.x0) / FRAME.width, 0, 1)
+    v = np.clip((p.imag - FRAME.y0) / FRAME.height, 0, 1)
+    x = [np.sin(i * pi * u) * np.cos(j * pi * v) for i in range(1, order + 1) for j in range(order)]
+    y = [np.cos(i * pi * u) * np.sin(j * pi * v) for i in range(order) for j in range(1, order + 1)]
+    return np.stack(x, -1), np.stack(y, -1)
+
+
+def projected(matrix: Floats, p: Points) -> Points:
+    """Points under a projective map."""
+    x, y = p.real, p.imag
+    w = matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2]
+    return np.asarray((matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2]) / w
+                      + 1j * (matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2]) / w)  # fmt: skip
+
+
+def homography(a: Points, b: Points) -> Floats:
+    """The projective map that takes four or more points ``a`` to ``b``."""
+    rows = []
+    for p, q in zip(a.tolist(), b.tolist(), strict=True):
+        x, y, u, v = p.real, p.imag, q.real, q.imag
+        rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y, -u], [0, 0, 0, x, y, 1, -v * x, -v * y, -v]]
+    scale = np.array([1, 1, 1, 1, 1, 1, 1, 1, 1.0])
+    h = np.linalg.svd(np.array(rows) * scale)[2][-1]
+    return np.asarray((h / h[8]).reshape(3, 3))
