@@ -80,7 +80,7 @@ def unseen(f, p):
     t = f.trace
     if p.kind == "size" and t.status == "measured" and t.element.kind == "line" and f.verdict == "green":
         return bool(np.isnan(t.ends[int(np.abs(t.element.points - p.ought[-1]).argmin())]))
-    return t.status in ("small", "dense") or (t.status == "shared" and "not measurable" in f.said)
+    return t.status == "small" or f.unknown
 
 
 class Tally:
@@ -116,7 +116,7 @@ class Tally:
             status = f.trace.status
             if id(f) in touched or status in ("small", "lettering"):
                 continue
-            self.elements["dense" if "not measurable" in f.said else "judged"] += 1
+            self.elements["dense" if f.unknown else "judged"] += 1
             if f.verdict != "green":
                 self.false[f.verdict] += 1
                 e = f.trace.element

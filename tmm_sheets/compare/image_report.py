@@ -31,13 +31,14 @@ def image_report(
     order = {"red": 0, "amber": 1, "green": 2}
     bad.sort(key=lambda f: (order[f.verdict], -f.share))
     measured = [f for f in findings if f.trace.status == "measured"]
-    lines = [f for f in findings if f.trace.status in ("measured", "missing")]
+    lines = [f for f in findings if f.trace.status in ("measured", "missing", "shared") and not f.unknown]
     count = {v: sum(f.verdict == v for f in lines) for v in ("green", "amber", "red")}
-    dense = sum(f.trace.status == "dense" for f in findings)
+    dense, hidden = sum(f.unknown for f in findings), sum(f.hidden_ends for f in findings)
     out = [
         f"Sheet {n} of {name}, {path.name}: {sum(count.values())} elements judged, {count['green']} within a pencil's reach, "
         f"{count['amber']} up to twice that, {count['red']} beyond",
-        f"{dense} elements are too near to others to be measured; {len(extra)} places with ink that is not on the sheet",
+        f"{dense} elements are too near to others to be measured, {hidden} ends of main lines and vectors are hidden by others; "
+        f"{len(extra)} places with ink that is not on the sheet",
         f"Tolerance {pencil + found.uncertainty:.2f} mm: pencil {pencil:.2f}, rectification {found.uncertainty:.2f}",
     ]
     rows = [(str(k), f.verdict, f"{f.off:.1f}" if f.off else "", _called(f.trace.element), f.trace.element.view.name, f.said)
@@ -61,8 +62,9 @@ def image_report(
     }
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
-        "tolerance": round(pencil + found.uncertainty, 3), "count": {**count, "dense": dense, "measured": len(measured)},
-        "elements": [_row(f) for f in findings if f.trace.status in ("measured", "missing", "dense", "absent lettering")],
+        "tolerance": round(pencil + found.uncertainty, 3),
+        "count": {**count, "dense": dense, "hidden_ends": hidden, "measured": len(measured)},
+        "elements": [_row(f) for f in findings if f.trace.status in ("measured", "shared", "missing", "dense", "absent lettering")],
         "extra": [{"x": round(x.middle.real, 1), "y": round(x.middle.imag, 1), "width": round(float(x.width), 1),
                    "height": round(float(x.height), 1)} for x in extra],
         "notes": list(notes),
@@ -80,7 +82,7 @@ def _shown(t: Trace) -> Any:
 def _row(f: Finding) -> dict[str, Any]:
     t = f.trace
     ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
-    measured = t.status == "measured"
+    measured = t.status in ("measured", "shared")
     return {
         "number": t.element.number, "view": t.element.view.name, "name": t.element.name, "kind": t.element.kind,
         "status": t.status, "verdict": f.verdict, "said": f.said,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import degrees
+from math import degrees, isnan
 
 import numpy as np
 
 from tmm_sheets.compare.report import Verdict, verdict
-from tmm_sheets.compare.traces import Trace
+from tmm_sheets.compare.traces import Trace, open_line
 
 LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
 """Lines whose ends mean nothing exact: by hand they are drawn over."""
@@ -30,6 +30,18 @@ class Finding:
     def share(self) -> float:
         """Deviation by tolerance."""
         return self.off / self.tolerance
+
+    @property
+    def unknown(self) -> bool:
+        """Whether the ink tells nothing: it cannot be told from others', or all in one stroke are off and any of them may be."""
+        return self.trace.status == "dense" or (self.trace.status == "shared" and self.trace.deviation > self.tolerance)
+
+    @property
+    def hidden_ends(self) -> int:
+        """How many of its ends are hidden by others, of a line whose ends mean something."""
+        t = self.trace
+        exact = t.status == "measured" and t.element.style not in LOOSE_STYLES and open_line(t.element)
+        return sum(map(isnan, t.ends)) if exact else 0
 
 
 def judge(t: Trace, pencil: float, uncertainty: float) -> Finding:

@@ -19,12 +19,11 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.owners import Owners
 from tmm_sheets.compare.profiles import pixels, sample
 from tmm_sheets.compare.stations import Floats
-from tmm_sheets.compare.traces import Trace
+from tmm_sheets.compare.traces import Trace, open_line
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
 STEP = 0.2  # mm along the line
-SHORTEST = 8.0  # mm of line from which on its ends are looked for
 ASIDE = np.linspace(-0.3, 0.3, 5)  # mm to either side where its ink may be
 BESIDE = np.linspace(-0.7, 0.7, 13)  # mm to either side where another's ink may come from; less than a pixel apart
 GAP, PATTERN_GAP, BEYOND_GAP = 1.6, 3.5, 0.3
@@ -64,8 +63,7 @@ def with_ends(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, lev
     level
         Darkness of ink.
     """
-    chosen = [k for k, t in enumerate(traces)
-              if t.at is not None and t.element.length >= SHORTEST and abs(t.at[0] - t.at[-1]) > 1e-6]  # fmt: skip
+    chosen = [k for k, t in enumerate(traces) if t.at is not None and open_line(t.element)]
     ways = [w for k in chosen for w in _ways(traces[k])]
     out = list(traces)
     if not ways:

@@ -10,7 +10,13 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.drawing.marks import Points
 
+SHORTEST = 8.0  # mm of line from which on its ends are looked for
 Status = Literal["measured", "shared", "missing", "dense", "lettering", "absent lettering", "small"]
+
+
+def open_line(e: Element) -> bool:
+    """Whether an element has ends that are looked for."""
+    return e.kind in ("line", "arc", "curve") and e.length >= SHORTEST and abs(e.points[0] - e.points[-1]) > 1e-6
 
 
 @dataclass(frozen=True)

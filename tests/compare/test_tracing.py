@@ -1,0 +1,120 @@
+"""Elements measured in ink that was put where it is known to be: ends, strokes in common, displacements, ink too much."""
+
+import cv2
+import numpy as np
+import pytest
+
+from tmm_sheets.box import Box
+from tmm_sheets.compare.elements import Element, View
+from tmm_sheets.compare.judging import judge
+from tmm_sheets.compare.owners import Owners
+from tmm_sheets.compare.profiles import SCALE
+from tmm_sheets.compare.tracing import trace
+from tmm_sheets.drawing.styles import line_type
+
+ROWS, COLUMNS = 594 * 6, 841 * 6
+VIEW = View(0, "view", "view", Box(0, 0, 841, 594))
+
+
+def line(number, a, b, style="main"):
+    return Element(number, VIEW, "", "line", np.array([a, b]), style, "view")
+
+
+def paper():
+    """Bare paper with some grain."""
+    return np.random.default_rng(3).integers(0, 5, (ROWS, COLUMNS)).astype(np.uint8)
+
+
+def draw(ink, a, b, style="main", dark=180):
+    """A line with round ends, its edges as smooth as a camera makes them."""
+    x = np.array([a, b])
+    q = np.round(16 * np.column_stack((x.real * SCALE - 0.5, (594 - x.imag) * SCALE - 0.5))).astype(np.int32)
+    one = np.zeros_like(ink)
+    cv2.polylines(one, [q], False, dark, max(round(line_type(style).width * SCALE), 1), cv2.LINE_AA, 4)
+    low, high = np.maximum(q.min(0) // 16 - 20, 0), q.max(0) // 16 + 20
+    here = (slice(low[1], high[1]), slice(low[0], high[0]))
+    ink[here] = np.maximum(ink[here], cv2.GaussianBlur(one[here], (0, 0), 1.2))
+
+
+def traced(known, drawn):
+    ink = paper()
+    for a, b, style in drawn:
+        draw(ink, a, b, style)
+    return trace(known, ink)
+
+
+CORNER = 300 + 300j
+"""Where a line ends on another that crosses there."""
+
+
+@pytest.mark.parametrize("off", [-3.0, -1.5, 1.5, 3.0])
+def test_a_line_that_ends_at_another_is_measured_at_both_sides_of_it(off):
+    known = [line(1, 240 + 300j, CORNER), line(2, 300 + 250j, 300 + 350j)]
+    found, extra = traced(known, [(240 + 300j, CORNER + off, "main"), (300 + 250j, 300 + 350j, "main")])
+    assert found[0].ends[1] == pytest.approx(off, abs=0.5)
+    assert found[0].ends[0] == pytest.approx(0, abs=0.3)
+    f = judge(found[0], 0.25, 0.15)
+    assert f.verdict == ("red" if abs(off) > 2 else "amber")
+    assert ("too long at its end" if off > 0 else "too short at its end") in f.said
+    assert judge(found[1], 0.25, 0.15).verdict == "green"
+    assert extra == []
+
+
+def test_an_end_where_another_line_goes_on_is_not_known():
+    known = [line(1, 240 + 300j, CORNER), line(2, CORNER, 360 + 300j, "vector")]
+    for end in (CORNER, CORNER + 3):
+        found, _ = traced(known, [(240 + 300j, end, "main"), (CORNER, 360 + 300j, "vector")])
+        assert np.isnan(found[0].ends[1])
+        f = judge(found[0], 0.25, 0.15)
+        assert (f.verdict, f.hidden_ends) == ("green", 1)
+
+
+def test_a_slanting_line_hides_as_well_as_a_level_one():
+    """A thin line at 45 degrees is a row of pixels that touch at their corners."""
+    known = [line(1, 260 + 260j, CORNER, "thin"), line(2, 250 + 250j, 350 + 350j, "thin")]
+    owners = Owners(ROWS, COLUMNS)
+    for e in known:
+        owners.add(e, e.points)
+    across = CORNER + 20 * np.exp(0.25j * np.pi) + 1j * np.exp(0.25j * np.pi) * np.linspace(-0.7, 0.7, 13)
+    for slide in np.linspace(0, 0.5, 9):
+        assert owners.others(1, across + slide * np.exp(0.25j * np.pi)).any()
+    assert owners.others(1, known[0].points[1:] - 10 - 10j).all()  # both are there
+    assert not owners.others(2, known[1].points[1:] - 10 - 10j).any()
+
+
+@pytest.mark.parametrize("off", [0.0, 0.3, 0.9])
+def test_lines_in_one_stroke_are_measured_together(off):
+    """A construction line under a vector: what they share can be in place or off, which of them is off cannot be told."""
+    a, b = 250 + 300j, 330 + 340j
+    u = (b - a) / abs(b - a)
+    known = [line(1, a, b, "construction"), line(2, a + 0.3j * u, b + 0.3j * u, "vector")]
+    found, _ = traced(known, [(e.points[0] + 1j * off * u, e.points[1] + 1j * off * u, e.style) for e in known])
+    for t in found:
+        f = judge(t, 0.25, 0.15)
+        assert (f.verdict == "green" and not f.unknown) == (off < 0.4)
+        if t.status != "dense":
+            assert t.deviation == pytest.approx(off, abs=0.15)
+
+
+def test_a_line_among_others_that_has_ink_at_its_own_place_is_not_called_displaced():
+    """A fan of lines a millimetre apart, blurred until the gaps are grey."""
+    known = [line(k + 1, 300 + 1j * (300 + 0.9 * k), 380 + 1j * (300 + 0.9 * k), "thin") for k in range(8)]
+    ink = paper()
+    for e in known:
+        draw(ink, *e.points, "thin")
+    ink = cv2.GaussianBlur(ink, (0, 0), 2.5)
+    found, extra = trace(known, ink)
+    assert {judge(t, 0.25, 0.15).verdict for t in found} == {"green"}
+    assert extra == []
+
+
+def test_missing_and_displaced_lines_and_ink_too_much():
+    known = [line(1, 200 + 300j, 260 + 300j), line(2, 200 + 320j, 260 + 320j), line(3, 200 + 340j, 260 + 340j, "thin")]
+    drawn = [(200 + 304j, 260 + 304j, "main"), (200 + 341.5j, 260 + 341.5j, "thin"), (400 + 200j, 430 + 220j, "thin")]
+    found, extra = traced(known, drawn)
+    assert [t.status for t in found] == ["measured", "missing", "measured"]
+    assert found[0].shift == pytest.approx(4j, abs=0.2)
+    assert found[2].shift == pytest.approx(1.5j, abs=0.2)
+    (one,) = extra
+    assert one.middle == pytest.approx(415 + 210j, abs=1.0)
+    assert (one.width, one.height) == pytest.approx((30, 20), abs=1.5)
