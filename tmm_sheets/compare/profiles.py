@@ -37,7 +37,8 @@ def darkness(grey: Any, size: float) -> Any:
     small = cv2.resize(grey, None, fx=1 / step, fy=1 / step, interpolation=cv2.INTER_AREA)
     reach = max(round(size / step), 2) * 2 + 1
     paper = cv2.morphologyEx(cv2.medianBlur(small, 3), cv2.MORPH_CLOSE, cv2.getStructuringElement(cv2.MORPH_RECT, (reach, reach)))
-    paper = cv2.blur(paper, (reach // 2 | 1, reach // 2 | 1))
+    # The least nearby too: a smooth paper would reach beyond its edge and darken the desk.
+    paper = cv2.min(cv2.blur(paper, (reach // 2 | 1, reach // 2 | 1)), cv2.erode(paper, np.ones((5, 5), np.uint8)))
     paper = cv2.resize(paper, (grey.shape[1], grey.shape[0]), interpolation=cv2.INTER_LINEAR)
     return 255 - cv2.divide(grey, paper, scale=255)
 
