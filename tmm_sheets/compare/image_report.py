@@ -37,8 +37,8 @@ def image_report(
     out = [
         f"Sheet {n} of {name}, {path.name}: {sum(count.values())} elements judged, {count['green']} within a pencil's reach, "
         f"{count['amber']} up to twice that, {count['red']} beyond",
-        f"{dense} elements are too near to others to be measured, {hidden} ends of main lines and vectors are hidden by others; "
-        f"{len(extra)} places with ink that is not on the sheet",
+        f"{dense} elements are too near to others to be measured; {hidden} ends of main lines and vectors lie under others and are "
+        f"judged only as far as they show; {len(extra)} places with ink that is not on the sheet",
         f"Tolerance {pencil + found.uncertainty:.2f} mm: pencil {pencil:.2f}, rectification {found.uncertainty:.2f}",
     ]
     rows = [(str(k), f.verdict, f"{f.off:.1f}" if f.off else "", _called(f.trace.element), f.trace.element.view.name, f.said)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -17,6 +17,7 @@ from tmm_sheets.drawing.styles import line_type
 
 NEAR = 2.0  # mm about its own place within which an element is sought first
 OFFSETS = np.arange(-NEAR - 1, NEAR + 1 + STEP / 2, STEP)
+AT_ONCE = 3000  # places across which ink is looked at in one call: many more do not fit into the processor's memory
 APART = 4  # steps of bare paper that part two lines to the eye
 BROAD = 18  # steps: what lies together wider than this is not measured as one
 OFF = 0.6  # mm off its place from which on a line is looked at once more
@@ -34,18 +35,30 @@ class Strip(NamedTuple):
     others: Any
 
 
-def strips(elements: Sequence[Element], ink: Any, owners: Owners) -> list[Strip]:
-    """The ink across all elements."""
-    if not elements:
-        return []
+def strips(elements: Sequence[Element], ink: Any, owners: Owners) -> Iterator[Strip]:
+    """The ink across elements, one after another."""
     # A curve in place is off here and there rather than too large.
-    along = [stations(e, e.kind in ("circle", "arc")) for e in elements]
-    ends = np.cumsum([0, *(len(s.points) for s in along)])
-    at = np.concatenate([s.points[:, None] + s.normals[:, None] * OFFSETS for s in along])
-    numbers = np.repeat([e.number for e in elements], np.diff(ends))
-    profile, others = sample(ink, pixels(at)), owners.others(numbers[:, None], at)
-    return [Strip(e, s, smoothed(profile[a:b]), others[a:b])
-            for e, s, a, b in zip(elements, along, ends[:-1], ends[1:], strict=True)]  # fmt: skip
+    waiting: list[tuple[Element, Stations]] = []
+    for e in elements:
+        waiting.append((e, stations(e, e.kind in ("circle", "arc"))))
+        if sum(len(s.points) for _, s in waiting) > AT_ONCE:
+            yield from _across(waiting, ink, owners)
+            waiting = []
+    yield from _across(waiting, ink, owners)
+
+
+def _across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) -> Iterator[Strip]:
+    if not some:
+        return
+    counts = [len(s.points) for _, s in some]
+    p, n = np.concatenate([s.points for _, s in some]), np.concatenate([s.normals for _, s in some])
+    at = p[:, None] + n[:, None] * OFFSETS
+    profile, others = sample(ink, pixels(at)), owners.others(np.repeat([e.number for e, _ in some], counts)[:, None], at)
+    first = 0
+    for (e, s), count in zip(some, counts, strict=True):
+        here = slice(first, first + count)
+        yield Strip(e, s, smoothed(profile[here]), others[here])
+        first += count
 
 
 def in_place(strip: Strip, level: float) -> Trace | None:

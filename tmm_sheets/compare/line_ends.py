@@ -33,15 +33,16 @@ CLEAR, CLEARER = 0.5, 0.6
 TORN = 0.4  # mm of bare paper after which ink that may be another's is another's
 VAGUE = 1.2  # mm between least and most from which on the end counts as unknown
 SEEN, SHARE = 0.6, 0.4  # mm of its own ink beyond its end that make it too long, and how much of all that must be its own
-BLUR = 0.25  # mm by which blurred ink looks longer
+BLUR = 0.25  # mm beyond its end where ink may be its blur
+ROUND, TIP = 0.75, 0.55  # share of the pen's half width by which a line looks longer; mm by which an arrow looks shorter
 
 
 class _Way(NamedTuple):
     """The way from inside a line out over its end: ``t`` mm, negative inside."""
 
     element: Element
-    tip: bool
-    """Whether an arrow's tip is there."""
+    tip: float | None
+    """How far beyond its end an arrow's tip lies, mm; None when there is none."""
     t: Floats
     places: Points
     normals: Points
@@ -83,17 +84,22 @@ def with_ends(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, lev
 def _ways(t: Trace) -> tuple[_Way, _Way]:
     assert t.at is not None
     reach = min(FAR, 0.4 * t.element.length)
-    return _way(t.element, t.at, reach), _way(t.element, t.at[::-1], reach)
+    begin, end = t.element.points[[0, -1]]
+    return _way(t.element, t.at, reach, _tip(t.element, begin)), _way(t.element, t.at[::-1], reach, _tip(t.element, end))
 
 
-def _way(e: Element, z: Points, reach: float) -> _Way:
+def _tip(e: Element, end: complex) -> float | None:
+    """The line of a curved arrow stops within its head."""
+    return min((d for f in e.fills if (d := float(abs(f[0] - end))) < FAR), default=None) if e.arrow else None
+
+
+def _way(e: Element, z: Points, reach: float, tip: float | None) -> _Way:
     run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
     u = z[0] - z[min(int(np.searchsorted(run, 1.0)) + 1, len(z) - 1)]
     u /= max(abs(u), 1e-9)
     t = np.arange(-min(reach + 2.0, run[-1] / 2), reach + STEP / 2, STEP)
     p = np.where(t <= 0, np.interp(-t, run, z.real) + 1j * np.interp(-t, run, z.imag), z[0] + u * np.maximum(t, 0))
     along = np.gradient(p)
-    tip = any(abs(f[0] - z[0]) < FAR for f in e.fills) and e.arrow
     return _Way(e, tip, t, p, 1j * along / np.maximum(np.abs(along), 1e-9))
 
 
@@ -102,7 +108,7 @@ def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
     import cv2
 
     kind = line_type(way.element.style)
-    t, pen = way.t, 0.0 if way.tip else 0.5 * kind.width
+    t, pen = way.t, 0.5 * kind.width if way.tip is None else way.tip
     gap, torn = (PATTERN_GAP, PATTERN_GAP) if kind.pattern else (GAP, TORN)
     across = cv2.blur(across, (1, 3))
     depth, beside = across[:, : len(ASIDE)].max(1), across[:, len(ASIDE) :].max(1)
@@ -110,25 +116,27 @@ def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
     plain = (t < 0) & ~hidden
     dark = depth > max(level, 0.5 * float(np.median(depth[plain if plain.sum() > 4 else t < 0])))
     own = dark & ~hidden & (beside < CLEARER * depth)
-    low, last = -1, 0
-    for i in np.flatnonzero(dark):
-        if (i - last) * STEP > (gap if t[i] <= 0.3 else BEYOND_GAP) + 1e-9:
+    low, last, inside = -1, 0, int((t <= 0.3).sum())
+    for i in np.flatnonzero(dark).tolist():
+        if (i - last) * STEP > (gap if i < inside else BEYOND_GAP) + 1e-9:
             break
-        last = int(i)
+        last = i
         if own[i]:
-            low = last
+            low = i
     if low < 0:
         return float("nan")
     high = low
-    for i in np.flatnonzero(dark[low:]) + low:
+    for i in (np.flatnonzero(dark[low:]) + low).tolist():
         if (i - high) * STEP > torn + 1e-9:
             break
-        high = int(i)
-    if t[high] < 0:
+        high = i
+    # Ink goes on round a blunt end, and a tip is too thin to be seen to its point.
+    shown = ROUND * pen if way.tip is None else way.tip - TIP
+    if t[high] < min(shown, 0.0):
         weak = own[(np.arange(len(t)) > high + 1) & (t < 0)]
-        return float("nan") if len(weak) and weak.mean() > 0.3 else float(t[high])
-    least = float(t[low]) - pen - BLUR  # round ends, and the blur that counts as ink
+        return float("nan") if len(weak) and weak.mean() > 0.3 else float(t[high]) - shown
+    least = float(t[low]) - shown
     seen = own[(t > pen + BLUR) & (t <= t[low])]
-    if least > 0 and seen.sum() * STEP >= min(SEEN, least) and seen.mean() > SHARE:
+    if least > 0 and len(seen) and seen.sum() * STEP >= min(SEEN, least) and seen.mean() > SHARE:
         return least
     return float("nan") if t[high] - min(t[low], 0.0) > VAGUE else 0.0

@@ -18,6 +18,7 @@ Floats = npt.NDArray[np.floating[Any]]
 
 STEP = 0.1  # mm between offsets of a profile
 LEAST = 6.0  # mm of line that can be measured
+SETTLED = 1e-3  # mm of change with which a fit is done
 ENOUGH = 0.6  # share of an element's ink that must lie on one displaced line
 
 
@@ -95,7 +96,9 @@ def fit(base: Floats, o: Floats, use: Any, loose: float) -> Floats:
         r = o - base @ x
         w = use / (1 + (r / (loose if k > 1 else 3 * loose)) ** 2) ** 2
         a = base.T @ (base * w[:, None]) + 0.02 * np.eye(base.shape[1])
-        x = np.linalg.solve(a, base.T @ (w * o))
+        before, x = x, np.linalg.solve(a, base.T @ (w * o))
+        if k > 2 and np.abs(x - before).max(initial=0.0) < SETTLED:
+            break
     return np.asarray(x)
 
 

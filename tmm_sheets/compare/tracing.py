@@ -28,6 +28,8 @@ from tmm_sheets.compare.stations import measurable, stations
 from tmm_sheets.compare.traces import Extra, Trace
 from tmm_sheets.compare.wiping import fill, grown, wipe_found, wipe_small
 
+WRITTEN = 0.02  # share of its place with ink, from which on lettering is there
+
 
 def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extra]]:
     """Measure all elements in a rectified picture (see ``rectification.straighten``); also the ink that belongs to none."""
@@ -60,7 +62,7 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
             wipe_found(left, t, 0)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     ended = with_ends(open_lines, ink, owners, _words(elements, ink), pale)
-    out = {t.element.number: t for t in (*found, *ended)} | {e.number: _presence(e, ink, level) for e in small}
+    out = {t.element.number: t for t in (*found, *ended)} | _presence(small, ink, level)
     for e in elements:  # a hand may have written here
         if e.kind == "text":
             fill(left, grown(e, 0.8 * e.height + 1.0), 0)
@@ -76,12 +78,16 @@ def _words(elements: Sequence[Element], ink: Any) -> Any:
     return out
 
 
-def _presence(e: Element, ink: Any, level: float) -> Trace:
-    """Lettering, hatching and what is too small to be measured: is there any ink?"""
-    if e.kind == "text":
-        corners = grown(e, 1.0)
-        u, v = np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 12))
-        p = corners[0] + u * (corners[1] - corners[0]) + v * (corners[3] - corners[0])
-        share = float((sample(ink, pixels(p)) > level).mean())
-        return Trace(e, "lettering" if share > 0.02 else "absent lettering", covered=share)
-    return Trace(e, "small", covered=1.0)
+def _presence(small: Sequence[Element], ink: Any, level: float) -> dict[int, Trace]:
+    """Lettering: is there any ink? Of hatching and what is too small to be measured nothing is asked. By number."""
+    out = {e.number: Trace(e, "small", covered=1.0) for e in small}
+    words = [e for e in small if e.kind == "text"]
+    if not words:
+        return out
+    u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 12)))
+    corners = np.stack([grown(e, 1.0) for e in words])
+    a, b, _, d = corners.T[:, :, None]
+    shares = (sample(ink, pixels(a + u * (b - a) + v * (d - a))) > level).mean(1)
+    for e, share in zip(words, shares.tolist(), strict=True):
+        out[e.number] = Trace(e, "lettering" if share > WRITTEN else "absent lettering", covered=share)
+    return out

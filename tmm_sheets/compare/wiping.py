@@ -17,8 +17,8 @@ ROOM, DENSE_ROOM = 1.4, 2.0  # mm by which more than a line's width is wiped out
 
 def fixed(p: Points) -> Any:
     """Places in sixteenths of pixels, as cv2 draws them with a shift of 4."""
-    q = pixels(p)
-    return np.round(np.column_stack((q.real, q.imag)) * 16).astype(np.int32)
+    q = np.ascontiguousarray(16 * pixels(p))
+    return np.rint(q.view(np.float64).reshape(-1, 2)).astype(np.int32)
 
 
 def paint(picture: Any, e: Element, points: Points, margin: float, value: int = 255) -> None:
