@@ -242,7 +242,16 @@ def test_views_given_by_a_file(tmp_path):
     assert judged(report, CIRCLE.number)["verdict"] == "green"
 
 
+def test_a_wrong_place_in_the_file_of_views_is_told_and_the_view_looked_for(tmp_path):
+    view = CIRCLE.view
+    given = f'[[view]]\nname = "{view.name}"\nours = [[100, 100], [200, 200]]\ntheirs = [[-5000, -5000], [-4900, -4900]]\n'
+    report = compare(drawn(EXACT), tmp_path, views=given)
+    assert judged(report, CIRCLE.number)["verdict"] == "green"
+    assert report.notes[0] == f'"{view.name}" is not where --views says: 0% of its lines are there; it was looked for'
+
+
 @pytest.mark.parametrize(("text", "said"), [
+    ("[[view]]\nname = 'Эскиз маховика'\nours = [[1, nan], [3, 4]]\ntheirs = [[1, 2], [3, 4]]", "expected points"),
     ("", "has no .*view.* table"),
     ("[[view]]\nname = 'Схема'\nours = [[1, 2], [3, 4]]\ntheirs = [[1, 2], [3, 4]]", 'the sheet has no view "Схема"'),
     ("[[view]]\nname = 'Эскиз маховика'\nours = [[1, 2], [30, 4]]\ntheirs = [[1, 2]]", "1 points, ours has 2"),

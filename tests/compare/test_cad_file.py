@@ -207,3 +207,38 @@ def test_line_types_and_weights_of_layers_and_blocks(path):
     assert [(e.pattern, e.weight, e.width) for e in space.entities] == [
         ("dash-dot", 0.2, 0.2), ("dash-two-dots", 0.8, 0.8), ("dashed", 0.5, 0.5), ("continuous", None, None),
         ("continuous", None, 0.8)]  # fmt: skip
+
+
+def test_a_file_that_was_cut_off_is_read_to_its_last_whole_entity(path):
+    doc, msp = drawing()
+    for k in range(9):
+        msp.add_line((0, 0), (100 + k, 0))
+    data = saved(doc, path).read_bytes()
+    path.write_bytes(data[: data.rindex(b"104.0") + 2])
+    ink = cad_file.read(path)
+    assert length(ink.spaces[0]) == 100 + 101 + 102 + 103
+    assert ink.notes == ("the file ends in the middle: what there is of it was compared",)
+
+
+def test_places_that_are_no_numbers_are_counted(path):
+    doc, msp = drawing()
+    msp.add_line((0, 0), (30, 40))
+    msp.add_line((0, 0), (77, 0))
+    path.write_text(saved(doc, path).read_text().replace("77.0", "nan"))
+    ink = cad_file.read(path)
+    assert length(ink.spaces[0]) == 50
+    assert ink.notes == ("left out, with coordinates that are no numbers: 1 entities",)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1251"])
+def test_russian_in_a_file_that_declares_another_code_page(path, encoding):
+    doc = ezdxf.new("R2000")
+    doc.modelspace().add_line((0, 0), (1, 0))
+    doc.modelspace().add_text("Text", height=1, dxfattribs={"layer": "Layer"})
+    text = StringIO()
+    doc.write(text)
+    assert "ANSI_1252" in text.getvalue()
+    path.write_bytes(text.getvalue().replace("Text", "План сил").replace("Layer", "Рамка").encode(encoding))
+    space = cad_file.read(path).spaces[0]
+    assert [w.text for w in space.writings] == ["План сил"]
+    assert [e.layer for e in space.entities] == ["0", "Рамка"]

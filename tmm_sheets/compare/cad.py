@@ -66,7 +66,8 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     """
     count = len(project.variant.sheets)
     if sheet is not None and not 1 <= sheet <= count:
-        raise BadInput(f"--sheet {sheet}: {project.variant.project.name} has {count} sheet{'s' * (count > 1)}", "give one from 1")
+        raise BadInput(f"--sheet {sheet}: {project.variant.project.name} has {count} sheet{'s' * (count > 1)}",
+                       f"--sheet 1 to --sheet {count}" if count > 1 else "give --sheet 1, or leave it out")
     say(f"reading {path.name}")
     ink = cad_file.read(path)
     numbers = [sheet] if sheet is not None else list(range(1, count + 1))
@@ -237,6 +238,7 @@ def _refuse(project: Project, laid: Laid, outcome: Outcome, ink: CadInk, asked: 
         if others.share > max(laid.share + 0.15, 0.4):
             hint = f"it looks like sheet {others.n}: use --sheet {others.n}, or leave --sheet out"
     what = f"sheet {laid.n}" if asked is not None or count == 1 else f"any of the {count} sheets"
+    hint = "; ".join((*ink.notes, hint))
     raise BadInput(Problem(f"only {right:.0%} of the lines of {what} are in this drawing", str(path), hint=hint))
 
 

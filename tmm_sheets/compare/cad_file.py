@@ -7,9 +7,10 @@ Defpoints do not count. Points are complex, drawing units; what has a height is 
 from __future__ import annotations
 
 import logging
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from io import StringIO
+from io import BytesIO, StringIO
 from itertools import chain, pairwise
 from math import isfinite, radians
 from pathlib import Path
@@ -98,16 +99,45 @@ def _open(path: Path) -> tuple[Document, list[str]]:
         except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError):
             if head.startswith(b"AutoCAD Binary DXF"):
                 raise
-        document, auditor = recover.readfile(path)
+        whole = _completed(path.read_bytes())
+        document, auditor = recover.readfile(path) if whole is None else recover.read(BytesIO(whole))
     except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError) as e:
         raise BadInput(Problem(f"this is not a DXF file or it is damaged beyond repair ({e or type(e).__name__})", str(path),
                                hint=hint)) from None
     finally:
         log.setLevel(before)
     # Nearly every program writes something this library mends; only what was lost is worth a word.
+    if whole is not None:
+        return document, ["the file ends in the middle: what there is of it was compared"]
     lost = len(auditor.errors)
     told = f"the file is damaged: {lost} error{'s' * (lost > 1)} could not be mended, part of it may be lost"
     return document, [told if lost else "the file was damaged and was mended"]
+
+
+def _completed(data: bytes) -> bytes | None:
+    """A text file that was cut off, up to its last whole entity; None when it has its end."""
+    if data.startswith(b"AutoCAD Binary DXF") or b"EOF" in data[-200:]:
+        return None
+    begins = [m.start() for m in re.finditer(rb"\n[ \t]*0[ \t]*\r?\n(?=[A-Z])", data)]
+    return data[: begins[-1]] + b"\n  0\nENDSEC\n  0\nEOF\n" if begins else None
+
+
+def words(text: str, encoding: str) -> str:
+    """Text that was read with the wrong code page, as it was meant: UTF-8 or Russian Windows."""
+    if text.isascii() or encoding.lower().replace("-", "") in ("utf8", "cp1251"):
+        return text.encode("utf-8", "replace").decode("utf-8")
+    try:
+        data = text.encode(encoding, "surrogateescape")
+    except (UnicodeError, LookupError):
+        return text.encode("utf-8", "replace").decode("utf-8")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        pass
+    letters = [c for c in text if c.isalpha() or "\udc80" <= c <= "\udcff"]
+    if sum(c > "\x7f" for c in letters) > len(letters) / 2:
+        return data.decode("cp1251", "replace")
+    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 class _Look(NamedTuple):
@@ -136,6 +166,7 @@ class _Reader:
             if layer.is_frozen():
                 self.frozen.add(layer.dxf.name.lower())
         self.unread: Counter[str] = Counter()
+        self.nowhere = 0
         self.skipped = 0
         self.heights: list[float] = []
 
@@ -145,6 +176,8 @@ class _Reader:
         if self.unread:
             what = ", ".join(f"{n} {kind}" for kind, n in sorted(self.unread.items()))
             found.append(f"left out, not lines or text: {what}")
+        if self.nowhere:
+            found.append(f"left out, with coordinates that are no numbers: {self.nowhere} entities")
         if self.skipped:
             found.append(f"left out, on layers that are off or frozen: {self.skipped} entities")
         if self.heights:
@@ -164,7 +197,8 @@ class _Reader:
             if look.layer.lower() in self.hidden or e.dxf.get("invisible", 0):
                 self.skipped += look.layer.lower() != "defpoints"
                 continue
-            entities.append(Entity(outer.dxftype(), look.layer, str(outer.dxf.get("handle", "") or "?"),
+            entities.append(Entity(outer.dxftype(), words(look.layer, self.document.encoding),
+                                   str(outer.dxf.get("handle", "") or "?"),
                                    self.patterns.get(look.linetype, "continuous"),
                                    look.weight / 100 if look.weight >= 0 else None, _breadth(e, kind)))
             n = len(entities) - 1
@@ -184,15 +218,17 @@ class _Reader:
                     areas.extend(Area(p, n) for p in _wide(e, kind))
             except (ValueError, TypeError, AttributeError, ZeroDivisionError, KeyError, IndexError, ArithmeticError):
                 self.unread[kind] += 1  # a broken entity must not hide the others
+        self.nowhere += len({s.entity for s in strokes if not np.isfinite(s.points).all()})
         strokes = [s for s in strokes if len(s.points) > 1 and np.isfinite(s.points).all()]
         areas = [Area(_open_ended(a.points), a.entity, a.solid) for a in areas if np.isfinite(a.points).all()]
         areas = [a for a in areas if len(a.points) > 2]
+        writings = [w._replace(text=words(w.text, self.document.encoding)) for w in writings]
         writings = [w for w in writings if isfinite(w.at.real + w.at.imag + w.height) and w.text.strip()]
         return Space(name, tuple(strokes), tuple(areas), tuple(writings), tuple(entities))
 
     def paper(self, layout: Any, model: Space) -> Space:
         """A sheet of paper space together with what its viewports show of the model."""
-        space = self.space(f'layout "{layout.name}"', layout)
+        space = self.space(f'layout "{words(layout.name, self.document.encoding)}"', layout)
         for port in layout.query("VIEWPORT"):
             if port.dxf.get("id", 1) == 1 or not port.dxf.get("status", 1) or port.dxf.layer.lower() in self.hidden:
                 continue

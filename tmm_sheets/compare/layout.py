@@ -22,6 +22,8 @@ MOST_STEP = 6.0
 """About how far apart they are at most, mm."""
 NEAR = 0.3
 """A point of ours this near to ink, mm, counts as found."""
+WRONG = 0.3
+"""A place from a file at which less than this of a view is found is wrong."""
 SCALES = tuple(sorted({a / b * 10.0**k for a in HANDY for b in HANDY for k in (-1, 0, 1) if 0.15 < a / b * 10.0**k < 7},
                       key=lambda r: abs(np.log(r))))
 """Ratios of handy scale factors: how much larger or smaller a student may have drawn a view."""
@@ -79,8 +81,12 @@ class _Finder:
         """Every view in turn, those that are nowhere near last."""
         for place, whole in given:
             v = place.view
-            self.moves[v] = _given(place, whole, self.elements, self.theirs, self.points[v])
-            self.share[v] = self._inked(v, self.moves[v])
+            move = _given(place, whole, self.elements, self.theirs, self.points[v])
+            share = self._inked(v, move)
+            if share < WRONG and len(self.points[v]) >= 30:
+                self.notes.append(f'"{v.name}" is not where --views says: {share:.0%} of its lines are there; it was looked for')
+                continue
+            self.moves[v], self.share[v] = move, share
             self.notes.append(f"{_where(v, self.moves[v])}, as --views says")
         lost = []
         for v in self.views:

@@ -21,6 +21,8 @@ LEAST_PIXELS = 2_000_000
 """Below this the thin lines of an A1 sheet are a third of a pixel wide."""
 MOST_PIXELS = 400_000_000
 PDF_DPI = 200.0
+PNG, WITH_ALPHA = b"\x89PNG\r\n\x1a\n", (b"\4", b"\6")
+"""Beginning of a PNG file, and its colour types with transparency."""
 SHOW = 'a photograph or scan as JPG, PNG or PDF, for example "compare PROJECT --sheet 1 --image photo.jpg"'
 
 
@@ -54,8 +56,6 @@ def read(path: Path) -> Picture:
         When the image has too few pixels.
     """
     need_opencv()
-    import cv2
-
     try:
         data = path.read_bytes()
     except FileNotFoundError:
@@ -68,12 +68,9 @@ def read(path: Path) -> Picture:
     if data.lstrip()[:5] == b"%PDF-":
         grey, notes = _page(data, path)
     else:
-        try:
-            decoded: Any = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE)
-        except cv2.error:
-            decoded = None
+        decoded, notes = _decoded(data, path)
         if decoded is None:
-            raise BadInput(Problem("is not an image that can be read", str(path), hint=f"expected {SHOW}"))
+            raise BadInput(Problem("is not an image that can be read, or only part of one", str(path), hint=f"expected {SHOW}"))
         grey = decoded
     pixels = grey.shape[0] * grey.shape[1]
     if pixels < LEAST_PIXELS:
@@ -87,6 +84,31 @@ def read(path: Path) -> Picture:
     return Picture(grey, notes)
 
 
+def _decoded(data: bytes, path: Path) -> tuple[Any, tuple[str, ...]]:
+    """Grey pixels of an image file, None when there are none; what is transparent is white paper."""
+    import cv2
+
+    raw = np.frombuffer(data, np.uint8)
+    log = cv2.utils.logging.getLogLevel()
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what it has to say of a damaged file is told here
+    try:
+        if data[:8] == PNG and data[25:26] in WITH_ALPHA:
+            with_alpha: Any = cv2.imdecode(raw, cv2.IMREAD_UNCHANGED)
+            if with_alpha is not None and with_alpha.ndim == 3 and with_alpha.shape[2] == 4:
+                most = np.iinfo(with_alpha.dtype).max
+                opaque = with_alpha[:, :, 3]
+                if int(opaque.min()) < most:
+                    seen = cv2.cvtColor(with_alpha[:, :, :3], cv2.COLOR_BGR2GRAY).astype(np.float32)
+                    paper = opaque.astype(np.float32) / most
+                    whole = 255 - paper * (255 - seen * np.float32(255 / most))
+                    return whole.round().astype(np.uint8), (f"{path.name} is transparent; it was put on white",)
+        return cv2.imdecode(raw, cv2.IMREAD_GRAYSCALE), ()
+    except cv2.error:
+        return None, ()
+    finally:
+        cv2.utils.logging.setLogLevel(log)
+
+
 def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
     """The first page of a PDF."""
     if find_spec("pypdfium2") is None:
@@ -97,6 +119,8 @@ def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
     try:
         document = pypdfium2.PdfDocument(data)
     except pypdfium2.PdfiumError as e:
+        if "password" in str(e).lower():
+            raise BadInput(Problem("the PDF is locked with a password", str(path), hint="save or print it without one")) from None
         raise BadInput(Problem(f"is not a PDF that can be read: {e}", str(path), hint=f"expected {SHOW}")) from None
     try:
         pages = len(document)

@@ -19,6 +19,7 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -81,7 +82,7 @@ def _place(table: dict[str, Any], field: str, path: str, views: Sequence[View], 
         if points is None:
             wrong(key, "expected points [[x, y], [x, y]]")
     mu = table.get("mu")
-    if mu is not None and (not isinstance(mu, int | float) or isinstance(mu, bool) or not mu > 0):
+    if mu is not None and (not isinstance(mu, int | float) or isinstance(mu, bool) or not 0 < mu < inf):
         wrong("mu", f"expected a positive number, not {mu!r}")
         mu = None
     if ours is not None and theirs is not None:
@@ -116,10 +117,14 @@ def _points(value: Any) -> tuple[complex, ...] | None:
         return None
     found = []
     for p in value:
-        if not isinstance(p, list) or len(p) != 2 or not all(isinstance(x, int | float) and not isinstance(x, bool) for x in p):
+        if not isinstance(p, list) or len(p) != 2 or not all(map(_number, p)):
             return None
         found.append(complex(p[0], p[1]))
     return tuple(found)
+
+
+def _number(x: Any) -> bool:
+    return isinstance(x, int | float) and not isinstance(x, bool) and isfinite(x)
 
 
 def mu_of(view: View, elements: Sequence[Element]) -> float | None:
