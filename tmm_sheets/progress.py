@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from threading import Timer
 from time import monotonic
 from types import TracebackType
 from typing import Self
@@ -19,18 +20,31 @@ class Progress:
     def __init__(self) -> None:
         self.start = monotonic()
         self.shown = False
+        self.what = ""
+        self.late = Timer(PATIENCE, self._show)
+        self.late.daemon = True
 
     def say(self, what: str) -> None:
         """Tell what comes next, if somebody watches and has waited long enough."""
-        if sys.stderr.isatty() and monotonic() - self.start > PATIENCE:
-            sys.stderr.write(f"\r\033[K{what}")
+        self.what = what
+        if monotonic() - self.start > PATIENCE:
+            self._show()
+
+    def _show(self) -> None:
+        if self.what and sys.stderr.isatty():
+            sys.stderr.write(f"\r\033[K{self.what}")
             sys.stderr.flush()
             self.shown = True
 
     def __enter__(self) -> Self:
+        if sys.stderr.isatty():
+            self.late.start()  # for work that begins at once and tells nothing more for long
         return self
 
     def __exit__(self, kind: type[BaseException] | None, e: BaseException | None, trace: TracebackType | None) -> None:
+        self.late.cancel()
+        if self.late.is_alive():
+            self.late.join()
         if self.shown:
             sys.stderr.write("\r\033[K")
             sys.stderr.flush()

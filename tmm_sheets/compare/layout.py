@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,7 +46,7 @@ def ink(elements: Sequence[Element]) -> Points:
 
 
 def find(elements: Sequence[Element], theirs: Lines, writings: Sequence[Writing] = (),
-         given: Sequence[tuple[ViewPlace, Placing]] = ()) -> Layout:
+         given: Sequence[tuple[ViewPlace, Placing]] = (), say: Callable[[str], None] = lambda _: None) -> Layout:
     """Place every view of a sheet.
 
     A view may be in its place, a little aside, where its texts stand in the drawing, or anywhere in the ink the others leave.
@@ -56,15 +56,16 @@ def find(elements: Sequence[Element], theirs: Lines, writings: Sequence[Writing]
     elements : of the sheet
     theirs, writings : lines and texts of the drawing, laid on the sheet as a whole, mm
     given : places from a file, each with the placing of the whole drawing (drawing to sheet); they are refined, not searched
+    say : told what is being done
     """
-    return _Finder(elements, theirs, writings).layout(given)
+    return _Finder(elements, theirs, writings, say).layout(given)
 
 
 class _Finder:
     """The views of a sheet with what has been found of them."""
 
-    def __init__(self, elements: Sequence[Element], theirs: Lines, writings: Sequence[Writing]) -> None:
-        self.elements, self.theirs = elements, theirs
+    def __init__(self, elements: Sequence[Element], theirs: Lines, writings: Sequence[Writing], say: Callable[[str], None]) -> None:
+        self.elements, self.theirs, self.say = elements, theirs, say
         self.views = list(dict.fromkeys(e.view for e in elements))
         every = {v: ink([e for e in elements if e.view == v]) for v in self.views}
         self.points = {v: z[:: max(len(z) // MOST, 1)] for v, z in every.items()}
@@ -157,6 +158,7 @@ class _Finder:
         for v in sorted(lost, key=lambda v: -len(self.points[v])):
             if len(free.a) < 4:
                 return
+            self.say(f'looking for view "{v.name}"')
             found = search(self.points[v], free, [1 / r for r in SCALES], (0,), enough=0.95, tries=6)
             back = found.placing.inverse()
             scale = min(SCALES, key=lambda r: abs(back.scale / r - 1))
