@@ -9,33 +9,37 @@ from tmm_sheets import progress
 
 
 @pytest.fixture
-def terminal(monkeypatch, capsys):  # capsys first: it puts another stderr in place
-    del capsys
-    monkeypatch.setattr(progress, "PATIENCE", 0.01)
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+def watched(monkeypatch):
+    """Makes of what stands for standard error in a test a terminal, and patience short."""
+    def watch(patience):
+        monkeypatch.setattr(progress, "PATIENCE", patience)
+        monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+
+    return watch
 
 
-@pytest.mark.usefixtures("terminal")
-def test_one_long_step_is_told(capsys):
+def test_one_long_step_is_told(watched, capsys):
+    watched(0.05)
     with progress.Progress() as told:
         told.say("looking for the frame ...")
-        sleep(0.2)
+        told.late.join()
         assert capsys.readouterr().err == "\r\033[Klooking for the frame ..."
     assert capsys.readouterr().err == "\r\033[K"
 
 
-@pytest.mark.usefixtures("terminal")
-def test_short_work_is_silent(capsys, monkeypatch):
-    monkeypatch.setattr(progress, "PATIENCE", 60.0)
+def test_short_work_is_silent(watched, capsys):
+    watched(60.0)
     with progress.Progress() as told:
         told.say("reading ...")
         told.say("writing ...")
     assert capsys.readouterr().err == ""
+    assert not told.late.is_alive()
 
 
 def test_nothing_is_told_to_a_file(capsys, monkeypatch):
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
     with progress.Progress() as told:
         told.say("reading ...")
-        sleep(0.05)
+        sleep(0.01)
+        told.say("writing ...")
     assert capsys.readouterr().err == ""
