@@ -1,7 +1,6 @@
 """The map of a sheet from the four sides of its frame, at full resolution.
 
-1. A homography and two coefficients of radial distortion, by least squares of the distances of the sides' points;
-2. what is left of the sides' bending (the paper's curl), carried inside between opposite sides (a Coons patch).
+The sides are followed, first near where the search has left them, then nearer and nearer to where the map says they are.
 """
 
 from __future__ import annotations
@@ -9,14 +8,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare.map_fit import Seen, bent
 from tmm_sheets.compare.photograph import Grey
 from tmm_sheets.compare.profiles import follow, peaks, sample
-from tmm_sheets.compare.sheet_map import CORNERS, FRAME, ORDER, SIDE_TERMS, Floats, Map, homography
+from tmm_sheets.compare.sheet_map import CORNERS, FRAME, Floats, Map, homography
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 
@@ -38,25 +38,38 @@ def _side_points() -> tuple[Points, Points, npt.NDArray[np.int64]]:
     return np.concatenate(p), np.concatenate(n), np.concatenate(side)
 
 
+class Frame(NamedTuple):
+    """The map by the frame, its sides' points, and as standard deviations in mm their scatter about it and the picture's smear."""
+
+    map: Map
+    sides: Seen
+    scatter: float
+    smear: float
+
+
 def rough(corners: Points, sides: Sequence[Points], shape: tuple[int, ...]) -> Map:
     """Map from the corners and points of the four sides."""
     middle, reach = complex(shape[1] / 2, shape[0] / 2), 0.5 * abs(complex(shape[1], shape[0]))
-    first = homography((corners - middle) / reach, CORNERS)
-    m = Map(middle, reach, first, (0.0, 0.0), np.zeros((4, SIDE_TERMS)), np.zeros(2 * ORDER**2))
+    m = Map(middle, reach, homography((corners - middle) / reach, CORNERS))
     some = [s[::4] for s in sides]
+    q = np.concatenate(some)
     side = np.repeat(np.arange(4), [len(s) for s in some])
-    return _fit_sides(m, np.concatenate(some), side, np.ones(len(side), bool))[0]
+    on = m.to_base(q)
+    upright = side % 2 == 1
+    level = np.array([FRAME.y0, FRAME.x1, FRAME.y1, FRAME.x0])[side]
+    p = np.where(upright, level + 1j * on.imag, on.real + 1j * level)
+    return bent(m, Seen(q, p, np.where(upright, 1.0 + 0j, 1j), np.ones(len(q))))[0]
 
 
-def fit_frame(grey: Grey, corners: Points, around: Sequence[Points]) -> tuple[Map, float, float]:
+def fit_frame(grey: Grey, corners: Points, around: Sequence[Points]) -> Frame:
     """Homography, lens and bending of the sides from the frame.
 
-    Returns
-    -------
-    The map, the scatter of the sides' points about it and how far the picture is smeared (standard deviation), mm.
+    Raises
+    ------
+    CannotBuild
+        When a side has no line.
     """
     m = rough(corners, around, grey.shape)
-    scatter, smear = 1.0, 0.0
     p, n, side = _side_points()
     step = 0.1
     for width in (2.5, 1.5, 2.0):
@@ -68,11 +81,12 @@ def fit_frame(grey: Grey, corners: Points, around: Sequence[Points]) -> tuple[Ma
         use = strength > 0.4 * np.median(strength)
         if min(np.bincount(side[use], minlength=4)) < STATIONS / 4:
             raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
-        m, scatter = _fit_sides(m, m.to_picture(p + n * o), side, use)
+        seen = Seen(m.to_picture(p + n * o), p, n, use.astype(float))
+        m, scatter = bent(m, seen)
         smear = _smear(profile[use], offsets, o[use])
         if not smear < 2:  # mm: there is no line at all
             raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
-    return m, scatter, smear
+    return Frame(m, seen, scatter, smear)
 
 
 def _smear(profile: Any, offsets: Floats, at: Floats) -> float:
@@ -90,49 +104,3 @@ def _local_ink(grey: Any, at: Points) -> Floats:
     g = sample(grey, at).astype(np.float64)
     paper = np.maximum(np.percentile(g, 70, axis=1), 1.0)
     return np.asarray(np.clip(1 - g / paper[:, None], 0, 1))
-
-
-def _fit_sides(m: Map, seen: Points, side: npt.NDArray[np.int64], use: Any) -> tuple[Map, float]:
-    """Least squares of homography and lens, then polynomials of what is left, from points ``seen`` on the sides."""
-    level = np.array([FRAME.y0, FRAME.x1, FRAME.y1, FRAME.x0])[side]
-    upright = side % 2 == 1
-
-    def residual(x: Floats) -> Floats:
-        matrix = np.append(x[:8], 1.0).reshape(3, 3)
-        q = Map(m.middle, m.reach, matrix, (x[8], x[9]), m.sides, m.waves).to_base(seen)
-        return np.asarray(np.where(upright, q.real, q.imag) - level)
-
-    x = np.append((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend)
-    size = np.append(np.maximum(np.abs(x[:8]), 1e-2), (0.05, 0.05)) * 1e-4
-    # Paper bends too, and not as a lens does: a weak prior keeps the lens modest.
-    prior = 0.02 * np.array([1 / 0.05, 1 / 0.03]) * np.sqrt(len(seen))
-    for _ in range(12):
-        r = residual(x)
-        jacobian = np.stack([(residual(x + e) - r) / s for e, s in zip(np.diag(size), size, strict=True)], -1)
-        sigma = max(1.4826 * float(np.median(np.abs(r[use]))), 0.1)
-        w = use / (1 + (r / (3 * sigma)) ** 2)
-        a = np.vstack((jacobian * w[:, None], np.diag(np.append(np.zeros(8), prior))[8:]))
-        b = np.concatenate((-r * w, -prior * x[8:]))
-        norm = np.linalg.norm(a, axis=0)
-        a /= norm
-        change = np.linalg.solve(np.einsum("ni,nj->ij", a, a), np.einsum("ni,n->i", a, b)) / norm
-        x = x + change
-        if np.abs(change / size).max() < 1e-1:
-            break
-    matrix = np.append(x[:8], 1.0).reshape(3, 3)
-    r = residual(x)
-    on = Map(m.middle, m.reach, matrix, (x[8], x[9]), m.sides, m.waves).to_base(seen)
-    sides, left = np.zeros_like(m.sides), []
-    for k in range(4):
-        mine = side == k
-        t = 2 * ((on[mine].real - FRAME.x0) / FRAME.width if k % 2 == 0 else (on[mine].imag - FRAME.y0) / FRAME.height) - 1
-        w = use[mine].astype(float)
-        base = np.polynomial.chebyshev.chebvander(t, SIDE_TERMS - 1)
-        for _ in range(8):
-            c = np.linalg.lstsq(base * w[:, None], r[mine] * w, rcond=None)[0]
-            d = r[mine] - base @ c
-            sigma = max(1.4826 * float(np.median(np.abs(d[use[mine]]))), 0.03)
-            w = use[mine] / (1 + (d / (2 * sigma)) ** 2)
-        sides[k] = c
-        left.append(sigma)
-    return Map(m.middle, m.reach, matrix, (float(x[8]), float(x[9])), sides, m.waves), float(max(left))

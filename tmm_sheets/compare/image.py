@@ -89,7 +89,7 @@ def compare(
 def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> Rectified:
     """The sheet corrected by its lines once more, when it is known where they stand."""
     lines = as_lines([e for e in known if e.length < LONGEST])
-    better, _, match = rectification.refine(found.map, found.ink, lines, line_level(found.ink))
+    better, _, match = rectification.refine(found.map, found.sides, found.ink, lines, line_level(found.ink))
     if match < MATCH:
         return found
     ink = rectification.straighten(picture.grey, better)
@@ -111,7 +111,7 @@ def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
             continue
         say(f"trying sheet {k}")
         lines = as_lines([e for e in elements(composed(project, k)) if e.length < LONGEST], most=2500)
-        _, _, match = rectification.refine(found.map, found.ink, lines, found.level)
+        _, _, match = rectification.refine(found.map, found.sides, found.ink, lines, found.level)
         if match > share:
             best, share = k, match
     missing = f"only {100 * found.match:.0f} % of the lines of sheet {n} are where they belong"

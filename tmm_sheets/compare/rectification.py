@@ -1,10 +1,9 @@
 """A photographed sheet brought back to its millimetres.
 
-The frame is found (``frame_search``), its sides give the map of the sheet (``frame_fit``), and what bends between them is put right
-by a smooth correction of low order from the lines of the drawing and of the title block: products of sines and cosines with at most
-:data:`~tmm_sheets.compare.sheet_map.ORDER` half waves over the sheet, zero across the sides, fitted robustly to all lines at once.
-It cannot follow a single view, least of all a single line: with several hundred lines and some thirty numbers one wrong line moves
-it by hundredths of a millimetre (Geman and McClure's weights leave it out altogether).
+The frame is found (``frame_search``), its sides give the map of the sheet (``frame_fit``), and the lines of the drawing and of the
+title block correct it all at once (``map_fit``): homography, lens and a field of heights of the paper, a polynomial of degree
+:data:`~tmm_sheets.compare.sheet_map.RELIEF`. It cannot follow a single view, least of all a single line: with several hundred lines
+and some twenty numbers one wrong line moves it by hundredths of a millimetre (Geman and McClure's weights leave it out altogether).
 """
 
 from __future__ import annotations
@@ -20,9 +19,10 @@ import numpy as np
 from tmm_sheets.compare import frame_fit, frame_search
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.ink_levels import line_level, noise_level
+from tmm_sheets.compare.map_fit import Seen, bent
 from tmm_sheets.compare.photograph import Picture
 from tmm_sheets.compare.profiles import SCALE, Lines, darkness, peaks, profiles
-from tmm_sheets.compare.sheet_map import FRAME, ORDER, PAPER, Floats, Map, waves
+from tmm_sheets.compare.sheet_map import FRAME, PAPER, RELIEF, Floats, Map
 from tmm_sheets.compare.stations import as_lines
 from tmm_sheets.errors import CannotBuild
 
@@ -35,12 +35,16 @@ MATCH = 0.5
 RECTIFIED = 0.15
 """Error of a place after rectification, mm: some 95 % of the places of simulated photographs are within it."""
 TURNS = {1: "a quarter turn clockwise", 2: "a half turn", 3: "a quarter turn counter-clockwise"}
+COARSE = 4.0  # pixels per mm, enough to correct by
+COARSE_TO_FINE = ((3.5, 2, 1.0), (2.5, 3, 0.7), (1.6, RELIEF, 0.4), (1.0, RELIEF, 0.25), (0.8, RELIEF, 0.2))
+"""Reach to either side of a line, degree of the paper's height, and what counts as far off, mm."""
 NODE = 6.0  # mm between the points at which the map is calculated
 
 
 @dataclass(frozen=True)
 class Rectified:
-    """The sheet seen from straight above: ``ink`` as :func:`straighten` makes it, ``map`` the way there.
+    """The sheet seen from straight above: ``ink`` as :func:`straighten` makes it, ``map`` the way there,
+    ``sides`` the frame's points.
 
     ``match`` is the share of the known lines that were found in place, ``uncertainty`` the error of a place, mm, ``scale`` pixels
     of the picture per mm.
@@ -48,6 +52,7 @@ class Rectified:
 
     ink: Any
     map: Map
+    sides: Seen
     level: float
     match: float
     uncertainty: float
@@ -73,7 +78,7 @@ def rectify(
     say("looking for the frame")
     try:
         found = frame_search.find(picture.grey, frame_lines(known))
-        m, scatter, smear = frame_fit.fit_frame(picture.grey, found.corners, found.sides)
+        m, sides, scatter, smear = frame_fit.fit_frame(picture.grey, found.corners, found.sides)
     except CannotBuild as e:
         raise CannotBuild(f"{path}: {e.args[0]}", hint=e.hint) from None
     scale = float(np.abs(np.diff(found.corners)).min() / FRAME.height)
@@ -90,17 +95,15 @@ def rectify(
         notes.append(f"{path.name} has {scale:.1f} pixels per millimetre only: thin lines may be missed")
     if smear > SOFT:
         notes.append(f"{path.name} is not sharp (edges of lines are smeared over {2 * smear:.1f} mm): thin lines may be missed")
-    ink = straighten(picture.grey, m)
-    level = noise_level(ink)
-    pale = line_level(ink)
     say("correcting by the drawing's lines")
     lines = as_lines([e for e in known if e.length < 2500 and (by_lines or e.of == "title block")])
-    better, _, match = refine(m, ink, lines, pale)
+    ink = straighten(picture.grey, m, COARSE)
+    better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE)
     if by_lines and match >= MATCH:
         m = better
-        ink = straighten(picture.grey, m)
-        level = noise_level(ink)
-    return Rectified(ink, m, level, match, hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter), scale, tuple(notes))
+    ink = straighten(picture.grey, m)
+    uncertainty = hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter)
+    return Rectified(ink, m, sides, noise_level(ink), match, uncertainty, scale, tuple(notes))
 
 
 def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
@@ -137,44 +140,26 @@ def _weights(at: Floats, nodes: Floats) -> Any:
     return out
 
 
-def refine(m: Map, ink: Any, lines: Lines, level: float, scale: float = SCALE) -> tuple[Map, float, float]:
-    """The smooth correction from the lines of the drawing.
+def refine(m: Map, sides: Seen, ink: Any, lines: Lines, level: float, scale: float = SCALE) -> tuple[Map, float, float]:
+    """The map corrected by the lines of the drawing, seen in the picture ``ink`` straightened by ``m``.
 
     Returns
     -------
-    The map with it, the robust scatter of the lines about it, mm, and the share of their points with ink within half a millimetre.
+    The map, the robust scatter of the lines about it, mm, and the share of their points with ink within half a millimetre.
     """
-    x, y = waves(lines.points)
-    base = np.hstack((x * lines.normals.real[:, None], y * lines.normals.imag[:, None]))
-    i, j = np.meshgrid(np.arange(1, ORDER + 1), np.arange(ORDER), indexing="ij")
-    rank = np.concatenate((np.maximum(i, j + 1).ravel(), np.maximum(j + 1, i).ravel()))
-    # Few numbers from many points: a line counts by its length up to 30 mm or so.
-    counts = np.bincount(lines.line)
-    weight = 1 / np.sqrt(np.maximum(counts, 8) / 8.0)[lines.line]
-    c = np.zeros(2 * ORDER**2)
+    # A line counts by its length up to 30 mm or so.
+    weight = 1 / np.sqrt(np.maximum(np.bincount(lines.line), 8) / 8.0)[lines.line]
+    sides = sides._replace(weight=0.5 * sides.weight)
     offsets = np.arange(-4.0, 4.05, 0.1)
-    hit, sigma = 0.0, 1.0
-    coarse_to_fine = ((3.5, 2, 1.0), (2.5, 2, 0.7), (1.6, 3, 0.5), (1.2, ORDER, 0.3), (1.0, ORDER, 0.25), (0.8, ORDER, 0.2))
-    for reach, order, loose in coarse_to_fine:
-        x_, y_ = np.einsum("ni,i->n", x, c[: x.shape[-1]]), np.einsum("ni,i->n", y, c[x.shape[-1] :])
-        table = profiles(ink, lines, offsets, np.asarray(x_ + 1j * y_), scale)
-        o, strength = peaks(table, offsets, 0.0, reach, 0.4)
+    better, hit, scatter = m, 0.0, 1.0
+    for reach, degree, loose in COARSE_TO_FINE:
+        at = m.to_sheet(better.to_picture(lines.points))
+        o, strength = peaks(profiles(ink, lines, offsets, at - lines.points, scale), offsets, 0.0, reach, 0.4)
         use = strength > level
         hit = float((use & (np.abs(o) < 0.5)).mean())
-        active = rank <= order
-        target = o + np.einsum("ni,i->n", base, c)
-        new = np.where(active, c, 0.0)
-        # Frame and lens have done most: amplitudes beyond some millimetres are not believed, small waves even less.
-        ridge = np.sqrt(np.maximum(use.sum(), 1)) * 0.007 * rank**1.5
-        some = base[:, active]
-        for _ in range(7):
-            r = target - np.einsum("ni,i->n", base, new)
-            w = (weight * use / (1 + (r / loose) ** 2)) ** 2
-            weighted = some * w[:, None]
-            # einsum: for so small a product the threads of a matrix library cost more than they bring.
-            square = np.einsum("ni,nj->ij", some, weighted) + np.diag(ridge[active] ** 2)
-            new[active] = np.linalg.solve(square, np.einsum("ni,n->i", weighted, target))
-        c = new
-        r = (target - np.einsum("ni,i->n", base, c))[use]
-        sigma = 1.4826 * float(np.median(np.abs(r))) if len(r) else 1.0
-    return Map(m.middle, m.reach, m.matrix, m.bend, m.sides, c), sigma, hit
+        if not use.any():
+            break
+        scatter = 1.4826 * float(np.median(np.abs(o[use])))
+        seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
+        better = bent(better, sides, seen, degree, loose)[0]
+    return better, scatter, hit

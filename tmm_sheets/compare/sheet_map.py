@@ -5,8 +5,7 @@ Points of pictures and of the sheet are complex numbers, pixels (rows count down
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import pi
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -21,8 +20,11 @@ PAPER = Box(0.0, 0.0, 841.0, 594.0)
 FRAME = Box(20.0, 5.0, 836.0, 589.0)
 CORNERS = np.array([20 + 5j, 836 + 5j, 836 + 589j, 20 + 589j])
 """Of the frame, from the lower left one counter-clockwise."""
-ORDER = 4  # half waves of the smooth correction
 SIDE_TERMS = 7  # of the polynomial of a side's bending
+RELIEF = 4  # degree of the polynomial of the paper's height
+TERMS = tuple((i, n - i) for n in range(2, RELIEF + 1) for i in range(n, -1, -1))
+DEGREE = np.array([i + j for i, j in TERMS])
+AWAY = 1000.0  # mm from the paper to the camera; what is wrong in this shows in the heights alone
 
 
 @dataclass
@@ -30,15 +32,18 @@ class Map:
     """Where the points of the sheet are in the picture.
 
     ``matrix`` takes undistorted picture coordinates (centre 0, half diagonal 1) to the sheet, ``bend`` are the coefficients of
-    radius**2 and radius**4 that undistort; ``sides`` the polynomials of the sides' bending; ``waves`` the smooth correction.
+    radius**2 and radius**4 that undistort; ``relief`` those of the paper's height (see :func:`heights`), mm, seen from above the
+    point ``foot`` of the sheet; ``sides`` the polynomials of what is left of the sides' bending, carried inside between opposite
+    sides (a Coons patch).
     """
 
     middle: complex
     reach: float
     matrix: Floats
-    bend: tuple[float, float]
-    sides: Floats
-    waves: Floats
+    bend: tuple[float, float] = (0.0, 0.0)
+    sides: Floats = field(default_factory=lambda: np.zeros((4, SIDE_TERMS)))
+    relief: Floats = field(default_factory=lambda: np.zeros(len(DEGREE)))
+    foot: complex = FRAME.centre
 
     def to_base(self, q: Points) -> Points:
         """Picture to sheet by homography and lens alone."""
@@ -72,20 +77,20 @@ class Map:
             for t, c in zip((u, v, u, v), self.sides, strict=True)
         )
         dx, dy = (1 - u) * left + u * right, (1 - v) * bottom + v * top
-        if self.waves.any():
-            x, y = waves(p)
-            dx = dx + x @ self.waves[: x.shape[-1]]
-            dy = dy + y @ self.waves[x.shape[-1] :]
-        return np.asarray(dx + 1j * dy)
+        return np.asarray(dx + 1j * dy) + self.risen(p)
+
+    def risen(self, p: Points) -> Points:
+        """What the paper's height adds: a point is seen height / :data:`AWAY` of its way from the foot farther from it."""
+        return np.asarray(np.einsum("...k,k->...", heights(p), self.relief) * (p - self.foot) / AWAY)
 
 
-def waves(p: Points, order: int = ORDER) -> tuple[Floats, Floats]:
-    """Base functions of the smooth correction in x and in y at points of the sheet: none crosses the side it is zero at."""
-    u = np.clip((p.real - FRAME.x0) / FRAME.width, 0, 1)
-    v = np.clip((p.imag - FRAME.y0) / FRAME.height, 0, 1)
-    x = [np.sin(i * pi * u) * np.cos(j * pi * v) for i in range(1, order + 1) for j in range(order)]
-    y = [np.cos(i * pi * u) * np.sin(j * pi * v) for i in range(order) for j in range(1, order + 1)]
-    return np.stack(x, -1), np.stack(y, -1)
+def heights(p: Points) -> Floats:
+    """Terms of the paper's height at points of the sheet: those of degree 0 and 1 are planes, which the homography knows."""
+    u = np.clip((np.real(p) - FRAME.x0) / FRAME.width, 0, 1)
+    v = np.clip((np.imag(p) - FRAME.y0) / FRAME.height, 0, 1)
+    x, y = (np.polynomial.chebyshev.chebvander(2 * t - 1, RELIEF) for t in (u, v))
+    i, j = np.array(TERMS).T
+    return np.asarray(x[..., i] * y[..., j])
 
 
 def projected(matrix: Floats, p: Points) -> Points:
