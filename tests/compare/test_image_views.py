@@ -117,6 +117,15 @@ def test_a_view_that_is_not_named_and_not_there_is_left_out():
     assert "left out" in placed.notes[-1]
 
 
+def test_lines_side_by_side_are_not_taken_for_one_another():
+    """A force plan with four long vectors a few millimetres from each other, in its place."""
+    sheet = composed(Project(catalogue.read("transport/compressor@09-В-5")), 1)
+    ink = paper(sheet.drawing, np.random.default_rng(1), 0.1, scale=6.0)
+    placed = placing.place(elements(sheet), (), Flat(), ink)
+    assert placed.left_out == ()
+    assert max(abs(where(v.box.centre) - v.box.centre) for v, where in placed.similarities.items()) < 0.6
+
+
 def test_symbols_and_lettering_keep_their_size_in_another_scale():
     where = placing.Similarity(1.5 * np.exp(0.1j), 20 - 10j)
     ours = {kind: next(e for e in known() if e.view.name == PLAN and e.kind == kind) for kind in ("text", "circle", "line")}

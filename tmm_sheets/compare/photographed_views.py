@@ -155,7 +155,18 @@ def _mu(view: View, known: Sequence[Element]) -> float | None:
 
 
 def _fit(mine: Sequence[Element], start: Similarity, ink: Any, level: float, free: bool) -> tuple[Similarity, float]:
-    """The similarity that brings a view's lines onto ink, and the share of them that have some; size is fitted only if ``free``."""
+    """The similarity that brings a view's lines onto ink, and the share of them that have some; size is fitted only if ``free``.
+
+    Far off it is sought as well as near by: among lines side by side the farther search may end at the wrong ones.
+    """
+    near, far = (_fitted(mine, start, ink, level, free, steps) for steps in (COARSE_TO_FINE[2:], COARSE_TO_FINE))
+    return far if far[1] > near[1] + 0.02 else near
+
+
+def _fitted(
+    mine: Sequence[Element], start: Similarity, ink: Any, level: float, free: bool, coarse_to_fine: Sequence[tuple[float, float]],
+) -> tuple[Similarity, float]:
+    """One such search."""
     lines = as_lines(mine, least=5.0, most=3000)
     if len(lines.points) < 20:
         # Lettering alone: nothing to fit; it stands where it is said to.
@@ -163,7 +174,7 @@ def _fit(mine: Sequence[Element], start: Similarity, ink: Any, level: float, fre
     offsets = np.arange(-4.0, 4.05, 0.1)
     now = start
     hit = 0.0
-    for reach, loose in COARSE_TO_FINE:
+    for reach, loose in coarse_to_fine:
         normals = lines.normals * now.turn / abs(now.turn)
         p = now(lines.points)
         table = profiles(ink, lines._replace(points=p, normals=normals), offsets)
@@ -228,9 +239,11 @@ def moved(e: Element, by: Similarity) -> Element:
 
 
 def symbol(e: Element) -> bool:
-    """Whether an element is part of a symbol rather than of the figure: it is the same in every scale."""
+    """Whether an element is part of a symbol, the same in every scale, or a dimension line, which may stand anywhere."""
     extent = abs(complex(np.ptp(e.points.real), np.ptp(e.points.imag)))
-    return e.kind in ("hatch", "fill") or (e.kind in ("arc", "curve", "line") and extent < SYMBOL and e.style not in FIGURE)
+    dimension = len(e.fills) > 1 and e.style == "thin"
+    short = e.kind in ("arc", "curve", "line") and extent < SYMBOL and e.style not in FIGURE
+    return dimension or short or e.kind in ("hatch", "fill")
 
 
 def _sized(by: Similarity, fixed: complex) -> Similarity:
