@@ -76,8 +76,9 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     use = there & free
     if free.sum() < max(4, FREE * len(free)):
         # Beside or under others nearly everywhere: it is there, or not, but its place is theirs.
-        if there.mean() > 0.75 * expected:
-            return _shared(strip, o, use, level) or Trace(e, "dense", covered=float(there.mean()), at=e.points)
+        inked = (np.where(np.abs(OFFSETS) <= reach[:, None], profile, 0).max(1) > level).mean()
+        if inked > 0.75 * expected:
+            return _shared(strip, o, use, level) or Trace(e, "dense", covered=float(inked), at=e.points)
         return None
     if use.sum() < 3 or use.sum() < 0.45 * expected * free.sum():
         return None
@@ -91,7 +92,7 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     halves = [good[k].sum() / max(free[k].sum(), 1) for k in (slice(0, half), slice(half, None)) if free[k].sum() > 3]
     if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
         return None
-    if np.abs(base @ x).max() > OFF:
+    if (np.abs(base @ x)[free] > OFF).mean() > 0.1:
         # Off its place: once more, about where it is, however near that is to the half way to the next line.
         o, strength = peaks(profile, OFFSETS, base @ x, 0.7, 0.5)
         use = (strength > level) & free
@@ -160,8 +161,11 @@ def _local(o: Floats, use: Any, step: float) -> float:
 
 
 def _peaks_within(profile: Any, reach: Floats, half: float, level: float) -> tuple[Floats, Floats]:
-    """The line of each profile within its own reach: rather one near by than a blacker one farther off."""
+    """The line of each profile within its own reach: rather one near by than a blacker one farther off, but no line's flank."""
+    import cv2
+
     p = np.where(np.abs(OFFSETS)[None, :] <= reach[:, None] + 1e-9, profile, 0)
-    likely = np.minimum(p, 2 * level) * (1 - 0.5 * np.abs(OFFSETS) / NEAR)
+    top = profile == cv2.dilate(profile, np.ones((1, 5), np.uint8))
+    likely = np.where(top, np.minimum(p, 2 * level), 0) * (1 - 0.5 * np.abs(OFFSETS) / NEAR)
     centre = OFFSETS[likely.argmax(1)]
     return peaks(p, OFFSETS, centre, 0.4, half)

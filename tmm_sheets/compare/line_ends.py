@@ -114,7 +114,8 @@ def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
     depth, beside = across[:, : len(ASIDE)].max(1), across[:, len(ASIDE) :].max(1)
     hidden = cv2.morphologyEx(hidden.astype(np.uint8)[:, None], cv2.MORPH_CLOSE, np.ones((5, 1), np.uint8))[:, 0] > 0
     plain = (t < 0) & ~hidden
-    dark = depth > max(level, 0.5 * float(np.median(depth[plain if plain.sum() > 4 else t < 0])))
+    usual = np.median(depth[plain]) if plain.sum() > 4 else np.percentile(depth[t < 0], 20)  # others make it darker, if anything
+    dark = depth > max(level, 0.5 * float(usual))
     own = dark & ~hidden & (beside < CLEARER * depth)
     low, last, inside = -1, 0, int((t <= 0.3).sum())
     for i in np.flatnonzero(dark).tolist():
