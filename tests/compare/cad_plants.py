@@ -73,6 +73,7 @@ def draw(found: list[Element], way: Way, rng: random.Random) -> bytes:
     names = ("0", "Линии", "тонкие", "Layer3", "Размеры")
     for name in names[1:]:
         doc.layers.add(name, color=rng.randrange(1, 8))
+    doc.header["$LTSCALE"] = 4.0 * abs(way.turn)  # strokes of 3.2 and 1.3 units become 13 and 5 mm
     for name in ("Continuous", *PATTERNS.values()) if way.looks else ():
         for suffix, weight in (("wide", 70), ("thin", 25)):
             doc.layers.add(f"{name}-{suffix}", linetype=name, lineweight=weight)

@@ -1,6 +1,7 @@
 """Types and widths of lines in CAD drawings: right ones pass however they are made, wrong ones are told by views."""
 
 import random
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -89,6 +90,16 @@ def test_a_drawing_without_types_and_widths_gets_one_remark_of_each(tmp_path):
     assert (look.view, look.what) == (None, "drawn continuous, as everything in the drawing")
     assert {e.number for e in CENTRE} <= set(look.elements)
     assert [n for n in found.notes if "no line has a width of its own" in n] == list(found.outcome.notes)
+
+
+def test_a_scale_of_line_types_that_was_not_set_gets_a_remark(tmp_path):
+    path = tmp_path / "student.dxf"
+    data = draw(list(EXACT), Way(looks=True), random.Random(1))
+    path.write_bytes(re.sub(rb"(\$LTSCALE\s+40\s+)4\.0", rb"\g<1>0.2", data))
+    found = cad.examine(PROJECT, 1, path, None, 0.25)
+    assert found.outcome.looks == ()
+    (note,) = found.notes
+    assert note == "dash-dot lines have strokes of 0.635 mm: GOST 2.303 asks for 5 to 30 mm (scale of line types, LTSCALE)"
 
 
 def test_main_lines_that_are_not_wider_get_one_remark(tmp_path):

@@ -156,6 +156,8 @@ class _Reader:
         self.hidden = {"defpoints"}
         self.frozen: set[str] = set()
         self.patterns = {line.dxf.name.lower(): _pattern(line) for line in document.linetypes}
+        scale = float(document.header.get("$LTSCALE", 1.0))
+        self.dashes = {line.dxf.name.lower(): scale * max(_dashes(line), default=0.0) for line in document.linetypes}
         self.layers: dict[str, _Look] = {}
         for layer in document.layers:
             name = layer.dxf.name
@@ -200,7 +202,8 @@ class _Reader:
             entities.append(Entity(outer.dxftype(), words(look.layer, self.document.encoding),
                                    str(outer.dxf.get("handle", "") or "?"),
                                    self.patterns.get(look.linetype, "continuous"),
-                                   look.weight / 100 if look.weight >= 0 else None, _breadth(e, kind)))
+                                   look.weight / 100 if look.weight >= 0 else None, _breadth(e, kind),
+                                   self.dashes.get(look.linetype, 0.0) * float(e.dxf.get("ltscale", 1.0))))
             n = len(entities) - 1
             try:
                 if kind in ("TEXT", "ATTRIB"):
@@ -438,7 +441,12 @@ def _pattern(line: Any) -> Pattern:
     """Class of a line type of the file."""
     if line.pattern_tags.is_complex_type():
         return "other"
-    return of_dashes([float(tag.value) for tag in line.pattern_tags.tags if tag.code == 49])
+    return of_dashes(_dashes(line))
+
+
+def _dashes(line: Any) -> list[float]:
+    """Strokes (positive) and gaps (negative) of a line type."""
+    return [float(tag.value) for tag in line.pattern_tags.tags if tag.code == 49]
 
 
 def _shown(paper: Space, model: Space, turn: complex, shift: complex, low: complex, high: complex) -> Space:

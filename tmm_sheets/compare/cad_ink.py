@@ -17,7 +17,8 @@ class Entity(NamedTuple):
     dimension) and its handle; the layer is that of the innermost.
 
     ``pattern`` is the class of its line type, ``weight`` its line weight, mm, None when it is the program's default; ``broad``
-    the width of a broad polyline, drawing units. Those of layers and blocks are resolved.
+    the width of a broad polyline and ``dash`` the length of the long strokes of its line type, drawing units. Those of layers and
+    blocks are resolved.
     """
 
     kind: str
@@ -26,6 +27,7 @@ class Entity(NamedTuple):
     pattern: Pattern = "continuous"
     weight: float | None = None
     broad: float = 0.0
+    dash: float = 0.0
 
     @property
     def width(self) -> float | None:
@@ -101,8 +103,8 @@ _PLAIN = str.maketrans({
 
 
 def resized(entities: tuple[Entity, ...], by: float) -> tuple[Entity, ...]:
-    """The entities of a drawing that is scaled: broad polylines grow with it, line weights do not."""
-    return tuple(e._replace(broad=by * e.broad) if e.broad else e for e in entities)
+    """The entities of a drawing that is scaled: broad polylines and dashes grow with it, line weights do not."""
+    return tuple(e._replace(broad=by * e.broad, dash=by * e.dash) if e.broad or e.dash else e for e in entities)
 
 
 def normal(text: str) -> str:

@@ -7,7 +7,8 @@ with that of the drawing's own main lines, s: thin ones may have s/3 .. s/2; whe
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +29,11 @@ NOT_THIN, NOT_MAIN = 2 / 3, 0.6
 """Shares of the width of main lines above which a thin line is too wide, and below which a main line is too thin."""
 TOLD_APART = 1.3
 """Main lines that are not so many times as wide as thin ones are not told apart from them."""
+DASHES: Mapping[str, tuple[float, float]] = MappingProxyType({"dashed": (2.0, 8.0), "dash-dot": (5.0, 30.0),
+                                                              "dash-two-dots": (5.0, 30.0)})
+"""Lengths of the long strokes by GOST 2.303, mm."""
+OUTSIDE = 1.6
+"""So many times shorter or longer they are told: the scale of line types was not set."""
 DEFAULT_WIDTH = 0.25
 """What programs take for a line without a width, mm."""
 MOST = 0.7
@@ -88,6 +94,7 @@ def looks(state: Comparison) -> tuple[tuple[Look, ...], tuple[str, ...]]:
         for (view, style), of_style in widths.items():
             said = _said(style, [w for _, w in of_style], s)
             made.append(_look(state, ink, view, style, said, [n for n, _ in of_style]))
+    notes += _dashes(state, ink)
     made += [_look(state, ink, view, style, what, found) for (view, style, what), found in wrong.items()]
     made.sort(key=lambda x: (-1 if x.view is None else x.view.n, x.lines))
     return tuple(made), tuple(notes)
@@ -184,6 +191,17 @@ def _typical(state: Comparison, ink: Mapping[int, list[Ink]], styles: set[str]) 
     found.sort()
     along = np.cumsum([size for _, size in found])
     return found[int(np.searchsorted(along, along[-1] / 2))][0]
+
+
+def _dashes(state: Comparison, ink: Mapping[int, list[Ink]]) -> Iterator[str]:
+    """Remarks on long strokes that are much too short or too long; strokes drawn one by one show in the comparison itself."""
+    entities = {row.entity for rows in ink.values() for row in rows}
+    for pattern, (least, most) in DASHES.items():
+        sizes = [state.space.entities[k].dash for k in entities if state.space.entities[k].pattern == pattern]
+        size = float(np.median(sizes)) if sizes else least
+        if not least / OUTSIDE <= size <= most * OUTSIDE:
+            yield (f"{pattern} lines have strokes of {size:.3g} mm: GOST 2.303 asks for {least:g} to {most:g} mm (scale of line "
+                   "types, LTSCALE)")
 
 
 def _wide(e: Entity) -> float:
