@@ -118,3 +118,19 @@ def test_missing_and_displaced_lines_and_ink_too_much():
     (one,) = extra
     assert one.middle == pytest.approx(415 + 210j, abs=1.0)
     assert (one.width, one.height) == pytest.approx((30, 20), abs=1.5)
+
+
+def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
+    known = [line(1, 240 + 300j, CORNER, "thin")]
+    for over, verdict in ((2.0, "green"), (4.0, "amber"), (5.8, "amber")):
+        found, _ = traced(known, [(240 + 300j, CORNER + over, "thin")])
+        assert judge(found[0], 0.25, 0.15).verdict == verdict
+        assert judge(found[0], 0.25, 0.15, soft=True).verdict == "green"
+
+
+def test_a_soft_picture_has_a_wider_tolerance():
+    known = [line(1, 240 + 300j, CORNER)]
+    found, _ = traced(known, [(240 + 300.5j, CORNER + 0.5j, "main")])
+    assert found[0].deviation == pytest.approx(0.5, abs=0.05)
+    assert judge(found[0], 0.25, 0.15).verdict == "amber"
+    assert judge(found[0], 0.25, 0.15, soft=True).verdict == "green"

@@ -65,7 +65,7 @@ def position_errors(m, shot):
 
 def judged(found, known, pencil=0.25):
     traces, extra = tracing.trace(known, found.ink)
-    return [judge(t, pencil, found.uncertainty) for t in traces], extra
+    return [judge(t, pencil, found.uncertainty, found.soft) for t in traces], extra
 
 
 def near(z, extra, room=4.0):

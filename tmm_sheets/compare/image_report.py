@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_sheets.compare import overlay
 from tmm_sheets.compare.elements import Element, dashed
-from tmm_sheets.compare.judging import Finding, judge
+from tmm_sheets.compare.judging import SOFT_TOLERANCE, Finding, judge
 from tmm_sheets.compare.rectification import Rectified
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.traces import Extra, Trace
@@ -26,7 +26,7 @@ def image_report(
     notes: tuple[str, ...],
 ) -> Report:
     """The table, the tree and the overlays of sheet ``n`` of the project ``name`` compared with the picture at ``path``."""
-    findings = [judge(t, pencil, found.uncertainty) for t in traces]
+    findings = [judge(t, pencil, found.uncertainty, found.soft) for t in traces]
     bad = [f for f in findings if f.verdict != "green"]
     order = {"red": 0, "amber": 1, "green": 2}
     bad.sort(key=lambda f: (order[f.verdict], -f.share))
@@ -34,12 +34,14 @@ def image_report(
     lines = [f for f in findings if f.trace.status in ("measured", "missing", "shared") and not f.unknown]
     count = {v: sum(f.verdict == v for f in lines) for v in ("green", "amber", "red")}
     dense, hidden = sum(f.unknown for f in findings), sum(f.hidden_ends for f in findings)
+    soft = SOFT_TOLERANCE if found.soft else 0.0
     out = [
         f"Sheet {n} of {name}, {path.name}: {sum(count.values())} elements judged, {count['green']} within a pencil's reach, "
         f"{count['amber']} up to twice that, {count['red']} beyond",
         f"{dense} elements are too near to others to be measured; {hidden} ends of main lines and vectors lie under others and are "
         f"judged only as far as they show; {len(extra)} places with ink that is not on the sheet",
-        f"Tolerance {pencil + found.uncertainty:.2f} mm: pencil {pencil:.2f}, rectification {found.uncertainty:.2f}",
+        f"Tolerance {pencil + found.uncertainty + soft:.2f} mm: pencil {pencil:.2f}, rectification {found.uncertainty:.2f}"
+        + (f", a picture that is not sharp {soft:.2f}; ends of thin lines are not judged" if soft else ""),
     ]
     rows = [(str(k), f.verdict, f"{f.off:.1f}" if f.off else "", _called(f.trace.element), f.trace.element.view.name, f.said)
             for k, f in enumerate(bad, 1)]  # fmt: skip
@@ -62,7 +64,7 @@ def image_report(
     }
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
-        "tolerance": round(pencil + found.uncertainty, 3),
+        "tolerance": round(pencil + found.uncertainty + soft, 3),
         "count": {**count, "dense": dense, "hidden_ends": hidden, "measured": len(measured)},
         "elements": [_row(f) for f in findings if f.trace.status in ("measured", "shared", "missing", "dense", "absent lettering")],
         "extra": [{"x": round(x.middle.real, 1), "y": round(x.middle.imag, 1), "width": round(float(x.width), 1),

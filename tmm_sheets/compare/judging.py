@@ -13,6 +13,7 @@ from tmm_sheets.compare.traces import Trace, open_line
 LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
 """Lines whose ends mean nothing exact: by hand they are drawn over."""
 LOOSE = 2.5  # mm by which those may be too long or too short
+SOFT_TOLERANCE = 0.15  # mm more in a picture that is not sharp
 
 
 @dataclass(frozen=True)
@@ -44,9 +45,20 @@ class Finding:
         return sum(map(isnan, t.ends)) if exact else 0
 
 
-def judge(t: Trace, pencil: float, uncertainty: float) -> Finding:
-    """What a trace tells, in words, and how bad it is."""
-    e, tolerance = t.element, pencil + uncertainty
+def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Finding:
+    """What a trace tells, in words, and how bad it is.
+
+    Parameters
+    ----------
+    t
+        What was found.
+    pencil, uncertainty
+        Error of a point drawn by hand and of a place of the picture, mm.
+    soft
+        Whether the picture is not sharp: the tolerance is wider, and nothing is said of ends of thin lines, which fade in it where
+        others are near.
+    """
+    e, tolerance = t.element, pencil + uncertainty + (SOFT_TOLERANCE if soft else 0.0)
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "missing":
         return Finding(t, "red", "missing", e.length, tolerance, middle)
@@ -65,13 +77,14 @@ def judge(t: Trace, pencil: float, uncertainty: float) -> Finding:
     worst = t.deviation / tolerance
     loose = e.style in LOOSE_STYLES
     for end, which, at in ((t.ends[0], "beginning", e.points[0]), (t.ends[1], "end", e.points[-1])):
-        if not np.isfinite(end):
+        if not np.isfinite(end) or (loose and soft):
             continue
-        allowed = LOOSE if loose else 2 * pencil + uncertainty + 0.2  # 0.2 mm: the steps in which ends are seen
+        allowed = LOOSE if loose else tolerance + pencil + 0.2  # 0.2 mm: the steps in which ends are seen
         if abs(end) > allowed:
             said.append(f"{abs(end):.1f} mm too {'long' if end > 0 else 'short'} at its {which}")
-        if abs(end) / allowed > worst:
-            worst, off, limit, place = abs(end) / allowed, abs(end), allowed, complex(at)
+        much = min(abs(end), 2 * LOOSE) if loose else abs(end)  # a thin line drawn over is never more than a remark
+        if much / allowed > worst:
+            worst, off, limit, place = much / allowed, much, allowed, complex(at)
     return Finding(t, verdict(off, limit), "; ".join(said) or "within a pencil's reach", off, limit, place)
 
 

@@ -47,7 +47,7 @@ class Rectified:
     ``sides`` the frame's points.
 
     ``match`` is the share of the known lines that were found in place, ``uncertainty`` the error of a place, mm, ``scale`` pixels
-    of the picture per mm.
+    of the picture per mm, ``soft`` that it is not sharp.
     """
 
     ink: Any
@@ -58,6 +58,7 @@ class Rectified:
     uncertainty: float
     scale: float
     notes: tuple[str, ...]
+    soft: bool = False
 
 
 def frame_lines(known: Sequence[Element]) -> Lines:
@@ -103,7 +104,7 @@ def rectify(
         m = better
     ink = straighten(picture.grey, m)
     uncertainty = hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter)
-    return Rectified(ink, m, sides, noise_level(ink), match, uncertainty, scale, tuple(notes))
+    return Rectified(ink, m, sides, noise_level(ink), match, uncertainty, scale, tuple(notes), smear > SOFT)
 
 
 def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
