@@ -27,13 +27,14 @@ def paper():
 
 def draw(ink, a, b, style="main", dark=180):
     """A line with round ends, its edges as smooth as a camera makes them."""
-    x = np.array([a, b])
-    q = np.round(16 * np.column_stack((x.real * SCALE - 0.5, (594 - x.imag) * SCALE - 0.5))).astype(np.int32)
-    one = np.zeros_like(ink)
-    cv2.polylines(one, [q], False, dark, max(round(line_type(style).width * SCALE), 1), cv2.LINE_AA, 4)
-    low, high = np.maximum(q.min(0) // 16 - 20, 0), q.max(0) // 16 + 20
-    here = (slice(low[1], high[1]), slice(low[0], high[0]))
-    ink[here] = np.maximum(ink[here], cv2.GaussianBlur(one[here], (0, 0), 1.2))
+    margin = 3.0
+    x0, x1 = (round((t + s * margin) * SCALE) for t, s in ((min(a.real, b.real), -1), (max(a.real, b.real), 1)))
+    y0, y1 = (round((594 - t + s * margin) * SCALE) for t, s in ((max(a.imag, b.imag), -1), (min(a.imag, b.imag), 1)))
+    z = (np.arange(x0, x1) + 0.5) / SCALE + 1j * (594 - (np.arange(y0, y1)[:, None] + 0.5) / SCALE)
+    t = np.clip(((z - a) * np.conj(b - a)).real / abs(b - a) ** 2, 0, 1)
+    share = np.clip((0.5 * line_type(style).width - np.abs(z - a - t * (b - a))) * SCALE + 0.5, 0, 1)
+    here = (slice(y0, y1), slice(x0, x1))
+    ink[here] = np.maximum(ink[here], cv2.GaussianBlur((dark * share).astype(np.uint8), (0, 0), 1.2))
 
 
 def traced(known, drawn):
