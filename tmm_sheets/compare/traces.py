@@ -23,6 +23,8 @@ def open_line(e: Element) -> bool:
 class Trace:
     """What was found of an element.
 
+    ``status`` is "measured" by itself, "shared": with others in one stroke, "missing", "dense": ink that cannot be told from
+    others', "lettering" or "absent lettering", "small": not looked at.
     ``shift`` is that of its middle, mm; ``turn`` rad; ``growth`` mm at the radius or half length; ``deviation`` the largest
     distance between where its line is and ought to be, mm; ``ends`` how far the line runs beyond its beginning and end (negative:
     it stops short; nan: cannot be told), mm; ``covered`` the share of it that has ink; ``at`` its line as it was found.
@@ -37,12 +39,6 @@ class Trace:
     ends: tuple[float, float] = (np.nan, np.nan)
     covered: float = 0.0
     at: Points | None = None
-
-    @property
-    def lengthened(self) -> float:
-        """How much too long its line is, mm; 0 when that cannot be told."""
-        known = [e for e in self.ends if np.isfinite(e)]
-        return float(sum(known))
 
 
 class Extra(NamedTuple):

@@ -2,8 +2,9 @@
 
 First each element is looked for at its own place, no farther than half way to the next line that is known to be there. What is
 found is wiped out of the picture, with a pencil's width to spare, lettering and heads of arrows too. Whatever has not been found
-is sought in the ink that is left, up to :data:`FAR` millimetres away, turned or of another size. Ink that is left after that
-belongs to nothing.
+is sought in the ink that is left, some millimetres away, turned or of another size (``displaced``). Ink that is left after that
+belongs to nothing (``extra_ink``). Lines that lie in one stroke are measured together: what cannot be told apart by the eye is not
+told apart here.
 
 An element's displacement is a similarity: two shifts, a turn and a growth, of which only what shows along its normals is
 determined (a straight line has no shift along itself and no growth; its length is measured at its ends).
