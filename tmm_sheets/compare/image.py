@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 LONGEST = 2500.0
 """Lines longer than this, mm, do not correct the sheet: they are curves back and forth."""
-PLACED = 0.2
+PLACED = 0.25
 """Error of a place after the rectification by lines of views that were placed, mm."""
 CERTAIN = 0.12
 """By how much another sheet must do better for a picture to be called a picture of it."""
