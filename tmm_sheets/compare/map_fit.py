@@ -12,7 +12,8 @@ from tmm_sheets.drawing.marks import Points
 
 USUAL = 0.005  # mm by which all points may be off rather than something be as unusual as this:
 LENS = np.array([0.05, 0.03])  # coefficients of distortion,
-HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0}  # mm of the paper's height in a term of so high a degree,
+HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4}  # mm of the paper's height in a term of so high a degree,
+STEPS = 12
 SIDE = 3.0  # mm beyond which points of the frame count little: they are seldom wrong
 FOOT = 400.0  # mm from the middle of the sheet to the camera's foot
 
@@ -55,7 +56,7 @@ def bent(m: Map, sides: Seen, other: Seen | None = None, degree: int = 0, loose:
 
 
 def _fitted(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
-    """Homography, lens and height by Gauss and Newton's steps with Geman and McClure's weights."""
+    """Homography, lens and height by Levenberg and Marquardt's steps with Geman and McClure's weights."""
     z, active = heights(seen.sheet), degree >= DEGREE
     first = np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend))
     size = np.append(np.maximum(np.abs(first[:8]), 1e-2), (0.05, 0.05)) * 1e-4
@@ -67,14 +68,23 @@ def _fitted(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
     n = np.conj(seen.normals)
 
     def base(x: Floats) -> Floats:
-        return np.real(n * replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(x[8], x[9])).to_base(seen.picture))
+        at = replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(x[8], x[9])).to_base(seen.picture)
+        return np.asarray(np.real(n * at))
 
-    for _ in range(12):
-        here, foot, height = base(x), complex(*x[-2:]), np.einsum("nk,k->n", z[:, active], x[10:-2])
-        r = here - np.real(n * (seen.sheet + height * (seen.sheet - foot) / AWAY))
+    def residual(x: Floats) -> tuple[Floats, Floats, Floats]:
+        here, height = base(x), np.einsum("nk,k->n", z[:, active], x[10:-2])
+        return here, height, here - np.real(n * (seen.sheet + height * (seen.sheet - complex(*x[-2:])) / AWAY))
+
+    def cost(x: Floats, r: Floats, far: float | Floats) -> float:
+        return float((seen.weight**2 * r**2 / (1 + (r / far) ** 2)).sum() + ((prior * (x - middle)) ** 2).sum())
+
+    here, height, r = residual(x)
+    damping = 1e-9
+    for _ in range(STEPS):
+        away = seen.sheet - complex(*x[-2:])
         jacobian = np.hstack((
             np.stack([(base(x[:10] + e) - here) / s for e, s in zip(np.diag(size), size, strict=True)], -1),
-            -np.real(n * (seen.sheet - foot))[:, None] * z[:, active] / AWAY,
+            -np.real(n * away)[:, None] * z[:, active] / AWAY,
             np.stack((n.real * height, -n.imag * height), -1) / AWAY,
         ))  # fmt: skip
         far = 3 * max(1.4826 * float(np.median(np.abs(r[seen.weight > 0]))), 0.1) if loose is None else loose
@@ -84,8 +94,17 @@ def _fitted(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
         norm = np.maximum(np.linalg.norm(a, axis=0), 1e-12)
         a /= norm
         # einsum: for so small a product the threads of a matrix library cost more than they bring.
-        change = np.linalg.solve(np.einsum("ni,nj->ij", a, a) + 1e-12 * np.eye(len(x)), np.einsum("ni,n->i", a, b)) / norm
-        x = x + change
+        square, down = np.einsum("ni,nj->ij", a, a), np.einsum("ni,n->i", a, b)
+        before = cost(x, r, far)
+        while damping < 10:
+            change = np.linalg.solve(square + damping * np.eye(len(x)), down) / norm
+            here, height, r = residual(x + change)
+            if cost(x + change, r, far) < before:
+                break
+            damping *= 30
+        else:
+            break
+        x, damping = x + change, max(damping / 30, 1e-9)
         if np.abs(change[:10] / size).max() < 1e-1:
             break
     relief = np.zeros(len(DEGREE))

@@ -3,7 +3,7 @@
 The frame is found (``frame_search``), its sides give the map of the sheet (``frame_fit``), and the lines of the drawing and of the
 title block correct it all at once (``map_fit``): homography, lens and a field of heights of the paper, a polynomial of degree
 :data:`~tmm_sheets.compare.sheet_map.RELIEF`. It cannot follow a single view, least of all a single line: with several hundred lines
-and some twenty numbers one wrong line moves it by hundredths of a millimetre (Geman and McClure's weights leave it out altogether).
+and some forty numbers one wrong line moves it by hundredths of a millimetre (Geman and McClure's weights leave it out altogether).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ RECTIFIED = 0.15
 """Error of a place after rectification, mm: some 95 % of the places of simulated photographs are within it."""
 TURNS = {1: "a quarter turn clockwise", 2: "a half turn", 3: "a quarter turn counter-clockwise"}
 COARSE = 4.0  # pixels per mm, enough to correct by
-COARSE_TO_FINE = ((3.5, 2, 1.0), (2.5, 3, 0.7), (1.6, RELIEF, 0.4), (1.0, RELIEF, 0.25), (0.8, RELIEF, 0.2))
+COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2))
 """Reach to either side of a line, degree of the paper's height, and what counts as far off, mm."""
 NODE = 6.0  # mm between the points at which the map is calculated
 

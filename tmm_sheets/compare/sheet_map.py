@@ -21,7 +21,7 @@ FRAME = Box(20.0, 5.0, 836.0, 589.0)
 CORNERS = np.array([20 + 5j, 836 + 5j, 836 + 589j, 20 + 589j])
 """Of the frame, from the lower left one counter-clockwise."""
 SIDE_TERMS = 7  # of the polynomial of a side's bending
-RELIEF = 4  # degree of the polynomial of the paper's height
+RELIEF = 6  # degree of the polynomial of the paper's height
 TERMS = tuple((i, n - i) for n in range(2, RELIEF + 1) for i in range(n, -1, -1))
 DEGREE = np.array([i + j for i, j in TERMS])
 AWAY = 1000.0  # mm from the paper to the camera; what is wrong in this shows in the heights alone

@@ -1,0 +1,92 @@
+"""The map of a photographed sheet: the fit against a simulated camera's own formulas, the search for the frame's sides."""
+
+from itertools import pairwise
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.compare.simulation import Camera, projection
+from tmm_sheets.compare import frame_search
+from tmm_sheets.compare.frame_fit import rough
+from tmm_sheets.compare.map_fit import Seen, bent
+from tmm_sheets.compare.sheet_map import CORNERS, FRAME, heights
+
+GRID = (np.linspace(20, 836, 18)[None, :] + 1j * np.linspace(5, 589, 13)[:, None]).ravel()
+
+
+def sides(place):
+    """Where a camera sees the frame: 120 points a side."""
+    t = np.linspace(0, 1, 120)
+    p = np.concatenate([a + t * (b - a) for a, b in pairwise([*CORNERS, CORNERS[0]])])
+    upright = (p.real == FRAME.x0) | (p.real == FRAME.x1)
+    upright[[0, 119, 240, 359]] = False  # ends of bottom and top are corners too
+    normals = np.where(upright, 1.0 + 0j, 1j)
+    return Seen(place(p), p, normals, np.ones(len(p)))
+
+
+def lines(place, rng, n=150):
+    """Where it sees level and upright lines all over the sheet, 40 mm long."""
+    a = rng.uniform(30, 780, n) + 1j * rng.uniform(15, 540, n)
+    u = np.where(rng.random(n) < 0.5, 1, 1j)
+    p = (a[:, None] + u[:, None] * np.linspace(0, 40, 20)).ravel()
+    return Seen(place(p), p, np.repeat(1j * u, 20), np.ones(len(p)))
+
+
+@pytest.mark.parametrize(
+    ("camera", "worst"),
+    [
+        (Camera(curl=0.0, k1=0.0, tilt=0.2), 0.01),
+        (Camera(curl=0.0, k1=-0.05, k2=0.008, tilt=0.1, azimuth=2.0), 0.05),
+        (Camera(curl=4.0, fold=0.3, k1=-0.03, tilt=0.15), 0.4),
+        (Camera(curl=6.0, fold=1.2, waves=(1.0, -0.4, 0.1), tilt=0.25, azimuth=4.0, distance=950.0), 0.4),
+    ],
+)
+def test_map_follows_lens_and_curled_paper(camera, worst):
+    place, (columns, rows) = projection(camera, 841.0, 594.0)
+    frame = sides(place)
+    m = rough(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    seen = lines(place, np.random.default_rng(1))
+    for degree in (2, 4, 6):
+        m, scatter = bent(m, frame, seen, degree, 0.5)
+    error = np.abs(m.to_sheet(place(GRID)) - GRID)
+    assert error.max() < worst
+    assert np.median(error) < 0.4 * worst
+    assert scatter <= 0.03
+    assert np.abs(m.to_picture(m.to_sheet(place(GRID))) - place(GRID)).max() < 0.01
+
+
+def test_one_wrong_line_does_not_draw_the_map():
+    place, (columns, rows) = projection(Camera(curl=3.0), 841.0, 594.0)
+    frame, seen = sides(place), lines(place, np.random.default_rng(2))
+    m = rough(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    true = bent(m, frame, seen, 6, 0.25)[0]
+    off = seen.sheet.copy()
+    off[:20] += 3 * seen.normals[:20]
+    wrong = bent(m, frame, seen._replace(sheet=off), 6, 0.25)[0]
+    assert np.abs(true.to_picture(GRID) - wrong.to_picture(GRID)).max() < 0.1  # pixels, of which a millimetre has four
+
+
+def test_heights_have_no_planes():
+    # A plane is the homography's: the terms of the height must not be able to make one.
+    z = heights(GRID)
+    plane = np.stack((np.ones(len(GRID)), GRID.real, GRID.imag), -1)
+    basis = np.linalg.qr(plane)[0]
+    left = z - basis @ (basis.T @ z)
+    assert np.linalg.matrix_rank(left) == z.shape[1]
+
+
+def test_side_without_ink_is_sought_nearby():
+    ink = np.zeros((700, 1000), np.uint8)
+    true = np.array([100 + 600j, 900 + 590j, 890 + 90j, 120 + 110j])
+    for a, b in pairwise([*true, true[0]]):
+        cv2.line(ink, (round(a.real), round(a.imag)), (round(b.real), round(b.imag)), 90, 2)
+    corners = true.copy()
+    corners[[0, 3]] -= (30, 22)  # the left side runs where nothing is
+    guess = frame_search.Guess(corners, np.zeros((4, 240)), 5.0)
+    assert frame_search._inked(ink, frame_search._sides(ink, guess)[0][3], 20) < 0.1
+    found = frame_search._sought(ink, guess, 3)
+    assert np.abs(found - true).max() < 3
+    sides_, met = frame_search._sides(ink, guess._replace(corners=found))
+    assert min(frame_search._inked(ink, side, 20) for side in sides_) > 0.95
+    assert np.abs(met - true).max() < 1.5
