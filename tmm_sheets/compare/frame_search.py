@@ -293,19 +293,20 @@ def _better(best: Found | None, ink: Any, guess: Guess, block: Lines, level: flo
 
 
 def _inwards(found: Found, ink: Any, level: float) -> Guess | None:
-    """Where the frame is if some of the sides found are the paper's edge: then a line runs all along inside them."""
+    """Where the frame is if sides found are the paper's edge, or run over to it: then a line runs all along inside them."""
     m = rough(found.corners, found.sides, ink.shape)
-    t = np.linspace(0.03, 0.97, STATIONS)[:, None]
-    edges = []
+    t = np.linspace(0.03, 0.97, STATIONS)
+    seen = CORNERS.copy()
     for k, (a, b) in enumerate(pairwise([*CORNERS.tolist(), CORNERS[0]])):
         u = (b - a) / abs(b - a)
-        inside = 1j * u * ((20.0 if k == 3 else 5.0) + np.linspace(-1.5, 1.5, 7))
-        edges.append(float((sample(ink, m.to_picture(a + t * (b - a) + inside)) > level).any(1).mean()) > ALONG)
-    if not any(edges):
+        margin = 20.0 if k == 3 else 5.0
+        for first, last in ((1, 1), (1, 0), (0, 1)):
+            inside = margin * (first + (last - first) * t[:, None]) + np.linspace(-1.5, 1.5, 7)
+            if (sample(ink, m.to_picture(a + t[:, None] * (b - a) + 1j * u * inside)) > level).any(1).mean() > ALONG:
+                seen[[k, (k + 1) % 4]] -= 1j * u * margin * np.array([first, last])
+                break
+    if (seen == CORNERS).all():
         return None
-    outer = [PAPER if edge else FRAME for edge in edges]  # bottom, right, top, left
-    x0, x1, y0, y1 = outer[3].x0, outer[1].x1, outer[0].y0, outer[2].y1
-    seen = np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)])
     chords = zip(found.sides, found.corners, np.roll(found.corners, -1), strict=True)
     return Guess(projected(homography(seen, found.corners), CORNERS), np.stack([_bend(s, a, b) for s, a, b in chords]), 6.0, (0,))
 
