@@ -27,6 +27,7 @@ LONGEST = 2500.0
 """Lines longer than this, mm, do not correct the sheet: they are curves back and forth."""
 PLACED = 0.25
 """Error of a place after the rectification by lines of views that were placed, mm."""
+HIGHEST = 4  # degree of the paper's height that views placed by hand can tell
 CERTAIN = 0.12
 """By how much another sheet must do better for a picture to be called a picture of it."""
 
@@ -89,7 +90,7 @@ def compare(
 def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> Rectified:
     """The sheet corrected by its lines once more, when it is known where they stand."""
     lines = as_lines([e for e in known if e.length < LONGEST])
-    better, _, match = rectification.refine(found.map, found.sides, found.ink, lines, line_level(found.ink))
+    better, _, match = rectification.refine(found.map, found.sides, found.ink, lines, line_level(found.ink), highest=HIGHEST)
     if match < MATCH:
         return found
     ink = rectification.straighten(picture.grey, better)

@@ -69,7 +69,8 @@ def frame_lines(known: Sequence[Element]) -> Lines:
 def rectify(
     picture: Picture, known: Sequence[Element], path: Path, say: Callable[[str], None] = lambda _: None, by_lines: bool = True,
 ) -> Rectified:
-    """Bring a photographed sheet to millimetres; ``by_lines``: the drawing's lines correct what the frame has left.
+    """Bring a photographed sheet to millimetres; ``by_lines``: all lines of the drawing are where they belong and
+    correct what the frame has left, not the title block's alone.
 
     Raises
     ------
@@ -99,8 +100,8 @@ def rectify(
     say("correcting by the drawing's lines")
     lines = as_lines([e for e in known if e.length < 2500 and (by_lines or e.of == "title block")])
     ink = straighten(picture.grey, m, COARSE)
-    better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE)
-    if by_lines and match >= MATCH:
+    better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE, RELIEF if by_lines else 2)
+    if match >= MATCH:
         m = better
     ink = straighten(picture.grey, m)
     uncertainty = hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter)
@@ -141,8 +142,10 @@ def _weights(at: Floats, nodes: Floats) -> Any:
     return out
 
 
-def refine(m: Map, sides: Seen, ink: Any, lines: Lines, level: float, scale: float = SCALE) -> tuple[Map, float, float]:
-    """The map corrected by the lines of the drawing, seen in the picture ``ink`` straightened by ``m``.
+def refine(
+    m: Map, sides: Seen, ink: Any, lines: Lines, level: float, scale: float = SCALE, highest: int = RELIEF,
+) -> tuple[Map, float, float]:
+    """The map corrected by lines seen in the picture ``ink`` straightened by ``m``, with heights up to degree ``highest``.
 
     Returns
     -------
@@ -162,5 +165,5 @@ def refine(m: Map, sides: Seen, ink: Any, lines: Lines, level: float, scale: flo
             break
         scatter = 1.4826 * float(np.median(np.abs(o[use])))
         seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
-        better = bent(better, sides, seen, degree, loose)[0]
+        better = bent(better, sides, seen, min(degree, highest), loose)[0]
     return better, scatter, hit
