@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from math import hypot, sqrt
 from pathlib import Path
@@ -60,11 +61,12 @@ def compare(
     if not 1 <= n <= count:
         raise BadInput(f"{project.variant.project.name} has {count} sheets; there is no sheet {n}",
                        hint=f"--sheet 1 to --sheet {count}")  # fmt: skip
-    say("reading the picture")
-    picture = read(path)
-    say("composing the sheet")
-    sheet = composed(project, n)
-    known = elements(sheet)
+    say("reading the picture and composing the sheet")
+    with ThreadPoolExecutor(1) as aside:  # decoding runs beside Python
+        reading = aside.submit(read, path)
+        sheet = composed(project, n)
+        known = elements(sheet)
+        picture = reading.result()
     # The file first: it is quickly read, and what is wrong with it is quickly told.
     places = view_places.read(views, views_of(sheet)) if views is not None else ()
     found = rectify(picture, known, path, say, not places)

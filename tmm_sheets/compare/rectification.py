@@ -22,7 +22,7 @@ from tmm_sheets.compare.ink_levels import line_level, noise_level
 from tmm_sheets.compare.map_fit import Seen, bent
 from tmm_sheets.compare.photograph import Picture
 from tmm_sheets.compare.profiles import SCALE, Lines, darkness, peaks, profiles
-from tmm_sheets.compare.sheet_map import FRAME, PAPER, RELIEF, Floats, Map
+from tmm_sheets.compare.sheet_map import FRAME, PAPER, RELIEF, Map
 from tmm_sheets.compare.stations import as_lines
 from tmm_sheets.errors import CannotBuild
 
@@ -38,7 +38,7 @@ TURNS = {1: "a quarter turn clockwise", 2: "a half turn", 3: "a quarter turn cou
 COARSE = 4.0  # pixels per mm, enough to correct by
 COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2))
 """Reach to either side of a line, degree of the paper's height, and what counts as far off, mm."""
-NODE = 6.0  # mm between the points at which the map is calculated
+NODE = 6.0  # mm between the points at which the map is calculated; cells of an even number of pixels
 
 
 @dataclass(frozen=True)
@@ -113,33 +113,22 @@ def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
     import cv2
 
     width, height = round(PAPER.width * scale), round(PAPER.height * scale)
-    x = np.arange(-NODE, PAPER.x1 + 2 * NODE, NODE)
-    y = np.arange(-NODE, PAPER.y1 + 2 * NODE, NODE)
+    # From a node to the left of the paper and one above it on.
+    x, y = np.arange(-NODE, PAPER.x1 + 2 * NODE, NODE), np.arange(PAPER.y1 + NODE, -2 * NODE, -NODE)
     nodes = m.to_picture(x[None, :] + 1j * y[:, None])
     finest = abs(complex(nodes[len(y) // 2, len(x) // 2 + 1] - nodes[len(y) // 2, len(x) // 2])) / NODE
     if finest > 1.3 * scale:  # a fine scan: shrink it first, or its pixels are skipped
         f = scale / finest
         grey = cv2.resize(grey, None, fx=f, fy=f, interpolation=cv2.INTER_AREA)
         nodes = (nodes + 0.5 + 0.5j) * f - (0.5 + 0.5j)
-    out = np.empty((height, width), np.uint8)
-    # Linear between the nodes, as products of matrices: cv2 would round to a 32nd of the distance between nodes.
-    across = _weights((np.arange(width) + 0.5) / scale, x)
-    px, py = nodes.real.astype(np.float32) @ across.T, nodes.imag.astype(np.float32) @ across.T
-    for top in range(0, height, 512):
-        rows = np.arange(top, min(top + 512, height))
-        down = _weights(PAPER.y1 - (rows + 0.5) / scale, y)
-        out[top : top + len(rows)] = cv2.remap(grey, down @ px, down @ py, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    return darkness(out, 5 * scale)
-
-
-def _weights(at: Floats, nodes: Floats) -> Any:
-    """Matrix that interpolates values at evenly spaced nodes linearly."""
-    k = np.clip(((at - nodes[0]) / NODE).astype(int), 0, len(nodes) - 2)
-    t = (at - nodes[k]) / NODE
-    out = np.zeros((len(at), len(nodes)), np.float32)
-    out[np.arange(len(at)), k] = 1 - t
-    out[np.arange(len(at)), k + 1] = t
-    return out
+    # Linear between the nodes; the first of them is the middle of a cell, and so half a cell more is cut off.
+    cell = round(NODE * scale)
+    first = cell * 3 // 2
+    across, down = (
+        cv2.resize(part.astype(np.float32), None, fx=cell, fy=cell, interpolation=cv2.INTER_LINEAR)[first:, first:][:height, :width]
+        for part in (nodes.real, nodes.imag)
+    )
+    return darkness(cv2.remap(grey, across, down, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE), 5 * scale)
 
 
 def refine(
