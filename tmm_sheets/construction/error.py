@@ -63,7 +63,6 @@ class _Known:
     jacobian: Matrices
     scaled: Matrices
     covariance: Matrices
-    condition: Floats
     linear: npt.NDArray[np.bool_]
 
 
@@ -127,11 +126,6 @@ class Errors:
         u = np.stack((u.real, u.imag), axis=-1)
         along = np.sqrt(np.einsum("ni,nij,nj->n", u, k, u))
         return np.where(size > 3 * along, along, _greatest(k))
-
-    def condition(self, step: Step) -> Floats:
-        """How many times as much a crossing is off as the lines or arcs that make it: 1/sin(alpha); 1 for other steps."""
-        known = self._of(step)
-        return np.ones(1) if known is None else known.condition
 
     def linear(self, step: Step) -> npt.NDArray[np.bool_]:
         """False where the step is so near to tangency that an error to one side does not do what it does to the other."""
@@ -242,19 +236,17 @@ class Errors:
         share = 0.5 if len(drawn) + len(measured) > 1 else 1.0
         own = sum((share * (self.reading * self._mu.get(id(args[i]), mu)) ** 2 * _square(derivatives[i])
                    for i in measured if i in derivatives), np.zeros((1, 2, 2)))
-        condition = np.ones(1)
         if id(step) in self._mu and id(step) not in self._poles:
             if step.rule.gives in _DRAWN:
                 spread = np.trace(lines, axis1=1, axis2=2) / 2
                 crossing = ~(spread < 1 - 1e-9) & _all_lines([derivatives[i] for i in drawn if i in derivatives])
                 own = own + np.where(crossing[:, None, None], lines, np.eye(2)) * (self.pencil * mu) ** 2
-                condition = np.where(crossing, np.sqrt(spread), 1.0)
             elif step.rule.gives == "length" and any(isinstance(a, Step) for a in args):
                 own = own + np.diag([1.0, 0.0]) * (self.pencil * mu) ** 2
         if np.isnan(base).any():
             own = np.where(np.isnan(base)[:, None, None], np.nan, own)
         source = step.rule.gives != "direction" and id(step) not in self._poles
-        return self._joined(step, columns, own, condition, bend, source) if columns or source else None
+        return self._joined(step, columns, own, bend, source) if columns or source else None
 
     def _ends(self, step: Step, args: tuple[Any, ...], snapped: Mapping[int, Any]) -> tuple[list[int], list[int]]:
         """Numbers of the arguments that lines of this step are drawn through, and of those between which something is measured."""
@@ -270,8 +262,7 @@ class Errors:
         foreign = [i for i in points if i not in drawn and i not in snapped]
         return drawn, [] if snapped and len(foreign) == 1 else foreign
 
-    def _joined(self, step: Step, columns: list[tuple[_Known, Matrices]], own: Matrices, condition: Floats, bend: Floats,
-                source: bool) -> _Known:
+    def _joined(self, step: Step, columns: list[tuple[_Known, Matrices]], own: Matrices, bend: Floats, source: bool) -> _Known:
         """The Jacobian by all sources of the arguments and, for a ``source``, by the step itself."""
         sources, (jacobian, scaled) = _summed(columns)
         if source:
@@ -282,7 +273,7 @@ class Errors:
             jacobian, scaled = (np.concatenate((np.broadcast_to(m, (n, *m.shape[1:])), np.broadcast_to(w, (n, 2, 2))), axis=2)
                                 for m, w in ((jacobian, np.eye(2)), (scaled, _root(own))))
         covariance = _square(scaled)
-        return _Known(sources, jacobian, scaled, covariance, condition, ~(bend > _BENT / 2 * _greatest(covariance)))
+        return _Known(sources, jacobian, scaled, covariance, ~(bend > _BENT / 2 * _greatest(covariance)))
 
     def _combined(self, shares: Mapping[Step, float]) -> Matrices | None:
         """Covariance of a sum of steps, correlations included."""
