@@ -7,10 +7,15 @@ import numpy as np
 import pytest
 
 from tests.compare.simulation import Camera, projection
-from tmm_sheets.compare import frame_search
+from tmm_sheets import catalogue
+from tmm_sheets.backends import png
+from tmm_sheets.compare import frame_search, rectification
+from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.frame_fit import rough
 from tmm_sheets.compare.map_fit import Seen, bent
 from tmm_sheets.compare.sheet_map import CORNERS, FRAME, heights
+from tmm_sheets.project import Project
+from tmm_sheets.sheets.sheet import composed
 
 GRID = (np.linspace(20, 836, 18)[None, :] + 1j * np.linspace(5, 589, 13)[:, None]).ravel()
 
@@ -90,3 +95,18 @@ def test_side_without_ink_is_sought_nearby():
     sides_, met = frame_search._sides(ink, guess._replace(corners=found))
     assert min(frame_search._inked(ink, side, 20) for side in sides_) > 0.95
     assert np.abs(met - true).max() < 1.5
+
+
+@pytest.mark.parametrize("quarters", [0, 2])
+def test_corner_on_the_papers_edge_is_put_back(quarters):
+    """A print whose paper's outline is drawn too: one side of the frame used to run over to it, 5 mm at one corner."""
+    sheet = composed(Project(catalogue.read("lugansk/cam_flat")), 1)
+    scale = 150 / 25.4
+    grey = cv2.imdecode(np.frombuffer(png.render(sheet.drawing, 150), np.uint8), cv2.IMREAD_GRAYSCALE)
+    true = CORNERS.real * scale - 0.5 + 1j * ((594 - CORNERS.imag) * scale - 0.5)
+    if quarters:
+        true = grey.shape[1] - 1 - true.real + 1j * (grey.shape[0] - 1 - true.imag)
+    grey = np.ascontiguousarray(np.rot90(grey, quarters))
+    found = frame_search.find(grey, rectification.frame_lines(elements(sheet)))
+    assert found.turned == quarters
+    assert np.abs(found.corners - true).max() < scale
