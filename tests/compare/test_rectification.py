@@ -12,7 +12,7 @@ from tmm_sheets.backends import png
 from tmm_sheets.compare import frame_search, rectification
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.frame_fit import rough
-from tmm_sheets.compare.map_fit import Seen, bent
+from tmm_sheets.compare.map_fit import Seen, bent, waved
 from tmm_sheets.compare.sheet_map import CORNERS, FRAME, heights
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -110,3 +110,21 @@ def test_corner_on_the_papers_edge_is_put_back(quarters):
     found = frame_search.find(grey, rectification.frame_lines(elements(sheet)))
     assert found.turned == quarters
     assert np.abs(found.corners - true).max() < scale
+
+
+def test_waves_take_up_what_is_left_but_no_single_line():
+    place, (columns, rows) = projection(Camera(curl=6.0, fold=1.2, waves=(1.0, -0.4, 0.1), tilt=0.25, azimuth=4.0), 841.0, 594.0)
+    frame, seen = sides(place), lines(place, np.random.default_rng(3), 400)
+    m = rough(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    for degree in (2, 4, 6):
+        m = bent(m, frame, seen, degree, 0.5)[0]
+    before = np.abs(m.to_sheet(place(GRID)) - GRID)
+    finer = waved(m, seen, 0.2)
+    after = np.abs(finer.to_sheet(place(GRID)) - GRID)
+    assert np.median(after) < 0.7 * np.median(before)
+    off = seen.sheet.copy()
+    off[:20] += 0.5 * seen.normals[:20]
+    wrong = waved(m, seen._replace(sheet=off), 0.2)
+    assert np.abs(finer.correction(GRID) - wrong.correction(GRID)).max() < 0.05
+    edge = np.array([20 + 300j, 836 + 100j])
+    assert finer.waved(edge).real == pytest.approx(0, abs=1e-12)

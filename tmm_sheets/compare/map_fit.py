@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.sheet_map import AWAY, DEGREE, FRAME, Floats, Map, heights
+from tmm_sheets.compare.sheet_map import AWAY, DEGREE, FRAME, WAVES, Floats, Map, heights, waves
 from tmm_sheets.drawing.marks import Points
 
 USUAL = 0.005  # mm by which all points may be off rather than something be as unusual as this:
@@ -15,6 +15,7 @@ LENS = np.array([0.05, 0.03])  # coefficients of distortion,
 HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4}  # mm of the paper's height in a term of so high a degree,
 STEPS = 12
 SIDE = 3.0  # mm beyond which points of the frame count little: they are seldom wrong
+RIDGE = 0.01  # of a wave over the whole sheet, by what it does to all points
 FOOT = 400.0  # mm from the middle of the sheet to the camera's foot
 
 
@@ -53,6 +54,23 @@ def bent(m: Map, sides: Seen, other: Seen | None = None, degree: int = 0, loose:
         polynomials[k] = c
         left.append(sigma)
     return replace(m, sides=polynomials), float(max(left))
+
+
+def waved(m: Map, seen: Seen, loose: float) -> Map:
+    """A map with what it leaves of lines inside the frame taken up by waves, the less the shorter they are."""
+    x, y = waves(seen.sheet)
+    base = np.concatenate((x * seen.normals.real[:, None], y * seen.normals.imag[:, None]), 1)
+    plain = replace(m, waves=np.zeros_like(m.waves))
+    r = np.real(np.conj(seen.normals) * (m.to_base(seen.picture) - seen.sheet - plain.correction(seen.sheet)))
+    i, j = np.indices((WAVES, WAVES)) + 1
+    rank = np.tile(np.maximum(i, j).ravel(), 2)
+    ridge = (seen.weight > 0).sum() * (RIDGE * rank**1.5) ** 2
+    c = m.waves
+    for _ in range(8):
+        w = (seen.weight / (1 + ((r - np.einsum("nk,k->n", base, c)) / loose) ** 2)) ** 2
+        weighted = base * w[:, None]
+        c = np.linalg.solve(np.einsum("nk,nj->kj", base, weighted) + np.diag(ridge), np.einsum("nk,n->k", weighted, r))
+    return replace(m, waves=c)
 
 
 def _fitted(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:

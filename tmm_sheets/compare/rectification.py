@@ -2,8 +2,9 @@
 
 The frame is found (``frame_search``), its sides give the map of the sheet (``frame_fit``), and the lines of the drawing and of the
 title block correct it all at once (``map_fit``): homography, lens and a field of heights of the paper, a polynomial of degree
-:data:`~tmm_sheets.compare.sheet_map.RELIEF`. It cannot follow a single view, least of all a single line: with several hundred lines
-and some forty numbers one wrong line moves it by hundredths of a millimetre (Geman and McClure's weights leave it out altogether).
+:data:`~tmm_sheets.compare.sheet_map.RELIEF`; at last a few waves take up some tenths of a millimetre. None of them can follow a
+single view, least of all a single line: with several hundred lines and some seventy numbers one wrong line moves them by hundredths
+of a millimetre (Geman and McClure's weights leave it out altogether).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import numpy as np
 from tmm_sheets.compare import frame_fit, frame_search
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.ink_levels import line_level, noise_level
-from tmm_sheets.compare.map_fit import Seen, bent
+from tmm_sheets.compare.map_fit import Seen, bent, waved
 from tmm_sheets.compare.photograph import Picture
 from tmm_sheets.compare.profiles import SCALE, Lines, darkness, peaks, profiles
 from tmm_sheets.compare.sheet_map import FRAME, PAPER, RELIEF, Map
@@ -36,8 +37,8 @@ RECTIFIED = 0.15
 """Error of a place after rectification, mm: some 95 % of the places of simulated photographs are within it."""
 TURNS = {1: "a quarter turn clockwise", 2: "a half turn", 3: "a quarter turn counter-clockwise"}
 COARSE = 4.0  # pixels per mm, enough to correct by
-COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2))
-"""Reach to either side of a line, degree of the paper's height, and what counts as far off, mm."""
+COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2), (0.7, RELIEF + 1, 0.2))
+"""Reach to either side of a line, degree of the paper's height (beyond the highest: waves), and what counts as far off, mm."""
 NODE = 6.0  # mm between the points at which the map is calculated; cells of an even number of pixels
 
 
@@ -151,8 +152,9 @@ def refine(
         use = strength > level
         hit = float((use & (np.abs(o) < 0.5)).mean())
         if not use.any():
-            break
+            return better, scatter, hit
         scatter = 1.4826 * float(np.median(np.abs(o[use])))
         seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
-        better = bent(better, sides, seen, min(degree, highest), loose)[0]
+        fine = highest == RELIEF < degree
+        better = waved(better, seen, loose) if fine else bent(better, sides, seen, min(degree, highest), loose)[0]
     return better, scatter, hit

@@ -6,6 +6,7 @@ Points of pictures and of the sheet are complex numbers, pixels (rows count down
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ SIDE_TERMS = 7  # of the polynomial of a side's bending
 RELIEF = 6  # degree of the polynomial of the paper's height
 TERMS = tuple((i, n - i) for n in range(2, RELIEF + 1) for i in range(n, -1, -1))
 DEGREE = np.array([i + j for i, j in TERMS])
+WAVES = 4  # half waves of what is left, over the sheet
 AWAY = 1000.0  # mm from the paper to the camera; what is wrong in this shows in the heights alone
 
 
@@ -34,7 +36,7 @@ class Map:
     ``matrix`` takes undistorted picture coordinates (centre 0, half diagonal 1) to the sheet, ``bend`` are the coefficients of
     radius**2 and radius**4 that undistort; ``relief`` those of the paper's height (see :func:`heights`), mm, seen from above the
     point ``foot`` of the sheet; ``sides`` the polynomials of what is left of the sides' bending, carried inside between opposite
-    sides (a Coons patch).
+    sides (a Coons patch); ``waves`` what is left inside (see :func:`waves`).
     """
 
     middle: complex
@@ -44,6 +46,7 @@ class Map:
     sides: Floats = field(default_factory=lambda: np.zeros((4, SIDE_TERMS)))
     relief: Floats = field(default_factory=lambda: np.zeros(len(DEGREE)))
     foot: complex = FRAME.centre
+    waves: Floats = field(default_factory=lambda: np.zeros(2 * WAVES**2))
 
     def to_base(self, q: Points) -> Points:
         """Picture to sheet by homography and lens alone."""
@@ -77,7 +80,15 @@ class Map:
             for t, c in zip((u, v, u, v), self.sides, strict=True)
         )
         dx, dy = (1 - u) * left + u * right, (1 - v) * bottom + v * top
-        return np.asarray(dx + 1j * dy) + self.risen(p)
+        return np.asarray(dx + 1j * dy) + self.risen(p) + self.waved(p)
+
+    def waved(self, p: Points) -> Points:
+        """What the waves add."""
+        if not self.waves.any():
+            return np.zeros(np.shape(p), np.complex128)
+        x, y = waves(p)
+        half = len(self.waves) // 2
+        return np.asarray(np.einsum("...k,k->...", x, self.waves[:half]) + 1j * np.einsum("...k,k->...", y, self.waves[half:]))
 
     def risen(self, p: Points) -> Points:
         """What the paper's height adds: a point is seen height / :data:`AWAY` of its way from the foot farther from it."""
@@ -91,6 +102,16 @@ def heights(p: Points) -> Floats:
     x, y = (np.polynomial.chebyshev.chebvander(2 * t - 1, RELIEF) for t in (u, v))
     i, j = np.array(TERMS).T
     return np.asarray(x[..., i] * y[..., j])
+
+
+def waves(p: Points) -> tuple[Floats, Floats]:
+    """Products of sines and cosines, in x and in y, at points of the sheet: none crosses the side it is zero at."""
+    u = pi * np.clip((np.real(p) - FRAME.x0) / FRAME.width, 0, 1)
+    v = pi * np.clip((np.imag(p) - FRAME.y0) / FRAME.height, 0, 1)
+    k = range(WAVES)
+    sines, cosines = ([np.stack([f((i + one) * t) for i in k], -1) for t in (u, v)] for f, one in ((np.sin, 1), (np.cos, 0)))
+    x, y = sines[0][..., :, None] * cosines[1][..., None, :], cosines[0][..., :, None] * sines[1][..., None, :]
+    return x.reshape(*np.shape(p), -1), y.reshape(*np.shape(p), -1)
 
 
 def projected(matrix: Floats, p: Points) -> Points:
