@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from tmm_sheets.compare.elements import Element, sampled
 from tmm_sheets.compare.profiles import Lines
+from tmm_sheets.compare.sheet_map import PAPER
 from tmm_sheets.compare.traces import Trace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
@@ -41,8 +42,10 @@ class Stations(NamedTuple):
 
 
 def measurable(e: Element) -> bool:
-    """Whether an element is a line long enough to be measured."""
-    return e.kind in ("line", "arc", "circle", "curve") and e.length >= LEAST and not (e.kind == "circle" and e.fills)
+    """Whether an element is a line long enough to be measured. The paper's outline is none: paper ends where it is cut."""
+    if e.kind not in ("line", "arc", "circle", "curve") or e.length < LEAST or (e.kind == "circle" and e.fills):
+        return False
+    return bool(e.points.real.min() > PAPER.x0 + 1 or e.points.real.max() < PAPER.x1 - 1)
 
 
 def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 4000) -> Lines:
