@@ -61,9 +61,9 @@ def _straight_lines(ink: Any, length: int = 61) -> Any:
         for slope in np.linspace(-0.45, 0.45, 13):
             along_rows = [[1, 0, 0], [slope, 1, -slope * columns / 2]]
             shear = np.array([[1, slope, -slope * rows / 2], [0, 1, 0]] if down else along_rows)
-            sheared = cv2.warpAffine(ink, shear, (columns, rows), flags=cv2.INTER_LINEAR)
+            sheared = cv2.warpAffine(ink, shear, (columns, rows), flags=cv2.INTER_NEAREST)
             sheared = cv2.blur(sheared, (1, length) if down else (length, 1))
-            best = cv2.max(best, cv2.warpAffine(sheared, shear, (columns, rows), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP))
+            best = cv2.max(best, cv2.warpAffine(sheared, shear, (columns, rows), flags=cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP))
     # Where the ink itself is: the mean along a line reaches beyond its ends.
     here = cv2.GaussianBlur(ink, (0, 0), 1.0)
     return cv2.min(cv2.subtract(best, ground), cv2.multiply(here, np.array([1.5])))

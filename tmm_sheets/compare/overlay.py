@@ -91,7 +91,7 @@ def pdf(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag], t
         r, g, b = (c / 255 for c in BAD[f.verdict])
         out.append(f"BT {r:.3f} {g:.3f} {b:.3f} rg /F 6 Tf {x:.2f} {y:.2f} Td ({f.number}) Tj ET")
     content = zlib.compress(("q " + "\n".join(out) + " Q").encode("ascii"), 6)
-    image = zlib.compress(_clean(ink, level).tobytes(), 4)
+    image = zlib.compress(_clean(ink, level).tobytes(), 1)
     name = "".join(f"{b:02X}" for b in b"\xfe\xff" + title.encode("utf-16-be"))
     objects = [
         b"<< /Type /Catalog /Pages 2 0 R /ViewerPreferences << /PrintScaling /None >> >>",
