@@ -246,6 +246,29 @@ def test_a_killed_worker_costs_its_project_only_this_time(tmp_path, monkeypatch)
     assert "killed" in found["deadly"]
 
 
+@pytest.fixture
+def heard():
+    """Interrupts are heard, also when the tests are a shell's background job."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_interrupt_that_the_parent_ignores_stops_no_worker(tmp_path):
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        running = command("build", *CAMS, "--format", "svg", "--jobs", "2", "-o", tmp_path, start_new_session=True)
+        while not any(tmp_path.iterdir()):
+            sleep(0.02)
+        os.killpg(running.pid, signal.SIGINT)
+        running.communicate(timeout=60)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert running.returncode == 0
+    assert len(list(tmp_path.iterdir())) == len(CAMS)
+
+
+@pytest.mark.usefixtures("heard")
 def test_interrupted_batch_leaves_nothing_half_written(tmp_path):
     # An interrupt may fall between the opening of a file and its being held by anybody; Python then tells of it, if asked to.
     running = command("build", "--all", "sixbar", "--format", "svg", "--jobs", "2", "-o", tmp_path, start_new_session=True,

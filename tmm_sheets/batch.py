@@ -68,6 +68,8 @@ def several(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome
 
 def _interruptible(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:
     """The same in a process of the pool: Ctrl-C ends it after cleaning up half-written files, and without a traceback."""
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # a shell's background job: the parent does not hear it either
+        return several(projects, order, parent)
     found: list[Outcome] = []
     if signal.getsignal(signal.SIGINT) is _leave:
         return found
@@ -92,7 +94,8 @@ def _leave(*_: object) -> None:
 
 
 def _start() -> None:
-    signal.signal(signal.SIGINT, _deaf)
+    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _deaf)
 
 
 def _chunks(projects: Sequence[str], size: int) -> list[Sequence[str]]:
