@@ -24,7 +24,7 @@ from tmm_sheets.compare import cad_file, layout, matching
 from tmm_sheets.compare.elements import Element, elements
 from tmm_sheets.compare.placing import Placing, lines
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.sheet import Composed, composed
 
 KINDS = ("shift", "end", "turn", "remove", "extra", "text", "radius", "centre", "bump", "reverse", "gap", "long")
 
@@ -249,18 +249,24 @@ def compared(data: bytes, sheet, found):
     return matching.match(found, space, places.moves, 0.25)
 
 
+def sheets_of(projects: list[str]) -> list[tuple[str, int, Composed, list[Element]]]:
+    """Name, number, sheet and elements of all sheets of some projects."""
+    out = []
+    for name in projects:
+        project = Project(read(name))
+        for n in range(1, len(project.variant.sheets) + 1):
+            sheet = composed(project, n)
+            out.append((name, n, sheet, list(elements(sheet))))
+    return out
+
+
 def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 20
     projects = sys.argv[2:] or ["lugansk/shaper", "lugansk/engine", "press", "sixbar/3:1", "transport/diesel@01-Т-27"]
     rng = random.Random(int(count))
     found_of, planted = Counter(), Counter()
     wrong = extra = total = 0
-    sheets = []
-    for name in projects:
-        project = Project(read(name))
-        for n in range(1, len(project.variant.sheets) + 1):
-            sheet = composed(project, n)
-            sheets.append((name, n, sheet, list(elements(sheet))))
+    sheets = sheets_of(projects)
     for run in range(count):
         name, n, sheet, exact = sheets[run % len(sheets)]
         drawn, errors, taken = list(exact), [], set()

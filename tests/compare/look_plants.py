@@ -11,14 +11,10 @@ import sys
 from collections import Counter
 from dataclasses import replace
 
-from tests.compare.cad_plants import compared, covered, draw, some_way
-from tmm_sheets.catalogue import read
+from tests.compare.cad_plants import compared, covered, draw, sheets_of, some_way
 from tmm_sheets.compare.cad_looks import BROAD, CALLED
-from tmm_sheets.compare.elements import elements
 from tmm_sheets.drawing.dashes import cut
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.project import Project
-from tmm_sheets.sheets.sheet import composed
 
 WRONG = {
     "main": ("thin", "hidden", "centre"), "curve": ("thin", "hidden"), "vector": ("thin", "centre"), "thin": ("main", "centre"),
@@ -52,12 +48,7 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 20
     projects = sys.argv[2:] or ["lugansk/shaper", "lugansk/engine", "press", "sixbar/3:1", "transport/diesel@01-Т-27"]
     rng = random.Random(count)
-    sheets = []
-    for name in projects:
-        project = Project(read(name))
-        for n in range(1, len(project.variant.sheets) + 1):
-            sheet = composed(project, n)
-            sheets.append((name, n, sheet, list(elements(sheet))))
+    sheets = sheets_of(projects)
     planted, found_of = Counter(), Counter()
     wrong = total = rows = 0
     for run in range(count):

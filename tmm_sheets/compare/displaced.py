@@ -8,7 +8,8 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.profiles import peaks, pixels, sample
-from tmm_sheets.compare.stations import ENOUGH, STEP, Floats, Stations, expected_ink, fit, measured, smoothed
+from tmm_sheets.compare.sheet_map import Floats
+from tmm_sheets.compare.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed
 from tmm_sheets.compare.traces import Trace
 
 FAR = 6.0  # mm within which a displaced element is sought

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from math import hypot, sqrt
+from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.image_report import image_report
 from tmm_sheets.compare.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photograph import Picture, read
-from tmm_sheets.compare.rectification import MATCH, RECTIFIED, Rectified, rectify
+from tmm_sheets.compare.rectification import LONGEST, MATCH, Rectified, rectify
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.stations import as_lines
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -24,8 +24,6 @@ from tmm_sheets.sheets.sheet import composed
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-LONGEST = 2500.0
-"""Lines longer than this, mm, do not correct the sheet: they are curves back and forth."""
 PLACED = 0.25
 """Error of a place after the rectification by lines of views that were placed, mm."""
 HIGHEST = 4  # degree of the paper's height that views placed by hand can tell
@@ -96,8 +94,7 @@ def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> 
     if match < MATCH:
         return found
     ink = rectification.straighten(picture.grey, better)
-    scatter = sqrt(max(found.uncertainty**2 - (2 * RECTIFIED) ** 2, 0.0))
-    return replace(found, ink=ink, map=better, level=noise_level(ink), match=match, uncertainty=hypot(PLACED, scatter))
+    return replace(found, ink=ink, map=better, level=noise_level(ink), match=match, uncertainty=hypot(PLACED, found.scatter))
 
 
 def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Callable[[str], None]) -> None:

@@ -11,7 +11,8 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.owners import Owners
 from tmm_sheets.compare.profiles import peaks, pixels, sample
-from tmm_sheets.compare.stations import ENOUGH, STEP, Floats, Stations, expected_ink, fit, measured, smoothed, stations
+from tmm_sheets.compare.sheet_map import Floats
+from tmm_sheets.compare.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed, stations
 from tmm_sheets.compare.traces import Trace
 from tmm_sheets.drawing.styles import line_type
 

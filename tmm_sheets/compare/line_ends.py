@@ -18,7 +18,7 @@ from tmm_sheets.compare.displaced import FAR
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.owners import Owners
 from tmm_sheets.compare.profiles import pixels, sample
-from tmm_sheets.compare.stations import Floats
+from tmm_sheets.compare.sheet_map import Floats
 from tmm_sheets.compare.traces import Trace, open_line
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.profiles import pixels
 from tmm_sheets.compare.sheet_map import PAPER
+from tmm_sheets.compare.wiping import fixed
 from tmm_sheets.drawing.marks import Points
 
 INK = (40, 70, 160)
@@ -41,23 +41,18 @@ def png(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag]) -
     grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
     picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
     for points in ours:
-        cv2.polylines(picture, [_fixed(points)], False, OURS[::-1], 1, cv2.LINE_AA, 4)
+        cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, OURS[::-1], 1, cv2.LINE_AA, 4)
     for f in flags:
         colour = BAD[f.verdict][::-1]
         if len(f.line) > 1:
-            cv2.polylines(picture, [_fixed(f.line)], False, colour, 2, cv2.LINE_AA, 4)
-        x, y = _fixed(np.array([f.at]))[0]
+            cv2.polylines(picture, [fixed(f.line, PNG_SCALE)], False, colour, 2, cv2.LINE_AA, 4)
+        x, y = fixed(np.array([f.at]), PNG_SCALE)[0]
         cv2.circle(picture, (int(x), int(y)), round(CIRCLE * PNG_SCALE * 16), colour, 2, cv2.LINE_AA, 4)
         place = (int(x / 16 + 0.75 * CIRCLE * PNG_SCALE), int(y / 16 - 0.75 * CIRCLE * PNG_SCALE))
         cv2.putText(picture, str(f.number), place, cv2.FONT_HERSHEY_SIMPLEX, 0.9, colour, 2, cv2.LINE_AA)
     done, data = cv2.imencode(".png", picture)
     assert done
     return bytes(data.tobytes())
-
-
-def _fixed(p: Points) -> Any:
-    q = pixels(p, PNG_SCALE)
-    return np.round(np.column_stack((q.real, q.imag)) * 16).astype(np.int32)
 
 
 def _palette() -> Any:

@@ -31,6 +31,8 @@ LEAST_SCALE, FAIR_SCALE = 2.0, 3.0
 """Pixels per mm of the sheet below which a photograph is refused, or warned of."""
 BLURRED, SOFT = 0.36, 0.31
 """Standard deviation of the smear, mm, above which a picture is refused, or warned of; a fair photograph has 0.2 to 0.3."""
+LONGEST = 2500.0
+"""Lines longer than this, mm, do not correct the sheet: they are curves back and forth."""
 MATCH = 0.5
 """Share of a sheet's lines that must be in the picture where they belong."""
 RECTIFIED = 0.15
@@ -47,8 +49,8 @@ class Rectified:
     """The sheet seen from straight above: ``ink`` as :func:`straighten` makes it, ``map`` the way there,
     ``sides`` the frame's points.
 
-    ``match`` is the share of the known lines that were found in place, ``uncertainty`` the error of a place, mm, ``scale`` pixels
-    of the picture per mm, ``soft`` that it is not sharp.
+    ``match`` is the share of the known lines that were found in place, ``scatter`` that of the frame's
+    points and ``uncertainty`` the error of a place, mm, ``scale`` pixels of the picture per mm, ``soft`` that it is not sharp.
     """
 
     ink: Any
@@ -56,6 +58,7 @@ class Rectified:
     sides: Seen
     level: float
     match: float
+    scatter: float
     uncertainty: float
     scale: float
     notes: tuple[str, ...]
@@ -99,14 +102,14 @@ def rectify(
     if smear > SOFT:
         notes.append(f"{path.name} is not sharp (edges of lines are smeared over {2 * smear:.1f} mm): thin lines may be missed")
     say("correcting by the drawing's lines")
-    lines = as_lines([e for e in known if e.length < 2500 and (by_lines or e.of == "title block")])
+    lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.of == "title block")])
     ink = straighten(picture.grey, m, COARSE)
     better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE, RELIEF if by_lines else 2)
     if match >= MATCH:
         m = better
     ink = straighten(picture.grey, m)
     uncertainty = hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter)
-    return Rectified(ink, m, sides, noise_level(ink), match, uncertainty, scale, tuple(notes), smear > SOFT)
+    return Rectified(ink, m, sides, noise_level(ink), match, scatter, uncertainty, scale, tuple(notes), smear > SOFT)
 
 
 def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:

@@ -6,16 +6,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.compare.elements import Element, sampled
 from tmm_sheets.compare.profiles import Lines
-from tmm_sheets.compare.sheet_map import PAPER
+from tmm_sheets.compare.sheet_map import PAPER, Floats
 from tmm_sheets.compare.traces import Trace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
-
-Floats = npt.NDArray[np.floating[Any]]
 
 STEP = 0.1  # mm between offsets of a profile
 LEAST = 6.0  # mm of line that can be measured

@@ -15,9 +15,9 @@ from tmm_sheets.drawing.styles import line_type
 ROOM, DENSE_ROOM = 1.4, 2.0  # mm by which more than a line's width is wiped out
 
 
-def fixed(p: Points) -> Any:
+def fixed(p: Points, scale: float = SCALE) -> Any:
     """Places in sixteenths of pixels, as cv2 draws them with a shift of 4."""
-    q = np.ascontiguousarray(16 * pixels(p))
+    q = np.ascontiguousarray(16 * pixels(p, scale))
     return np.rint(q.view(np.float64).reshape(-1, 2)).astype(np.int32)
 
 
