@@ -1,10 +1,14 @@
-"""Accepted display lists: written by ``make gold``, compared as numbers to 0.001 mm with a readable difference."""
+"""Accepted display lists: written by ``make gold``, compared as numbers to 0.001 mm with a readable difference.
+
+A line holds one mark: kind, view, line type or text, then numbers in mm; so one mark more is one line of difference.
+"""
 
 from __future__ import annotations
 
-import gzip
 import json
+from difflib import SequenceMatcher
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,15 +18,41 @@ from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import compose
 
 FOLDER = Path(__file__).parent.parent / "gold"
-PROJECTS = {"lugansk/shaper": 4}
-"""Projects with the number of their sheets whose display lists are kept."""
+PROJECTS = {"lugansk/shaper": 4, "press": 4, "sixbar/8:3": 2, "transport/press@07-ЭПС-718": 3}
+"""Projects, one of each family, with the number of their sheets whose display lists are kept."""
 TOLERANCE = 0.001
 """Largest difference of a coordinate, mm."""
 
 
-def listed(drawing: Drawing) -> list[list[object]]:
-    """Every mark as [kind, view, style or text, numbers in 0.0001 mm]."""
-    found: list[list[object]] = []
+class Listed(NamedTuple):
+    """A mark as it is kept: kind, view, line type or text, and its numbers in mm."""
+
+    kind: str
+    view: str
+    style: str
+    numbers: tuple[float, ...]
+
+    @property
+    def key(self) -> tuple[str, str, str, int]:
+        """What is compared as words."""
+        return *self[:3], len(self.numbers)
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind} {self.style!r} of {self.view!r}"
+
+    def line(self) -> str:
+        return f"{json.dumps(self[:3], ensure_ascii=False)} {' '.join(f'{x:.4f}'.rstrip('0').rstrip('.') for x in self.numbers)}\n"
+
+    @classmethod
+    def read(cls, line: str) -> Listed:
+        words, end = json.JSONDecoder().raw_decode(line)
+        return cls(*words, tuple(float(x) for x in line[end:].split()))
+
+
+def listed(drawing: Drawing) -> list[Listed]:
+    """Every mark with its points."""
+    found: list[Listed] = []
     for mark in drawing.marks:
         if isinstance(mark, Line):
             numbers, style = [mark.a, mark.b], mark.style
@@ -35,36 +65,41 @@ def listed(drawing: Drawing) -> list[list[object]]:
         else:
             numbers, style = list(mark.points), mark.style
         flat = np.array(numbers, dtype=complex).view(float)
-        found.append([type(mark).__name__, mark.of, style, [round(float(x), 4) + 0.0 for x in flat]])
+        found.append(Listed(type(mark).__name__, mark.of, style, tuple(round(float(x), 4) + 0.0 for x in flat)))
     return found
 
 
 def path(project: str, n: int) -> Path:
-    return FOLDER / f"{project.replace('/', '-')}-{n}.json.gz"
+    return FOLDER / f"{project.replace('/', '-').replace(':', '-')}-{n}.txt"
 
 
-def draw(project: str, n: int) -> list[list[object]]:
+def draw(project: str, n: int) -> list[Listed]:
     return listed(compose(Project(read(project)), n))
 
 
-def load(project: str, n: int) -> list[list[object]]:
-    return json.loads(gzip.decompress(path(project, n).read_bytes()))
+def load(project: str, n: int) -> list[Listed]:
+    return [Listed.read(line) for line in path(project, n).read_text(encoding="utf-8").splitlines()]
 
 
-def difference(accepted: list[list[object]], drawn: list[list[object]], most: int = 12) -> str:
-    """What differs, a line a mark; empty when nothing does."""
-    lines = []
-    if len(accepted) != len(drawn):
-        lines.append(f"{len(drawn)} marks drawn, {len(accepted)} accepted")
-    for i, (a, b) in enumerate(zip(accepted, drawn, strict=False)):
-        if a[:3] != b[:3] or len(a[3]) != len(b[3]):
-            lines.append(f"mark {i}: {b[:3]} with {len(b[3])} numbers drawn, {a[:3]} with {len(a[3])} accepted")
-            continue
-        off = np.abs(np.array(a[3]) - np.array(b[3]))
-        if off.size and off.max() > TOLERANCE:
-            k = int(off.argmax())
-            numbers = f"number {k} is {b[3][k]} mm, accepted {a[3][k]} (off by {off[k]:.4f})"
-            lines.append(f"mark {i} {a[0]} {a[2]!r} of {a[1]!r}: {numbers}")
+def difference(accepted: list[Listed], drawn: list[Listed], most: int = 12) -> str:
+    """What differs, a line for each mark that moved, is new or is gone; empty when nothing does."""
+    lines: list[str] = []
+    for what, i0, i1, j0, j1 in SequenceMatcher(None, accepted, drawn, autojunk=False).get_opcodes():
+        if what == "equal" or i1 - i0 == j1 - j0:
+            pairs, gone, new = list(zip(range(i0, i1), range(j0, j1), strict=True)), [], []
+        else:
+            pairs, gone, new = [], list(range(i0, i1)), list(range(j0, j1))
+        for i, j in pairs:
+            a, b = accepted[i], drawn[j]
+            if a.key != b.key:
+                lines.append(f"mark {j}: {b.name} with {len(b.numbers)} numbers drawn, {a.name} with {len(a.numbers)} accepted")
+                continue
+            off = np.abs(np.array(a.numbers) - np.array(b.numbers))
+            if off.size and off.max() > TOLERANCE:
+                k = int(off.argmax())
+                lines.append(f"mark {j} {b.name}: number {k} is {b.numbers[k]} mm, accepted {a.numbers[k]} (off by {off[k]:.4f})")
+        lines += [f"mark {i} {accepted[i].name} is gone" for i in gone]
+        lines += [f"mark {j} {drawn[j].name} is new" for j in new]
     return "\n".join(lines[:most] + ([f"... and {len(lines) - most} more"] if len(lines) > most else []))
 
 
@@ -72,8 +107,7 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     for project, sheets in PROJECTS.items():
         for n in range(1, sheets + 1):
-            text = "[\n" + ",\n".join(json.dumps(m, ensure_ascii=False) for m in draw(project, n)) + "\n]\n"
-            path(project, n).write_bytes(gzip.compress(text.encode(), mtime=0))
+            path(project, n).write_text("".join(mark.line() for mark in draw(project, n)), encoding="utf-8")
             print(path(project, n))
 
 

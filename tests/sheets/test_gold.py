@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import copy
-
 import pytest
 
 from tests.sheets import gold
@@ -12,12 +10,23 @@ def test_display_list_is_the_accepted_one(project, n):
     assert not gold.difference(gold.load(project, n), gold.draw(project, n)), "look at the sheet; if it is right: make gold"
 
 
+def moved(marks, i, by):
+    """The marks with the first number of one of them changed."""
+    first, *rest = marks[i].numbers
+    return [*marks[:i], marks[i]._replace(numbers=(first + by, *rest)), *marks[i + 1:]]
+
+
 def test_the_comparison_can_fail():
     accepted = gold.load("lugansk/shaper", 1)
-    moved = copy.deepcopy(accepted)
-    moved[100][3][0] += 0.0011
-    assert "off by 0.0011" in gold.difference(accepted, moved)
-    assert "accepted" in gold.difference(accepted, moved[:-1])
-    nearly = copy.deepcopy(accepted)
-    nearly[100][3][0] += 0.0009
-    assert not gold.difference(accepted, nearly)
+    assert "off by 0.0011" in gold.difference(accepted, moved(accepted, 100, 0.0011))
+    assert not gold.difference(accepted, moved(accepted, 100, 0.0009))
+    assert gold.difference(accepted, accepted[:-1]).endswith("is gone")
+
+
+def test_one_mark_more_is_one_line_of_difference():
+    accepted = gold.load("lugansk/shaper", 1)
+    new = gold.Listed("Line", "here", "main", (1.0, 2.0, 3.0, 4.0))
+    assert gold.difference(accepted, [*accepted[:100], new, *accepted[100:]]) == "mark 100 Line 'main' of 'here' is new"
+    assert gold.difference([*accepted[:100], new, *accepted[100:]], accepted) == "mark 100 Line 'main' of 'here' is gone"
+    lines = "".join(mark.line() for mark in accepted).splitlines()
+    assert lines == gold.path("lugansk/shaper", 1).read_text(encoding="utf-8").splitlines()
