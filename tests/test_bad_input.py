@@ -4,8 +4,9 @@ import re
 
 import pytest
 
-from tmm_sheets import resources, variant
+from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
+from tmm_sheets.task import variant
 
 TEXT = (resources.variants() / "lugansk" / "shaper.toml").read_text(encoding="utf-8")
 

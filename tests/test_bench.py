@@ -10,8 +10,8 @@ from time import sleep
 import numpy as np
 import pytest
 
-from tests.methods import shaper_truth, statics
-from tests.methods import truth as other
+from tests.methods.linkage import shaper_truth, statics
+from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.bench import costs, diagrams, emission, linkages, plain, plots, profiles, reducers, truth, whole
 from tmm_sheets.bench.records import Bench, Record, as_json, fastest, table

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from tests.methods import truth as other
+from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.bench import peer_programs, peers, plots
 from tmm_sheets.bench.peer_programs import Program, Turn

@@ -12,7 +12,7 @@ import pytest
 
 from tmm_sheets import __version__, resources
 from tmm_sheets.__main__ import run
-from tmm_sheets.outlet import RECORD
+from tmm_sheets.output.build_store import RECORD
 
 SHAPER = resources.variants() / "lugansk" / "shaper.toml"
 TEXT = SHAPER.read_text(encoding="utf-8")

@@ -5,8 +5,9 @@ import tomllib
 
 import pytest
 
-from tmm_sheets import resources, variant
+from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
+from tmm_sheets.task import variant
 
 DATA = tomllib.loads((resources.variants() / "lugansk" / "shaper.toml").read_text(encoding="utf-8"))
 ODD = [0, -1, 0.5, True, "", "x", "1 m", [], ["A", "A"], [[]], {}, [{"name": []}]]

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from tmm_sheets import cli, resources, variant
+from tmm_sheets import cli, resources
 from tmm_sheets.errors import BadInput
-from tmm_sheets.names import GROUP_KEYS
+from tmm_sheets.task import variant
+from tmm_sheets.task.names import GROUP_KEYS
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 

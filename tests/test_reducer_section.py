@@ -2,11 +2,11 @@
 
 import pytest
 
-from tmm_sheets import variant
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.results import assemble, parts_of
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.task import variant
 
 FILE = """\
 schema = 1

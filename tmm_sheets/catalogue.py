@@ -8,11 +8,12 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets import families, resources
+from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
+from tmm_sheets.task import families
 
 if TYPE_CHECKING:
-    from tmm_sheets.variant import Variant
+    from tmm_sheets.task.variant import Variant
 
 SUFFIX = ".toml"
 
@@ -54,7 +55,7 @@ def read(project: str, corrected: bool = False) -> Variant:
 
     A name goes first, so that a file of the same name in the working folder changes nothing; write ``./name`` for it.
     """
-    from tmm_sheets import variant
+    from tmm_sheets.task import variant
 
     family = families.of(project)
     if family is not None and not project.endswith(SUFFIX):

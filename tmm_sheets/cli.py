@@ -13,10 +13,10 @@ from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild
 
 if TYPE_CHECKING:
-    from tmm_sheets.building import Order
     from tmm_sheets.drawing.plotters import Plotter
+    from tmm_sheets.output.building import Order
     from tmm_sheets.project import Project
-    from tmm_sheets.variant import Variant
+    from tmm_sheets.task.variant import Variant
 
 FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
 """Formats of drawings."""
@@ -45,7 +45,7 @@ def _among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, 
 def _degrees(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, ...] | None:
     if value is None:
         return None
-    from tmm_sheets import units
+    from tmm_sheets.task import units
 
     try:
         return tuple(units.parse(f"{part.strip()} deg", units.ANGLE) for part in value.split(","))
@@ -150,7 +150,7 @@ def build(
     """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
     if not projects and not families and not lists:
         raise click.UsageError("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")
-    from tmm_sheets.building import Order
+    from tmm_sheets.output.building import Order
 
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}}
     order = Order(sheets, formats, settings, corrected, force, archive)
@@ -165,9 +165,9 @@ def build(
 
 
 def _build_one(project: str, order: Order, output: Path | None, explain: bool) -> None:
-    from tmm_sheets.building import build as build_project
-    from tmm_sheets.building import folder_name
     from tmm_sheets.explain import Stopwatch
+    from tmm_sheets.output.building import build as build_project
+    from tmm_sheets.output.building import folder_name
     from tmm_sheets.progress import Progress
 
     watch = Stopwatch()
@@ -194,7 +194,8 @@ def _build_many(
 ) -> None:
     from time import monotonic
 
-    from tmm_sheets import batch, files
+    from tmm_sheets import files
+    from tmm_sheets.output import batch
     from tmm_sheets.progress import Bar
 
     names = batch.chosen(projects, families, lists)
@@ -295,7 +296,7 @@ def plot(
     if machine is not None and tile is not None:
         raise click.UsageError("--tile cuts a PDF; a plotter takes a sheet in parts with --window")
     from tmm_sheets import files
-    from tmm_sheets import plot as plotting
+    from tmm_sheets.output import plot as plotting
     from tmm_sheets.progress import Progress
 
     jobs: dict[Path, plotting.Job] = {}
@@ -307,7 +308,7 @@ def plot(
             folder = output if output is not None else Path(project).parent
             made: dict[Path, bytes] = {}
         else:
-            from tmm_sheets.building import chosen, folder_name
+            from tmm_sheets.output.building import chosen, folder_name
 
             opened = _open(project, corrected)
             folder = output if output is not None else Path("out") / folder_name(opened.variant.project.name)
@@ -374,7 +375,7 @@ def compare(
     if sheet is None and image is not None:
         raise click.UsageError("--image needs --sheet N: which sheet it shows")
     from tmm_sheets import files
-    from tmm_sheets.building import folder_name
+    from tmm_sheets.output.building import folder_name
     from tmm_sheets.progress import Progress
 
     opened = _open(project, corrected)
@@ -384,21 +385,21 @@ def compare(
             progress.say(f"{what} ...")
 
         if template:
-            from tmm_sheets.compare import measured as by_ruler
+            from tmm_sheets.compare.measured import measured_lengths as by_ruler
 
             report = by_ruler.template(opened, folder, say)
         elif measured is not None:
-            from tmm_sheets.compare import measured as by_ruler
+            from tmm_sheets.compare.measured import measured_lengths as by_ruler
 
             report = by_ruler.compare(opened, measured, pencil, reading, say)
         elif image is not None:
-            from tmm_sheets.compare import image as by_eye
+            from tmm_sheets.compare.photo import image as by_eye
 
             report = by_eye.compare(opened, int(sheet or 1), image, views, pencil, say)
         else:
-            from tmm_sheets.compare import cad
+            from tmm_sheets.compare.cad import cad_drawing
 
-            report = cad.compare(opened, sheet, Path(str(dxf)), views, pencil, say)
+            report = cad_drawing.compare(opened, sheet, Path(str(dxf)), views, pencil, say)
     made = {folder / name: data for name, data in report.files.items()}
     if target is not None and target != "-":
         made[Path(target)] = (report.as_json() + "\n").encode()

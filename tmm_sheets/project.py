@@ -6,20 +6,20 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.variant import Variant
+from tmm_sheets.task.variant import Variant
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
-    from tmm_sheets.methods.cam_profile import Cam
-    from tmm_sheets.methods.cycle import Cycle
-    from tmm_sheets.methods.flywheel import Flywheel
-    from tmm_sheets.methods.forces import GearForce
-    from tmm_sheets.methods.gears import GearPair
-    from tmm_sheets.methods.loads import Applied
-    from tmm_sheets.methods.reduced import Reduced
-    from tmm_sheets.methods.reducer import Reducer
-    from tmm_sheets.methods.study import Study
-    from tmm_sheets.methods.synthesis import Synthesis
+    from tmm_sheets.methods.cams.cam_profile import Cam
+    from tmm_sheets.methods.flywheel.flywheel import Flywheel
+    from tmm_sheets.methods.flywheel.reduced import Reduced
+    from tmm_sheets.methods.gears.gear_pair import GearPair
+    from tmm_sheets.methods.gears.reducer import Reducer
+    from tmm_sheets.methods.linkage.cycle import Cycle
+    from tmm_sheets.methods.linkage.forces import GearForce
+    from tmm_sheets.methods.linkage.loads import Applied
+    from tmm_sheets.methods.linkage.study import Study
+    from tmm_sheets.methods.linkage.synthesis import Synthesis
 
 
 class Project:
@@ -42,14 +42,14 @@ class Project:
     @cached_property
     def mechanism(self) -> Mechanism:
         """Links, pairs and Assur groups."""
-        from tmm_sheets.assembly import mechanism_of
+        from tmm_sheets.task.assembly import mechanism_of
 
         return mechanism_of(self.variant)
 
     @cached_property
     def synthesis(self) -> Synthesis:
         """Lengths found from conditions."""
-        from tmm_sheets.methods.synthesis import Synthesis
+        from tmm_sheets.methods.linkage.synthesis import Synthesis
 
         crank = self.variant.crank
         return Synthesis(self._section("synthesis"), crank.speed if crank is not None else 0.0)
@@ -57,7 +57,7 @@ class Project:
     @cached_property
     def cycle(self) -> Cycle:
         """Numbered positions of one turn."""
-        from tmm_sheets.methods.cycle import dead_cycle, even_cycle
+        from tmm_sheets.methods.linkage.cycle import dead_cycle, even_cycle
 
         c = self._section("cycle")
         if c.start == "dead":
@@ -69,14 +69,14 @@ class Project:
     @cached_property
     def applied(self) -> tuple[Applied, ...]:
         """Technological forces and moments."""
-        from tmm_sheets.assembly import applied_of
+        from tmm_sheets.task.assembly import applied_of
 
         return applied_of(self.variant, self.mechanism, self.cycle)
 
     @cached_property
     def driver(self) -> GearForce | None:
         """Gear force on the crank shaft; None when a pure moment balances the crank."""
-        from tmm_sheets.methods.forces import GearForce
+        from tmm_sheets.methods.linkage.forces import GearForce
 
         b: Any = self.variant.balancing
         if b is None or b.kind == "moment":
@@ -91,7 +91,7 @@ class Project:
 
     def study_at(self, turned: Any, labels: tuple[str, ...]) -> Study:
         """Kinematics and forces at any crank angles (rad turned from position 0)."""
-        from tmm_sheets.methods.study import Study
+        from tmm_sheets.methods.linkage.study import Study
 
         crank = self.variant.crank
         uneven = crank is not None and crank.angular_acceleration == "flywheel"
@@ -107,7 +107,7 @@ class Project:
     def reduced(self) -> Reduced:
         """Reduced moment and reduced moment of inertia."""
         self.check_assembly()
-        from tmm_sheets.methods.reduced import Reduced
+        from tmm_sheets.methods.flywheel.reduced import Reduced
 
         f = self.variant.flywheel
         gravity = self.variant.forces.gravity if f is not None and f.weights else 0.0
@@ -116,14 +116,14 @@ class Project:
     @cached_property
     def flywheel(self) -> Flywheel:
         """Flywheel by the energy-mass curve."""
-        from tmm_sheets.methods.flywheel import flywheel
+        from tmm_sheets.methods.flywheel.flywheel import flywheel
 
         return flywheel(self.reduced, self._section("flywheel"))
 
     @cached_property
     def gear(self) -> GearPair:
         """Gear pair."""
-        from tmm_sheets.methods.gears import gear_pair, settled
+        from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 
         section = self._section("gear")
         return gear_pair(settled(section, self.reducer if section.teeth == "reducer" else None))
@@ -131,14 +131,14 @@ class Project:
     @cached_property
     def reducer(self) -> Reducer:
         """Planetary reducer: the chosen tooth numbers with everything that follows."""
-        from tmm_sheets.methods.reducer import reducer
+        from tmm_sheets.methods.gears.reducer import reducer
 
         return reducer(self._section("reducer"))
 
     @cached_property
     def cam(self) -> Cam:
         """Cam and follower."""
-        from tmm_sheets.methods.cam_profile import cam
+        from tmm_sheets.methods.cams.cam_profile import cam
 
         return cam(self._section("cam"))
 
@@ -156,6 +156,6 @@ class Project:
 
     def check_assembly(self) -> None:
         """Assemble the mechanism all round the turn."""
-        from tmm_sheets.methods.checks import check_assembly
+        from tmm_sheets.methods.linkage.checks import check_assembly
 
         check_assembly(self.mechanism, self.cycle)

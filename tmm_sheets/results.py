@@ -15,7 +15,7 @@ from tmm_sheets.errors import BadInput, CannotBuild
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.methods.study import Study
+    from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.project import Project
 
 SCHEMA = 1

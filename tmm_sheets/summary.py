@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
-    from tmm_sheets.toml_lines import KeyPath
-    from tmm_sheets.variant import Variant
+    from tmm_sheets.task.toml_lines import KeyPath
+    from tmm_sheets.task.variant import Variant
 
 _QUIET = ("schema", "project", "title_block")
 WIDEST = 40
@@ -26,7 +26,7 @@ def text(variant: Variant) -> str:
 
         lines += ["", "Synthesis", *(f"  {line}" for line in Project(variant).synthesis.derivation)]
     if variant.crank is not None:
-        from tmm_sheets.assembly import mechanism_of
+        from tmm_sheets.task.assembly import mechanism_of
 
         lines += list(_structure(mechanism_of(variant)))
     return "\n".join(lines)

@@ -19,10 +19,10 @@ import ezdxf
 import numpy as np
 
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare import cad as by_cad
-from tmm_sheets.compare import cad_file, layout, matching
+from tmm_sheets.compare.cad import cad_drawing as by_cad
+from tmm_sheets.compare.cad import cad_file, layout, matching
+from tmm_sheets.compare.cad.placing import Placing, lines
 from tmm_sheets.compare.elements import Element, elements
-from tmm_sheets.compare.placing import Placing, lines
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import Composed, composed
 

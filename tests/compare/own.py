@@ -15,11 +15,12 @@ import numpy as np
 
 from tmm_sheets import catalogue
 from tmm_sheets.backends import dxf, pdf, png
-from tmm_sheets.compare import cad, tracing
+from tmm_sheets.compare.cad import cad_drawing
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.judging import judge
-from tmm_sheets.compare.photograph import read
-from tmm_sheets.compare.rectification import MATCH, rectify
+from tmm_sheets.compare.photo import tracing
+from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.photograph import read
+from tmm_sheets.compare.photo.rectification import MATCH, rectify
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -46,7 +47,7 @@ def by_image(project, n, path):
 
 def by_cad(project, n, path):
     """The same of a DXF file, as ``compare --dxf`` has them."""
-    found = cad.examine(project, n, path, None, 0.25)
+    found = cad_drawing.examine(project, n, path, None, 0.25)
     said = [("note", note) for note in found.notes]
     for f in found.outcome.findings:
         e = f.element

@@ -11,9 +11,9 @@ import pytest
 from tests.compare.cad_plants import Way, draw
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare import cad, cad_file, cad_report
+from tmm_sheets.compare.cad import cad_drawing, cad_file, cad_report
+from tmm_sheets.compare.cad.placing import Placing, lines
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.placing import Placing, lines
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
@@ -31,7 +31,7 @@ def compare(data, tmp_path, sheet=2, views=None, project=SHAPER):
     if views is not None:
         (tmp_path / "views.toml").write_text(views, encoding="utf-8")
         views = tmp_path / "views.toml"
-    found = cad.examine(project, sheet, path, views, 0.25)
+    found = cad_drawing.examine(project, sheet, path, views, 0.25)
     return Report(cad_report.text("shaper", path, found, 0.25), cad_report.tree("shaper", path, found, 0.25), notes=found.notes)
 
 
@@ -134,7 +134,7 @@ def spoiled(tmp_path_factory):
     found.append(replace(LINE, number=-1, points=STRAY))
     path = tmp_path_factory.mktemp("spoiled") / "student.dxf"
     path.write_bytes(drawn(found))
-    return path, cad.compare(SHAPER, 2, path, None, 0.25, lambda _: None)
+    return path, cad_drawing.compare(SHAPER, 2, path, None, 0.25, lambda _: None)
 
 
 def test_only_what_was_spoiled_is_accused(spoiled):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from ezdxf.enums import TextEntityAlignment
 
-from tmm_sheets.compare import cad_file
-from tmm_sheets.compare.cad_ink import normal
+from tmm_sheets.compare.cad import cad_file
+from tmm_sheets.compare.cad.cad_ink import normal
 from tmm_sheets.errors import BadInput
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from tests.compare.cad_plants import Way, covered, draw
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare import cad, cad_file, cad_report
-from tmm_sheets.compare.cad_patterns import of_dashes, of_strokes
+from tmm_sheets.compare.cad import cad_drawing, cad_file, cad_report
+from tmm_sheets.compare.cad.cad_patterns import of_dashes, of_strokes
 from tmm_sheets.compare.elements import dashed, elements
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.project import Project
@@ -23,7 +23,7 @@ EXACT = elements(composed(PROJECT, 1))
 def compared(found, tmp_path, looks=True, **way):
     path = tmp_path / "student.dxf"
     path.write_bytes(draw(list(found), Way(looks=looks, **way), random.Random(1)))
-    return cad.examine(PROJECT, 1, path, None, 0.25)
+    return cad_drawing.examine(PROJECT, 1, path, None, 0.25)
 
 
 def some(style, kind, length):
@@ -96,7 +96,7 @@ def test_a_scale_of_line_types_that_was_not_set_gets_a_remark(tmp_path):
     path = tmp_path / "student.dxf"
     data = draw(list(EXACT), Way(looks=True), random.Random(1))
     path.write_bytes(re.sub(rb"(\$LTSCALE\s+40\s+)4\.0", rb"\g<1>0.2", data))
-    found = cad.examine(PROJECT, 1, path, None, 0.25)
+    found = cad_drawing.examine(PROJECT, 1, path, None, 0.25)
     assert found.outcome.looks == ()
     (note,) = found.notes
     assert note == "dash-dot lines have strokes of 0.635 mm: GOST 2.303 asks for 5 to 30 mm (scale of line types, LTSCALE)"

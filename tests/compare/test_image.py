@@ -12,10 +12,10 @@ import pytest
 from tests.compare.simulation import Camera, paper, photograph, plant
 from tmm_sheets import catalogue
 from tmm_sheets.backends import pdf, png
-from tmm_sheets.compare import frame_fit, frame_search, image, rectification, tracing
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.judging import judge
-from tmm_sheets.compare.photograph import Picture, read
+from tmm_sheets.compare.photo import frame_fit, frame_search, image, rectification, tracing
+from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.photograph import Picture, read
 from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project

@@ -7,11 +7,12 @@ import pytest
 
 from tests.compare.simulation import paper
 from tmm_sheets import catalogue
-from tmm_sheets.compare import photographed_views as placing
-from tmm_sheets.compare import tracing, view_places
+from tmm_sheets.compare import view_places
 from tmm_sheets.compare.elements import elements, views
-from tmm_sheets.compare.judging import judge
-from tmm_sheets.compare.traces import Extra
+from tmm_sheets.compare.photo import photographed_views as placing
+from tmm_sheets.compare.photo import tracing
+from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.traces import Extra
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Text
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project

@@ -11,9 +11,9 @@ import pytest
 from tests.compare.manual_tables import opened
 from tests.compare.students import PENCIL, READING, Hand, Plant
 from tmm_sheets.__main__ import run
-from tmm_sheets.compare.chain import judge
-from tmm_sheets.compare.measured import NAME
-from tmm_sheets.compare.measured_file import Filled, Line
+from tmm_sheets.compare.measured.chain import judge
+from tmm_sheets.compare.measured.measured_file import Filled, Line
+from tmm_sheets.compare.measured.measured_lengths import NAME
 
 FEW = ("positions", "velocities", "accelerations", "force-5", "force-2", "lever")
 

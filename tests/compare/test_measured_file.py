@@ -2,8 +2,8 @@
 
 import pytest
 
-from tmm_sheets.compare.measurable import Measurable, Measurables, plain
-from tmm_sheets.compare.measured_file import read, template
+from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
+from tmm_sheets.compare.measured.measured_file import read, template
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tmm_sheets.compare.photograph import read
+from tmm_sheets.compare.photo.photograph import read
 from tmm_sheets.errors import BadInput
 
 ROWS, COLUMNS = 1200, 1800

@@ -9,11 +9,11 @@ import pytest
 from tests.compare.simulation import Camera, projection
 from tmm_sheets import catalogue
 from tmm_sheets.backends import png
-from tmm_sheets.compare import frame_search, rectification
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.frame_fit import rough
-from tmm_sheets.compare.map_fit import Seen, bent, waved
-from tmm_sheets.compare.sheet_map import CORNERS, FRAME, heights
+from tmm_sheets.compare.photo import frame_search, rectification
+from tmm_sheets.compare.photo.frame_fit import rough
+from tmm_sheets.compare.photo.map_fit import Seen, bent, waved
+from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, heights
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 

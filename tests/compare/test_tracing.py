@@ -6,10 +6,10 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, View
-from tmm_sheets.compare.judging import judge
-from tmm_sheets.compare.owners import Owners
-from tmm_sheets.compare.profiles import SCALE
-from tmm_sheets.compare.tracing import trace
+from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.profiles import SCALE
+from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6

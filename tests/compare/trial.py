@@ -21,11 +21,11 @@ import numpy as np
 
 from tests.compare.simulation import Planted, resample, shoot
 from tmm_sheets import catalogue
-from tmm_sheets.compare import image, tracing
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.judging import LOOSE_STYLES, judge
-from tmm_sheets.compare.photograph import read
-from tmm_sheets.compare.rectification import MATCH, rectify
+from tmm_sheets.compare.photo import image, tracing
+from tmm_sheets.compare.photo.judging import LOOSE_STYLES, judge
+from tmm_sheets.compare.photo.photograph import read
+from tmm_sheets.compare.photo.rectification import MATCH, rectify
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed

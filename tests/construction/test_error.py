@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from tests.methods.mechanisms import mechanism
+from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors, errors
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.integration import integrate
-from tmm_sheets.methods.positions import position_plan
-from tmm_sheets.methods.velocities import velocity_plan
+from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.methods.linkage.velocities import velocity_plan
 from tmm_sheets.project import Project
 
 PENCIL, READING = 0.25, 0.5

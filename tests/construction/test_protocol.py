@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from tests.methods import truth
+from tests.methods.linkage import truth
 from tmm_sheets import catalogue
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.methods.mechanisms import value
+from tests.methods.linkage.mechanisms import value
 from tmm_sheets import catalogue
-from tmm_sheets.methods.flywheel import wheel
+from tmm_sheets.methods.flywheel.flywheel import wheel
 from tmm_sheets.project import Project
 
 HERE = Path(__file__).parent

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.methods.mechanisms import value
+from tests.methods.linkage.mechanisms import value
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from tests.methods.mechanisms import mechanism
+from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
-from tmm_sheets.assembly import mechanism_of
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, Mechanism, Pair, StructuralGroup
+from tmm_sheets.task.assembly import mechanism_of
 
 
 @pytest.fixture(scope="module")

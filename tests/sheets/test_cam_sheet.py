@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.methods.cam_cases import cam_data, flat_data, rocker_data
+from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
-from tmm_sheets.methods.cam_profile import DIAGRAMS, cam
+from tmm_sheets.methods.cams.cam_profile import DIAGRAMS, cam
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.cam import HEADS
 

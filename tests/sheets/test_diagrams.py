@@ -5,7 +5,6 @@ import re
 import numpy as np
 import pytest
 
-from tmm_sheets import variant
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
@@ -14,6 +13,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import diagrams
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.task import variant
 
 BOX = Box(20.0, 10.0, 330.0, 240.0)
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from tmm_sheets import catalogue, variant
+from tmm_sheets import catalogue
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
@@ -13,6 +13,7 @@ from tmm_sheets.project import Project
 from tmm_sheets.resources import variants
 from tmm_sheets.sheets import indicator, kinematics, synthesis
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.task import variant
 
 PRINTED = {"0": 4.2, "1′": 6.0, "1": 2.25, "2": 0.75, "3": 0.3, "10": 0.15, "11": 0.75, "14": 0.15, "15": 0.75}
 """Pressures in cylinder 3 (0 to 3, 14, 15) and in cylinder 5 (10, 11) at the positions, MPa: table 5.3."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from shapely import LineString, Polygon, box, union_all
 
-from tmm_sheets import catalogue, variant
+from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.construction import condition, rules
 from tmm_sheets.construction.plan import Plan
@@ -20,6 +20,7 @@ from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Fill, Text, flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import flat_crossings, kinematic_frames, sheet
+from tmm_sheets.task import variant
 
 NEAR = Path(__file__).parent / "near.toml"
 CRANK, COUPLER, ROCKER, FRAME = 0.1, 0.33, 0.173, 0.4

@@ -12,12 +12,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.methods.shaper_truth import Shaper
+from tests.methods.linkage.shaper_truth import Shaper
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel import flywheel
+from tmm_sheets.methods.flywheel.flywheel import flywheel
 
 VIEWS = tomllib.loads((Path(__file__).parents[2] / "templates/sheets/flywheel.toml").read_text(encoding="utf-8"))["view"]
 FRAME = Box(20, 5, 836, 589)

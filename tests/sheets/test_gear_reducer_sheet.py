@@ -8,12 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.methods import reducer_cases as cases
+from tests.methods.gears import reducer_cases as cases
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
-from tmm_sheets.methods.gears import gear_pair, settled
-from tmm_sheets.methods.reducer import reducer, rpm
+from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
+from tmm_sheets.methods.gears.reducer import reducer, rpm
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import gear, rack
 from tmm_sheets.sheets import reducer as reducers

@@ -11,7 +11,7 @@ import pytest
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Polyline, Text, flat
-from tmm_sheets.methods.gears import gear_pair
+from tmm_sheets.methods.gears.gear_pair import gear_pair
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import gear as views
 

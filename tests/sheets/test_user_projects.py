@@ -5,13 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tmm_sheets import summary, variant
+from tmm_sheets import summary
 from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Arc, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.task import variant
 
 FILES = sorted((Path(__file__).parents[1] / "projects").glob("*.toml"))
 

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.methods import truth as fifty_digits
-from tests.methods.mechanisms import mechanism
+from tests.methods.linkage import truth as fifty_digits
+from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.__main__ import run
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
-from tmm_sheets.methods import accelerations, forces, positions, velocities, zhukovsky
+from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
 from tmm_sheets.stress import report, truth
 from tmm_sheets.stress.cases import BOUNDS, SCENES, memory, run_case
 

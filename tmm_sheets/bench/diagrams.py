@@ -11,15 +11,16 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from tmm_sheets import catalogue, variant
+from tmm_sheets import catalogue
 from tmm_sheets.bench.records import Bench
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.methods.energy_mass import highest
-from tmm_sheets.methods.flywheel import Flywheel
+from tmm_sheets.methods.flywheel.energy_mass import highest
+from tmm_sheets.methods.flywheel.flywheel import Flywheel
+from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
+from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.methods.integration import Floats, Quadrature, integrate, ordinates, smooth
-from tmm_sheets.methods.mertsalov import Mertsalov
-from tmm_sheets.methods.wittenbauer import Wittenbauer
 from tmm_sheets.project import Project
+from tmm_sheets.task import variant
 
 CHORDS = (6, 12, 24, 48, 96, 192, 384)
 POSITIONS = (10, 20, 40, 80, 160, 320)

@@ -14,8 +14,8 @@ from tmm_sheets import catalogue
 from tmm_sheets.bench import truth
 from tmm_sheets.bench.records import Bench
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
-from tmm_sheets.methods.cycle import even_cycle
-from tmm_sheets.methods.study import Study
+from tmm_sheets.methods.linkage.cycle import even_cycle
+from tmm_sheets.methods.linkage.study import Study
 from tmm_sheets.project import Project
 
 COUNTS = (12, 24, 120, 360, 1000, 10_000, 100_000, 1_000_000)

@@ -14,11 +14,11 @@ from mpmath import mp
 
 from tmm_sheets import catalogue
 from tmm_sheets.bench.records import Bench
-from tmm_sheets.methods.cam_profile import RollerCam, cam
-from tmm_sheets.methods.gear_engagement import involute_plan
-from tmm_sheets.methods.gear_geometry import Wheel
-from tmm_sheets.methods.gears import GearPair
-from tmm_sheets.methods.rack import Rack, flank
+from tmm_sheets.methods.cams.cam_profile import RollerCam, cam
+from tmm_sheets.methods.gears.gear_engagement import involute_plan
+from tmm_sheets.methods.gears.gear_geometry import Wheel
+from tmm_sheets.methods.gears.gear_pair import GearPair
+from tmm_sheets.methods.gears.rack import Rack, flank
 from tmm_sheets.project import Project
 
 DIGITS = 40

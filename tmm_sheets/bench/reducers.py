@@ -10,7 +10,7 @@ from typing import Any
 
 from tmm_sheets import catalogue
 from tmm_sheets.bench.records import Bench
-from tmm_sheets.methods.tooth_search import TIERS, ToothSet, search
+from tmm_sheets.methods.gears.tooth_search import TIERS, ToothSet, search
 
 LIMITS = (30, 40, 60, 90, 120)
 TRIED = 60

@@ -18,9 +18,9 @@ from tmm_sheets.drawing.marks import Box, Points
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.methods.cam_closure import Spring
-    from tmm_sheets.methods.cam_motion import Motion
-    from tmm_sheets.methods.cam_profile import Cam, RollerCam
+    from tmm_sheets.methods.cams.cam_closure import Spring
+    from tmm_sheets.methods.cams.cam_motion import Motion
+    from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
 
 HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""

@@ -18,8 +18,8 @@ from tmm_sheets.sheets.cam import for_cams, lines_of_text, standard
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
-    from tmm_sheets.methods.cam_inversion import Inversion
-    from tmm_sheets.methods.cam_profile import Cam, RollerCam
+    from tmm_sheets.methods.cams.cam_inversion import Inversion
+    from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
 
 
 @for_cams

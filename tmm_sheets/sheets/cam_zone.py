@@ -16,7 +16,7 @@ from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.sheets.cam import distinct, for_cams, lines_of_text
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.cam_profile import FlatCam, RockerCam, TappetCam
+    from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
 
 
 @for_cams

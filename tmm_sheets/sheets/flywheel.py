@@ -22,8 +22,8 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import graphs
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.flywheel import Flywheel
-    from tmm_sheets.methods.wittenbauer import Wittenbauer
+    from tmm_sheets.methods.flywheel.flywheel import Flywheel
+    from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
 Options = dict[str, Any]
 _BELOW = 7.0  # room of position numbers beside an axis

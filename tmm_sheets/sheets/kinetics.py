@@ -20,7 +20,7 @@ from tmm_sheets.sheets.frame import Frame, extent, fit_frame, pick
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import StructuralGroup
-    from tmm_sheets.methods.forces import ForcePlan, Kinetostatics
+    from tmm_sheets.methods.linkage.forces import ForcePlan, Kinetostatics
     from tmm_sheets.project import Project
 
 BAR = "\u0305"

@@ -15,7 +15,7 @@ from tmm_sheets.sheets.frame import Frame
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-    from tmm_sheets.methods.positions import Positions
+    from tmm_sheets.methods.linkage.positions import Positions
 
 
 @dataclass(frozen=True)

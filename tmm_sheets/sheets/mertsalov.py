@@ -21,7 +21,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import flywheel, graphs
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.mertsalov import Mertsalov
+    from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
 
 Options = dict[str, Any]
 ENERGIES = ("ΔT", "T_{II}", "T_I")

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-from tmm_sheets.methods.accelerations import Accelerations, acceleration_plan
-from tmm_sheets.methods.forces import external_loads, kinetostatics
-from tmm_sheets.methods.positions import Positions, position_plan
-from tmm_sheets.methods.velocities import Velocities, velocity_plan
-from tmm_sheets.methods.zhukovsky import lever
+from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
+from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
+from tmm_sheets.methods.linkage.positions import Positions, position_plan
+from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
+from tmm_sheets.methods.linkage.zhukovsky import lever
 
 Residual = tuple[str, Any]
 """Name of the invariant and its residuals, one a position; NaN where there is nothing to say."""

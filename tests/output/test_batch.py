@@ -1,0 +1,329 @@
+"""What is current is not built again; many projects at once: failures, going on, the same bytes for any number of workers."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import zipfile
+from importlib.util import find_spec
+from pathlib import Path
+from time import monotonic, sleep
+
+import pytest
+
+from tmm_sheets import resources
+from tmm_sheets.__main__ import run
+from tmm_sheets.errors import BadInput
+from tmm_sheets.output import batch, building
+from tmm_sheets.output.batch import Outcome
+from tmm_sheets.output.build_store import RECORD, Archive, Record
+from tmm_sheets.output.building import Order
+from tmm_sheets.progress import Bar
+from tmm_sheets.sheets import sheet
+
+ROOT = Path(__file__).parents[2]
+CAM = resources.variants() / "lugansk" / "cam_flat.toml"
+CAMS = ("lugansk/cam_flat", "lugansk/cam_rocker")
+
+
+def contents(folder):
+    """Bytes of every file below a folder."""
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def times(folder):
+    return {p.name: p.stat().st_mtime_ns for p in folder.iterdir()}
+
+
+@pytest.fixture
+def mine(tmp_path):
+    """A project file of one sheet, and the command that builds it as DXF and SVG."""
+    file = tmp_path / "my.toml"
+    file.write_text(CAM.read_text(encoding="utf-8"), encoding="utf-8")
+
+    def build(*more):
+        return run(["build", str(file), "--format", "dxf,svg", "-o", str(tmp_path / "out"), *more])
+
+    return file, tmp_path / "out", build
+
+
+# --- skipping ---------------------------------------------------------------------------------------------------------
+
+
+def test_second_build_draws_nothing(mine, monkeypatch, capsys):
+    _, out, build = mine
+    assert build() == 0
+    first, before, told = contents(out), times(out), capsys.readouterr()
+    assert told.err == ""
+    with monkeypatch.context() as patched:
+        patched.setattr(sheet, "composed", lambda *_: pytest.fail("composed a sheet that is current"))
+        assert build() == 0
+    again = capsys.readouterr()
+    assert again.out == told.out
+    assert "2 of 2 files unchanged" in again.err
+    assert times(out) == before
+    assert build("--force") == 0
+    assert capsys.readouterr().err == ""
+    assert contents(out) == first
+    assert all(new > before[name] for name, new in times(out).items())
+
+
+@pytest.mark.parametrize("spoil", [Path.unlink, lambda p: p.write_bytes(p.read_bytes() + b" ")])
+def test_only_what_is_missing_or_not_ours_is_made(mine, spoil):
+    _, out, build = mine
+    assert build() == 0
+    first, before = contents(out), times(out)
+    spoil(out / "sheet1.dxf")
+    assert build() == 0
+    assert contents(out) == first
+    assert times(out)["sheet1.svg"] == before["sheet1.svg"]
+
+
+def test_a_change_of_the_project_is_seen(mine):
+    file, out, build = mine
+    assert build() == 0
+    first = contents(out)
+    text = file.read_text(encoding="utf-8")
+    assert 'stroke = "55 mm"' in text
+    file.write_text(text.replace('stroke = "55 mm"', 'stroke = "50 mm"'), encoding="utf-8")
+    assert build() == 0
+    second = contents(out)
+    assert all(second[name] != first[name] for name in first)
+    file.write_text(text, encoding="utf-8")
+    assert build() == 0
+    assert contents(out) == first
+
+
+def test_a_change_of_the_program_is_seen(mine, monkeypatch):
+    _, out, build = mine
+    assert build() == 0
+    before = times(out)
+    monkeypatch.setattr(building, "program", lambda: "another")
+    assert build() == 0
+    assert all(new > before[name] for name, new in times(out).items())
+
+
+def test_settings_of_a_format_concern_its_files_only(mine):
+    _, out, build = mine
+    assert build("--format", "svg,png", "--dpi", "20") == 0
+    before = times(out)
+    assert build("--format", "svg,png", "--dpi", "30") == 0
+    after = times(out)
+    assert after["sheet1.png"] > before["sheet1.png"]
+    assert after["sheet1.svg"] == before["sheet1.svg"]
+
+
+def test_sheets_built_one_by_one_are_still_checked_together(tmp_path, capsys):
+    """A scale factor that no sheet uses shows only when all sheets are known."""
+    file = tmp_path / "my.toml"
+    text = CAM.read_text(encoding="utf-8")
+    assert 'sheets = ["cam"]' in text
+    file.write_text(text.replace('["cam"]', '["cam", "cam"]') + "\n[scales]\nvelocities = 0.02\n", encoding="utf-8")
+    arguments = ["build", str(file), "--format", "svg", "-o", str(tmp_path / "out")]
+    for n in "12":
+        assert run([*arguments, "--sheet", n]) == 0
+    capsys.readouterr()
+    assert run(arguments) == 2
+    assert "no sheet draws a plan of this name" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("damage", [b"", b"{}", b"[1]", b"null", b'{"schema": 1, "whole": "", "files": {"a": 1}}', b"\xff\xfe"])
+def test_a_damaged_record_is_no_record(mine, damage):
+    _, out, build = mine
+    assert Record.read(damage) == Record()
+    assert build() == 0
+    first = contents(out)
+    (out / RECORD).write_bytes(damage)
+    assert build() == 0
+    assert contents(out) == first
+
+
+def test_record_round_trip():
+    record = Record({"b": ("1", "2"), "a": ("3", "4")}, "5")
+    assert Record.read(record.data()) == record
+    assert list(json.loads(record.data())["files"]) == ["a", "b"]
+
+
+# --- many projects ----------------------------------------------------------------------------------------------------
+
+
+def command(*arguments, warnings="error", **options):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": warnings}
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": environment} | options
+    return subprocess.Popen([sys.executable, "-m", "tmm_sheets", *map(str, arguments)], **options)
+
+
+def test_failures_are_collected_and_the_rest_goes_on(tmp_path, capsys):
+    bad = tmp_path / "bad.toml"
+    bad.write_text("schema = 1\n", encoding="utf-8")
+    arguments = ["build", CAMS[0], str(bad), "no/such", CAMS[1], "--format", "svg", "--jobs", "1", "-o", str(tmp_path / "out")]
+    assert run(arguments) == 1
+    told = capsys.readouterr()
+    assert "2 built, 2 failed; 2 files" in told.out
+    lines = told.err.splitlines()
+    assert lines[0] == "not built: 2 of 4"
+    assert [line.split()[0] for line in lines[1:]] == sorted([str(bad), "no/such"])
+    assert 'unknown project "no/such"' in told.err
+    assert (tmp_path / "out/lugansk-cam_flat/sheet1.svg").exists()
+    # It goes on where it stopped.
+    assert run(arguments) == 1
+    assert "2 unchanged, 2 failed; 0 files" in capsys.readouterr().out
+
+
+def test_same_bytes_whatever_the_number_of_workers(tmp_path):
+    running = [command("build", *CAMS, "sixbar/2:1", "--sheet", "1", "--jobs", jobs, "-o", tmp_path / jobs) for jobs in "12"]
+    for process in running:
+        _, errors = process.communicate(timeout=60)
+        assert process.returncode == 0, errors
+        assert errors == ""  # no progress but on a terminal
+    one, two = (contents(tmp_path / jobs) for jobs in "12")
+    assert len(one) == 3 * 3
+    assert one == two
+
+
+def test_archives(tmp_path, capsys):
+    out = tmp_path / "out"
+    assert run(["build", CAMS[0], "--format", "svg", "-o", str(tmp_path / "folder")]) == 0
+    assert run(["build", CAMS[0], "--format", "svg", "-o", str(out), "--zip"]) == 0
+    packed = tmp_path / "out.zip"
+    with zipfile.ZipFile(packed) as archive:
+        assert archive.testzip() is None
+        assert {name: archive.read(name) for name in archive.namelist()} == contents(tmp_path / "folder")
+    first = packed.read_bytes()
+    capsys.readouterr()
+    assert run(["build", CAMS[0], "--format", "svg", "-o", str(packed), "--zip"]) == 0
+    assert "1 of 1 files unchanged" in capsys.readouterr().err
+    # Another format joins the members that are there.
+    assert run(["build", CAMS[0], "--format", "dxf", "-o", str(packed), "--zip"]) == 0
+    assert Archive(packed).read("sheet1.svg") == contents(tmp_path / "folder")["sheet1.svg"]
+    packed.unlink()
+    assert run(["build", CAMS[0], "--format", "svg", "-o", str(out), "--zip"]) == 0
+    assert packed.read_bytes() == first
+    packed.write_bytes(b"mine")
+    assert run(["build", CAMS[0], "--format", "svg", "-o", str(out), "--zip"]) == 2
+    assert packed.read_bytes() == b"mine"
+
+
+def test_names_of_a_batch(tmp_path):
+    assert len(batch.chosen((), ("sixbar",), ())) == 50
+    listed = ["# comment", "", "lugansk/engine", " transport/diesel@02-Т-27 ", "lugansk/cam_flat"]
+    names = batch.chosen(("lugansk/engine",), ("press",), (listed,))
+    assert names == ("lugansk/engine", "press", "transport/diesel@02-Т-27", "lugansk/cam_flat")
+    assert set(batch.chosen((), ("all",), ())) > set(CAMS)
+    with pytest.raises(BadInput, match="shipped are lugansk, press, sixbar, transport"):
+        batch.chosen((), ("sixbars",), ())
+    files = [tmp_path / "a.toml", tmp_path / "b.toml"]
+    for file in files:
+        file.write_text('[project]\nname = "mine"\n', encoding="utf-8")
+    with pytest.raises(BadInput, match='would both go into the folder "mine"'):
+        batch.chosen(tuple(map(str, files)), (), ())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([CAMS[0], "--jobs", "2"], "for several projects"),
+        ([*CAMS, "--explain"], "for one project"),
+        (["--list", os.devnull], "empty"),
+    ],
+)
+def test_wrong_usage(arguments, said, capsys):
+    assert run(["build", *arguments]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_killed_worker_costs_its_project_only_this_time(tmp_path, monkeypatch):
+    """The kernel may kill a process for want of memory: told as failures, not waited for."""
+
+    def one(project, order, parent):
+        if project == "deadly":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return Outcome(project)
+
+    monkeypatch.setattr(batch, "one", one)
+    found = {o.project: o.problem for o in batch.run(("a", "deadly", "b"), Order(), tmp_path, 2)}
+    assert set(found) == {"a", "b", "deadly"}
+    assert "killed" in found["deadly"]
+
+
+@pytest.fixture
+def heard():
+    """Interrupts are heard, also when the tests are a shell's background job."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_interrupt_that_the_parent_ignores_stops_no_worker(tmp_path):
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        running = command("build", *CAMS, "--format", "svg", "--jobs", "2", "-o", tmp_path, start_new_session=True)
+        while not any(tmp_path.iterdir()):
+            sleep(0.02)
+        os.killpg(running.pid, signal.SIGINT)
+        running.communicate(timeout=60)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert running.returncode == 0
+    assert len(list(tmp_path.iterdir())) == len(CAMS)
+
+
+@pytest.mark.usefixtures("heard")
+def test_interrupted_batch_leaves_nothing_half_written(tmp_path):
+    # An interrupt may fall between the opening of a file and its being held by anybody; Python then tells of it, if asked to.
+    running = command("build", "--all", "sixbar", "--format", "svg", "--jobs", "2", "-o", tmp_path, start_new_session=True,
+                      warnings="error,ignore::ResourceWarning")
+    end = monotonic() + 30
+    while not any(tmp_path.iterdir()) and monotonic() < end:
+        sleep(0.02)
+    os.killpg(running.pid, signal.SIGINT)
+    _, errors = running.communicate(timeout=30)
+    assert running.returncode == 130, errors
+    assert errors == ""
+    built = contents(tmp_path)
+    assert len(built) < 100
+    assert {name.rpartition("/")[2] for name in built} <= {RECORD, "sheet1.svg", "sheet2.svg"}
+    assert all(data.endswith((b"</svg>\n", b"}\n")) for data in built.values())
+
+
+CLUSTER = """
+import sys
+from distributed import LocalCluster
+from tmm_sheets.__main__ import run
+if __name__ == "__main__":
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        status = run([*sys.argv[1:], "--dask", cluster.scheduler_address])
+    sys.exit(status)
+"""
+
+
+def test_dask_cluster_of_two_workers(tmp_path):
+    if find_spec("distributed") is None:
+        pytest.skip("dask.distributed is not installed")
+    script = tmp_path / "cluster.py"
+    script.write_text(CLUSTER, encoding="utf-8")
+    arguments = ["build", *CAMS, "no/such", "--format", "svg", "-o"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, str(script), *arguments, str(tmp_path / "dask")], env=environment, capture_output=True,
+                          text=True, timeout=90, check=False)
+    assert done.returncode == 1
+    assert "2 built, 1 failed; 2 files" in done.stdout
+    assert done.stderr.startswith("not built: 1 of 3\n  no/such ")
+    assert run([*arguments, str(tmp_path / "here"), "--jobs", "1"]) == 1
+    assert contents(tmp_path / "dask") == contents(tmp_path / "here")
+
+
+def test_dask_that_is_not_there(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert run(["build", *CAMS, "--dask", "tcp://127.0.0.1:9", "-o", str(tmp_path)]) == 2
+    assert "pip install 'tmm-sheets[cluster]'" in capsys.readouterr().err
+
+
+def test_bar():
+    bar = Bar(40)
+    bar.done, bar.failed = 10, 1
+    assert bar.line(5.0) == "[#######.......................] 10/40, 2/s, 0:15 left, 1 failed"
+    bar = Bar(100_000)
+    bar.done = 1
+    assert bar.line(1.0).endswith("1/100000, 1/s, 27:46:39 left")

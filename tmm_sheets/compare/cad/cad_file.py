@@ -1,0 +1,529 @@
+"""Reading DXF files of any program, whole or damaged, text or binary; and writing the overlay a student opens in that program.
+
+Blocks, dimensions, leaders are taken apart as often as need be. Layers that are off or frozen, invisible entities and the layer
+Defpoints do not count. Points are complex, drawing units; what has a height is seen from above.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from io import BytesIO, StringIO
+from itertools import chain, pairwise
+from math import isfinite, radians
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.compare.cad.cad_ink import Area, CadInk, Entity, Space, Stroke, Writing, resized
+from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.errors import BadInput, Problem
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+    from ezdxf.entities.dxfentity import DXFEntity
+
+UNITS = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 13: 1e-3, 14: 100.0}
+"""Millimetres of $INSUNITS."""
+FINE = 5e-6
+"""Sagitta of flattened curves, in diagonals of the drawing (0.005 mm on a sheet A1)."""
+NARROW = 0.62
+"""Average width of a letter in heights, where the font is not known."""
+UNREAD = {"3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "IMAGE", "OLE2FRAME", "ACAD_PROXY_ENTITY", "PDFUNDERLAY", "WIPEOUT"}
+BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
+"""Codes of line weights."""
+PRIMITIVE = {"LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"}
+SILENT = {"POINT", "VIEWPORT", "ATTDEF", "RAY", "XLINE", "LIGHT", "SUN"}
+
+
+def read(path: Path) -> CadInk:
+    """Read a DXF file.
+
+    Raises
+    ------
+    BadInput
+        When there is no such file, it is empty, is a DWG or no DXF at all, or has nothing drawn in it.
+    """
+    document, notes = _open(path)
+    unit = UNITS.get(int(document.header.get("$INSUNITS", 0)))
+    reader = _Reader(document)
+    model = reader.space("model space", document.modelspace())
+    spaces = [model]
+    for layout in document.layouts:
+        if not layout.is_modelspace:
+            space = reader.paper(layout, model)
+            if not space.empty:
+                spaces.append(space)
+    notes += reader.notes()
+    good = tuple(s for s in spaces if not s.empty)
+    if not good:
+        said = "; ".join(notes)
+        raise BadInput(Problem(f"nothing is drawn in it{f' ({said})' if said else ''}", str(path),
+                               hint="save the drawing with its layers on and thawed"))
+    return CadInk(good, unit, tuple(notes))
+
+
+def _open(path: Path) -> tuple[Document, list[str]]:
+    from ezdxf import recover
+    from ezdxf.filemanagement import readfile
+    from ezdxf.lldxf.const import DXFError
+
+    hint = "save the drawing as DXF (AutoCAD: DXFOUT or Save as; KOMPAS: Сохранить как, DXF)"
+    try:
+        with path.open("rb") as file:
+            head = file.read(1 << 16)
+    except OSError as e:
+        raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path))) from None
+    if not head:
+        raise BadInput(Problem("the file is empty", str(path), hint=hint))
+    if head.startswith(b"AC10"):
+        raise BadInput(Problem("this is a DWG file, only DXF can be read", str(path), hint=hint))
+    other = {b"%PDF": "PDF", b"\x89PNG": "PNG", b"\xff\xd8\xff": "JPEG", b"PK\x03\x04": "ZIP", b"KF\x1a": "KOMPAS"}
+    for mark, name in other.items():
+        if head.startswith(mark):
+            also = "; photographs and scans are compared with --image" if name in ("PDF", "PNG", "JPEG") else ""
+            raise BadInput(Problem(f"this is a {name} file, not DXF", str(path), hint=hint + also))
+    if b"SECTION" not in head:
+        raise BadInput(Problem("this is not a DXF file", str(path), hint=hint))
+    # The library tells its log of every small repair; what matters is told in the notes.
+    log = logging.getLogger("ezdxf")
+    before = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        try:  # most files need no repair, and binary ones cannot be repaired
+            return readfile(path), []
+        except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError):
+            if head.startswith(b"AutoCAD Binary DXF"):
+                raise
+        whole = _completed(path.read_bytes())
+        document, auditor = recover.readfile(path) if whole is None else recover.read(BytesIO(whole))
+    except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError) as e:
+        raise BadInput(Problem(f"this is not a DXF file or it is damaged beyond repair ({e or type(e).__name__})", str(path),
+                               hint=hint)) from None
+    finally:
+        log.setLevel(before)
+    # Nearly every program writes something this library mends; only what was lost is worth a word.
+    if whole is not None:
+        return document, ["the file ends in the middle: what there is of it was compared"]
+    lost = len(auditor.errors)
+    told = f"the file is damaged: {lost} error{'s' * (lost > 1)} could not be mended, part of it may be lost"
+    return document, [told if lost else "the file was damaged and was mended"]
+
+
+def _completed(data: bytes) -> bytes | None:
+    """A text file that was cut off, up to its last whole entity; None when it has its end."""
+    if data.startswith(b"AutoCAD Binary DXF") or b"EOF" in data[-200:]:
+        return None
+    begins = [m.start() for m in re.finditer(rb"\n[ \t]*0[ \t]*\r?\n(?=[A-Z])", data)]
+    return data[: begins[-1]] + b"\n  0\nENDSEC\n  0\nEOF\n" if begins else None
+
+
+def words(text: str, encoding: str) -> str:
+    """Text that was read with the wrong code page, as it was meant: UTF-8 or Russian Windows."""
+    if text.isascii() or encoding.lower().replace("-", "") in ("utf8", "cp1251"):
+        return text.encode("utf-8", "replace").decode("utf-8")
+    try:
+        data = text.encode(encoding, "surrogateescape")
+    except (UnicodeError, LookupError):
+        return text.encode("utf-8", "replace").decode("utf-8")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        pass
+    letters = [c for c in text if c.isalpha() or "\udc80" <= c <= "\udcff"]
+    if sum(c > "\x7f" for c in letters) > len(letters) / 2:
+        return data.decode("cp1251", "replace")
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+class _Look(NamedTuple):
+    """Layer, name of the line type in small letters, line weight in hundredths of a millimetre or one of the codes below 0."""
+
+    layer: str
+    linetype: str
+    weight: int
+
+
+class _Reader:
+    """Takes entities apart, counting what it cannot read."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.hidden = {"defpoints"}
+        self.frozen: set[str] = set()
+        self.patterns = {line.dxf.name.lower(): _pattern(line) for line in document.linetypes}
+        scale = float(document.header.get("$LTSCALE", 1.0))
+        self.dashes = {line.dxf.name.lower(): scale * max(_dashes(line), default=0.0) for line in document.linetypes}
+        self.layers: dict[str, _Look] = {}
+        for layer in document.layers:
+            name = layer.dxf.name
+            self.layers[name.lower()] = _Look(name, layer.dxf.get("linetype", "Continuous").lower(),
+                                              int(layer.dxf.get("lineweight", DEFAULT)))
+            if layer.is_off() or layer.is_frozen():
+                self.hidden.add(layer.dxf.name.lower())
+            if layer.is_frozen():
+                self.frozen.add(layer.dxf.name.lower())
+        self.unread: Counter[str] = Counter()
+        self.nowhere = 0
+        self.skipped = 0
+        self.heights: list[float] = []
+
+    def notes(self) -> list[str]:
+        """What was left out."""
+        found = []
+        if self.unread:
+            what = ", ".join(f"{n} {kind}" for kind, n in sorted(self.unread.items()))
+            found.append(f"left out, not lines or text: {what}")
+        if self.nowhere:
+            found.append(f"left out, with coordinates that are no numbers: {self.nowhere} entities")
+        if self.skipped:
+            found.append(f"left out, on layers that are off or frozen: {self.skipped} entities")
+        if self.heights:
+            found.append("some of the drawing has heights (z): it is seen from above")
+        return found
+
+    def space(self, name: str, layout: Any) -> Space:
+        """Everything drawn in a layout."""
+        entities: list[Entity] = []
+        strokes: list[Stroke] = []
+        areas: list[Area] = []
+        writings: list[Writing] = []
+        parts = list(self._parts(layout))
+        fine = self._fine(e for _, e, _ in parts)
+        for outer, e, look in parts:
+            kind = e.dxftype()
+            if look.layer.lower() in self.hidden or e.dxf.get("invisible", 0):
+                self.skipped += look.layer.lower() != "defpoints"
+                continue
+            entities.append(Entity(outer.dxftype(), words(look.layer, self.document.encoding),
+                                   str(outer.dxf.get("handle", "") or "?"),
+                                   self.patterns.get(look.linetype, "continuous"),
+                                   look.weight / 100 if look.weight >= 0 else None, _breadth(e, kind),
+                                   self.dashes.get(look.linetype, 0.0) * float(e.dxf.get("ltscale", 1.0))))
+            n = len(entities) - 1
+            try:
+                if kind in ("TEXT", "ATTRIB"):
+                    writings.extend(_text(e, n))
+                elif kind == "MTEXT":
+                    writings.extend(_mtext(e, n))
+                elif kind in ("SOLID", "TRACE"):
+                    areas.append(Area(_xy(e.wcs_vertices()), n))  # type: ignore[attr-defined]
+                elif kind in ("HATCH", "MPOLYGON"):
+                    lines, outlines = _hatch(e, fine)
+                    areas.extend(Area(p, n, not lines) for p in outlines)
+                    strokes.extend(Stroke(p, n) for p in lines)
+                else:
+                    strokes.extend(Stroke(p, n) for p in self._lines(e, kind, fine))
+                    areas.extend(Area(p, n) for p in _wide(e, kind))
+            except (ValueError, TypeError, AttributeError, ZeroDivisionError, KeyError, IndexError, ArithmeticError):
+                self.unread[kind] += 1  # a broken entity must not hide the others
+        self.nowhere += len({s.entity for s in strokes if not np.isfinite(s.points).all()})
+        strokes = [s for s in strokes if len(s.points) > 1 and np.isfinite(s.points).all()]
+        areas = [Area(_open_ended(a.points), a.entity, a.solid) for a in areas if np.isfinite(a.points).all()]
+        areas = [a for a in areas if len(a.points) > 2]
+        writings = [w._replace(text=words(w.text, self.document.encoding)) for w in writings]
+        writings = [w for w in writings if isfinite(w.at.real + w.at.imag + w.height) and w.text.strip()]
+        return Space(name, tuple(strokes), tuple(areas), tuple(writings), tuple(entities))
+
+    def paper(self, layout: Any, model: Space) -> Space:
+        """A sheet of paper space together with what its viewports show of the model."""
+        space = self.space(f'layout "{words(layout.name, self.document.encoding)}"', layout)
+        for port in layout.query("VIEWPORT"):
+            if port.dxf.get("id", 1) == 1 or not port.dxf.get("status", 1) or port.dxf.layer.lower() in self.hidden:
+                continue
+            height = float(port.dxf.view_height)
+            if not height > 0 or model.empty:
+                continue
+            k = float(port.dxf.height) / height
+            turn = k * np.exp(1j * radians(port.dxf.get("view_twist_angle", 0.0)))
+            seen, at = port.dxf.view_center_point, port.dxf.center
+            shift = complex(at.x, at.y) - turn * complex(seen.x, seen.y)
+            half = complex(float(port.dxf.width) / 2, float(port.dxf.height) / 2)
+            low, high = complex(at.x, at.y) - half, complex(at.x, at.y) + half
+            space = _shown(space, model, turn, shift, low, high)
+        return space
+
+    def _parts(self, layout: Any) -> Iterator[tuple[DXFEntity, DXFEntity, _Look]]:
+        """(entity of the layout, primitive it consists of, how that looks)."""
+        for e in layout:
+            try:
+                yield from ((e, part, look) for part, look in self._apart(e, None))
+            except (ValueError, TypeError, AttributeError, KeyError, ZeroDivisionError, RecursionError):
+                self.unread[e.dxftype()] += 1
+
+    def _apart(self, e: Any, of: _Look | None) -> Iterator[tuple[DXFEntity, _Look]]:
+        """Primitives of an entity; ``of`` is the look of the block reference or dimension it is part of."""
+        from ezdxf.protocols import SupportsVirtualEntities, virtual_entities
+
+        kind, look = e.dxftype(), self._look(e, of)
+        if kind in PRIMITIVE or not (kind == "INSERT" or isinstance(e, SupportsVirtualEntities)):
+            yield e, look
+            return
+        if kind == "INSERT" and look.layer.lower() in self.frozen:  # unlike one on a layer that is only off
+            self.skipped += 1
+            return
+        if kind == "INSERT" and e.mcount > 1:
+            inner = e.multi_insert()
+        else:
+            inner = chain(e.attribs if kind == "INSERT" else (), virtual_entities(e))
+        for part in inner:
+            yield from self._apart(part, look)
+
+    def _look(self, e: Any, of: _Look | None) -> _Look:
+        """What an entity does not say itself is told by its layer or, when it says so, by what it is part of."""
+        layer = e.dxf.get("layer", "0")
+        if layer == "0" and of is not None:
+            layer = of.layer
+        line, weight = e.dxf.get("linetype", "BYLAYER").lower(), int(e.dxf.get("lineweight", BYLAYER))
+        of_layer = self.layers.get(layer.lower(), _Look(layer, "continuous", DEFAULT))
+        by_block = of if of is not None else _Look(layer, "continuous", DEFAULT)
+        line = of_layer.linetype if line == "bylayer" else by_block.linetype if line == "byblock" else line
+        weight = of_layer.weight if weight == BYLAYER else by_block.weight if weight == BYBLOCK else weight
+        return _Look(layer, line, weight)
+
+    def _fine(self, parts: Iterator[DXFEntity]) -> float:
+        """Sagitta for flattening, from a rough size of the drawing."""
+        z = []
+        keys = {"LINE": ("start", "end"), "CIRCLE": ("center",), "ARC": ("center",), "TEXT": ("insert",), "MTEXT": ("insert",)}
+        for e in parts:
+            for key in keys.get(e.dxftype(), ()):
+                p = e.dxf.get(key)
+                z += [] if p is None else [complex(p.x, p.y)]
+            if e.dxftype() == "LWPOLYLINE" and len(e):  # type: ignore[arg-type]
+                z.extend(complex(x, y) for x, y, *_ in e[:2])  # type: ignore[index]
+        if len(z) < 2:
+            return 0.005
+        # Leave a few strays far off out of account.
+        p = np.array(z)
+        low, high = (complex(np.quantile(p.real, q), np.quantile(p.imag, q)) for q in (0.02, 0.98))
+        return max(abs(high - low) * FINE, 1e-9)
+
+    def _lines(self, e: Any, kind: str, fine: float) -> Iterator[Points]:
+        """Centre lines of a primitive, curves in chords."""
+        from ezdxf import path
+
+        if kind in SILENT:
+            return
+        if kind == "LINE":
+            a, b = e.dxf.start, e.dxf.end
+            self._high(a.z, b.z)
+            yield np.array([complex(a.x, a.y), complex(b.x, b.y)])
+            return
+        if kind == "LWPOLYLINE" and e.dxf.get("extrusion", (0, 0, 1))[2] == 1 and not e.has_arc:
+            points = np.array([complex(x, y) for x, y in e.get_points("xy")])
+            yield np.append(points, points[:1]) if e.closed and len(points) else points
+            return
+        if kind in UNREAD:
+            self.unread[kind] += 1
+            return
+        if kind in ("POLYFACE", "MESH") or (kind == "POLYLINE" and not (e.is_2d_polyline or e.is_3d_polyline)):
+            self.unread[kind] += 1
+            return
+        if kind in ("ARC", "CIRCLE", "ELLIPSE", "SPLINE"):  # as paths they would be Bezier curves, 0.03 % of the radius off
+            vertices = list(e.flattening(fine))
+            self._high(*(v.z for v in vertices))
+            yield _xy(vertices)
+            return
+        if kind == "LWPOLYLINE" or (kind == "POLYLINE" and e.is_2d_polyline):
+            parts = list(e.virtual_entities())
+            if any(part.dxftype() == "ARC" for part in parts):
+                for part in parts:
+                    yield from self._lines(part, part.dxftype(), fine)
+                return
+        try:
+            made = path.make_path(e)
+        except TypeError:
+            self.unread[kind] += 1
+            return
+        for part in made.sub_paths():
+            vertices = list(part.flattening(fine, segments=4))
+            self._high(*(v.z for v in vertices))
+            yield _xy(vertices)
+
+    def _high(self, *z: float) -> None:
+        if not self.heights and max(map(abs, z), default=0.0) > 1e-6:
+            self.heights.append(max(map(abs, z)))
+
+
+def _xy(vertices: Any) -> Points:
+    return np.array([complex(v[0], v[1]) for v in vertices])
+
+
+def _open_ended(z: Points) -> Points:
+    """An outline without the points that repeat their neighbour or, at the end, the first."""
+    keep = np.abs(z - np.roll(z, 1)) > 1e-9 * (1 + np.abs(z).max(initial=0.0))
+    return np.asarray(z[keep])
+
+
+def _text(e: Any, n: int) -> Iterator[Writing]:
+    align, p, q = e.get_placement()
+    name = align.name
+    text, height = e.plain_text(), float(e.dxf.height)
+    angle = radians(e.dxf.get("rotation", 0.0))
+    width = NARROW * height * len(text) * float(e.dxf.get("width", 1.0))
+    p = e.ocs().to_wcs(p)
+    at = complex(p.x, p.y)
+    if q is not None and name in ("ALIGNED", "FIT"):
+        q = e.ocs().to_wcs(q)
+        along = complex(q.x, q.y) - at
+        yield Writing(text, at + along / 2, height, abs(along), float(np.angle(along)), n)
+        return
+    x = 1.0 if name.endswith("RIGHT") else 0.5 if name.endswith("CENTER") or name == "MIDDLE" else 0.0
+    y = 1.0 if name.startswith("TOP") else 0.5 if name.startswith("MIDDLE") else 0.0
+    yield Writing(text, at + np.exp(1j * angle) * complex(width * (0.5 - x), height * (0.5 - y)), height, width, angle, n)
+
+
+def _mtext(e: Any, n: int) -> Iterator[Writing]:
+    lines = [line for line in e.plain_text(split=True) if line.strip()]
+    height = float(e.dxf.get("char_height", 2.5))
+    angle = radians(e.get_rotation())
+    u = complex(np.exp(1j * angle))
+    at = complex(e.dxf.insert.x, e.dxf.insert.y)
+    place = int(e.dxf.get("attachment_point", 1)) - 1
+    x, y = (place % 3) / 2, 1 - (place // 3) / 2
+    pitch = 5 / 3 * height * float(e.dxf.get("line_spacing_factor", 1.0))
+    whole = height + pitch * (len(lines) - 1)
+    for i, line in enumerate(lines):
+        width = NARROW * height * len(line)
+        yield Writing(line, at + u * complex(width * (0.5 - x), whole * (1 - y) - i * pitch - height / 2), height, width, angle, n)
+
+
+def _hatch(e: Any, fine: float) -> tuple[list[Points], list[Points]]:
+    """Pattern lines (none when solid) and outlines."""
+    from ezdxf import path
+    from ezdxf.render import hatching
+
+    outlines = [_xy(p.flattening(fine, segments=4)) for p in path.from_hatch(e)]
+    if e.has_solid_fill or e.has_gradient_data:
+        return [], outlines
+    lines = []
+    try:
+        for k, (a, b) in enumerate(hatching.hatch_entity(e)):
+            if k > 20_000:
+                break
+            lines.append(np.array([complex(a.x, a.y), complex(b.x, b.y)]))
+    except hatching.HatchingError:
+        pass
+    return lines, outlines
+
+
+def _wide(e: Any, kind: str) -> Iterator[Points]:
+    """Outlines of tapering stretches of a polyline: so arrow heads are drawn by hand."""
+    if kind != "LWPOLYLINE":
+        return
+    rows = e.get_points("xyse")
+    for (x, y, start, end), (x1, y1, _, _) in pairwise(rows):
+        a, b = complex(x, y), complex(x1, y1)
+        if abs(start - end) > 1e-9 and a != b:
+            n = 1j * (b - a) / abs(b - a) / 2
+            yield np.array([a + start * n, a - start * n, b - end * n, b + end * n])
+
+
+def _breadth(e: Any, kind: str) -> float:
+    """Width of a polyline that is equally broad all along, drawing units; 0 for a line."""
+    if kind == "LWPOLYLINE":
+        if e.dxf.hasattr("const_width") and e.dxf.const_width > 0:
+            return float(e.dxf.const_width)
+        rows = e.get_points("se")
+        widths = {float(w) for row in (rows if e.closed else rows[:-1]) for w in row}
+    elif kind == "POLYLINE":
+        widths = {float(e.dxf.get("default_start_width", 0.0)), float(e.dxf.get("default_end_width", 0.0))}
+    else:
+        return 0.0
+    return widths.pop() if len(widths) == 1 else 0.0
+
+
+def _pattern(line: Any) -> Pattern:
+    """Class of a line type of the file."""
+    if line.pattern_tags.is_complex_type():
+        return "other"
+    return of_dashes(_dashes(line))
+
+
+def _dashes(line: Any) -> list[float]:
+    """Strokes (positive) and gaps (negative) of a line type."""
+    return [float(tag.value) for tag in line.pattern_tags.tags if tag.code == 49]
+
+
+def _shown(paper: Space, model: Space, turn: complex, shift: complex, low: complex, high: complex) -> Space:
+    """Paper space with one viewport's contents: the model turned, scaled and shifted, what lies outside its edges cut off."""
+    first = len(paper.entities)
+    strokes = [Stroke(part, s.entity + first) for s in model.strokes for part in _clipped(turn * s.points + shift, low, high)]
+    size, angle = abs(turn), float(np.angle(turn))
+
+    def inside(z: complex) -> bool:
+        return low.real <= z.real <= high.real and low.imag <= z.imag <= high.imag
+
+    areas = [Area(turn * a.points + shift, a.entity + first, a.solid) for a in model.areas
+             if inside(complex((turn * a.points + shift).mean()))]
+    writings = [Writing(w.text, complex(turn * w.at + shift), w.height * size, w.width * size, w.angle + angle, w.entity + first)
+                for w in model.writings if inside(complex(turn * w.at + shift))]
+    return Space(paper.name, paper.strokes + tuple(strokes), paper.areas + tuple(areas), paper.writings + tuple(writings),
+                 paper.entities + resized(model.entities, size))
+
+
+def _clipped(z: Points, low: complex, high: complex) -> Iterator[Points]:
+    """The parts of a line inside a rectangle."""
+    if (z.real >= low.real).all() and (z.real <= high.real).all() and (z.imag >= low.imag).all() and (z.imag <= high.imag).all():
+        yield z
+        return
+    run: list[complex] = []
+    for a, b in pairwise(z):
+        d = b - a
+        t0, t1 = 0.0, 1.0
+        for p, q in ((-d.real, a.real - low.real), (d.real, high.real - a.real), (-d.imag, a.imag - low.imag),
+                     (d.imag, high.imag - a.imag)):
+            if p == 0:
+                if q < 0:
+                    t1 = -1.0
+            elif p < 0:
+                t0 = max(t0, q / p)
+            else:
+                t1 = min(t1, q / p)
+        if t0 >= t1:
+            if len(run) > 1:
+                yield np.array(run)
+            run = []
+            continue
+        if not run or abs(run[-1] - (a + t0 * d)) > 1e-9 * (abs(d) + 1):
+            if len(run) > 1:
+                yield np.array(run)
+            run = [a + t0 * d]
+        run.append(a + t1 * d)
+    if len(run) > 1:
+        yield np.array(run)
+
+
+COLOURS = {"SHEET": 3, "DRAWN": 8, "FOUND": 1, "LOOKS": 30}
+"""Layers of the overlay with their AutoCAD colours: the exact sheet green, what was compared grey, findings red, lines of another
+type or width orange.
+"""
+
+
+def overlay(exact: Sequence[Points], drawn: Sequence[Points], found: Sequence[tuple[complex, float, str]],
+            looks: Sequence[tuple[Points, str]] = ()) -> bytes:
+    """A DXF file (R12: every program reads it) with the exact sheet over the drawing, findings circled and numbered; in mm.
+
+    ``found`` has centre, radius and number of each, ``looks`` lines of another type or width with a number or an empty text.
+    """
+    from ezdxf.addons.r12writer import r12writer
+
+    text = StringIO()
+    with r12writer(text) as dxf:
+        for layer, lines in (("DRAWN", drawn), ("SHEET", exact)):
+            for z in lines:
+                dxf.add_polyline_2d(np.column_stack((z.real, z.imag)).tolist(), layer=layer, color=COLOURS[layer])
+        for z, number in looks:
+            dxf.add_polyline_2d(np.column_stack((z.real, z.imag)).tolist(), layer="LOOKS", color=COLOURS["LOOKS"])
+            if number:
+                at = z[len(z) // 2] if len(z) > 2 else z.mean()
+                dxf.add_text(number, (at.real + 1.5, at.imag + 1.5), height=3.5, layer="LOOKS", color=COLOURS["LOOKS"])
+        for centre, radius, number in found:
+            dxf.add_circle((centre.real, centre.imag), radius, layer="FOUND", color=COLOURS["FOUND"])
+            corner = (centre.real + 0.72 * radius, centre.imag + 0.72 * radius)
+            dxf.add_text(number, corner, height=3.5, layer="FOUND", color=COLOURS["FOUND"])
+    return text.getvalue().encode("ascii")

@@ -1,0 +1,116 @@
+"""Lettering: text by what it says, drawn letters stroke by stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.cad import cad_text
+from tmm_sheets.compare.cad.cad_comparison import Comparison, grown
+from tmm_sheets.compare.cad.cad_findings import Finding
+from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
+from tmm_sheets.compare.cad.placing import Lines, lines
+from tmm_sheets.drawing.ink import letters
+from tmm_sheets.drawing.marks import Text
+
+
+def lettering(state: Comparison) -> None:
+    """What the lettering says; what text does not tell is looked for as drawn letters."""
+    numbers = [n for n, e in enumerate(state.elements) if e.kind == "text"]
+    wanted = []
+    for n in numbers:
+        e, m = state.elements[n], state.moves[n]
+        middle = m(complex(e.points.mean()))
+        wanted.append(cad_text.Wanted(e.text, middle + (e.points - complex(e.points.mean())), e.height))
+    got = cad_text.read(wanted, state.space.writings)
+    rest = [(n, w) for k, (n, w) in enumerate(zip(numbers, wanted, strict=True)) if k not in got]
+    for k, answer in got.items():
+        n = numbers[k]
+        entities = tuple(state.space.writings[i].entity for i in answer.writings)
+        state.used_writings.update(answer.writings)
+        if answer.says is None:
+            shift = complex(np.mean([state.space.writings[i].at for i in answer.writings])) - wanted[k].middle
+            state.found[n] = state.finding(n, 0.0, "", shift=shift, entities=entities)
+        else:
+            state.found[n] = state.finding(n, 4 * state.tolerance, f'reads "{answer.says}" instead of "{state.elements[n].text}"',
+                                          entities=entities)
+        _bars(state, n)
+        state.lettered.append(grown(wanted[k].corners, 0.8))
+    _strokes_of_letters(state, rest)
+
+
+def _bars(state: Comparison, n: int) -> None:
+    """Overbars and leader lines of lettering are the draughtsman's: they are looked for only to be no extras."""
+    state.claims += [overlaps(lines([state.moves[n](p)]), state.theirs, 1.0) for p in state.elements[n].pieces]
+
+
+def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.Wanted]]) -> None:
+    """Lettering that is drawn with lines, letter by letter."""
+    strokes, owner = [], []
+    glyphs: list[tuple[int, int]] = []  # element, first stroke
+    for n, _ in rest:
+        move = state.moves[n]
+        for mark in state.elements[n].marks:
+            if isinstance(mark, Text):
+                shift = complex(move(complex(state.elements[n].points.mean()))) - complex(state.elements[n].points.mean())
+                for stroke in letters(mark):
+                    strokes.append(stroke + shift)
+                    owner.append(n)
+        glyphs.append((n, len(strokes)))
+    ours = lines(strokes)
+    near = overlaps(ours, state.theirs, max(state.tolerance, 0.25)) if len(ours.a) and len(state.theirs.a) else None
+    covered = np.zeros(len(strokes))
+    if near is not None:
+        _add_unions(covered, near, ours)
+    size = np.array([float(np.abs(np.diff(s)).sum()) for s in strokes])
+    of = np.array(owner, dtype=np.int64)
+    for n, want in rest:
+        mine = of == n
+        whole, share = size[mine].sum(), covered[mine].sum()
+        # A single stroke of a letter may be short, but it is not mostly absent.
+        lost = (size[mine] - covered[mine])[size[mine] > 0.3 * want.height]
+        if whole > 0 and share > 0.85 * whole and (not len(lost) or lost.max() < 0.25 * want.height):
+            assert near is not None
+            state.claims.append(near.only(of[ours.owner[near.ours]] == n))
+            _bars(state, n)
+            state.drawn_letters.append((n, want))
+            state.found[n] = state.finding(n, 0.0, "")
+        elif share > 0.4 * whole > 0:
+            state.found[n] = _other_letters(state, n)
+            state.lettered.append(grown(want.corners, 0.8))
+        else:
+            state.found[n] = state.finding(n, 2 * state.tolerance, f'text "{state.elements[n].text}" missing', missing=True)
+
+
+def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:
+    """Letters with short strokes inside their rectangle that belong to nothing: they are other letters."""
+    import shapely
+
+    free = np.zeros(len(state.theirs.a))
+    for r in rest:
+        free[r.piece] += r.b - r.a if r.b - r.a > 0.1 else 0.0
+    whole = np.bincount(state.theirs.owner, state.theirs.length)
+    for n, want in state.drawn_letters:
+        box = shapely.Polygon(np.column_stack((want.corners.real, want.corners.imag))).buffer(-0.1)
+        inside = state.theirs.tree.query(box, predicate="contains")
+        inside = inside[whole[state.theirs.owner[inside]] < 4 * want.height]
+        if free[inside].sum() > 0.45 * want.height:
+            state.found[n] = _other_letters(state, n)
+
+
+def _other_letters(state: Comparison, n: int) -> Finding:
+    return state.finding(n, 4 * state.tolerance, f'the letters are not those of "{state.elements[n].text}"')
+
+
+def _add_unions(covered: npt.NDArray[np.float64], near: Overlaps, ours: Lines) -> None:
+    """Adds to each of our lines how much of it the overlaps cover, every place once."""
+    order = np.argsort(near.ours, kind="stable")
+    i = near.ours[order]
+    if not len(i):
+        return
+    first = np.flatnonzero(np.concatenate(([True], i[1:] != i[:-1])))
+    s0, s1 = near.s0[order].tolist(), near.s1[order].tolist()
+    for p, q in zip(first.tolist(), [*first[1:].tolist(), len(i)], strict=True):
+        covered[ours.owner[i[p]]] += sum(b - a for a, b in union(zip(s0[p:q], s1[p:q], strict=True), 0.02))

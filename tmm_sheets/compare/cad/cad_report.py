@@ -1,0 +1,159 @@
+"""What is told of a comparison with a CAD drawing: a table for the terminal, a tree for other programs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tmm_sheets.compare.cad.cad_examined import Examined
+from tmm_sheets.compare.cad.cad_findings import Finding, Outcome
+from tmm_sheets.compare.cad.cad_ink import Entity
+from tmm_sheets.compare.elements import Element, View
+
+SHOWN = 60
+"""Rows of a table in the terminal; all of them are in the JSON."""
+MANY = 4
+"""Numbers of elements that a row of wrong types and widths of lines has."""
+VIEW_GONE = 0.15
+"""A view of which less than this is right, and most missing, is told as missing in one row."""
+
+
+def worst(findings: Sequence[Finding]) -> list[Finding]:
+    """What is not right, red first, the largest deviation first."""
+    rank = {"red": 0, "amber": 1}
+    return sorted((f for f in findings if f.verdict in rank), key=lambda f: (rank[str(f.verdict)], -f.deviation, f.element.number))
+
+
+def gone(outcome: Outcome) -> set[View]:
+    """Views that are not in the drawing at all."""
+    by_view: dict[View, list[Finding]] = {}
+    for f in outcome.findings:
+        by_view.setdefault(f.element.view, []).append(f)
+    return {v for v, found in by_view.items() if len(found) > 5 and sum(f.missing for f in found) > 0.6 * len(found)
+            and sum(f.verdict == "green" for f in found) < VIEW_GONE * len(found)}
+
+
+def _called(e: Element) -> str:
+    if e.kind == "text":
+        return "text"
+    what: str = e.kind
+    if e.arrow and e.kind == "line":
+        what = "arrow"
+    elif e.kind == "circle" and e.fills:
+        what = "dot"
+    elif e.kind == "hatch":
+        what = "hatching"
+    return f"{what} {e.name}".strip()
+
+
+def _found_by(entities: Sequence[Entity]) -> str:
+    if not entities:
+        return ""
+    more = f" and {len(entities) - 1} more" if len(entities) > 1 else ""
+    return f"{entities[0]}{more}"
+
+
+def text(name: str, path: Path, found: Examined, pencil: float) -> str:
+    """The outcome for the terminal."""
+    laid, outcome = found.laid, found.outcome
+    lost = gone(outcome)
+    there = [f for f in outcome.findings if f.element.view not in lost]
+    colours = Counter(f.verdict for f in there)
+    out = [f"{name}, sheet {laid.n}: {path.name} ({laid.space.name}), {len(outcome.findings)} elements, tolerance {pencil:g} mm",
+           ""]
+    rows = []
+    for f in worst(there):
+        where = _found_by([laid.space.entities[k] for k in f.entities])
+        rows.append((str(f.element.number), f.element.view.name, _called(f.element), f.what, str(f.verdict), where))
+    if rows:
+        out += _table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows)
+        out.append("")
+    out += [f'missing altogether: view "{v.name}", {sum(f.element.view == v for f in outcome.findings)} elements'
+            for v in sorted(lost, key=lambda v: v.n)]
+    extra = []
+    for k, x in enumerate(outcome.extras, 1):
+        what = f'text "{x.text}"' if x.text else f"{x.length:.1f} mm of line" + (f" in {x.count} entities" if x.count > 1 else "")
+        extra.append((f"+{k}", what, f"({x.at.real:.0f}, {x.at.imag:.0f})", str(x.verdict), str(x.entity)))
+    if extra:
+        out += ["extra, on no element of the sheet:", *_table(("no.", "what", "about, mm", "verdict", "in the drawing"), extra), ""]
+    looks = _looks(found)
+    if looks:
+        head = ("no.", "view", "lines", "what", "verdict", "in the drawing")
+        out += ["of another type or width of line:", *_table(head, looks), ""]
+    skipped = colours[None]
+    also = f", {skipped} not compared" if skipped else ""
+    most = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
+    views = f"; {len(lost)} of {len({f.element.view for f in outcome.findings})} views missing" if lost else ""
+    unlike = len({n for look in outcome.looks for n in look.elements})
+    out.append(f"{colours['green']} green (up to {most:.2f} mm), {colours['amber']} amber, {colours['red']} red{also}; "
+               f"{len(outcome.extras)} extra{views}"
+               + (f"; {unlike} of another type or width of line" if looks else ""))
+    return "\n".join(out)
+
+
+def _looks(found: Examined) -> list[tuple[str, ...]]:
+    """A row for every group of lines of another type or width."""
+    rows: list[tuple[str, ...]] = []
+    for k, look in enumerate(found.outcome.looks, 1):
+        size, first = len(look.elements), ", ".join(map(str, look.elements[:MANY]))
+        which = f"{look.lines}, {size}: no. {first}, ..." if size > MANY else f"{look.lines}: no. {first}"
+        where = _found_by([found.laid.space.entities[i] for i in look.entities])
+        rows.append((f"~{k}", look.view.name if look.view is not None else "all views", which, look.what, str(look.verdict), where))
+    return rows
+
+
+def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
+    shown = [tuple(c if len(c) <= 74 else c[:73] + "…" for c in row) for row in rows[:SHOWN]]
+    widths = [max(len(row[k]) for row in (head, *shown)) for k in range(len(head))]
+    out = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (head, *shown)]
+    if len(rows) > SHOWN:
+        out.append(f"... and {len(rows) - SHOWN} more; --json has all")
+    return out
+
+
+def _point(z: complex | None) -> list[float] | None:
+    return None if z is None else [round(z.real, 3), round(z.imag, 3)]
+
+
+def _rounded(x: float | None) -> float | None:
+    return None if x is None else round(x, 4)
+
+
+def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any]:
+    """The outcome for other programs."""
+    laid, places, outcome = found.laid, found.places, found.outcome
+    colours = Counter(f.verdict for f in outcome.findings)
+    p = laid.placing
+
+    def entity(e: Entity) -> dict[str, str]:
+        return {"type": e.kind, "layer": e.layer, "handle": e.handle}
+
+    return {
+        "project": name,
+        "sheet": laid.n,
+        "drawing": path.name,
+        "space": laid.space.name,
+        "tolerance": pencil,
+        "placing": {"scale": p.scale, "degrees": round(p.degrees, 4), "shift": _point(p.shift), "mirrored": p.mirrored,
+                    "share": round(laid.share, 4)},
+        "views": [{"view": v.name, "share": round(s, 4), **(
+            {"shift": _point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
+            if v in places.moves else {})} for v, s in places.share.items()],
+        "elements": [{
+            "number": f.element.number, "view": f.element.view.name, "kind": f.element.kind, "name": f.element.name,
+            "step": f.element.of, "verdict": f.verdict, "deviation": round(f.deviation, 4), "shift": _point(f.shift),
+            "turn": _rounded(f.turn), "size": _rounded(f.size), "missing": f.missing, "what": f.what, "at": _point(f.at),
+            "entities": [entity(laid.space.entities[k]) for k in f.entities],
+        } for f in outcome.findings],
+        "extra": [{"number": k, "what": x.text or "line", "length": round(x.length, 3), "at": _point(x.at), "verdict": x.verdict,
+                   "count": x.count, "entity": entity(x.entity)} for k, x in enumerate(outcome.extras, 1)],
+        "looks": [{"number": k, "view": look.view.name if look.view is not None else None, "lines": look.lines, "what": look.what,
+                   "verdict": look.verdict, "elements": list(look.elements),
+                   "entities": [entity(laid.space.entities[i]) for i in look.entities]} for k, look in enumerate(outcome.looks, 1)],
+        "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
+                    "extra": len(outcome.extras), "looks": len(outcome.looks),
+                    "missing_views": [v.name for v in sorted(gone(outcome), key=lambda v: v.n)]},
+    }
+

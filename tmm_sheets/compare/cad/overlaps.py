@@ -1,0 +1,204 @@
+"""Which parts of two sets of lines lie on one another: intervals along both, with the distance between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.cad.placing import Lines, shapes
+from tmm_sheets.drawing.marks import Points
+
+Numbers = npt.NDArray[np.float64]
+Interval = tuple[float, float]
+
+STEEP = 0.4
+"""Largest slope between short pieces that may still be the same line (chords of one circle, cut at other places)."""
+FLAT = 0.03
+"""The same between long ones."""
+
+
+class Overlaps(NamedTuple):
+    """Stretches that lie on one another, one row each.
+
+    ``ours`` is the number of our piece, ``s0`` .. ``s1`` along it, mm; ``theirs`` and ``w0`` .. ``w1`` (ascending) the same of
+    theirs; ``off0`` and ``off1`` the distance to the left of our line at ``s0`` and ``s1``.
+    """
+
+    ours: npt.NDArray[np.int64]
+    s0: Numbers
+    s1: Numbers
+    theirs: npt.NDArray[np.int64]
+    w0: Numbers
+    w1: Numbers
+    off0: Numbers
+    off1: Numbers
+
+    def only(self, keep: npt.NDArray[np.bool_]) -> Overlaps:
+        """Some of the rows."""
+        ours, s0, s1, theirs, w0, w1, off0, off1 = self
+        return Overlaps(ours[keep], s0[keep], s1[keep], theirs[keep], w0[keep], w1[keep], off0[keep], off1[keep])
+
+
+def together(parts: Sequence[Overlaps]) -> Overlaps:
+    """All rows of several."""
+    ours, theirs = np.concatenate([p.ours for p in parts]), np.concatenate([p.theirs for p in parts])
+    s0, s1, w0, w1, off0, off1 = (np.concatenate([p[k] for p in parts]).astype(float) for k in (1, 2, 4, 5, 6, 7))
+    return Overlaps(ours, s0, s1, theirs, w0, w1, off0, off1)
+
+
+def overlaps(ours: Lines, theirs: Lines, reach: float, steep: float = STEEP, flat: float = FLAT) -> Overlaps:
+    """Stretches of two sets of straight pieces that run within ``reach`` mm of each other in nearly the same direction."""
+    i, j = theirs.tree.query(shapes(ours.a, ours.b), predicate="dwithin", distance=reach)
+    size = ours.length[i]
+    u = (ours.b - ours.a)[i] / size
+    c, d = (theirs.a[j] - ours.a[i]) * np.conj(u), (theirs.b[j] - ours.a[i]) * np.conj(u)
+    flip = d.real < c.real
+    c, d = np.where(flip, d, c), np.where(flip, c, d)
+    run, rise = d.real - c.real, d.imag - c.imag
+    short = np.minimum(size, theirs.length[j])
+    limit = np.clip(2 * reach / short, flat, steep)
+    keep = (np.abs(rise) <= limit * run) & (run > 1e-9)
+    i, j, c, run, rise, flip, size = (x[keep] for x in (i, j, c, run, rise, flip, size))
+    lo, hi = np.maximum(c.real, 0.0), np.minimum(c.real + run, size)
+    # Where the other line comes nearer than reach.
+    k = rise / run
+    level = np.abs(k) < 1e-12
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.sort(np.stack((c.real + (-reach - c.imag) / k, c.real + (reach - c.imag) / k)), axis=0)
+    lo, hi = np.where(level, lo, np.maximum(lo, t[0])), np.where(level, hi, np.minimum(hi, t[1]))
+    keep = (hi - lo > 1e-6) & (~level | (np.abs(c.imag) <= reach))
+    i, j, c, run, k, flip, lo, hi = (x[keep] for x in (i, j, c, run, k, flip, lo, hi))
+    whole = theirs.length[j]
+    w0, w1 = (lo - c.real) / run * whole, (hi - c.real) / run * whole
+    w0, w1 = np.where(flip, whole - w1, w0), np.where(flip, whole - w0, w1)
+    return Overlaps(i, lo, hi, j, w0, w1, c.imag + k * (lo - c.real), c.imag + k * (hi - c.real))
+
+
+def union(parts: Iterable[Interval], gap: float = 0.0) -> list[Interval]:
+    """Intervals put together where they touch or leave no more than ``gap`` between them."""
+    merged: list[Interval] = []
+    for a, b in sorted(parts):
+        if merged and a <= merged[-1][1] + gap:
+            if b > merged[-1][1]:
+                merged[-1] = (merged[-1][0], b)
+        else:
+            merged.append((a, b))
+    return merged
+
+
+def gaps(parts: Sequence[Interval], whole: float) -> list[Interval]:
+    """What the united intervals leave of 0 .. ``whole``."""
+    edges = [0.0, *(x for part in parts for x in part), whole]
+    return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b > a]
+
+
+class Left(NamedTuple):
+    """What is left of a piece of theirs: the piece and the interval along it."""
+
+    piece: int
+    a: float
+    b: float
+
+
+def left(theirs: Lines, claimed: Overlaps, least: float = 0.05) -> list[Left]:
+    """The stretches of their pieces that no overlap claims."""
+    found: list[Left] = []
+    order = np.argsort(claimed.theirs, kind="stable")
+    j, w0, w1 = claimed.theirs[order], claimed.w0[order].tolist(), claimed.w1[order].tolist()
+    first = np.searchsorted(j, np.arange(len(theirs.a) + 1))
+    length = theirs.length.tolist()
+    for n, (p, q) in enumerate(zip(first.tolist(), first[1:].tolist(), strict=False)):
+        if p == q:
+            found.append(Left(n, 0.0, length[n]))
+            continue
+        parts = union(zip(w0[p:q], w1[p:q], strict=True), least)
+        found.extend(Left(n, a, b) for a, b in gaps(parts, length[n]) if b - a > least)
+    return found
+
+
+def pieces(theirs: Lines, rest: Sequence[Left]) -> Lines:
+    """The rest as lines; their owner is the number of the piece they were left of."""
+    n = np.array([r.piece for r in rest], dtype=np.int64)
+    a, b = np.array([r.a for r in rest], dtype=float), np.array([r.b for r in rest], dtype=float)
+    unit = (theirs.b - theirs.a)[n] / np.maximum(theirs.length[n], 1e-12)
+    return Lines(theirs.a[n] + a * unit, theirs.a[n] + b * unit, n)
+
+
+class Run(NamedTuple):
+    """A straight line put together from collinear pieces; ``parts`` are their numbers."""
+
+    a: complex
+    b: complex
+    parts: tuple[int, ...]
+
+
+def runs(rest: Lines, gap: float, most: int = 3000) -> list[Run]:
+    """Straight lines made of pieces in line that leave at most ``gap`` mm between them; of the longest ``most`` pieces only."""
+    n = np.flatnonzero(rest.length > 0.3)
+    if len(n) > most:
+        n = np.sort(n[np.argsort(-rest.length[n])[:most]])
+    if not len(n):
+        return []
+    a, b = rest.a[n], rest.b[n]
+    u = (b - a) / np.abs(b - a)
+    parent = list(range(len(n)))
+
+    def root(k: int) -> int:
+        while parent[k] != k:
+            parent[k] = parent[parent[k]]
+            k = parent[k]
+        return k
+
+    import shapely
+
+    tree = shapely.STRtree(shapes(a, b))
+    i, j = tree.query(shapes(a, b), predicate="dwithin", distance=gap)
+    both = i < j
+    i, j = i[both], j[both]
+    c, d = (a[j] - a[i]) * np.conj(u[i]), (b[j] - a[i]) * np.conj(u[i])
+    size = np.minimum(np.abs(b - a)[i], np.abs(b - a)[j])
+    near = np.maximum(np.abs(c.imag), np.abs(d.imag)) < 0.03 + 0.002 * np.maximum(np.abs(c), np.abs(d)) * (size < 50)
+    near &= np.abs((u[j] * np.conj(u[i])).imag) < np.maximum(0.002, 0.02 / size)
+    for p, q in zip(i[near].tolist(), j[near].tolist(), strict=True):
+        parent[root(p)] = root(q)
+    groups: dict[int, list[int]] = {}
+    for k in range(len(n)):
+        groups.setdefault(root(k), []).append(k)
+    found = []
+    for members in groups.values():
+        longest = max(members, key=lambda k: abs(b[k] - a[k]))
+        ends = np.concatenate((a[members], b[members]))
+        t = ((ends - a[longest]) * np.conj(u[longest])).real
+        found.append(Run(complex(ends[t.argmin()]), complex(ends[t.argmax()]), tuple(int(n[k]) for k in members)))
+    return found
+
+
+class Circle(NamedTuple):
+    """A circle fitted to lines: ``part`` of a full turn there is, ``strokes`` the numbers of the lines."""
+
+    centre: complex
+    radius: float
+    part: float
+    strokes: tuple[int, ...]
+
+
+def circle(z: Points) -> tuple[complex, float, float] | None:
+    """Centre, radius and largest distance of the points from the circle through them; None when they are on a line."""
+    middle = complex(z.mean())
+    size = float(np.abs(z - middle).max())
+    if len(z) < 4 or not size > 0:
+        return None
+    x, y = (z - middle).real / size, (z - middle).imag / size
+    m = np.column_stack((x, y, np.ones(len(z))))
+    solved, _, rank, _ = np.linalg.lstsq(m, x**2 + y**2, rcond=1e-7)
+    if rank < 3:
+        return None
+    centre = complex(solved[0] / 2, solved[1] / 2)
+    radius = float(np.sqrt(max(solved[2] + abs(centre) ** 2, 0.0)))
+    if radius > 50:
+        return None
+    off = float(np.abs(np.abs((z - middle) / size - centre) - radius).max())
+    return middle + size * centre, radius * size, off * size

@@ -1,0 +1,1 @@
+"""Lengths measured on a hand drawing, judged through the record of steps."""

@@ -1,0 +1,396 @@
+"""Judging measured numbers, and the first step where a chain of errors starts.
+
+The numbers are taken in the order of drawing. What an earlier mistake does to a later number is told by drawing again with it: if
+what remains of a deviation is within tolerance, the number follows from that mistake and is not accused on its own. Otherwise a
+new chain starts: of all steps the number goes back to, that one was drawn wrong whose displacement explains most of what is left,
+with the numbers that are in order as witnesses. A number whose deviation explains nothing else was read or computed wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import atan, degrees, hypot, isfinite, radians, tan
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
+from tmm_sheets.compare.measured.measured_file import Filled, Line, factor_of
+from tmm_sheets.compare.report import Verdict, verdict
+from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.scale import number
+from tmm_sheets.construction.step import Step, value_at
+
+CURVED = 0.05
+"""Share of what a mistake explains that may be off: its displacement is not known better."""
+SCALED = 4
+"""Lengths of a plan from which a wrong scale factor is recognised."""
+ROUNDED = 0.005
+"""Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
+USUAL = 10.0
+"""How far a misplaced point usually lies off, mm."""
+MOST = 10
+"""Mistakes that are looked for; where there are more, another mechanism was drawn."""
+HUBER = 2.0
+"""Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
+ALONE = 0.9
+"""Share of the number it is looked for that a mistake has to explain, besides most of another one."""
+NEAR = 0.1
+"""Displacement for derivatives where a mistake has led to, mm, or as a share of a number."""
+TRIED = 4
+"""Steps that are tried by drawing again, of those that explain most by the Jacobian."""
+NEARLY = 0.9
+"""Share of the best explanation with which another is as good."""
+SHARE = 0.5
+"""Share of the tolerance that a mistake must make of a number to explain it."""
+LONG = 10.0
+"""Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
+EXACT = 1e-6
+"""Tolerance of what is neither drawn nor computed: numbers of teeth."""
+
+Place = tuple[int, int]
+"""A step and a position."""
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A step drawn wrong at a position: its displacement, the covariance of that, how much it explains, the scale of its plan."""
+
+    place: Place
+    step: Step
+    moved: npt.NDArray[np.float64]
+    uncertain: npt.NDArray[np.float64]
+    score: float
+    mu: float
+
+
+@dataclass(eq=False)
+class Judged:
+    """A measured number with its judgement, in its own unit.
+
+    ``follows`` is the number in which its chain of errors starts, itself not included; ``starts`` is True for such a number.
+    ``tolerance`` is infinite where the construction has none to give.
+    """
+
+    line: Line
+    exact: float
+    deviation: float
+    tolerance: float
+    rows: list[tuple[Step, complex]]
+    follows: Judged | None = None
+    starts: bool = False
+    scale: str = ""
+    mistake: Mistake | None = None
+    remark: str = ""
+    inconsistent: bool = False
+    size: float = 1.0
+    order: int = 0
+
+    @property
+    def entry(self) -> Measurable:
+        """What was measured."""
+        return self.line.entry
+
+    @property
+    def verdict(self) -> Verdict:
+        """Green, amber or red; not green where it does not follow from the student's own numbers."""
+        judged = verdict(self.deviation, self.tolerance)
+        return "amber" if judged == "green" and self.inconsistent else judged
+
+    @property
+    def percent(self) -> float | None:
+        """Deviation in per cent of the exact value; None where that is zero."""
+        return 100 * self.deviation / abs(self.exact) if abs(self.exact) > 1e-9 else None
+
+    @property
+    def at(self) -> int:
+        """Number of the position among those of the plans."""
+        return self.entry.terms[-1][1] if self.entry.terms else 0
+
+
+def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> list[Judged]:
+    """Judge every filled line, in the order of the sheets."""
+    errors = found.errors(filled.factors, pencil, reading)
+    numbers = {name: i for i, name in enumerate(found.entries)}
+    # In the order of the sheets, so that steps are numbered plan after plan as they are drawn.
+    lines = sorted(filled.lines, key=lambda line: numbers[line.entry.id])
+    judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
+    computed = _check_arithmetic(judged, filled, found)
+    for j in judged:
+        j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
+    # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
+    _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors)
+    for j in judged:
+        wrong = [n for n in computed.get(id(j), ()) if n.verdict != "green"]
+        if j.verdict != "green" and wrong:
+            worst = max(wrong, key=lambda n: abs(n.deviation) / n.tolerance)
+            j.follows = worst.follows or worst
+    return judged
+
+
+def _judged(line: Line, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
+    e = line.entry
+    ratio = found.scales[e.scale].mu / factor_of(line, found.scales, factors) if e.scale else 1.0
+    size = ratio if e.kind == "length" else 1.0
+    # On diagrams the pencil's millimetres stay what they are, whatever the ordinates mean.
+    on_paper = e.scale in found.on_paper
+    error, rows = errors.of_sum((s, k, g * (1.0 if on_paper else size)) for s, k, g in e.terms)
+    if on_paper:
+        rows = [(s, g * size) for s, g in rows]
+        error /= ratio if e.kind == "result" else 1.0
+    exact = e.value * size if e.slope is None else _tilted(e.value, e.slope, found, factors)
+    read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
+    # A ruler is read no better than its reading is written.
+    written = line.half_digit if e.terms or e.calculated else 0.0
+    second = 0.0
+    for factor, step, k, per_mm in e.squares:
+        of_step = errors.error(step)
+        second += 2 * factor * (float(of_step[min(k, len(of_step) - 1)]) ** 2 + (per_mm / ratio * reading) ** 2)
+    tolerance = hypot(error, max(read, written), e.calculated * exact, second)
+    # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
+    if not isfinite(tolerance) or (e.kind == "length" and exact > LONG and tolerance > exact):
+        tolerance = float("inf")
+    measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
+    deviation = angle_apart(measured, exact) if e.kind == "angle" else measured - exact
+    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size)
+    if tolerance == float("inf"):
+        judged.remark = "the construction degenerates here: no tolerance"
+    elif e.signed and judged.verdict == "red" and abs(-measured - exact) <= tolerance:
+        judged.remark = "the sign is wrong"
+    elif judged.verdict == "red" and e.kind != "angle":
+        judged.remark = _slip(measured, exact, tolerance)
+    return judged
+
+
+def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: Mapping[str, float]) -> float:
+    """Angle of a line of a diagram, degrees, when its axes have other scale factors."""
+    x, y = (factors.get(key, found.scales[key].mu) / found.scales[key].mu for key in slope)
+    return degrees(atan(tan(radians(angle)) * x / y))
+
+
+def _slip(measured: float, exact: float, tolerance: float) -> str:
+    """Slips of the pen that are recognised at sight: a factor of two or ten, metres for millimetres."""
+    for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01, 1000.0, 0.001):
+        if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
+            return f"{factor:g} times the exact value"
+    return ""
+
+
+# --- arithmetic --------------------------------------------------------------------------------------------------------------
+
+
+def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) -> dict[int, list[Judged]]:
+    """Compute results again from the numbers they should have come from: only rounding may stand between them.
+
+    A result that is exact but for rounding is right, wherever it came from. Returns the numbers that each result, by its id(),
+    was rightly computed from.
+    """
+    computed: dict[int, list[Judged]] = {}
+    by_id = {j.entry.id: j for j in judged}
+    for result, check in found.checks.items():
+        j = by_id.get(result)
+        needs = [by_id[name] for name in check.needs if name in by_id]
+        if j is None or len(needs) != len(check.needs):
+            continue
+        times = filled.factors.get(check.scale, found.scales[check.scale].mu) if check.scale else 1.0
+        values = [n.line.value * times for n in needs]
+        expected = check.compute(*values)
+        allowed = ROUNDED * abs(expected) + j.line.half_digit
+        for i, n in enumerate(needs):
+            moved = [*values[:i], values[i] + n.line.half_digit * times, *values[i + 1:]]
+            allowed += abs(check.compute(*moved) - expected)
+        apart = j.line.value - expected if j.entry.signed else abs(j.line.value) - abs(expected)
+        if abs(apart) <= allowed:
+            computed[id(j)] = needs
+        elif abs(j.deviation) > ROUNDED * abs(j.exact) + j.line.half_digit:
+            j.inconsistent = True
+            own = ", ".join(f"{n.entry.quantity} = {number(n.line.value, 5)}" for n in needs)
+            said = f"does not follow from your own {own}: that gives {number(expected, 4)}"
+            j.remark = f"{j.remark}; {said}" if j.remark else said
+    return computed
+
+
+# --- scale factors ------------------------------------------------------------------------------------------------------------
+
+
+def _wrong_scales(judged: list[Judged]) -> list[Judged]:
+    """Mark the lengths of plans that were drawn with another scale factor than stated; returns what is left to explain."""
+    plans: dict[str, list[Judged]] = {}
+    for j in judged:
+        if j.entry.kind == "length" and j.entry.scale and j.line.factor is None:
+            plans.setdefault(j.entry.scale, []).append(j)
+    marked: set[int] = set()
+    for of_plan in plans.values():
+        long = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance]
+        off = [j for j in long if j.verdict == "red"]
+        if len(long) < SCALED or len(off) < 0.6 * len(long) or _has_reason(off, judged):
+            continue
+        times = float(np.median([j.line.value / j.exact for j in long]))
+        explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
+        if times <= 0 or abs(times - 1) < 0.01 or len(explained) < 0.8 * len(of_plan):
+            continue
+        first = next(j for j in of_plan if j in off)
+        first.starts, first.scale = True, f"all lengths of this plan are {times:.3g} times the exact ones: another scale factor?"
+        for j in explained:
+            marked.add(id(j))
+            if j is not first and j.verdict != "green":
+                j.follows = first
+    return [j for j in judged if id(j) not in marked]
+
+
+def _has_reason(off: list[Judged], judged: list[Judged]) -> bool:
+    """True when something drawn earlier, on which this plan depends, is red already."""
+    first, plan = min(j.order for j in off), off[0].entry.plan
+    sources = {id(step) for j in off for step, g in j.rows if g}
+    return any(j.verdict == "red" and j.order < first and j.entry.plan != plan and id(j.entry.terms[-1][0]) in sources
+               for j in judged if j.entry.terms)
+
+
+# --- chains -------------------------------------------------------------------------------------------------------------------
+
+
+class _Sheet:
+    """All judged numbers together: what is left of their deviations, and which steps each depends on."""
+
+    def __init__(self, judged: list[Judged], errors: Errors) -> None:
+        self.judged = judged
+        self.errors = errors
+        self.left = np.array([j.deviation for j in judged])
+        self.tolerance = np.array([j.tolerance for j in judged])
+        self.steps: dict[Place, Step] = {}
+        self.heads: set[Place] = set()
+        gradients: dict[Place, dict[int, complex]] = {}
+        for i, j in enumerate(judged):
+            if j.entry.head is not None:
+                self.heads.add(_place(j.entry.head, j.at))
+            for step, g in j.rows:
+                if g and isfinite(abs(g)):
+                    place = _place(step, j.at)
+                    self.steps[place] = step
+                    gradients.setdefault(place, {})[i] = g
+        self.by_place = {place: (np.array(list(of)), np.array([[g.real, g.imag] for g in of.values()]))
+                         for place, of in gradients.items()}
+        self.places = [[_place(step, j.at) for step, g in j.rows if g and isfinite(abs(g))] for j in judged]
+
+    def mistake(self, place: Place, exact: bool = False) -> Mistake:
+        """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
+
+        Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
+        construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do.
+        """
+        lines, gradient = self.by_place[place]
+        rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
+        of, mu = self.steps[place], self.errors.scale(self.steps[place])
+        # Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself.
+        usual = np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
+        x, shares = np.zeros(2), np.zeros(len(lines))
+        weights = np.ones(len(lines))
+        for _ in range(5 if exact else 8):
+            step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
+                                       np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
+            if np.abs(rows @ step).max() < 0.01:
+                break
+            x = x + step
+            if exact:
+                shares = self.shares(place, x) / self.tolerance[lines]
+                near = np.diag([1.0, 1.0]) * (NEAR * mu if mu else NEAR * max(abs(x[0]), 1e-9))
+                beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
+                rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
+                rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
+            else:
+                shares = rows @ x
+            if not (np.all(np.isfinite(shares)) and np.all(np.isfinite(rows))):
+                return Mistake(place, of, x, np.eye(2), 0.0, mu)
+            weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
+        score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
+        return Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
+
+    def helps(self, mistake: Mistake, i: int) -> bool:
+        """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
+        if np.hypot(*mistake.moved) < 2 * self.errors.pencil * mistake.mu:
+            return False  # that is the pencil
+        shares = self.shares(mistake.place, mistake.moved)
+        return any(j != i and self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])
+                   for j, share in zip(self.by_place[mistake.place][0], shares, strict=True))
+
+    def shares(self, place: Place, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
+        value = self.errors.displaced(self.steps[place], place[1], complex(*x))
+        return np.array([_changed(self.judged[i], value) for i in self.by_place[place][0]])
+
+
+def _changed(j: Judged, value: Callable[[Step], Any]) -> float:
+    """How much a number changes when the steps have other values."""
+    e = j.entry
+
+    def moved(step: Step, k: int) -> complex:
+        now, was = (np.asarray(x) for x in (value(step), step.value))
+        return complex(now[k] - was[k] if now.ndim else now - was)
+
+    if e.is_distance:
+        (tail, k, _), (head, _, g) = e.terms
+        away = complex(value_at(head, k) - value_at(tail, k))
+        change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
+    else:
+        change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
+        change += sum(factor * abs(moved(step, k)) ** 2 for factor, step, k, _ in e.squares)
+    return float(change) * j.size
+
+
+def _loss(r: Any) -> Any:
+    """Huber's loss of what is beyond the tolerance: square, and straight for what is far off."""
+    size = np.maximum(np.abs(r) - 1, 0)
+    return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
+
+
+def _chains(judged: list[Judged], errors: Errors) -> None:
+    """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
+    sheet = _Sheet(judged, errors)
+    open_ = np.array([j.verdict == "red" for j in judged])
+    tried = 0
+    while open_.any():
+        first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
+        start = judged[first]
+        start.starts, open_[first] = True, False
+        tried += 1
+        mistake = _best(sheet, int(first)) if tried <= MOST else None
+        if mistake is None:
+            continue
+        lines, gradient = sheet.by_place[mistake.place]
+        shares = sheet.shares(mistake.place, mistake.moved)
+        uncertain = np.sqrt(np.einsum("ni,ij,nj->n", gradient, mistake.uncertain, gradient))
+        start.mistake = mistake
+        for i, share, doubt in zip(lines, shares, uncertain, strict=True):
+            j, before = judged[i], sheet.left[i]
+            if (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
+                continue  # the mistake did not reach it, or with it nothing could be drawn
+            sheet.left[i] -= share
+            # What is left need not be better than other numbers: amber is accused of nothing.
+            allowed = (2 if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt), CURVED * float(share))
+            explained = abs(sheet.left[i]) <= allowed
+            if explained and abs(share) > SHARE * j.tolerance and not j.starts and abs(sheet.left[i]) < abs(before):
+                open_[i] = False
+                if j.follows is None:
+                    j.follows = start
+
+
+def _best(sheet: _Sheet, i: int) -> Mistake | None:
+    """The mistake behind a red number; None when it explains nothing else: a slip in reading or computing this one."""
+    candidates = sorted((sheet.mistake(place) for place in sheet.places[i]), key=lambda m: -m.score)
+    candidates = [sheet.mistake(m.place, exact=True) for m in candidates[:TRIED]]
+    alone = float(_loss(sheet.left[i] / sheet.tolerance[i]))
+    own = sheet.judged[i].entry.head
+    good = [m for m in candidates if m.score > alone * ALONE and sheet.helps(m, i)]
+    if not good:
+        return None
+    best = max(m.score for m in good)
+    near = [m for m in good if m.score >= NEARLY * best]
+    head = None if own is None else _place(own, sheet.judged[i].at)
+    # Of steps that explain equally well the one that was measured here, else one that was measured at all.
+    return max(near, key=lambda m: (m.place == head, m.place in sheet.heads, m.score))
+
+
+def _place(step: Step, k: int) -> Place:
+    return id(step), k if np.size(step.value) > 1 else 0

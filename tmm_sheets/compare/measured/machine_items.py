@@ -1,0 +1,137 @@
+"""What can be measured on the pictures of gears and cams, and their results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import degrees
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.compare.measured.measurable import (
+    CALCULATED,
+    DEGREES,
+    MILLIMETRES,
+    Measurable,
+    Measurables,
+    length,
+    measured_step,
+    scalar,
+)
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.protocol import spoken
+from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.methods.cams.cam_motion import ACROSS, ORDINATE
+from tmm_sheets.methods.integration import CHORD
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.project import Project
+
+GEAR_ANGLES = ("alpha_w", "tau1", "tau2", "phi_alpha1", "phi_alpha2")
+GEAR_NUMBERS = ("z1", "z2", "x1", "x2", "y", "dy", "eps_alpha", "theta1_greatest", "theta2_greatest")
+
+
+def collect(project: Project, found: Measurables) -> None:
+    """Lengths and angles of gear, reducer and cam, each where the project has it and a sheet shows it, and of dead positions."""
+    v = project.variant
+    if v.gear is not None:
+        _gear(project, found)
+    if v.reducer is not None:
+        _reducer(project, found)
+    if v.cam is not None:
+        _cam(project, found)
+    _others(project, found)
+
+
+def _others(project: Project, found: Measurables) -> None:
+    """Dead positions and synthesis: points from those they were drawn from; the chord of a tooth."""
+    from tmm_sheets.explain import parts
+
+    for plan in (p for of_part in parts(project).values() for p in of_part or ()):
+        if plan.name not in found.scales:
+            continue
+        if plan.name.startswith("gear-tooth"):
+            found.plans.append((plan, plan.name))
+            found.add(length(plan, found.scales, 0, plan["E"], plan["F"], "EF"))
+        elif plan.name in ("dead-positions", "synthesis"):
+            found.plans.append((plan, plan.name))
+            _lengths(plan, found, plan.name)
+            for head in (s for s in plan if s.rule.gives == "point" and np.ndim(s.value) == 0):
+                for tail in dict.fromkeys(a for a in head.args if isinstance(a, Step) and a.name in plan and plan[a.name] is a):
+                    if tail.rule.gives == "point" and "₀" not in tail.name:
+                        found.add(length(plan, found.scales, 0, tail, head, f"{tail.name}{head.name}"))
+
+
+def _lengths(plan: Plan, found: Measurables, key: str) -> None:
+    """All lengths and angles of a plan that were measured or drawn as circles; not those taken from numbers."""
+    for step in plan:
+        if step.rule.gives in ("length", "angle", "inclination") and step.rule is not rules.GIVEN_LENGTH and step.args:
+            for k in range(np.size(step.value)):
+                found.add(measured_step(plan, found.scales, k, step, key=key))
+
+
+def _gear(project: Project, found: Measurables) -> None:
+    pair = project.gear
+    if "gear-engagement" in found.scales:
+        plan = pair.engagement
+        found.plans.append((plan, "gear-engagement"))
+        _lengths(plan, found, "gear-engagement")
+        for tail, head in (("O1", "O2"), ("N1", "N2"), ("A", "B"), ("A", "Pw"), ("Pw", "B")):
+            if tail in plan and head in plan:
+                found.add(length(plan, found.scales, 0, plan[tail], plan[head], tail + head))
+    if "gear-sliding" in found.scales:
+        _sliding(pair.sliding, found)
+    for name, value in pair.results().items():
+        if name in GEAR_ANGLES:
+            scalar(found, "Зубчатая передача", name, degrees(value), DEGREES)
+        else:
+            scalar(found, "Зубчатая передача", name, value, "" if name in GEAR_NUMBERS else MILLIMETRES)
+
+
+def _sliding(plan: Plan, found: Measurables) -> None:
+    """Ordinates of the speeds, mm, and specific slidings at the manual's divisions of the line of action."""
+    found.plans.append((plan, "gear-sliding"))
+    for i, label in enumerate(plan.labels):
+        for name in ("yV1", "yV2", "theta1", "theta2"):
+            step = plan[name]
+            value = float(np.real(value_at(step, i)))
+            ordinate = name.startswith("y")
+            sign = 1.0 if value >= 0 else -1.0
+            found.add(Measurable(
+                f"gear-sliding/{label}/{name}", plan.name, plan.title, label, spoken(name) if not ordinate else name,
+                MILLIMETRES if ordinate else "", "length" if ordinate else "result", abs(value) if ordinate else value,
+                ((step, i, complex(sign if ordinate else 1)),), "", 1.0 if ordinate else 0.0,
+                calculated=0.0 if ordinate else CALCULATED, head=step, signed=not ordinate))
+
+
+def _reducer(project: Project, found: Measurables) -> None:
+    results: Mapping[str, Any] = project.reducer.results()
+    for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", "об/мин")):
+        for name, value in results.get(group, {}).items():
+            scalar(found, "Редуктор", f"reducer-{name}", value, unit)
+    for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q"):
+        if name in results:
+            scalar(found, "Редуктор", f"reducer-{name}", results[name], "")
+
+
+def _cam(project: Project, found: Measurables) -> None:
+    cam = project.cam
+    m = cam.motion
+    if m.plan.name in found.scales:
+        for name, scale in zip(m.names, (m.scales.dds, m.scales.ds, m.scales.s), strict=True):
+            found.scales[f"cam-motion-{name}"] = scale
+        found.plans.append((m.plan, m.plan.name))
+        found.on_paper |= {f"cam-motion-{name}" for name in m.names}
+        for step in m.plan:
+            if step.rule in (CHORD, ORDINATE, ACROSS):
+                key = f"cam-motion-{step.name.partition('_')[0]}"
+                found.add(measured_step(m.plan, found.scales, 0, step, key=key))
+    for part in ("zone", "inversion"):
+        plan = getattr(getattr(cam, part, None), "plan", None)
+        if plan is not None and plan.name in found.scales:
+            found.plans.append((plan, plan.name))
+            _lengths(plan, found, plan.name)
+    for name, value in cam.results().items():
+        if name in ("r0", "e", "s0", "l0", "r_roller", "rho_min"):
+            scalar(found, "Кулачок", name, 1000 * value, MILLIMETRES)

@@ -1,0 +1,204 @@
+"""Comparing what a student measured on a hand drawing with the exact construction: the template, the table, the first mistake."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.compare.measured import measured_file
+from tmm_sheets.compare.measured.chain import EXACT, MOST, Judged, Mistake, judge
+from tmm_sheets.compare.measured.measurable import measurables
+from tmm_sheets.compare.report import Report
+from tmm_sheets.construction.protocol import sentence, spoken
+from tmm_sheets.construction.scale import fixed, number
+from tmm_sheets.errors import BadInput, Problem
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+NAME = "measured.csv"
+"""File name of the template."""
+
+
+def template(project: Project, folder: Path, say: Callable[[str], None]) -> Report:
+    """A CSV file with a line for everything that can be measured on the sheets.
+
+    Raises
+    ------
+    BadInput
+        when the folder has such a file already: it may be filled in.
+    """
+    path = folder / NAME
+    if path.exists():
+        raise BadInput(Problem("is there already and may be filled in; nothing was written", str(path),
+                               hint="rename it, or choose another folder with -o"))
+    found = measurables(project, say)
+    name = project.variant.project.name
+    data = measured_file.template(name, found)
+    lines = [f"{name}: {len(found.entries)} quantities to measure or compute; fill in what you have, then",
+             f"    tmm-sheets compare {name} --measured {path}"]
+    asked = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": e.unit}
+             for e in found.entries.values()]
+    return Report("\n".join(lines), {"project": name, "quantities": asked}, {NAME: data})
+
+
+def compare(project: Project, path: Path, pencil: float, reading: float, say: Callable[[str], None]) -> Report:
+    """Judge the numbers of a filled file."""
+    name = project.variant.project.name
+    measured_file.check(path)
+    found = measurables(project, say)
+    filled = measured_file.read(path, name, found)
+    say("errors")
+    judged = judge(filled, found, pencil, reading)
+    return Report(_text(judged, filled), _tree(name, judged, filled, pencil, reading), notes=tuple(filled.notes))
+
+
+# --- text ------------------------------------------------------------------------------------------------------------------
+
+
+HEAD = ("", "pos.", "quantity", "exact", "measured", "deviation", "%", "tolerance", "verdict")
+
+
+def _text(judged: list[Judged], filled: measured_file.Filled) -> str:
+    rows: list[tuple[str, ...]] = []
+    titles: dict[int, str] = {}
+    last = ""
+    for j in judged:
+        if j.entry.title != last:
+            last = titles[len(rows)] = j.entry.title
+        rows.append(_row(j))
+    widths = [max(len(r[i]) for r in (HEAD, *rows)) for i in range(len(HEAD))]
+
+    def line(cells: tuple[str, ...]) -> str:
+        words = (c.ljust(w) if i in (0, 2, 8) else c.rjust(w) for i, (c, w) in enumerate(zip(cells, widths, strict=True)))
+        return "  ".join(words).rstrip()
+
+    lines = [line(HEAD)]
+    for i, row in enumerate(rows):
+        if i in titles:
+            lines += ["", titles[i]]
+        lines.append(line(row))
+    return "\n".join([*lines, "", *_summary(judged, filled)])
+
+
+MARKS = {"green": " ", "amber": "?", "red": "!"}
+
+
+def _row(j: Judged) -> tuple[str, ...]:
+    e = j.entry
+    percent = "–" if j.percent is None or abs(j.percent) >= 1000 else fixed(j.percent, 1)
+    tolerance = f"±{number(j.tolerance, 2)}" if EXACT < j.tolerance < float("inf") else "0" if j.tolerance <= EXACT else "–"
+    said: list[str] = [j.verdict]
+    if j.follows is not None:
+        said = [f"{j.verdict}, follows from {_name(j.follows)}"]
+    elif j.starts:
+        said = [f"{j.verdict}, START"]
+    if j.remark:
+        said.append(j.remark)
+    mark = "·" if j.follows is not None else MARKS[j.verdict]
+    unit = f" {e.unit}" if e.unit else ""
+    return (mark, e.label, e.quantity, _exact(j), f"{_written(j)}{unit}", _deviation(j), percent, tolerance,
+            "; ".join(said))
+
+
+def _written(j: Judged) -> str:
+    """The measured number; one that no sheet has in the notation of computers."""
+    x = j.line.value
+    return number(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else f"{x:.3g}"
+
+
+def _exact(j: Judged) -> str:
+    """Exact value, no digits far below the tolerance."""
+    return "0" if abs(j.exact) < 0.01 * j.tolerance else number(j.exact, 4)
+
+
+def _deviation(j: Judged) -> str:
+    x = 0.0 if abs(j.deviation) < 0.01 * j.tolerance else j.deviation
+    text = number(x, 2) if abs(x) < 10 else number(x, 3)
+    return text if x <= 0 else f"+{text}"
+
+
+def _name(j: Judged) -> str:
+    place = f"({j.entry.label}) " if j.entry.label else ""
+    return f"{place}{j.entry.quantity}"
+
+
+def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
+    follow = [j for j in judged if j.follows is not None]
+    own = [j for j in judged if j.follows is None]
+    count = {v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")}
+    lines = [f"{len(judged)} numbers: {count['green']} green, {count['amber']} amber, {count['red']} red, {len(follow)} following "
+             f"from an earlier mistake; {filled.empty} left empty"]
+    starts = sorted((j for j in judged if j.starts), key=lambda j: j.order)
+    for i, j in enumerate(starts[:MOST], 1):
+        after = [f for f in follow if f.follows is j]
+        lines.append(f"{i}. {j.entry.title}, {_name(j)}: {_what(j)}")
+        if j.mistake is not None:
+            lines.append(f"   {_sentence(j.mistake)}")
+        if after:
+            some = ", ".join(_name(f) for f in after[:6]) + (" ..." if len(after) > 6 else "")
+            lines.append(f"   {len(after)} follow from it: {some}")
+    if len(starts) > MOST:
+        lines.append("So many mistakes: was another variant drawn, or with other scale factors than stated?")
+    elif starts:
+        lines.append("Mend the first one first: what follows from it is right as soon as that is.")
+    elif not count["amber"]:
+        lines.append("All within a pencil's reach.")
+    return lines
+
+
+def _what(j: Judged) -> str:
+    if j.scale:
+        return j.scale
+    unit = f" {j.entry.unit}" if j.entry.unit else ""
+    text = f"{_written(j)}{unit} instead of {_exact(j)}"
+    if j.tolerance > EXACT:
+        text += f", {abs(j.deviation) / j.tolerance:.3g} times the tolerance"
+    if j.mistake is not None:
+        text += f"; {_where(j)}"
+    return f"{text}; {j.remark}" if j.remark else text
+
+
+def _sentence(mistake: Mistake) -> str:
+    """The step to be done again, as the protocol says it."""
+    mu = mistake.mu
+    return sentence(mistake.step, mistake.place[1], (lambda x: x / mu) if mu else float, "мм" if mu else "")
+
+
+def _where(j: Judged) -> str:
+    """Which step was drawn wrong, and by how much where that is a point on paper."""
+    assert j.mistake is not None
+    name, off = spoken(j.mistake.step.name), _off(j)
+    return f"it starts with {name}" if off is None else f"point {name} lies {number(off, 2)} mm off"
+
+
+def _off(j: Judged) -> float | None:
+    """How far a point was misplaced, mm; None for what is no point on paper."""
+    m = j.mistake
+    return None if m is None or not m.mu or m.step.rule.gives not in ("point", "vector") else abs(complex(*m.moved)) / m.mu
+
+
+# --- tree ------------------------------------------------------------------------------------------------------------------
+
+
+def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil: float, reading: float) -> dict[str, Any]:
+    own = [j for j in judged if j.follows is None]
+    return {
+        "project": name,
+        "pencil": pencil,
+        "reading": reading,
+        "scales": dict(filled.factors),
+        "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
+                    "following": len(judged) - len(own), "empty": filled.empty},
+        "starts": [{"id": j.entry.id, "why": _what(j), "step": None if j.mistake is None else j.mistake.step.name,
+                    "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}
+                   for j in sorted(judged, key=lambda j: j.order) if j.starts],
+        "numbers": [{
+            "id": j.entry.id, "plan": j.entry.plan, "position": j.entry.label, "quantity": j.entry.quantity, "unit": j.entry.unit,
+            "line": j.line.line, "exact": j.exact, "measured": j.line.value, "deviation": j.deviation, "percent": j.percent,
+            "tolerance": j.tolerance if isfinite(j.tolerance) else None, "verdict": j.verdict, "starts": j.starts,
+            "follows": j.follows.entry.id if j.follows is not None else None, "remark": j.remark,
+        } for j in judged],
+    }

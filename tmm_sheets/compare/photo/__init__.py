@@ -1,0 +1,1 @@
+"""A photograph or scan of a drawing against a sheet."""

@@ -1,0 +1,124 @@
+"""A hand drawing photographed or scanned, compared with the exact sheet element by element."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from math import hypot
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tmm_sheets.compare import view_places
+from tmm_sheets.compare.elements import Element, elements
+from tmm_sheets.compare.elements import views as views_of
+from tmm_sheets.compare.photo import photographed_views, rectification, tracing
+from tmm_sheets.compare.photo.image_report import image_report
+from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
+from tmm_sheets.compare.photo.photograph import Picture, read
+from tmm_sheets.compare.photo.rectification import LONGEST, MATCH, Rectified, rectify
+from tmm_sheets.compare.photo.stations import as_lines
+from tmm_sheets.compare.report import Report
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.sheets.sheet import composed
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+PLACED = 0.25
+"""Error of a place after the rectification by lines of views that were placed, mm."""
+HIGHEST = 4  # degree of the paper's height that views placed by hand can tell
+CERTAIN = 0.12
+"""By how much another sheet must do better for a picture to be called a picture of it."""
+
+
+def compare(
+    project: Project, n: int, path: Path, views: Path | None = None, pencil: float = 0.25,
+    say: Callable[[str], None] = lambda _: None,
+) -> Report:
+    """Compare a photograph of sheet ``n`` with the exact sheet.
+
+    Parameters
+    ----------
+    path
+        JPG, PNG or PDF.
+    views
+        File that tells where the views of a sheet with a layout of its own stand (see ``view_places``).
+    pencil
+        Error of a point drawn by hand, mm.
+    say
+        Told what is being done.
+
+    Raises
+    ------
+    BadInput
+        When a file is missing or of no use, or there is no such sheet.
+    CannotBuild
+        When the picture has no frame, shows another sheet, or is too blurred or too small.
+    """
+    count = len(project.variant.sheets)
+    if not 1 <= n <= count:
+        raise BadInput(f"{project.variant.project.name} has {count} sheets; there is no sheet {n}",
+                       hint=f"--sheet 1 to --sheet {count}")  # fmt: skip
+    say("reading the picture and composing the sheet")
+    with ThreadPoolExecutor(1) as aside:  # decoding runs beside Python
+        reading = aside.submit(read, path)
+        sheet = composed(project, n)
+        known = elements(sheet)
+        picture = reading.result()
+    # The file first: it is quickly read, and what is wrong with it is quickly told.
+    places = view_places.read(views, views_of(sheet)) if views is not None else ()
+    found = rectify(picture, known, path, say, not places)
+    notes = (*picture.notes, *found.notes)
+    placed = None
+    if places:
+        say("placing the views")
+        placed = photographed_views.place(known, places, found.map, found.ink)
+        if not placed.similarities:
+            raise CannotBuild(f"{path}: none of the views of sheet {n} was found", hint="; ".join(placed.notes))
+        say("correcting by the lines of the views")
+        found = _corrected(picture, found, placed.elements)
+        placed = photographed_views.place(known, places, found.map, found.ink)
+        known, notes = placed.elements, (*notes, *placed.notes)
+    elif found.match < MATCH:
+        _wrong_sheet(project, n, found, path, say)
+    say("measuring the elements")
+    traces, extra = tracing.trace(known, found.ink)
+    extra = [x for x in extra if placed is None or placed.strange(x)]
+    return image_report(project.variant.project.name, n, path, found, traces, extra, pencil, notes)
+
+
+def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> Rectified:
+    """The sheet corrected by its lines once more, when it is known where they stand."""
+    lines = as_lines([e for e in known if e.length < LONGEST])
+    better, _, match = rectification.refine(found.map, found.sides, found.ink, lines, line_level(found.ink), highest=HIGHEST)
+    if match < MATCH:
+        return found
+    ink = rectification.straighten(picture.grey, better)
+    return replace(found, ink=ink, map=better, level=noise_level(ink), match=match, uncertainty=hypot(PLACED, found.scatter))
+
+
+def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Callable[[str], None]) -> None:
+    """Say which sheet of the project it is rather.
+
+    Raises
+    ------
+    CannotBuild
+        Always.
+    """
+    best, share = n, found.match
+    for k in range(1, len(project.variant.sheets) + 1):
+        if k == n:
+            continue
+        say(f"trying sheet {k}")
+        lines = as_lines([e for e in elements(composed(project, k)) if e.length < LONGEST], most=2500)
+        _, _, match = rectification.refine(found.map, found.sides, found.ink, lines, found.level)
+        if match > share:
+            best, share = k, match
+    missing = f"only {100 * found.match:.0f} % of the lines of sheet {n} are where they belong"
+    if best != n and share > max(MATCH, found.match + CERTAIN):
+        raise CannotBuild(f"{path} does not show sheet {n} but sheet {best} of {project.variant.project.name}: {missing}, "
+                          f"{100 * share:.0f} % of sheet {best}'s are", hint=f"try --sheet {best}")  # fmt: skip
+    raise CannotBuild(f"{path} does not show a sheet of {project.variant.project.name} as it is drawn here: {missing}",
+                      hint="is it another project or variant? A drawing with a layout of its own needs --views FILE, "
+                      "which tells where its views stand")  # fmt: skip

@@ -1,0 +1,172 @@
+"""An element sought at its own place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
+from tmm_sheets.compare.photo.sheet_map import Floats
+from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed, stations
+from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.drawing.styles import line_type
+
+NEAR = 2.0  # mm about its own place within which an element is sought first
+OFFSETS = np.arange(-NEAR - 1, NEAR + 1 + STEP / 2, STEP)
+AT_ONCE = 3000  # places across which ink is looked at in one call: many more do not fit into the processor's memory
+APART = 4  # steps of bare paper that part two lines to the eye
+BROAD = 18  # steps: what lies together wider than this is not measured as one
+OFF = 0.6  # mm off its place from which on a line is looked at once more
+AS_DARK = 0.6  # share of the darkness where a line is found: its own place is not bare
+FREE = 0.25  # share of a line that must be free of others for it to be measured by itself
+SHARED = 0.4  # share of a line that must be free or lie with others in one stroke for it to be measured with them
+
+
+class Strip(NamedTuple):
+    """An element, places along it, the ink across it at :data:`OFFSETS` and where other elements are there."""
+
+    element: Element
+    stations: Stations
+    profile: Any
+    others: Any
+
+
+def strips(elements: Sequence[Element], ink: Any, owners: Owners) -> Iterator[Strip]:
+    """The ink across elements, one after another."""
+    # A curve in place is off here and there rather than too large.
+    waiting: list[tuple[Element, Stations]] = []
+    for e in elements:
+        waiting.append((e, stations(e, e.kind in ("circle", "arc"))))
+        if sum(len(s.points) for _, s in waiting) > AT_ONCE:
+            yield from _across(waiting, ink, owners)
+            waiting = []
+    yield from _across(waiting, ink, owners)
+
+
+def _across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) -> Iterator[Strip]:
+    if not some:
+        return
+    counts = [len(s.points) for _, s in some]
+    p, n = np.concatenate([s.points for _, s in some]), np.concatenate([s.normals for _, s in some])
+    at = p[:, None] + n[:, None] * OFFSETS
+    profile, others = sample(ink, pixels(at)), owners.others(np.repeat([e.number for e, _ in some], counts)[:, None], at)
+    first = 0
+    for (e, s), count in zip(some, counts, strict=True):
+        here = slice(first, first + count)
+        yield Strip(e, s, smoothed(profile[here]), others[here])
+        first += count
+
+
+def in_place(strip: Strip, level: float) -> Trace | None:
+    """An element at its own place, or None when it is not there."""
+    e, s, profile, others = strip
+    width = line_type(e.style).width
+    # The way to the next known line on either side, and how far to look; where another line runs here nothing can be told.
+    own = np.abs(OFFSETS) <= width / 2 + 0.25
+    away = np.where(others & ~own, np.abs(OFFSETS), NEAR + 0.5).min(1)
+    reach = np.clip(0.5 * away, 0.3, NEAR)
+    free = away > width / 2 + 0.6
+    o, strength = _peaks_within(profile, reach, max(width / 2 + 0.1, 0.25), level)
+    there = strength > level
+    expected = expected_ink(e)
+    use = there & free
+    if free.sum() < max(4, FREE * len(free)):
+        # Beside or under others nearly everywhere: it is there, or not, but its place is theirs.
+        inked = (np.where(np.abs(OFFSETS) <= reach[:, None], profile, 0).max(1) > level).mean()
+        if inked > 0.75 * expected:
+            return _shared(strip, o, use, level) or Trace(e, "dense", covered=float(inked), at=e.points)
+        return None
+    if use.sum() < 3 or use.sum() < 0.45 * expected * free.sum():
+        return None
+    base = s.base(use)
+    x = fit(base, o, use, 0.3)
+    r = np.abs(o - base @ x)
+    good = use & (r < 0.45)
+    share = good.sum() / free.sum()
+    # Both halves must be there, or it may be another line that crosses at a small angle.
+    half = len(free) // 2
+    halves = [good[k].sum() / max(free[k].sum(), 1) for k in (slice(0, half), slice(half, None)) if free[k].sum() > 3]
+    if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
+        return None
+    if (np.abs(base @ x)[free] > OFF).mean() > 0.1:
+        # Off its place: once more, about where it is, however near that is to the half way to the next line.
+        o, strength = peaks(profile, OFFSETS, base @ x, 0.7, 0.5)
+        use = (strength > level) & free
+        x = fit(base, o, use, 0.3)
+        if _at_home(profile, base @ x):
+            return Trace(e, "dense", covered=float(there.mean()), at=e.points)
+    t = measured(e, s, base @ x, free, float(share / expected))
+    if e.kind == "curve":
+        t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
+    return t
+
+
+def _at_home(profile: Any, o: Floats) -> bool:
+    """Whether there is ink at its own place, too, wherever a line seems to be off by ``o``: then it may be another's, or a blur."""
+    away = np.abs(o) > OFF
+    column = np.clip(np.round((o - OFFSETS[0]) / STEP).astype(int), 1, len(OFFSETS) - 2)
+    row, middle = np.arange(len(o)), len(OFFSETS) // 2
+    found = np.max([profile[row, column + k] for k in (-1, 0, 1)], axis=0)
+    here = profile[:, middle - 1 : middle + 2].max(1)
+    return bool(away.any() and (here > AS_DARK * found)[away].mean() > 0.7)
+
+
+def _shared(strip: Strip, o: Floats, use: Any, level: float) -> Trace | None:
+    """An element that lies with others in one stroke: the stroke measured against where all of them together ought to be."""
+    import cv2
+
+    e, s, profile, others = strip
+    width = line_type(e.style).width
+    meant = others | (np.abs(OFFSETS) <= width / 2)
+    closed = cv2.morphologyEx(meant.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((1, APART + 1), np.uint8)) > 0
+    middle = len(OFFSETS) // 2
+    below, above = (np.where(side.all(1), side.shape[1], side.argmin(1)) for side in (closed[:, middle::-1], closed[:, middle:]))
+    column = np.arange(len(OFFSETS))
+    low, high = (middle - below + 1)[:, None], (middle + above - 1)[:, None]
+    inside = (column >= low) & (column <= high)
+    stroke = (low[:, 0] > 4) & (high[:, 0] < len(OFFSETS) - 5) & (high - low <= BROAD)[:, 0]
+    about = (column >= low - APART) & (column <= high + APART)
+    dark = np.where(about, profile, 0).astype(np.float64)
+    top = dark.max(1)
+    weight = np.clip(dark - 0.25 * top[:, None], 0, None)
+    seen = (weight * OFFSETS).sum(1) / np.maximum(weight.sum(1), 1e-9)
+    ought = (inside & meant) @ OFFSETS / np.maximum((inside & meant).sum(1), 1)
+    able = stroke & (top > level)
+    offsets = np.where(use, o, seen - ought)
+    able |= use
+    if able.sum() < max(4, SHARED * len(able)):
+        return None
+    base = s.base(able)
+    x = fit(base, offsets, able, 0.3)
+    good = able & (np.abs(offsets - base @ x) < 0.45)
+    if good.sum() < ENOUGH * able.sum():
+        return None
+    t = measured(e, s, base @ x, able, float(good.sum() / able.sum()))
+    return replace(t, status="shared")
+
+
+def _local(o: Floats, use: Any, step: float) -> float:
+    """Largest offset that a stretch of ten millimetres agrees on."""
+    size = max(round(10 / step), 5)
+    worst = 0.0
+    for i in range(0, len(o) - size + 1, max(size // 2, 1)):
+        some = o[i : i + size][use[i : i + size]]
+        if len(some) > 0.7 * size and np.ptp(np.percentile(some, (20, 80))) < 0.5:
+            worst = max(worst, abs(float(np.median(some))))
+    return worst
+
+
+def _peaks_within(profile: Any, reach: Floats, half: float, level: float) -> tuple[Floats, Floats]:
+    """The line of each profile within its own reach: rather one near by than a blacker one farther off, but no line's flank."""
+    import cv2
+
+    p = np.where(np.abs(OFFSETS)[None, :] <= reach[:, None] + 1e-9, profile, 0)
+    top = profile == cv2.dilate(profile, np.ones((1, 5), np.uint8))
+    likely = np.where(top, np.minimum(p, 2 * level), 0) * (1 - 0.5 * np.abs(OFFSETS) / NEAR)
+    centre = OFFSETS[likely.argmax(1)]
+    return peaks(p, OFFSETS, centre, 0.4, half)

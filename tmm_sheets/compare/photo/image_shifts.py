@@ -1,0 +1,116 @@
+"""An element that is not at its own place, sought in the ink that belongs to no other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
+from tmm_sheets.compare.photo.sheet_map import Floats
+from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed
+from tmm_sheets.compare.photo.traces import Trace
+
+FAR = 6.0  # mm within which a displaced element is sought
+THERE = 0.8  # share of its ink at its own place with which an element is not sought elsewhere
+TRIES = 500  # guesses from places picked at random
+BARE, BARE_LENGTH = 0.35, 2.5
+"""Share of an element without ink, and mm of it in the open, with which it is missing."""
+
+
+def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: float) -> Trace:
+    """An element that was not found at its own place.
+
+    Parameters
+    ----------
+    e, s
+        The element and places along it.
+    left
+        The rectified picture without what was found.
+    wiped
+        Where that was.
+    ink
+        The rectified picture.
+    level
+        Darkness of ink.
+    """
+    reach = min(FAR, max(0.6 * e.length, 3.0))
+    offsets = np.arange(-reach, reach + STEP / 2, STEP)
+    at = pixels(s.points[:, None] + s.normals[:, None] * offsets)
+    expected = expected_ink(e)
+    about = np.abs(offsets) <= 0.5
+    here = smoothed(sample(ink, at[:, about])) > level
+    if here[:, np.abs(offsets[about]) <= 0.2].any(1).mean() > THERE * expected:
+        # There is ink where it ought to be, only it cannot be told from others'.
+        return Trace(e, "dense", covered=float(here.any(1).mean()), at=e.points)
+    profile, unknown = smoothed(sample(left, at)), sample(wiped, at) > 100
+    found = _elsewhere(e, s, profile, unknown, offsets, level)
+    if found is not None:
+        return found
+    # At its own place: hidden by what is there, or nowhere?
+    bare = ~here.any(1)
+    hidden = unknown[:, about].all(1)
+    if bare.mean() > BARE * expected and (bare & ~hidden).sum() * (e.length / len(bare)) > BARE_LENGTH:
+        return Trace(e, "missing", covered=float(1 - bare.mean()))
+    return Trace(e, "dense", covered=float(1 - bare.mean()), at=e.points)
+
+
+def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float) -> Trace | None:
+    import cv2
+
+    expected, reach = expected_ink(e), float(offsets[-1])
+    hit = cv2.dilate((profile > level).astype(np.uint8), np.ones((1, 7), np.uint8)) > 0  # within 0.3 mm
+    base = s.base()
+    n, k = base.shape
+    x = _guesses(e, s, base, profile * (profile > level), offsets)
+    o = x @ base.T
+    worst = np.abs(o).max(1)
+    inside = worst <= reach
+    x, o, worst = x[inside], o[inside], worst[inside]
+    column = np.clip(np.round((o + reach) / STEP).astype(int), 0, len(offsets) - 1)
+    row = np.arange(n)[None, :]
+    seen = ~unknown[row, column]
+    hits = (hit[row, column] & seen).sum(1)
+    share = hits / np.maximum(seen.sum(1), 1)
+    able = seen.sum(1) >= max(0.4 * n, min(4.0 / max(e.length / n, 0.1), n))
+    score = np.where(able, share - 0.01 * worst, -1.0)
+    best = int(score.argmax())
+    if score[best] <= 0 or share[best] <= ENOUGH * expected:
+        return None
+    y = x[best]
+    for loose in (0.5, 0.3):
+        close, strength = peaks(profile, offsets, base @ y, loose + 0.2, 0.4)
+        use = (strength > level).astype(bool)
+        if use.sum() > k:
+            y = y + fit(base, close - base @ y, use, loose)
+    if np.abs(base @ y).max() > reach + 0.5:
+        return None
+    return measured(e, s, base @ y, np.ones(n, bool), float(share[best] / expected))
+
+
+def _guesses(e: Element, s: Stations, base: Floats, dark: Any, offsets: Floats) -> Floats:
+    """Where it may be: nothing, parallel shifts, and what some of the dark places say."""
+    n, k = base.shape
+    guesses: list[Floats] = [np.zeros((1, k))]
+    if not k:
+        return guesses[0]
+    reach = float(offsets[-1])
+    grid = np.arange(-reach, reach + 0.01, 0.4)
+    if e.kind == "line":
+        guesses.append(np.linalg.lstsq(base, np.repeat(grid[None, :], n, 0), rcond=None)[0].T)
+    else:
+        gx, gy = np.meshgrid(grid, grid)
+        shifts = np.stack((gx.ravel(), gy.ravel()))
+        guesses.append(np.linalg.lstsq(base, s.raw[:, :2] @ shifts, rcond=None)[0].T)
+    rows = np.flatnonzero(dark.any(1))
+    if len(rows) > k:
+        rng = np.random.default_rng(e.number)
+        tries = rows[rng.integers(len(rows), size=(TRIES, k))]
+        weight = dark[tries].astype(np.float64)
+        pick = (weight.cumsum(2) > rng.uniform(size=(TRIES, k, 1)) * weight.sum(2, keepdims=True)).argmax(2)
+        a, b = base[tries], offsets[pick]
+        good = np.abs(np.linalg.det(a)) > 0.05
+        if good.any():
+            guesses.append(np.linalg.solve(a[good], b[good][:, :, None])[:, :, 0])
+    return np.concatenate(guesses)

@@ -1,0 +1,88 @@
+"""Whose ink belongs at each place of the rectified sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
+from tmm_sheets.compare.photo.wiping import fixed
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.drawing.styles import line_type
+
+THIN = 0.2  # mm, width of strokes of hatchings, bars and leaders
+PIECE = 25.0  # mm of a line that are painted at once
+
+
+class Owners:
+    """A picture with the number of the element that is drawn at each place; negative where several are.
+
+    Of lettering only its leaders and bars: letters are written where there is room.
+    """
+
+    def __init__(self, rows: int, columns: int) -> None:
+        self.picture = np.zeros((rows, columns), np.int16)
+
+    def add(self, e: Element, points: Points) -> None:
+        """Enter an element whose line runs along ``points``, with its heads; also where it is already."""
+        import cv2
+
+        strokes = e.kind in ("hatch", "text")
+        # No thinner than two pixels, or it is stepped over at a slant.
+        wide = max(round((THIN if strokes else line_type(e.style).width) * SCALE), 1)
+        lines = e.pieces if strokes else () if e.kind == "fill" or (e.kind == "circle" and e.fills) else (points,)
+        for line in lines:
+            for piece in _pieces(line):
+                at, corner, mask = _patch(piece, wide)
+                cv2.polylines(mask, [at - corner], False, 1, wide, cv2.LINE_4, 4)  # no way through, as between LINE_8's corners
+                self._enter(e.number, corner, mask)
+        for f in e.fills:
+            at, corner, mask = _patch(f, 1)
+            cv2.fillPoly(mask, [at - corner], 1, cv2.LINE_8, 4)
+            self._enter(e.number, corner, mask)
+
+    def _enter(self, number: int, corner: Any, mask: Any) -> None:
+        x, y = (int(c) >> 4 for c in corner)
+        rows, columns = self.picture.shape
+        x0, y0, x1, y1 = max(x, 0), max(y, 0), min(x + mask.shape[1], columns), min(y + mask.shape[0], rows)
+        if x0 >= x1 or y0 >= y1:
+            return
+        here = self.picture[y0:y1, x0:x1]
+        on = mask[y0 - y : y1 - y, x0 - x : x1 - x] > 0
+        before = here[on]
+        here[on] = np.where(before == 0, number, np.where(np.abs(before) == number, before, -np.abs(before)))
+
+    def others(self, numbers: Any, places: Any) -> Any:
+        """Whether any element but that of the number (an array of one for each place, or one number) is at places, mm."""
+        found = sample(self.picture, pixels(places), nearest=True)
+        return (found != 0) & (found != numbers)
+
+
+def _pieces(points: Points) -> Iterator[Points]:
+    """A line in pieces whose boxes are small: most of the box of a long slanting line is not on it."""
+    start = 0
+    while start < len(points) - 1:
+        far = np.abs(points[start + 1 :] - points[start])
+        beyond = np.flatnonzero(far > PIECE)
+        end = start + 1 + (int(beyond[0]) if len(beyond) else len(far) - 1)
+        if end > start + 1 and len(beyond):
+            end -= 1
+        a, b = points[start], points[end]
+        if end == start + 1 and abs(b - a) > PIECE:
+            cuts = np.linspace(a, b, int(abs(b - a) / PIECE) + 2)
+            yield from (cuts[k : k + 2] for k in range(len(cuts) - 1))
+        else:
+            yield points[start : end + 1]
+        start = end
+
+
+def _patch(points: Points, wide: int) -> tuple[Any, Any, Any]:
+    """Points in sixteenths of pixels, the corner of a patch round them and the empty patch."""
+    at = fixed(points)
+    margin = wide // 2 + 2
+    low = (at.min(0) >> 4) - margin
+    size = (at.max(0) >> 4) + margin + 1 - low
+    return at, low << 4, np.zeros((int(size[1]), int(size[0])), np.uint8)

@@ -1,0 +1,119 @@
+"""Our drawing over the hand's: ink in blue, the exact lines thin and orange, what is off in red, circled, with its number.
+
+As PNG (drawn by OpenCV) and as a one-page PDF of the sheet's size in which the ink is an image and everything else lines, so that
+it can be looked at closely; the PDF is written here, it has nothing but that image and strokes.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.compare.photo.sheet_map import PAPER
+from tmm_sheets.compare.photo.wiping import fixed
+from tmm_sheets.drawing.marks import Points
+
+INK = (40, 70, 160)
+OURS = (245, 140, 0)
+BAD = {"red": (220, 0, 0), "amber": (190, 0, 190)}
+"""Colours, red, green, blue; of what is off by verdict."""
+PNG_SCALE = 4.0  # pixels per mm
+CIRCLE = 7.0  # mm
+
+
+class Flag(NamedTuple):
+    """A place that is circled: its number, verdict and the element's line, mm."""
+
+    number: int
+    verdict: str
+    at: complex
+    line: Points
+
+
+def png(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag]) -> bytes:
+    """The overlay as PNG, :data:`PNG_SCALE` pixels per mm."""
+    import cv2
+
+    size = (round(PAPER.width * PNG_SCALE), round(PAPER.height * PNG_SCALE))
+    grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
+    picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
+    for points in ours:
+        cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, OURS[::-1], 1, cv2.LINE_AA, 4)
+    for f in flags:
+        colour = BAD[f.verdict][::-1]
+        if len(f.line) > 1:
+            cv2.polylines(picture, [fixed(f.line, PNG_SCALE)], False, colour, 2, cv2.LINE_AA, 4)
+        x, y = fixed(np.array([f.at]), PNG_SCALE)[0]
+        cv2.circle(picture, (int(x), int(y)), round(CIRCLE * PNG_SCALE * 16), colour, 2, cv2.LINE_AA, 4)
+        place = (int(x / 16 + 0.75 * CIRCLE * PNG_SCALE), int(y / 16 - 0.75 * CIRCLE * PNG_SCALE))
+        cv2.putText(picture, str(f.number), place, cv2.FONT_HERSHEY_SIMPLEX, 0.9, colour, 2, cv2.LINE_AA)
+    done, data = cv2.imencode(".png", picture)
+    assert done
+    return bytes(data.tobytes())
+
+
+def _palette() -> Any:
+    """Red, green, blue of every darkness, (256, 3)."""
+    strength = np.minimum(1.6 * np.arange(256) / 255, 1)[:, None]
+    return np.round(255 + (np.array(INK) - 255) * strength).astype(np.uint8)
+
+
+def _clean(ink: Any, level: float) -> Any:
+    """Ink without the grain of bare paper."""
+    import cv2
+
+    return cv2.threshold(ink, 0.6 * level, 255, cv2.THRESH_TOZERO)[1]
+
+
+def pdf(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag], title: str) -> bytes:
+    """The overlay as a PDF of the sheet's size."""
+    mm = 72 / 25.4
+    rows, columns = ink.shape
+    palette = _palette().tobytes()
+    out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm", "1 J 1 j 0.12 w",
+           _colour(OURS)]  # fmt: skip
+    out += [_path(points) for points in ours]
+    for f in flags:
+        out += [_colour(BAD[f.verdict]), "0.35 w"]
+        if len(f.line) > 1:
+            out.append(_path(f.line))
+        t = np.linspace(0, 2 * np.pi, 49)
+        out.append(_path(f.at + CIRCLE * (np.cos(t) + 1j * np.sin(t))))
+        x, y = f.at.real + 0.75 * CIRCLE, f.at.imag + 0.75 * CIRCLE
+        r, g, b = (c / 255 for c in BAD[f.verdict])
+        out.append(f"BT {r:.3f} {g:.3f} {b:.3f} rg /F 6 Tf {x:.2f} {y:.2f} Td ({f.number}) Tj ET")
+    content = zlib.compress(("q " + "\n".join(out) + " Q").encode("ascii"), 6)
+    image = zlib.compress(_clean(ink, level).tobytes(), 1)
+    name = "".join(f"{b:02X}" for b in b"\xfe\xff" + title.encode("utf-16-be"))
+    objects = [
+        b"<< /Type /Catalog /Pages 2 0 R /ViewerPreferences << /PrintScaling /None >> >>",
+        b"<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
+        (f"<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {PAPER.width * mm:.4f} {PAPER.height * mm:.4f}] /Contents 4 0 R "
+         "/Resources << /XObject << /Ink 5 0 R >> /Font << /F 6 0 R >> >> >>").encode("ascii"),
+        b"<< /Length %d /Filter /FlateDecode >>\nstream\n" % len(content) + content + b"\nendstream",
+        (f"<< /Type /XObject /Subtype /Image /Width {columns} /Height {rows} /BitsPerComponent 8 "
+         f"/ColorSpace [/Indexed /DeviceRGB 255 <{palette.hex()}>] /Filter /FlateDecode "
+         f"/Length {len(image)} >>\nstream\n").encode("ascii") + image + b"\nendstream",
+        b"<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica >>",
+        f"<< /Title <{name}> /Creator (tmm-sheets) >>".encode("ascii"),
+    ]  # fmt: skip
+    data, places = b"%PDF-1.4\n", []
+    for k, body in enumerate(objects, 1):
+        places.append(len(data))
+        data += b"%d 0 obj\n" % k + body + b"\nendobj\n"
+    start = len(data)
+    data += b"xref\n0 %d\n0000000000 65535 f \n" % (len(objects) + 1)
+    data += b"".join(b"%010d 00000 n \n" % p for p in places)
+    return data + b"trailer\n<< /Size %d /Root 1 0 R /Info 7 0 R >>\nstartxref\n%d\n%%%%EOF\n" % (len(objects) + 1, start)
+
+
+def _colour(c: tuple[int, int, int]) -> str:
+    return " ".join(f"{x / 255:.3f}" for x in c) + " RG"
+
+
+def _path(points: Points) -> str:
+    places = [f"{p.real:.2f} {p.imag:.2f} {'l' if k else 'm'}" for k, p in enumerate(points.tolist())]
+    return " ".join(places) + " S"

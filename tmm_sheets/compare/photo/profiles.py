@@ -1,0 +1,120 @@
+"""Darkness of a picture, along lines and across them.
+
+Pictures are arrays with row 0 at the top; their points are complex numbers, pixels.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
+from tmm_sheets.drawing.marks import Points
+
+SCALE = 6.0
+"""Pixels per millimetre of the rectified sheet."""
+
+
+class Lines(NamedTuple):
+    """Points along known lines with their unit normals, mm; ``line`` numbers the line each belongs to."""
+
+    points: Points
+    normals: Points
+    line: npt.NDArray[np.int64]
+
+
+def darkness(grey: Any, size: float) -> Any:
+    """Ink of a grey picture, 0 for bare paper to 255 for black: what is darker than the paper round it.
+
+    ``size`` is the width in pixels of the widest line. Light and shade do not matter, nor the edge of a dark desk.
+    """
+    import cv2
+
+    # The paper's grey varies slowly: a quarter of the resolution is enough.
+    step = 2 if size < 20 else 4
+    small = cv2.resize(grey, None, fx=1 / step, fy=1 / step, interpolation=cv2.INTER_AREA)
+    reach = max(round(size / step), 2) * 2 + 1
+    paper = cv2.morphologyEx(cv2.medianBlur(small, 3), cv2.MORPH_CLOSE, cv2.getStructuringElement(cv2.MORPH_RECT, (reach, reach)))
+    # The least nearby too: a smooth paper would reach beyond its edge and darken the desk.
+    paper = cv2.min(cv2.blur(paper, (reach // 2 | 1, reach // 2 | 1)), cv2.erode(paper, np.ones((5, 5), np.uint8)))
+    paper = cv2.resize(paper, (grey.shape[1], grey.shape[0]), interpolation=cv2.INTER_LINEAR)
+    return 255 - cv2.divide(grey, paper, scale=255)
+
+
+def sample(picture: Any, p: Points, nearest: bool = False) -> Any:
+    """Values of a picture at complex pixel coordinates of any shape, bilinear (or of the nearest pixel); 0 outside."""
+    import cv2
+
+    if not np.size(p):
+        return np.zeros(np.shape(p), picture.dtype)
+    how = cv2.INTER_NEAREST if nearest else cv2.INTER_LINEAR
+    if np.ndim(p) <= 2 and max(np.shape(p)) < 32767:
+        flat = np.atleast_2d(p)
+        return cv2.remap(picture, flat.real.astype(np.float32), flat.imag.astype(np.float32), how,
+                         borderMode=cv2.BORDER_CONSTANT, borderValue=0).reshape(np.shape(p))  # fmt: skip
+    flat = np.atleast_2d(p)
+    wide = 8192  # cv2 takes at most 32767 rows and columns
+    x, y = flat.real.astype(np.float32).ravel(), flat.imag.astype(np.float32).ravel()
+    rows = -(-len(x) // wide)
+    pad = rows * wide - len(x)
+    out = cv2.remap(picture, np.pad(x, (0, pad)).reshape(rows, wide), np.pad(y, (0, pad)).reshape(rows, wide), how,
+                    borderMode=cv2.BORDER_CONSTANT, borderValue=0)  # fmt: skip
+    return out.ravel()[: len(x)].reshape(np.shape(p))
+
+
+def pixels(p: Points, scale: float = SCALE) -> Points:
+    """Sheet millimetres to pixels of :func:`straighten`'s picture."""
+    return np.asarray(p.real * scale - 0.5 + 1j * ((PAPER.y1 - p.imag) * scale - 0.5))
+
+
+def profiles(ink: Any, lines: Lines, offsets: Floats, shift: Points | None = None, scale: float = SCALE) -> Any:
+    """Darkness across lines, a row for each of their points; ``shift`` moves the points first."""
+    p = lines.points if shift is None else lines.points + shift
+    return sample(ink, pixels(p[:, None] + lines.normals[:, None] * offsets[None, :], scale))
+
+
+def peaks(profile: Any, offsets: Floats, centre: Any, reach: float, half: float) -> tuple[Floats, Floats]:
+    """Darkest place of each row of a table (rows x offsets) within ``reach`` of ``centre``, to a fraction of the step.
+
+    Returns
+    -------
+    Offsets of the weighted middle of the ink within ``half`` mm of the darkest place, and the darkness there.
+    """
+    profile = np.asarray(profile, dtype=np.float64)
+    allowed = np.abs(offsets[None, :] - np.reshape(centre, (-1, 1))) <= reach
+    masked = np.where(allowed, profile, -1.0)
+    k = masked.argmax(1)
+    top = masked[np.arange(len(k)), k]
+    near = np.abs(offsets[None, :] - offsets[k][:, None]) <= half
+    weight = np.where(near, np.clip(profile - 0.25 * np.maximum(top, 1e-3)[:, None], 0, None), 0.0)
+    total = weight.sum(1)
+    return (weight * offsets).sum(1) / np.where(total > 0, total, 1), np.where(total > 0, top, 0.0)
+
+
+def follow(profile: Any, steps: int = 2, stiffness: float = 0.5) -> npt.NDArray[np.int64]:
+    """The darkest smooth ways through tables (tables x stations x offsets), by dynamic programming; a column for each row.
+
+    Half as dark as the line is dark enough: a blacker line beside it shall not draw the way over.
+    """
+    tables, n, m = profile.shape
+    profile = np.minimum(profile, 0.5 * np.median(profile.max(2), 1)[:, None, None]).astype(np.float64)
+    cost = stiffness * np.maximum(profile.max((1, 2)), 1e-9)[:, None]
+    best = profile[:, 0]
+    came = np.zeros((n, tables, m), np.int64)
+    columns = np.arange(m)
+    options = np.full((2 * steps + 1, tables, m), -np.inf)
+    for i in range(1, n):
+        for k, d in enumerate(range(-steps, steps + 1)):
+            lo, hi = max(d, 0), m + min(d, 0)
+            options[k, :, lo:hi] = best[:, lo - d : hi - d] - cost * abs(d)
+        k = options.argmax(0)
+        came[i] = columns - (k - steps)
+        best = options.max(0) + profile[:, i]
+    way = np.zeros((tables, n), np.int64)
+    way[:, -1] = best.argmax(1)
+    which = np.arange(tables)
+    for i in range(n - 1, 0, -1):
+        way[:, i - 1] = came[i, which, way[:, i]]
+    return way

@@ -1,0 +1,163 @@
+"""A photographed sheet brought back to its millimetres.
+
+The frame is found (``frame_search``), its sides give the map of the sheet (``frame_fit``), and the lines of the drawing and of the
+title block correct it all at once (``map_fit``): homography, lens and a field of heights of the paper, a polynomial of degree
+:data:`~tmm_sheets.compare.photo.sheet_map.RELIEF`; at last a few waves take up some tenths of a millimetre. None of them can follow
+a single view, least of all a single line: with several hundred lines and some seventy numbers one wrong line moves them by
+hundredths of a millimetre (Geman and McClure's weights leave it out altogether).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import hypot
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo import frame_fit, frame_search
+from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
+from tmm_sheets.compare.photo.map_fit import Seen, bent, waved
+from tmm_sheets.compare.photo.photograph import Picture
+from tmm_sheets.compare.photo.profiles import SCALE, Lines, darkness, peaks, profiles
+from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Map
+from tmm_sheets.compare.photo.stations import as_lines
+from tmm_sheets.errors import CannotBuild
+
+LEAST_SCALE, FAIR_SCALE = 2.0, 3.0
+"""Pixels per mm of the sheet below which a photograph is refused, or warned of."""
+BLURRED, SOFT = 0.36, 0.31
+"""Standard deviation of the smear, mm, above which a picture is refused, or warned of; a fair photograph has 0.2 to 0.3."""
+LONGEST = 2500.0
+"""Lines longer than this, mm, do not correct the sheet: they are curves back and forth."""
+MATCH = 0.5
+"""Share of a sheet's lines that must be in the picture where they belong."""
+RECTIFIED = 0.15
+"""Error of a place after rectification, mm: some 95 % of the places of simulated photographs are within it."""
+TURNS = {1: "a quarter turn clockwise", 2: "a half turn", 3: "a quarter turn counter-clockwise"}
+COARSE = 4.0  # pixels per mm, enough to correct by
+COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2), (0.7, RELIEF + 1, 0.2))
+"""Reach to either side of a line, degree of the paper's height (beyond the highest: waves), and what counts as far off, mm."""
+NODE = 6.0  # mm between the points at which the map is calculated; cells of an even number of pixels
+
+
+@dataclass(frozen=True)
+class Rectified:
+    """The sheet seen from straight above: ``ink`` as :func:`straighten` makes it, ``map`` the way there,
+    ``sides`` the frame's points.
+
+    ``match`` is the share of the known lines that were found in place, ``scatter`` that of the frame's
+    points and ``uncertainty`` the error of a place, mm, ``scale`` pixels of the picture per mm, ``soft`` that it is not sharp.
+    """
+
+    ink: Any
+    map: Map
+    sides: Seen
+    level: float
+    match: float
+    scatter: float
+    uncertainty: float
+    scale: float
+    notes: tuple[str, ...]
+    soft: bool = False
+
+
+def frame_lines(known: Sequence[Element]) -> Lines:
+    """Lines of the title block and of the box for the turned designation, by which a frame is known."""
+    return as_lines([e for e in known if e.of == "title block" and e.length < 800], 4.0)
+
+
+def rectify(
+    picture: Picture, known: Sequence[Element], path: Path, say: Callable[[str], None] = lambda _: None, by_lines: bool = True,
+) -> Rectified:
+    """Bring a photographed sheet to millimetres; ``by_lines``: all lines of the drawing are where they belong and
+    correct what the frame has left, not the title block's alone.
+
+    Raises
+    ------
+    CannotBuild
+        When there is no frame, or the picture is too blurred or too small.
+    """
+    say("looking for the frame")
+    try:
+        found = frame_search.find(picture.grey, frame_lines(known))
+        m, sides, scatter, smear = frame_fit.fit_frame(picture.grey, found.corners, found.sides)
+    except CannotBuild as e:
+        raise CannotBuild(f"{path}: {e.args[0]}", hint=e.hint) from None
+    scale = float(np.abs(np.diff(found.corners)).min() / FRAME.height)
+    if scale < LEAST_SCALE:
+        raise CannotBuild(f"{path}: the sheet is {scale:.1f} pixels per millimetre: too few to measure lines 0.2 mm wide",
+                          hint="go nearer, or use more pixels: an A1 sheet that fills 12 million pixels has 4.5")  # fmt: skip
+    if smear > BLURRED:
+        raise CannotBuild(f"{path}: the picture is blurred: edges of lines are smeared over {2 * smear:.1f} mm",
+                          hint=frame_search.SHARP)  # fmt: skip
+    notes = []
+    if found.turned:
+        notes.append(f"{path.name} was turned by {TURNS[found.turned]} (the title block is known)")
+    if scale < FAIR_SCALE:
+        notes.append(f"{path.name} has {scale:.1f} pixels per millimetre only: thin lines may be missed")
+    if smear > SOFT:
+        notes.append(f"{path.name} is not sharp (edges of lines are smeared over {2 * smear:.1f} mm): thin lines may be missed")
+    say("correcting by the drawing's lines")
+    lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.of == "title block")])
+    ink = straighten(picture.grey, m, COARSE)
+    better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE, RELIEF if by_lines else 2)
+    if match >= MATCH:
+        m = better
+    ink = straighten(picture.grey, m)
+    uncertainty = hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter)
+    return Rectified(ink, m, sides, noise_level(ink), match, scatter, uncertainty, scale, tuple(notes), smear > SOFT)
+
+
+def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
+    """The sheet seen from straight above, ``scale`` pixels per mm, as darkness 0 .. 255."""
+    import cv2
+
+    width, height = round(PAPER.width * scale), round(PAPER.height * scale)
+    # From a node to the left of the paper and one above it on.
+    x, y = np.arange(-NODE, PAPER.x1 + 2 * NODE, NODE), np.arange(PAPER.y1 + NODE, -2 * NODE, -NODE)
+    nodes = m.to_picture(x[None, :] + 1j * y[:, None])
+    finest = abs(complex(nodes[len(y) // 2, len(x) // 2 + 1] - nodes[len(y) // 2, len(x) // 2])) / NODE
+    if finest > 1.3 * scale:  # a fine scan: shrink it first, or its pixels are skipped
+        f = scale / finest
+        grey = cv2.resize(grey, None, fx=f, fy=f, interpolation=cv2.INTER_AREA)
+        nodes = (nodes + 0.5 + 0.5j) * f - (0.5 + 0.5j)
+    # Linear between the nodes; the first of them is the middle of a cell, and so half a cell more is cut off.
+    cell = round(NODE * scale)
+    first = cell * 3 // 2
+    across, down = (
+        cv2.resize(part.astype(np.float32), None, fx=cell, fy=cell, interpolation=cv2.INTER_LINEAR)[first:, first:][:height, :width]
+        for part in (nodes.real, nodes.imag)
+    )
+    return darkness(cv2.remap(grey, across, down, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE), 5 * scale)
+
+
+def refine(
+    m: Map, sides: Seen, ink: Any, lines: Lines, level: float, scale: float = SCALE, highest: int = RELIEF,
+) -> tuple[Map, float, float]:
+    """The map corrected by lines seen in the picture ``ink`` straightened by ``m``, with heights up to degree ``highest``.
+
+    Returns
+    -------
+    The map, the robust scatter of the lines about it, mm, and the share of their points with ink within half a millimetre.
+    """
+    # A line counts by its length up to 30 mm or so.
+    weight = 1 / np.sqrt(np.maximum(np.bincount(lines.line), 8) / 8.0)[lines.line]
+    sides = sides._replace(weight=0.5 * sides.weight)
+    offsets = np.arange(-4.0, 4.05, 0.1)
+    better, hit, scatter = m, 0.0, 1.0
+    for reach, degree, loose in COARSE_TO_FINE:
+        at = m.to_sheet(better.to_picture(lines.points))
+        o, strength = peaks(profiles(ink, lines, offsets, at - lines.points, scale), offsets, 0.0, reach, 0.4)
+        use = strength > level
+        hit = float((use & (np.abs(o) < 0.5)).mean())
+        if not use.any():
+            return better, scatter, hit
+        scatter = 1.4826 * float(np.median(np.abs(o[use])))
+        seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
+        fine = highest == RELIEF < degree
+        better = waved(better, seen, loose) if fine else bent(better, sides, seen, min(degree, highest), loose)[0]
+    return better, scatter, hit

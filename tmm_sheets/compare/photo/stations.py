@@ -1,0 +1,113 @@
+"""Places along an element with normals, what a similarity does to them, and the ink across them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element, sampled
+from tmm_sheets.compare.photo.profiles import Lines
+from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
+from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.drawing.styles import line_type
+
+STEP = 0.1  # mm between offsets of a profile
+LEAST = 6.0  # mm of line that can be measured
+SETTLED = 1e-3  # mm of change with which a fit is done
+ENOUGH = 0.6  # share of an element's ink that must lie on one displaced line
+
+
+class Stations(NamedTuple):
+    """Places along an element with normals."""
+
+    points: Points
+    normals: Points
+    raw: Floats
+    """Normal displacement by shift in x and y, by turn and growth (both at the element's half extent), (n, 4)."""
+    half: float
+
+    def base(self, use: Any = slice(None)) -> Floats:
+        """The same by those combinations of the four that some of the places determine, (n, k).
+
+        What moves them along their normals by less than a fifth of itself is not determined.
+        """
+        _, values, rows = np.linalg.svd(self.raw[use] / np.sqrt(len(self.raw[use])), full_matrices=False)
+        return np.asarray(self.raw @ rows[values > 0.2].T)
+
+
+def measurable(e: Element) -> bool:
+    """Whether an element is a line long enough to be measured. The paper's outline is none: paper ends where it is cut."""
+    if e.kind not in ("line", "arc", "circle", "curve") or e.length < LEAST or (e.kind == "circle" and e.fills):
+        return False
+    return bool(e.points.real.min() > PAPER.x0 + 1 or e.points.real.max() < PAPER.x1 - 1)
+
+
+def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 4000) -> Lines:
+    """Stations along the elements that are lines, for the rectification: at most some ``most`` of them."""
+    chosen = [e for e in elements if measurable(e) and e.length >= least and e.style != "text"]
+    step = max(sum(e.length for e in chosen) / most, 2.0)
+    p, n, line = [], [], []
+    for k, e in enumerate(chosen):
+        points, normals = sampled(e.points, step)
+        points, normals = (points[1:-1], normals[1:-1]) if len(points) > 4 else (points, normals)
+        p.append(points)
+        n.append(normals)
+        line.append(np.full(len(points), k))
+    if not p:
+        return Lines(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, np.int64))
+    return Lines(np.concatenate(p), np.concatenate(n), np.concatenate(line))
+
+
+def smoothed(profile: Any) -> Any:
+    """Profiles averaged with their neighbours along the line."""
+    import cv2
+
+    return cv2.blur(profile, (1, 5)) if len(profile) >= 5 else profile
+
+
+def stations(e: Element, grows: bool) -> Stations:
+    """Places along an element, at most some 120, and what a similarity (without growth if not ``grows``) does to them."""
+    step = max(e.length / 120, 0.6)
+    p, n = sampled(e.points, step)
+    if e.kind != "circle" and len(p) > 6:
+        p, n = p[1:-1], n[1:-1]
+    middle = e.centre if e.kind == "circle" else p.mean()
+    half = max(float(np.abs(p - middle).max()), 1.0)
+    d = (p - middle) / half
+    raw = np.stack((n.real, n.imag, (np.conj(n) * 1j * d).real, (np.conj(n) * d).real), -1)
+    if not grows:
+        raw[:, 3] = 0.0
+    return Stations(p, n, raw, half)
+
+
+def expected_ink(e: Element) -> float:
+    """Share of an element's length that has ink."""
+    pattern = line_type(e.style).pattern
+    return sum(x for x in pattern if x > 0) / sum(map(abs, pattern)) if pattern and e.length > 8 else 1.0
+
+
+def fit(base: Floats, o: Floats, use: Any, loose: float) -> Floats:
+    """Robust least squares of offsets, a little drawn to zero."""
+    x = np.zeros(base.shape[1])
+    for k in range(8):
+        r = o - base @ x
+        w = use / (1 + (r / (loose if k > 1 else 3 * loose)) ** 2) ** 2
+        a = base.T @ (base * w[:, None]) + 0.02 * np.eye(base.shape[1])
+        before, x = x, np.linalg.solve(a, base.T @ (w * o))
+        if k > 2 and np.abs(x - before).max(initial=0.0) < SETTLED:
+            break
+    return np.asarray(x)
+
+
+def measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> Trace:
+    """The trace of an element whose line is off by ``o`` along its normals, seen where ``use``."""
+    full = np.linalg.lstsq(s.raw[use], o[use], rcond=0.1)[0]
+    o = (s.raw @ full)[use]
+    z = e.points
+    middle = e.centre if e.kind == "circle" else s.points.mean()
+    moved = z + (full[0] + 1j * full[1]) + (z - middle) / s.half * (full[3] + 1j * full[2])
+    return Trace(e, "measured", complex(full[0], full[1]), float(full[2] / s.half), float(full[3]), float(np.abs(o).max()),
+                 covered=covered, at=np.asarray(moved))  # fmt: skip

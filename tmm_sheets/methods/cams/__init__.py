@@ -1,0 +1,1 @@
+"""Cams: laws of motion, the zone of permitted centres, the profile by inversion."""

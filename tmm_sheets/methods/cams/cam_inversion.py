@@ -1,0 +1,139 @@
+"""Profile of a cam by inversion: the cam stands still, the follower goes round it (метод обращенного движения).
+
+Source: manual 000, section 7.3 and examples 1 to 3; manual 002, 4.4.
+
+Frame: that of the cam, origin in its axis O, in position 0 y along the motion of the follower and x to the right.
+Every step holds one value per cam angle; plans are in m.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.methods.cams.cam_zone import TURNED, Zone
+
+Reals = npt.NDArray[np.float64]
+
+LAY_OFF_FROM = Rule(
+    "lay off an angle from a line", lambda o, b, r, angle, sense: o + r * ar.ray(o, b) * np.exp(1j * sense * angle),
+    ("point", "point", "length", "angle", "number"), "point",
+    "От прямой {0}{1} в сторону, обратную вращению кулачка, отложим угол {3}; на окружности радиуса {2} отметим точку {name}.",
+    lambda a, v: (Helper("line", a[0], v),),
+)
+PITCH_POINT = Rule(
+    "centre of relative rotation", lambda o, u, ds: o + u * ds, ("point", "direction", "length"), "point",
+    "Через {0} перпендикулярно к линии толкателя отложим аналог скорости {2}: точка {name} на нормали к профилю.",
+    lambda a, v: (Helper("line", a[0], v),),
+)
+ACROSS_LINE = Rule("perpendicular to a direction", lambda u, side: 1j * side * u, ("direction", "number"), "direction",
+                   "Проведём перпендикуляр {name} к прямой {0}.")
+CONTACT = Rule("contact on the normal", lambda b, n, r: b + r * n, ("point", "direction", "length"), "point",
+               "Из точки {0} радиусом ролика {2} проведём окружность; на нормали {1} лежит точка профиля {name}.",
+               lambda a, v: (Helper("circle", a[0], radius=a[2]),))
+BETWEEN = Rule("angle between two lines", lambda n, u, right: np.arctan2(right * ar.cross(n, -u), ar.dot(n, -u)),
+               ("direction", "direction", "number"), "inclination",
+               "Измерим угол давления между нормалью {0} и направлением скорости толкателя {1}: {value}.")
+
+
+@dataclass(frozen=True)
+class Inversion:
+    """Positions of a follower about the standing cam.
+
+    ``axis`` are the marks of the follower's path in position 0, ``ends`` the points from which its inverted positions are
+    drawn (the ends of its lines on the circle r0, the axes of the rocker on the circle l0), ``feet`` the points of contact
+    of the lines with the circle e (None where there are none), ``lines`` the directions of the follower's velocity in the
+    rise, ``centres`` the points of the centre profile (under a flat follower the middles of the plate), ``normals`` the
+    directions of the common normal into the cam, ``angles`` the pressure angles.
+    """
+
+    plan: Plan
+    phi: Reals
+    origin: Step
+    axis: Step
+    ends: Step
+    feet: Step | None
+    lines: Step
+    centres: Step
+    normals: Step
+    angles: Step
+
+
+def translating(plan: Plan, dimensions: Zone, phi: Reals, s: Reals, ds: Reals) -> Inversion:
+    """Record the inversion of a translating roller follower for cam angles ``phi``; ``s`` and ``ds`` in m."""
+    right, e, s0, r0 = dimensions.right, dimensions.e, dimensions.s0, dimensions.r0
+    o = plan.add("O", rules.GIVEN, 0j)
+    foot = plan.add("T_0", rules.GIVEN, complex(-right * e))
+    start = plan.add("B_0", rules.ALONG, foot, 1j, s0,
+                     say="По катетам e и S_0 = {2} построим прямоугольный треугольник; вершина {name}.")
+    axis = plan.add("A", rules.ALONG, start, 1j, s,
+                    say="На линии толкателя от точки {0} отложим перемещение {2}: точка {name}.")
+    # The cam turns by -right * phi, so the follower goes round the standing cam by right * phi.
+    ends = plan.add("N", LAY_OFF_FROM, o, start, r0, phi, right)
+    feet = plan.add("T", rules.TANGENT, ends, o, abs(e), -right if e >= 0 else right)
+    lines = plan.add("TN", rules.RAY, feet, ends)
+    radius = plan.add("OA", rules.DISTANCE, o, axis)
+    centres = plan.add("B", rules.ARC_LINE, o, radius, ends, lines, 1.0)
+    side = plan.add("⊥TN", ACROSS_LINE, lines, right)
+    poles = plan.add("P", PITCH_POINT, o, side, ds)
+    normals = plan.add("BP", rules.RAY, centres, poles)
+    angles = plan.add("α", BETWEEN, normals, lines, right)
+    return Inversion(plan, phi, o, axis, ends, feet, lines, centres, normals, angles)
+
+
+def rocker(plan: Plan, dimensions: Zone, phi: Reals, psi: Reals, dpsi: Reals) -> Inversion:
+    """Record the inversion of an oscillating roller follower for cam angles ``phi``; ``psi`` in rad."""
+    cones = dimensions.cones
+    right, turn = cones.right, cones.turn
+    apex, pivot = complex(dimensions.apex.value), complex(cones.pivot or 0j)
+    same, arm, l0 = turn * right < 0, abs(pivot), dimensions.l0
+    o = plan.add("O", rules.GIVEN, 0j)
+    a0 = plan.add("A_0", rules.GIVEN, pivot - apex, say="На расстоянии l_0 от точки O отметим ось коромысла {name}.")
+    b0 = plan.add("B_0", rules.GIVEN, -apex, say="По сторонам r_0, l_0 и AB построим треугольник OA_0B_0; вершина {name}.")
+    axis = plan.add("C", TURNED, a0, b0, psi, turn)
+    ends = plan.add("A", LAY_OFF_FROM, o, a0, l0, phi, right)
+    radius = plan.add("OC", rules.DISTANCE, o, axis)
+    side = float(np.sign(ar.cross(pivot - apex, -apex)))
+    centres = plan.add("B", rules.ARC_ARC, o, radius, ends, arm, side)
+    line = plan.add("BA", rules.RAY, centres, ends)
+    tips = plan.add("D", rules.ALONG, centres, line, (1.0 if same else -1.0) * arm * dpsi,
+                    say="На линии коромысла от точки {0} отложим отрезок AB·ψ' = {2}: точка {name}.")
+    normals = plan.add("DO", rules.RAY, tips, o,
+                       say="Проведём прямую {0}{1}: нормаль к профилю в точке B ей параллельна.")
+    lines = plan.add("⊥BA", ACROSS_LINE, line, -turn)
+    angles = plan.add("α", BETWEEN, normals, lines, right)
+    return Inversion(plan, phi, o, axis, ends, None, lines, centres, normals, angles)
+
+
+def flat(plan: Plan, r0: float, right: float, phi: Reals, s: Reals, ds: Reals) -> Inversion:
+    """Record the inversion of a flat follower for cam angles ``phi``; the plate is perpendicular to its motion."""
+    o = plan.add("O", rules.GIVEN, 0j)
+    start = plan.add("B_0", rules.ALONG, o, 1j, r0, say="На линии толкателя отложим радиус r_0 = {2}: точка {name}.")
+    axis = plan.add("A", rules.ALONG, start, 1j, s,
+                    say="На линии толкателя от точки {0} отложим перемещение {2}: точка {name}.")
+    ends = plan.add("N", LAY_OFF_FROM, o, start, r0, phi, right)
+    lines = plan.add("ON", rules.RAY, o, ends)
+    radius = plan.add("OA", rules.DISTANCE, o, axis)
+    centres = plan.add("B", rules.ARC_LINE, o, radius, o, lines, 1.0)
+    plates = plan.add("⊥ON", ACROSS_LINE, lines, right, say="Через точку B проведём перпендикуляр {name} к {0}: плоскость тарелки.")
+    plan.add("F", rules.ALONG, centres, plates, ds,
+             say="На тарелке от точки {0} отложим аналог скорости {2}: точка касания с профилем {name}.")
+    normals = plan.add("−ON", rules.RAY, centres, o, say="Нормаль к профилю {name} параллельна линии толкателя.")
+    angles = plan.add("α", BETWEEN, normals, lines, right)
+    return Inversion(plan, phi, o, axis, ends, None, lines, centres, normals, angles)
+
+
+def curvature(w: Any, dw: Any, ddw: Any, right: float) -> Any:
+    """Curvature of the path ``w(phi) exp(i right phi)`` in the cam, 1/m, positive where it is convex.
+
+    ``w`` is the point in the standing frame, ``dw`` and ``ddw`` its derivatives by the cam angle.
+    """
+    first, second = 1j * right * w + dw, -w + 2j * right * dw + ddw
+    return right * (np.conjugate(first) * second).imag / np.abs(first) ** 3

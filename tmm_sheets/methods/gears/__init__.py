@@ -1,0 +1,1 @@
+"""Gear pairs, racks and planetary reducers."""

@@ -1,0 +1,311 @@
+"""Constructions of the engagement picture, of the involutes by unrolling, of the teeth and of the sliding curves.
+
+Manual 000, section 6.4. The pole P_w is the origin, the line of centres vertical, wheel 1 above. ``hand`` is +1 or -1: the
+line of action runs from N1 (upper) to N2 (lower) to the right or to the left, which depends on driver and sense.
+All points in metres; the unit "m" is real size, not millimetres of paper, except the ordinates of the speeds.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import (
+    ALONG,
+    ARC_ARC,
+    ARC_LINE,
+    DISTANCE,
+    GIVEN,
+    GIVEN_DIRECTION,
+    GIVEN_LENGTH,
+    RAY,
+    TANGENT,
+)
+from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.methods.gears.gear_geometry import PairGeometry, Wheel
+
+COMMON_ORDINATES = (25.0, 20.0, 15.0, 10.0, 5.0)
+"""Ordinate of both speeds at the pole, mm of paper: 25 (manual 000, 6 example), less where the far one gets too high."""
+HIGHEST_ORDINATE = 110.0
+
+
+def hand(pair: PairGeometry) -> int:
+    """+1 when the line of action falls to the right from N1 to N2, -1 when to the left.
+
+    The driver presses in the sense of its motion, and the contact runs from the driver's foot towards the driven wheel's.
+    """
+    motion = -1 if pair.sense == "clockwise" else 1  # of the pole's points along x; wheel 1 above the pole
+    return motion if pair.driver == 1 else -motion
+
+
+def _angle(p: Any, o: Any, q: Any) -> Any:
+    return np.abs(np.angle((p - o) * np.conj(q - o)))
+
+
+def turn_of(o: Any, foot: Any, travel: Any) -> Any:
+    """Rotation about ``o`` (unit factor) when the contact moves by ``travel`` along the tangent at ``foot``."""
+    arm = foot - o
+    return np.exp(1j * ar.cross(arm, travel) / (np.real(arm) ** 2 + np.imag(arm) ** 2))
+
+
+def _rolled(p: Any, o: Any, foot: Any, contact: Any) -> Any:
+    return o + (p - o) * turn_of(o, foot, contact - p)
+
+
+def unrolled(o: Any, foot: Any, pole: Any, length: Any) -> Any:
+    """Point of the profile through ``pole`` where the unrolled tangent of the base circle has this length."""
+    string = pole - foot
+    whole = np.abs(string)
+    turn = turn_of(o, foot, string * (1 - length / whole))
+    return o + ((foot - o) + string / whole * length) * turn
+
+
+def _profile_on_circle(o: Any, foot: Any, pole: Any, radius: Any) -> Any:
+    base = np.abs(foot - o)
+    return unrolled(o, foot, pole, np.sqrt((radius - base) * (radius + base)))
+
+
+def _divide(p: Any, q: Any, k: Any, parts: Any) -> Any:
+    return p + (q - p) * (k / parts)
+
+
+def _lay_arc(o: Any, foot: Any, pole: Any, k: Any, parts: Any) -> Any:
+    return o + (foot - o) * turn_of(o, foot, (pole - foot) * (1 - k / parts))
+
+
+def _end_of_tangent(o: Any, foot: Any, pole: Any, at: Any, length: Any) -> Any:
+    # The tangent at the pole's foot turned together with the radius: a right angle to the radius, on the tooth's side.
+    return at + ar.ray(foot, pole) * ar.ray(o, at) * np.conj(ar.ray(o, foot)) * length
+
+
+def _speed(foot: Any, pole: Any, at: Any, ordinate: Any) -> Any:
+    string = pole - foot
+    # the same products above and below the line: the ordinate at the pole comes out exactly
+    # (and no negative zero over the foot, which would turn the sliding's infinity over)
+    return ordinate * (ar.dot(at - foot, string) / ar.dot(string, string)) + 0.0
+
+
+def _sliding(own: Any, other: Any) -> Any:
+    return (own - other) / np.asarray(own)
+
+
+def _middle(p: Any, q: Any) -> Any:
+    return (p + q) / 2
+
+
+def _radial_fillet(o: Any, start: Any, rho: Any, root: Any, side: Any) -> Any:
+    return o + ar.ray(o, start) * (np.sqrt(root * (root + 2 * rho)) + 1j * side * rho)
+
+
+def on_normal(o: Any, foot: Any, pole: Any, touch: Any, length: Any, rho: Any) -> Any:
+    """Point at ``rho`` from the profile's point ``touch`` (unrolled ``length``) along its normal, out of the tooth."""
+    string = pole - foot
+    return touch + string / np.abs(string) * turn_of(o, foot, string * (1 - length / np.abs(string))) * rho
+
+
+CIRCLE = Rule(
+    "circle", lambda o, r: r, ("point", "length"), "length", "Из центра {0} радиусом {1} проведём окружность {name}.",
+    lambda a, v: (Helper("circle", a[0], radius=a[1]),),
+)
+ANGLE = Rule("measure an angle", _angle, ("point", "point", "point"), "angle", "Измерим угол {0}{1}{2}: {name} = {value}.")
+RATIO = Rule("ratio of angles", lambda a, b: a / b, ("angle", "angle"), "number",
+             "Коэффициент перекрытия {name} = {0} / {1} = {value}.")
+ROLLED = Rule(
+    "profile in contact", _rolled, ("point", "point", "point", "point"), "point",
+    "Профиль, касающийся в {3}, пересекает начальную окружность с центром {1} в точке {name} "
+    "(дуга основной окружности от {2} равна отрезку {0}{3}).",
+    lambda a, v: (Helper("line", a[1], v),),
+)
+DIVIDE = Rule(
+    "equal parts", _divide, ("point", "point", "number", "number"), "point",
+    "Отрезок {0}{1} разделим на равные части (их {3}); деление {2} от {0}: точка {name}.",
+)
+LAY_ARC = Rule(
+    "lay off an arc", _lay_arc, ("point", "point", "point", "number", "number"), "point",
+    "По основной окружности с центром {0} от {1} отложим дугу, равную отрезку от {1} до деления {3}: точка {name}.",
+    lambda a, v: (Helper("line", a[0], v),),
+)
+END_OF_TANGENT = Rule(
+    "end of the unrolled tangent", _end_of_tangent, ("point", "point", "point", "point", "length"), "point",
+    "В точке {3} проведём касательную (перпендикуляр к радиусу) и отложим на ней {4}: точка эвольвенты {name}.",
+    lambda a, v: (Helper("line", a[3], v),),
+)
+ON_CIRCLE = Rule(
+    "profile cuts a circle", _profile_on_circle, ("point", "point", "point", "length"), "point",
+    "Профиль, проходящий через {2}, пересекает окружность радиуса {3} с центром {0} в точке {name}.",
+)
+UNROLLED = Rule(
+    "point of the profile", unrolled, ("point", "point", "point", "length"), "point",
+    "На эвольвенте отметим точку {name}, для которой длина касательной {3}.",
+)
+MIDDLE = Rule("middle", _middle, ("point", "point"), "point", "Разделим отрезок {0}{1} пополам: точка {name}.")
+RADIAL_FILLET = Rule(
+    "fillet on a radial piece", _radial_fillet, ("point", "point", "length", "length", "number"), "point",
+    "Ниже {1} профиль идёт по радиусу; центр {name} выкружки радиуса {2} лежит на этом расстоянии от радиуса "
+    "и от окружности впадин.",
+)
+FILLET_ON_NORMAL = Rule(
+    "fillet on the involute", on_normal, ("point", "point", "point", "point", "length", "length"), "point",
+    "На нормали к эвольвенте в точке {3} отложим радиус выкружки {5}: её центр {name}.",
+)
+SPEED = Rule(
+    "ordinate of a speed", _speed, ("point", "point", "point", "number"), "number",
+    "Через {0} и вершину ординаты {3} мм в полюсе проведём прямую; над делением {name} = {value} мм.",
+)
+SLIDING = Rule("specific sliding", _sliding, ("number", "number"), "number", "Удельное скольжение {name} = {value}.")
+
+
+def engagement_plan(pair: PairGeometry) -> Plan:
+    """Centres, circles, line of action, active part and overlap angles.
+
+    Steps: ``O1 O2 Pw``, circles ``rw1 r1 rb1 ra1 rf1`` and of wheel 2, ``N1 N2 A B``, ``alpha_w``, profiles in contact
+    at A and B cutting the working pitch circles in ``a1 b1 a2 b2``, angles ``phi1 phi2``, ratios ``eps1 eps2``.
+    """
+    plan = Plan("gear-engagement", "Картина зацепления", "m")
+    one = pair.wheels[0]
+    down = plan.add("O1O2", GIVEN_DIRECTION, -1j, say="Проведём линию центров.")
+    plan.add("O1", GIVEN, 1j * one.rw)
+    distance = plan.add("aw", GIVEN_LENGTH, pair.a_w)
+    plan.add("O2", ALONG, plan["O1"], down, distance)
+    for w in pair.wheels:
+        for name in ("rw", "r", "rb", "ra", "rf"):
+            plan.add(f"{name}{w.number}", CIRCLE, plan[f"O{w.number}"], getattr(w, name))
+    pole = plan.add("Pw", ALONG, plan["O1"], down, plan["rw1"])
+    side = hand(pair)
+    for w in pair.wheels:
+        plan.add(f"N{w.number}", TANGENT, pole, plan[f"O{w.number}"], plan[f"rb{w.number}"], side)
+    line = plan.add("N1N2", RAY, plan["N1"], plan["N2"])
+    ends = ((plan["O2"], plan["ra2"], -1), (plan["O1"], plan["ra1"], 1))
+    for name, (centre, radius, way) in zip("AB", ends if pair.driver == 1 else ends[::-1], strict=True):
+        plan.add(name, ARC_LINE, centre, radius, pole, line, way)
+    plan.add("alpha_w", ANGLE, pole, plan["O1"], plan["N1"])
+    for w in pair.wheels:
+        i = w.number
+        for contact in "AB":
+            plan.add(f"{contact.lower()}{i}", ROLLED, pole, plan[f"O{i}"], plan[f"N{i}"], plan[contact])
+        plan.add(f"phi{i}", ANGLE, plan[f"a{i}"], plan[f"O{i}"], plan[f"b{i}"])
+        plan.add(f"eps{i}", RATIO, plan[f"phi{i}"], w.tau)
+    return plan
+
+
+def parts_of_pole_segment(drawn: float) -> int:
+    """Number of equal parts of P_wN for a segment of ``drawn`` mm on paper: 15..25 mm each, never fewer than two."""
+    return max(2, round(drawn / 20))
+
+
+def divisions(wheel: Wheel, parts: int) -> range:
+    """Division numbers from 0 at the pole to the last one beyond N that the tip needs, two at least (manual 000: 2-4)."""
+    beyond = (wheel.t_tip / wheel.t_pole - 1) * parts
+    return range(parts + max(2, int(np.ceil(beyond - 1e-9))) + 1)
+
+
+def involute_plan(wheel: Wheel, engagement: Plan, parts: int) -> Plan:
+    """Involute through the pole by unrolling, with every division that is drawn.
+
+    Division ``k`` of P_wN (``parts`` of them, further ones beyond N) is carried to the base circle as an arc from N, and
+    |P_w k| laid off on the tangent there: steps ``k``, ``k′``, ``Pwk`` and ``Ek`` for each number k of :func:`divisions`.
+    """
+    plan = Plan(f"gear-involute-{wheel.number}", f"Эвольвента колеса {wheel.number} обкаткой", "m")
+    for k in divisions(wheel, parts):
+        _unroll(plan, wheel, engagement, float(k), parts, (f"{k}", f"{k}′", f"Pw{k}", f"E{k}"))
+    return plan
+
+
+def smooth_involute(wheel: Wheel, engagement: Plan, numbers: Any) -> Any:
+    """Points of the same involute by the same steps at any fractions of P_wN (0 at the base circle, 1 at the pole)."""
+    plan = Plan("gear-involute-curve", "Эвольвента", "m", tuple(f"{v:g}" for v in numbers))
+    return _unroll(plan, wheel, engagement, np.asarray(numbers, dtype=float), 1, ("k", "k′", "Pwk", "E")).value
+
+
+def _unroll(plan: Plan, wheel: Wheel, engagement: Plan, k: Any, parts: int, names: tuple[str, str, str, str]) -> Step:
+    centre, foot, pole = engagement[f"O{wheel.number}"], engagement[f"N{wheel.number}"], engagement["Pw"]
+    division = plan.add(names[0], DIVIDE, pole, foot, k, parts)
+    base = plan.add(names[1], LAY_ARC, centre, foot, pole, k, parts)
+    length = plan.add(names[2], DISTANCE, pole, division)
+    return plan.add(names[3], END_OF_TANGENT, centre, foot, pole, base, length)
+
+
+def tooth_plan(pair: PairGeometry, wheel: Wheel, engagement: Plan) -> Plan:
+    """Tooth whose working flank goes through the pole.
+
+    Steps: ``E F`` both flanks on the pitch circle, ``M`` and ``axis`` of the tooth, ``G`` beginning of the involute,
+    ``Q C R`` fillet: where it leaves the flank, its centre, where it touches the root circle (none when a rack cuts the
+    tooth); ``H`` on the tip circle.
+    """
+    i = wheel.number
+    plan = Plan(f"gear-tooth-{i}", f"Зуб колеса {i}", "m")
+    centre, foot, pole = engagement[f"O{i}"], engagement[f"N{i}"], engagement["Pw"]
+    side = hand(pair)  # sense in which a wheel turns away from its flank: the same for both
+    start = plan.add("E", ON_CIRCLE, centre, foot, pole, engagement[f"r{i}"])
+    chord = plan.add("s", GIVEN_LENGTH, wheel.s_chord, say="Возьмём толщину зуба по хорде {value}.")
+    other = plan.add("F", ARC_ARC, centre, engagement[f"r{i}"], start, chord, -side)
+    middle = plan.add("M", MIDDLE, start, other)
+    plan.add("axis", RAY, centre, middle)
+    plan.add("H", ON_CIRCLE, centre, foot, pole, engagement[f"ra{i}"])
+    if pair.profile == "rack":
+        return plan  # the fillet comes from the positions of the rack
+    rho = plan.add("rho", GIVEN_LENGTH, wheel.fillet)
+    root = engagement[f"rf{i}"]
+    if wheel.t_fillet > 0:
+        length = plan.add("t", GIVEN_LENGTH, wheel.t_fillet)
+        touch = plan.add("Q", UNROLLED, centre, foot, pole, length)
+        fillet = plan.add("C", FILLET_ON_NORMAL, centre, foot, pole, touch, length, rho)
+    else:
+        begin = plan.add("G", UNROLLED, centre, foot, pole, 0.0, say="Эвольвента начинается на основной окружности в точке {name}.")
+        fillet = plan.add("C", RADIAL_FILLET, centre, begin, rho, root, side)
+        radial = plan.add(f"O{i}G", RAY, centre, begin)
+        touch = plan.add("Q", _FOOT_ON_RADIUS, centre, radial, fillet)
+    ray = plan.add(f"O{i}C", RAY, centre, fillet)
+    plan.add("R", ALONG, centre, ray, root)
+    return plan
+
+
+_FOOT_ON_RADIUS = Rule(
+    "foot on the radial piece", lambda o, u, c: ar.foot(c, o, u), ("point", "direction", "point"), "point",
+    "Из центра выкружки {2} опустим перпендикуляр на радиус {1}: точка сопряжения {name}.",
+)
+
+
+def common_ordinate(pair: PairGeometry) -> float:
+    """Ordinate at the pole, mm of paper, with which the highest one, over a foot of the line, stays in sight."""
+    one, two = pair.wheels
+    ratio = max(one.t_pole, two.t_pole) / min(one.t_pole, two.t_pole)
+    return next((y for y in COMMON_ORDINATES if y * (1 + ratio) <= HIGHEST_ORDINATE), COMMON_ORDINATES[-1])
+
+
+def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = (3, 4)) -> Plan:
+    """Speeds of the contact point along both profiles and specific sliding, from N1 (division 0) over the pole to N2.
+
+    Speeds are ordinates in mm of paper with :func:`common_ordinate` at the pole; sliding is infinite at a wheel's own foot.
+    """
+    first, second = parts
+    plan = Plan("gear-sliding", "Удельные скольжения", "m", tuple(str(k) for k in range(first + second + 1)))
+    one = np.concatenate([np.arange(first, 0, -1.0), np.zeros(second + 1)])
+    two = np.concatenate([np.zeros(first), np.arange(second + 1.0)])
+    return _sliding_steps(plan, engagement, common_ordinate(pair), one / first, two / second)
+
+
+def sliding_between(pair: PairGeometry, engagement: Plan, share: Any) -> Plan:
+    """The same for any points of N1N2: ``share`` is -1 at N1, 0 at the pole, 1 at N2 (for smooth curves and for A, B)."""
+    share = np.asarray(share, dtype=float)
+    plan = Plan("gear-sliding-curve", "Удельные скольжения", "m", tuple(f"{v:g}" for v in share))
+    return _sliding_steps(plan, engagement, common_ordinate(pair), np.maximum(-share, 0), np.maximum(share, 0))
+
+
+def _sliding_steps(plan: Plan, engagement: Plan, ordinate: float, to_first: Any, to_second: Any) -> Plan:
+    pole, n1, n2 = engagement["Pw"], engagement["N1"], engagement["N2"]
+    at = plan.add("K", _BETWEEN, pole, n1, to_first, n2, to_second)
+    y1 = plan.add("yV1", SPEED, n1, pole, at, ordinate)
+    y2 = plan.add("yV2", SPEED, n2, pole, at, ordinate)
+    plan.add("theta1", SLIDING, y1, y2)
+    plan.add("theta2", SLIDING, y2, y1)
+    return plan
+
+
+_BETWEEN = Rule(
+    "point of the line of action", lambda p, a, s, b, t: p + (a - p) * s + (b - p) * t,
+    ("point", "point", "number", "point", "number"), "point", "Отметим деление на линии зацепления {1}{3}.",
+)

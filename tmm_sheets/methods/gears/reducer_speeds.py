@@ -1,0 +1,144 @@
+"""Picture of velocities of a reducer and plan of its speeds of rotation, by ruler alone (manual 003, section 4, sheet 3).
+
+In the picture a point is a complex number: its real part the velocity (m/s) of a point of the reducer, its imaginary part
+that point's height over the main axis (m). The velocities of a turning link lie on a straight line through its axis, those
+of a satellite on a line through its instant centre; the steeper the line against the heights, the slower the link. A ray
+parallel to it through the pole of the plan of speeds cuts off its speed of rotation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import GIVEN, RAY
+from tmm_sheets.construction.step import Helper, Rule, Step
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.reducer import Stage, Wheel
+
+LETTERS = "ABCDEFGKLMNQRST"
+"""Names of the points in the order of the power; O is the main axis, P the pole."""
+
+
+def _over(p: Any, q: Any, u: Any) -> Any:
+    return ar.line_line(p, 1 + 0j, q, u)
+
+
+def _read(at: Any, origin: Any, pole: Any) -> Any:
+    return np.real(at - origin) / np.imag(origin - pole) * 30 / pi
+
+
+LAY_VELOCITY = Rule(
+    "lay off a velocity", lambda p, v: p + v, ("point", "vector"), "point",
+    "От точки {0} отложим её скорость {1}: конец {name}.", lambda a, v: (Helper("line", a[0], v),),
+)
+VELOCITY = Rule(
+    "velocity from a link's line", _over, ("point", "point", "direction"), "point",
+    "Горизонталь через точку {0} пересекает линию звена {2} в точке {name}: отрезок {0}{name} — скорость точки {0}.",
+    lambda a, v: (Helper("line", a[0], v),),
+)
+PARALLEL = Rule(
+    "ray parallel to a link's line", lambda pole, u, origin: ar.line_line(pole, u, origin, 1 + 0j),
+    ("point", "direction", "point"), "point",
+    "Через полюс {0} параллельно линии звена {1} проведём луч до оси частот вращения: точка {name}.",
+    lambda a, v: (Helper("line", a[0], v),),
+)
+READ = Rule("measure a speed of rotation", _read, ("point", "point", "point"), "number",
+            "Отрезок {1}{0} даёт частоту вращения {name} = {value} об/мин.")
+
+
+class _Picture:
+    """Adds the links one after another, in the order of the power."""
+
+    def __init__(self) -> None:
+        self.plan = Plan("reducer-velocities", "Картина скоростей", "m/s")
+        self.axis = self.plan.add("O", GIVEN, 0j)
+        self.letters = iter(LETTERS)
+
+    def point(self, height: float) -> Step:
+        """A point of the reducer at this height."""
+        return self.plan.add(next(self.letters), GIVEN, 1j * height)
+
+    def line(self, link: str, a: Step, b: Step) -> Step:
+        """Line of a link's velocities through two of them."""
+        return self.plan.add(link, RAY, a, b, say=f"Линия распределения скоростей звена {link}: прямая {{0}}{{1}}.")
+
+    def velocity(self, point: Step, axis: Step, line: Step) -> Step:
+        """Velocity of a point of a link whose line is there."""
+        return self.plan.add(point.name.lower(), VELOCITY, point, axis, line)
+
+    def laid(self, point: Step, speed: float) -> Step:
+        """The velocity everything begins with."""
+        return self.plan.add(point.name.lower(), LAY_VELOCITY, point, speed)
+
+    def simple(self, pair: tuple[Wheel, Wheel], before: bool, line: Step | None) -> Step:
+        """The simple stage over the main axis, where it begins the train, or under it; gives the driven wheel's line."""
+        one, two = pair
+        r1, r2 = one.diameter / 2, two.diameter / 2
+        up = 1 if before else -1
+        other = self.plan.add(f"O{one.number if before else two.number}", GIVEN, up * 1j * (r1 + r2))
+        pitch = self.point(up * (r2 if before else r1))
+        if before:
+            end = self.laid(pitch, -one.speed * r1)
+            self.line(one.number, other, end)
+            return self.line(two.number, self.axis, end)
+        assert line is not None
+        end = self.velocity(pitch, self.axis, line)
+        return self.line(two.number, other, end)
+
+    def stage(self, stage: Stage, line: Step | None) -> Step:
+        """One planetary stage; ``line`` is that of the driving link, None when the train begins here."""
+        one, two, three, four = stage.wheels
+        block = two.number if stage.single else f"{two.number}-{three.number}"
+        r1, r4, rh = one.diameter / 2, four.diameter / 2, stage.axis
+        driving = {"sun": one.number, "ring": four.number, "carrier": stage.carrier}[stage.driver]
+        entry = self.point({"sun": r1, "ring": r4, "carrier": rh}[stage.driver])
+        if line is None:
+            end = self.laid(entry, stage.input_speed * entry.value.imag)
+            line = self.line(driving, self.axis, end)
+        else:
+            end = self.velocity(entry, self.axis, line)
+        centre = self.point(r1 if stage.driver == "ring" else r4)
+        satellite = self.line(block, centre, end)
+        exit_ = self.point(r1 if stage.driver == "carrier" else rh)
+        velocity = self.velocity(exit_, centre, satellite)
+        return self.line(one.number if stage.driver == "carrier" else stage.carrier, self.axis, velocity)
+
+
+def picture(simple: tuple[Wheel, Wheel], stages: Sequence[Stage], before: bool) -> Plan:
+    """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link.
+
+    A link that is one with the link before it (a carrier with the next sun) has one line, under its first name.
+    """
+    drawn = _Picture()
+    line = drawn.simple(simple, before, None) if before else None
+    for stage in stages:
+        line = drawn.stage(stage, line)
+    if not before:
+        drawn.simple(simple, before, line)
+    return drawn.plan
+
+
+def links_of(velocities: Plan) -> tuple[str, ...]:
+    """Links with a line in the picture, in the order in which they were drawn."""
+    return tuple(step.name for step in velocities if step.rule is RAY)
+
+
+def speeds(velocities: Plan, distance: float) -> Plan:
+    """Plan of the speeds of rotation, pole ``distance`` m under the line on which they are read.
+
+    For each line of the picture the end of its ray, named like the link, and the speed ``n<link>`` in 1/min.
+    """
+    plan = Plan("reducer-speeds", "План частот вращения", "m/s")
+    pole = plan.add("P", GIVEN, -1j * distance, say="Отметим полюс {name}.")
+    origin = plan.add("0", GIVEN, 0j, say="Над полюсом отметим начало отсчёта {name} на оси частот вращения.")
+    for link in links_of(velocities):
+        end = plan.add(link, PARALLEL, pole, velocities[link], origin)
+        plan.add(f"n{link}", READ, end, origin, pole)
+    return plan

@@ -1,0 +1,301 @@
+"""Tooth numbers of a planetary stage and of the simple stage beside it, found among all that meet the conditions.
+
+Manual 003: coaxiality, assembly, neighbourhood, 15 teeth at least, 5 % of the ratio at most.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.gears.planetary import (
+    SCHEMES,
+    Driver,
+    Scheme,
+    assembles,
+    inner_ratio,
+    least_ring,
+    neighbours_clear,
+    stage_efficiency,
+    stage_ratio,
+)
+
+Ints = npt.NDArray[np.int64]
+Given = tuple[int | None, int | None, int | None, int | None]
+
+TIERS = (0.01, 0.02)
+"""Deviations of the ratio that are preferred to any larger one, before the permitted one itself."""
+RUNNERS_UP = 5
+"""Tooth sets kept beside the chosen one."""
+MOST_TEETH = (120, 150)
+"""Largest tooth number of a sun, a satellite or wheel 1, for one stage and for two, which need slower ones each."""
+GREATEST_SIMPLE = 4.0
+"""Greatest ratio of the simple stage."""
+BOUNDS = (36, 48, 64, 90)
+"""Tooth numbers up to which sets are tried, one after the other, until no larger wheel can do better."""
+
+
+class ReducerData(Protocol):
+    """What a reducer is given by: the ``[reducer]`` section of a project file, SI units."""
+
+    @property
+    def scheme(self) -> str: ...  # noqa: D102
+    @property
+    def simple(self) -> str: ...  # noqa: D102
+    @property
+    def stages(self) -> int: ...  # noqa: D102
+    @property
+    def driver(self) -> Driver | None: ...  # noqa: D102
+    @property
+    def ratio(self) -> float | None: ...  # noqa: D102
+    @property
+    def input_speed(self) -> float: ...  # noqa: D102
+    @property
+    def output_speed(self) -> float | None: ...  # noqa: D102
+    @property
+    def teeth(self) -> Mapping[str, int]: ...  # noqa: D102
+    @property
+    def module(self) -> float: ...  # noqa: D102
+    @property
+    def simple_module(self) -> float: ...  # noqa: D102
+    @property
+    def satellites(self) -> int: ...  # noqa: D102
+    @property
+    def addendum(self) -> float: ...  # noqa: D102
+    @property
+    def clearance(self) -> float: ...  # noqa: D102
+    @property
+    def pair_efficiency(self) -> float: ...  # noqa: D102
+    @property
+    def tolerance(self) -> float: ...  # noqa: D102
+    @property
+    def simple_ratio(self) -> Sequence[float] | None: ...  # noqa: D102
+    @property
+    def least_teeth(self) -> int: ...  # noqa: D102
+    @property
+    def most_teeth(self) -> int | None: ...  # noqa: D102
+    @property
+    def strict_internal(self) -> bool: ...  # noqa: D102
+
+
+@dataclass(frozen=True)
+class ToothSet:
+    """Tooth numbers of the planetary stage (z1 .. z4, in a single row z2 = z3) and of the simple one, and what they give.
+
+    ``deviation`` is relative, against the ratio asked for; ``height`` that of the whole reducer over its pitch circles, m.
+    """
+
+    stage: tuple[int, int, int, int]
+    pinion: int
+    wheel: int
+    ratio: float
+    deviation: float
+    height: float
+    efficiency: float
+
+
+@dataclass(frozen=True)
+class _Task:
+    """The search's input in its own terms: wheels 1 .. 4 of the stage, pinion and wheel of the simple one."""
+
+    scheme: Scheme
+    driver: Driver
+    stages: int
+    ratio: float
+    given: Given
+    pinion: int
+    wheel: int | None
+    span: tuple[float, float]
+    data: ReducerData
+
+    @property
+    def most(self) -> int:
+        """Largest number of teeth of wheels 1 to 3."""
+        return self.data.most_teeth or MOST_TEETH[self.stages - 1]
+
+    def height(self, largest: Any, wheel: Any) -> Any:
+        """Height of the reducer over its pitch circles, m: ``largest`` is the planetary stage's diameter in modules."""
+        d = self.data
+        stage, one, two = largest * d.module / 2, self.pinion * d.simple_module / 2, wheel * d.simple_module / 2
+        if d.simple == "before":
+            return np.maximum(stage, two) + np.maximum(stage, two + 2 * one)
+        return np.maximum(stage, one) + np.maximum(stage, one + 2 * two)
+
+    def wheels(self) -> Ints:
+        """Tooth numbers of the large wheel of the simple stage."""
+        if self.wheel is not None:
+            return np.array([self.wheel])
+        least, most = np.ceil(self.pinion * self.span[0] - 1e-9), np.floor(self.pinion * self.span[1] + 1e-9)
+        return np.arange(int(least), min(int(most), self.most) + 1)
+
+    def candidates(self, largest: int, reach: float) -> list[Ints]:
+        """All stages with wheels of at most ``largest`` teeth that meet the conditions and may come within ``reach``."""
+        d, s = self.data, self.scheme.signs
+        r1, r2, r3 = (np.arange(d.least_teeth, largest + 1) if g is None else np.array([g]) for g in self.given[:3])
+        if self.scheme.single:
+            z1, z2 = (v.ravel() for v in np.meshgrid(r1, r2, indexing="ij"))
+            z3 = z2
+        else:
+            z1, z2, z3 = (v.ravel() for v in np.meshgrid(r1, r2, r3, indexing="ij"))
+        z4 = z1 + s[0] * z2 - s[1] * z3
+        ok = z4 >= d.least_teeth if self.given[3] is None else z4 == self.given[3]
+        if not self.scheme.single:
+            ok &= z2 != z3  # one wheel would do
+        z: list[Ints] = [v[ok] for v in (z1, z2, z3, z4)]
+        z = self._only(z, neighbours_clear(s, z, d.satellites, d.addendum))
+        wheels = self.wheels()
+        if not len(wheels):
+            return [v[:0] for v in z]
+        total = abs(stage_ratio(inner_ratio(s, z), self.driver)) ** self.stages
+        z = self._only(z, (total * (wheels[-1] / self.pinion) >= self.ratio * (1 - reach))
+                       & (total * (wheels[0] / self.pinion) <= self.ratio * (1 + reach)))
+        z = self._only(z, assembles(s, z, d.satellites))
+        if d.strict_internal:
+            for satellite, ring, sign in ((1, 0, s[0]), (2, 3, s[1])):
+                if sign < 0:
+                    least = np.array([least_ring(v, d.addendum) or 10**6 for v in range(int(z[satellite].max(initial=0)) + 1)])
+                    z = self._only(z, z[ring] >= least[z[satellite]])
+        return z
+
+    @staticmethod
+    def _only(z: Sequence[Ints], keep: Any) -> list[Ints]:
+        return [v[keep] for v in z]
+
+    def ranked(self, largest: int, count: int) -> list[ToothSet]:
+        """The first ``count`` permitted sets: tier of the deviation, then height, then deviation, then tooth numbers."""
+        d = self.data
+        z, i, j, ratio = self.pairs(largest, d.tolerance)
+        off = abs(ratio / self.ratio - 1).round(12)
+        tier = np.searchsorted((*TIERS, d.tolerance), off - 1e-9)
+        height = self.height((z[0] + self.scheme.signs[0] * z[1] + np.maximum(z[1], z[2]))[i], self.wheels()[j]).round(9)
+        best = np.arange(len(i))
+        if len(i) > count:
+            # Only what can be among the first is worth sorting.
+            last = np.partition(tier, count - 1)[count - 1]
+            best = np.flatnonzero(tier <= last)
+            edge = tier[best] == last
+            within = height[best[edge]]
+            need = count - int((~edge).sum())
+            best = best[~edge | (height[best] <= np.partition(within, need - 1)[need - 1])]
+        order = np.lexsort((z[2][i[best]], z[1][i[best]], z[0][i[best]], off[best], height[best], tier[best]))
+        return [self.set_of(z, i[k], j[k], ratio[k], height[k]) for k in best[order[:count]]]
+
+    def nearest(self) -> ToothSet | None:
+        """The set nearest to the ratio of all that meet the conditions."""
+        z, i, j, ratio = self.pairs(self.most, 1.0)
+        if not len(i):
+            return None
+        k = int(np.argmin(abs(ratio / self.ratio - 1)))
+        return self.set_of(z, i[k], j[k], ratio[k], float("nan"))
+
+    def pairs(self, largest: int, reach: float) -> tuple[list[Ints], Ints, Ints, npt.NDArray[np.float64]]:
+        """Stages, and for each set within ``reach`` of the ratio the number of its stage, of its wheel, and its ratio."""
+        z = self.candidates(largest, reach)
+        total = abs(stage_ratio(inner_ratio(self.scheme.signs, z), self.driver)) ** self.stages
+        order = np.argsort(total, kind="stable")
+        simple = self.wheels() / self.pinion
+        low = np.searchsorted(total[order], self.ratio * (1 - reach) * (1 - 1e-12) / simple, "left")
+        high = np.searchsorted(total[order], self.ratio * (1 + reach) * (1 + 1e-12) / simple, "right")
+        i = np.concatenate([order[a:b] for a, b in zip(low, high, strict=True)] or [order[:0]])
+        j = np.repeat(np.arange(len(simple)), high - low)
+        return z, i, j, total[i] * simple[j]
+
+    def set_of(self, z: Sequence[Ints], i: int, j: int, ratio: float, height: float) -> ToothSet:
+        """One set of the search as plain numbers."""
+        one, two, three, four = (int(v[i]) for v in z)
+        pair = self.data.pair_efficiency
+        stage = stage_efficiency(inner_ratio(self.scheme.signs, (one, two, three, four)), self.driver, pair**2)
+        return ToothSet((one, two, three, four), self.pinion, int(self.wheels()[j]), float(ratio), float(ratio) / self.ratio - 1,
+                        float(height), float(stage) ** self.stages * pair)
+
+
+def _sets(task: _Task) -> list[ToothSet]:
+    """The best tooth sets, permitted ones first.
+
+    A larger wheel 1 to 3 makes a larger stage: by its own teeth at least, and those of two more wheels where it meshes
+    outside. Once the best sets are smaller than any stage with a larger wheel can be, those need not be tried.
+    """
+    found: list[ToothSet] = []
+    wheels = task.wheels()
+    least = min((task.data.least_teeth, *(g for g in task.given if g is not None)))
+    around = 2 * least if task.scheme.signs[0] > 0 else 0
+    for largest in (*(b for b in BOUNDS if b < task.most), task.most):
+        found = task.ranked(largest, RUNNERS_UP + 1)
+        settled = [t for t in found if abs(t.deviation) <= TIERS[0] and t.height <= task.height(largest + 1 + around, wheels[0])]
+        if len(settled) == RUNNERS_UP + 1:
+            break
+    return found
+
+
+def asked_ratio(data: ReducerData) -> float:
+    """Ratio of the whole reducer that is asked for, without sign."""
+    return data.ratio if data.ratio is not None else data.input_speed / (data.output_speed or data.input_speed)
+
+
+def stage_numbers(data: ReducerData, k: int) -> tuple[str, str, str, str]:
+    """Numbers of wheels 1 to 4 of planetary stage ``k`` in the reducer; in a single row wheels 2 and 3 are one."""
+    scheme = SCHEMES[data.scheme]
+    first = (3 if data.simple == "before" else 1) + k * scheme.wheels
+    block, last = (1, 2) if scheme.single else (2, 3)
+    return str(first), str(first + 1), str(first + block), str(first + last)
+
+
+def simple_numbers(data: ReducerData) -> tuple[str, str]:
+    """Numbers of pinion and wheel of the simple stage."""
+    first = 1 if data.simple == "before" else data.stages * SCHEMES[data.scheme].wheels + 1
+    return str(first), str(first + 1)
+
+
+def named_teeth(data: ReducerData, teeth: ToothSet) -> dict[str, int]:
+    """Tooth numbers of a set by name, "z1" ..; equal stages are named once."""
+    out = dict(zip((*stage_numbers(data, 0), *simple_numbers(data)), (*teeth.stage, teeth.pinion, teeth.wheel), strict=True))
+    return {f"z{n}": out[n] for n in sorted(out, key=int)}
+
+
+def search(data: ReducerData) -> list[ToothSet]:
+    """The chosen tooth set and its runners-up.
+
+    Raises
+    ------
+    CannotBuild
+        naming the nearest set when none is within the tolerance.
+    """
+    scheme, asked = SCHEMES[data.scheme], asked_ratio(data)
+    spans = [data.simple_ratio] if data.simple_ratio is not None else [(scheme.least_simple, GREATEST_SIMPLE)]
+    if data.simple_ratio is None and data.simple == "before":
+        spans.append((1.0, GREATEST_SIMPLE))  # an output nearly as fast as a planetary stage can make it needs that
+    given, (pinion, wheel) = _given(data)
+    tasks = [_Task(scheme, data.driver or scheme.drivers[0], data.stages, asked, given, pinion, wheel, (span[0], span[1]), data)
+             for span in spans]
+    for task in tasks:
+        found = _sets(task)
+        if found:
+            return found
+    hint = "give another pinion, number of satellites or range simple_ratio of the simple stage"
+    nearest = tasks[-1].nearest()
+    if nearest is None:
+        raise CannotBuild(f"reducer: no tooth set meets coaxiality, assembly and neighbourhood near the ratio {asked:.4g}", hint)
+    teeth = ", ".join(f"{name} = {z}" for name, z in named_teeth(data, nearest).items())
+    raise CannotBuild(
+        f"reducer: no tooth set within {data.tolerance * 100:g} % of the ratio {asked:.4g}; the nearest, {teeth}, "
+        f"gives {nearest.ratio:.4g} ({nearest.deviation * 100:+.1f} %)", hint)
+
+
+def _given(data: ReducerData) -> tuple[Given, tuple[int, int | None]]:
+    """Given tooth numbers of wheels 1 to 4, of the pinion and of its wheel."""
+    names = [f"z{n}" for n in stage_numbers(data, 0)]
+    pair = [f"z{n}" for n in simple_numbers(data)]
+    known = list(dict.fromkeys((*names, *pair)))
+    unknown = [name for name in data.teeth if name not in known]
+    if unknown:
+        raise CannotBuild(f"reducer: teeth has {', '.join(unknown)}; here are {', '.join(known)}",
+                          "equal stages have the tooth numbers of the first" if data.stages > 1 else "")
+    if pair[0] not in data.teeth:
+        raise CannotBuild(f"reducer: teeth has no {pair[0]}, the pinion of the simple stage", f"write teeth = {{ {pair[0]} = 12 }}")
+    one, two, three, four = (data.teeth.get(name) for name in names)
+    return (one, two, three, four), (data.teeth[pair[0]], data.teeth.get(pair[1]))

@@ -1,0 +1,303 @@
+"""Positions of the mechanism over one turn: dead positions, working and idle stroke, numbering.
+
+Source: manual 000, sections 2 and 3.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Step
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.methods.linkage.velocities import velocity_plan
+
+Floats = npt.NDArray[np.float64]
+SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Working stroke of the output point between its dead positions.
+
+    ``begin`` and ``end`` are crank angles turned from position 0 in the sense of rotation, rad; ``path`` is the unit
+    vector of the working stroke, ``length`` its length, m; ``origin`` the output point at its beginning.
+    """
+
+    output: str
+    begin: float
+    end: float
+    path: complex
+    length: float
+    origin: complex
+
+    def working(self, turned: Any, side: int = 0) -> Any:
+        """True on the working stroke; at a dead position itself ``side`` -1 or +1 tells from where it is approached."""
+        t = np.mod(np.asarray(turned, dtype=float) - self.begin, 2 * np.pi)
+        width = np.mod(self.end - self.begin, 2 * np.pi)
+        near = 1e-12
+        t = np.where(2 * np.pi - t < near, 0.0, t)
+        if side > 0:
+            return np.asarray(t < width - near)
+        if side < 0:
+            return np.asarray((t > near) & (t <= width + near))
+        return np.asarray((t > near) & (t < width - near))
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """Numbered positions: ``turned`` rad from position 0 in the sense of rotation, ``phi`` world angles of the crank."""
+
+    labels: tuple[str, ...]
+    turned: Floats
+    start: float
+    sense: int
+    period: float
+    strokes: Strokes | None
+    plan: Plan | None
+
+    @property
+    def phi(self) -> Floats:
+        """World angles of the crank, rad counter-clockwise; a whole multiple of the turn away from (-pi, pi]."""
+        return np.asarray(self.world(self.turned), dtype=np.float64)
+
+    @property
+    def drawn(self) -> tuple[tuple[int, str], ...]:
+        """Positions of the first turn, each with its labels: a later turn repeats the plans of the first ("1, 9")."""
+        found = []
+        for i, t in enumerate(self.turned):
+            if t < 2 * np.pi - 1e-9:
+                same = np.flatnonzero(np.abs(np.exp(1j * self.turned) - np.exp(1j * t)) < 1e-9)
+                found.append((i, ", ".join(self.labels[j] for j in same)))
+        return tuple(found)
+
+    def world(self, turned: Any) -> Any:
+        """World angle of the crank for an angle turned from position 0."""
+        return self.start + self.sense * np.asarray(turned)
+
+    def index(self, label: str) -> int:
+        """Number of the position with this label."""
+        try:
+            return self.labels.index(label)
+        except ValueError:
+            raise CannotBuild(f"there is no position {label}", f"the positions are {', '.join(self.labels)}") from None
+
+
+def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle: int, coefficient: float | None) -> Cycle:
+    """Cycle that begins at the dead position of the output before its working stroke.
+
+    With ``coefficient`` K the working stroke is laid off as 180 (1 + (K-1)/(K+1)) degrees, symmetric between the dead
+    positions, as the manual does with rounded lengths; without it the exact dead positions are divided.
+    """
+    _refuse_turning_rocker(m)
+    plan, first, second = _dead_of(m, output, SENSES[working_sense])
+    sense = m.crank.sense
+    exact = float(np.mod(sense * (second - first), 2 * np.pi))
+    if coefficient is None:
+        start, stroke, begin = first, exact, 0.0
+    else:
+        stroke = np.pi * (1 + (coefficient - 1) / (coefficient + 1))
+        middle = first + sense * exact / 2
+        start = middle - sense * stroke / 2
+        begin = (stroke - exact) / 2
+    rest = 2 * np.pi - stroke
+    turned = np.concatenate((stroke / working * np.arange(working), stroke + rest / idle * np.arange(idle)), dtype=np.float64)
+    strokes = _strokes(m, output, first, second, begin, begin + exact)
+    return Cycle(tuple(str(i) for i in range(working + idle)), turned, start, sense, 2 * np.pi, strokes, plan)
+
+
+def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", turns: int = 1,
+               extra: Mapping[str, float] | None = None, output: str | None = None, working_sense: str | None = None) -> Cycle:
+    """Cycle of equal parts from a given crank angle; ``positions`` in one turn, numbered on through all ``turns``.
+
+    ``zero`` is the label of the position at the beginning (manual 003 calls it 12: a second turn then begins with 24),
+    ``extra`` further positions by label and angle turned (rad), sorted in among the others.
+    """
+    count = positions * turns
+    late = positions if zero == str(positions) else 0
+    named = {(zero if i == 0 else str(i if i % positions else i + late)): 2 * np.pi / positions * i for i in range(count)}
+    for label, angle in (extra or {}).items():
+        if label in named:
+            raise CannotBuild(f"there is a position {label} already", "give the further position another name")
+        named[label] = float(np.mod(angle, 2 * np.pi * turns))
+    order = sorted(named, key=lambda label: named[label])
+    turned = np.array([named[label] for label in order], dtype=np.float64)
+    plan, strokes = None, None
+    if output is not None and working_sense is not None:
+        plan, first, second = _dead_of(m, output, SENSES[working_sense])
+        begin = float(np.mod(m.crank.sense * (first - start), 2 * np.pi))
+        # A dead position that is position 0 up to rounding is position 0.
+        begin = 0.0 if min(begin, 2 * np.pi - begin) < 1e-12 else begin
+        width = float(np.mod(m.crank.sense * (second - first), 2 * np.pi))
+        strokes = _strokes(m, output, first, second, begin, begin + width)
+    return Cycle(tuple(order), turned, start, m.crank.sense, 2 * np.pi * turns, strokes, plan)
+
+
+def _strokes(m: Mechanism, output: str, first: float, second: float, begin: float, end: float) -> Strokes:
+    out = np.asarray(position_plan(m, np.array([first, second])).points[output].value)
+    path = complex(out[1] - out[0])
+    return Strokes(output, begin, end, path / abs(path), abs(path), complex(out[0]))
+
+
+def _dead_of(m: Mechanism, output: str, axis: complex) -> tuple[Plan | None, float, float]:
+    """World crank angles at the beginning and at the end of the output's working stroke.
+
+    Constructed where the group on the crank pin allows it and the output really stands still there; found as zeros of the
+    output's velocity otherwise.
+    """
+    plan, dead = dead_positions(m)
+    if dead is not None:
+        angles = np.array([np.angle(d) for d in dead])
+        pos = position_plan(m, angles)
+        out = np.asarray(pos.points[output].value)
+        speed = np.abs(velocity_plan(pos).points[output].value)
+        if not np.isnan(out).any() and np.all(speed < 1e-9 * m.crank.speed * m.crank.length):
+            first = int(np.argmin((out * np.conj(axis)).real))
+            return plan, float(angles[first]), float(angles[1 - first])
+
+    def along(turned: Floats) -> Any:
+        phi = m.crank.sense * turned
+        return (velocity_plan(position_plan(m, phi)).points[output].value * np.conj(axis)).real
+
+    found, strokes = strokes_of(along)
+    if not found:
+        from tmm_sheets.methods.linkage.checks import check_turn  # here: it needs the cycle itself
+
+        check_turn(m)  # names the group that does not assemble, and by how much
+        raise CannotBuild(f"point {output} has no dead positions: it never turns back",
+                          'give the crank angle of position 0 instead: start = "90 deg"')
+    working = [s for s in strokes if s.working]
+    longest = max(working, key=lambda s: s.end - s.begin)
+    return None, m.crank.sense * longest.begin, m.crank.sense * longest.end
+
+
+def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[complex, complex] | None]:
+    """Dead positions as constructions of their own: the two crank vectors (from the crank pivot).
+
+    Rocker with a sliding block: tangents from the rocker's pivot to the crank circle (manual 000, 3.1). Rod with a slider
+    or a rocker: arcs about the crank pivot of radius rod plus crank and rod minus crank. None for other kinds.
+    """
+    c = m.crank
+    plan = Plan("dead-positions", "Мёртвые положения", "m")
+    centre = plan.add(c.pivot, rules.GIVEN, m.fixed[c.pivot])
+    group = next((g for g in m.groups if c.pin in g.outer), None)
+    if group is None:
+        return None, None
+    if group.kind == 3 and not group.offset and group.outer[1] in m.fixed:
+        if _lack(m, group) >= 0:
+            return None, None  # the rocker turns all the way round
+        return plan, _dead_rocker(m, plan, centre, group)
+    if group.kind == 2 and m.guides[group.guides[0]].link == m.frame:
+        guide = m.guides[group.guides[0]]
+        assert not isinstance(guide.through, str)
+        through = plan.add(f"{guide.name}₀", rules.GIVEN, guide.through)
+        along = plan.add(guide.name, rules.GIVEN_DIRECTION, complex(np.cos(guide.direction), np.sin(guide.direction)))
+        ends = [plan.add(f"{group.inner}{prime}", rules.ARC_LINE, centre, abs(group.lengths[0] + sign * c.length), through, along,
+                         group.side) for prime, sign in (("′", 1), ("″", -1))]
+    elif group.kind == 1 and group.outer[0] == c.pin and group.outer[1] in m.fixed:
+        pivot = plan.add(group.outer[1], rules.GIVEN, m.fixed[group.outer[1]])
+        rod, rocker = group.lengths
+        ends = [plan.add(f"{group.inner}{prime}", rules.ARC_ARC, centre, abs(rod + sign * c.length), pivot, rocker, group.side)
+                for prime, sign in (("′", 1), ("″", -1))]
+    else:
+        return None, None
+    far, near = (complex(e.value - centre.value) for e in ends)
+    if np.isnan(far) or np.isnan(near) or not abs(near):
+        return None, None
+    fold = -1 if group.lengths[0] > c.length else 1
+    return plan, (far / abs(far) * c.length, fold * near / abs(near) * c.length)
+
+
+def _dead_rocker(m: Mechanism, plan: Plan, centre: Step, group: StructuralGroup) -> tuple[complex, complex]:
+    c = m.crank
+    pivot_name = group.outer[1]
+    pivot = plan.add(pivot_name, rules.GIVEN, m.fixed[pivot_name])
+    tangents = [plan.add(f"{c.pin}{name}", rules.TANGENT, pivot, centre, c.length, side) for name, side in (("′", 1), ("″", -1))]
+    a, b = (complex(t.value - centre.value) for t in tangents)
+    return a, b
+
+
+def _lack(m: Mechanism, group: StructuralGroup) -> float:
+    """How far the pivot of a kind 3 group on the crank pin lies inside the crank circle, m; negative outside."""
+    return m.crank.length - abs(m.fixed[group.outer[1]] - m.fixed[m.crank.pivot])
+
+
+def _refuse_turning_rocker(m: Mechanism) -> None:
+    """A cycle that begins at a dead position needs a rocker that swings."""
+    c = m.crank
+    for group in m.groups:
+        if group.kind == 3 and c.pin in group.outer and group.outer[1] in m.fixed and _lack(m, group) >= 0:
+            pivot, lack = group.outer[1], _lack(m, group)
+            raise CannotBuild(
+                f"pivot {pivot} of rocker {group.links[1]} lies {_mm(lack)} inside the crank circle: "
+                f"{c.pivot}{pivot} = {_mm(c.length - lack)}, {c.pivot}{c.pin} = {_mm(c.length)}; the rocker has no dead positions",
+                f"make {c.pivot}{pivot} longer than the crank, or give the crank angle of position 0 instead of start = \"dead\"")
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """One stroke: from ``begin`` to ``end`` (rad turned from position 0, ``end`` > ``begin``); ``working`` or idle."""
+
+    begin: float
+    end: float
+    working: bool
+
+
+SWEEP = 720
+"""Angles per turn at which dead points are looked for before they are found exactly."""
+
+
+def strokes_of(speed: Callable[[Floats], Any], turn: float = 2 * np.pi) -> tuple[list[float], list[Stroke]]:
+    """Dead points and strokes of one turn from the sign of a speed; working strokes where it is positive."""
+    t = np.linspace(0.0, turn, SWEEP + 1)
+    v = np.asarray(speed(t))
+    if np.isnan(v).any():
+        return [], []
+    sign = np.sign(np.where(np.abs(v) < 1e-12 * np.abs(v).max(), 0.0, v))
+    # A zero that falls on an angle of the sweep counts as belonging to the next interval.
+    for i in range(len(sign) - 1, -1, -1):
+        if sign[i] == 0:
+            sign[i] = sign[i + 1] if i + 1 < len(sign) else sign[1]
+    changes = np.flatnonzero(sign[:-1] * sign[1:] < 0)
+    dead = [_zero(speed, t, v, int(i)) for i in changes]
+    if not dead:
+        return [], [Stroke(0.0, turn, bool(sign[0] > 0))]
+    strokes = []
+    for i, a in enumerate(dead):
+        b = dead[i + 1] if i + 1 < len(dead) else dead[0] + turn
+        strokes.append(Stroke(a, b, bool(np.asarray(speed(np.array([(a + b) / 2])))[0] > 0)))
+    return dead, strokes
+
+
+def _zero(speed: Callable[[Floats], Any], t: Floats, v: Any, i: int) -> float:
+    """Zero between two angles of the sweep, or the angle itself where the speed is zero up to rounding."""
+    small = 1e-12 * np.abs(v).max()
+    for j in (i, i + 1):
+        if abs(v[j]) < small:
+            return float(t[j])
+    return root(lambda x: np.asarray(speed(x)), float(t[i]), float(t[i + 1]))
+
+
+def _mm(length: float) -> str:
+    return f"{length * 1000:.4g} mm"
+
+
+def root(f: Callable[[Floats], Floats], low: float, high: float) -> float:
+    """Zero of a continuous function between two arguments of opposite sign, by vectorised section to the last bit."""
+    sign = float(np.sign(f(np.array([high]))[0]))
+    for _ in range(20):
+        x = np.linspace(low, high, 9)
+        if not x[0] < x[1] < x[-1]:
+            break
+        values = sign * f(x)
+        i = int(np.argmax(values > 0))
+        low, high = float(x[max(i - 1, 0)]), float(x[i])
+    return (low + high) / 2

@@ -1,0 +1,200 @@
+"""Position plan by intersecting arcs (метод засечек), group by group in order of attachment.
+
+Source: manual 000, section 3.1; manual 002, section 1.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
+from tmm_sheets.methods.linkage.dead_centres import crossing
+
+TURNED_BY = Rule("turn a direction", lambda u, angle: u * _unit(angle), ("direction", "angle"), "direction",
+                 "Под углом {1} к {0} проведём направление {name}.")
+ALONG_TANGENT = Rule(
+    "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
+    ("point", "point"), "direction", "Проведём прямую {0}{1}.", lambda a, v: (Helper("line", a[0], a[1]),),
+)
+
+
+@dataclass
+class Positions:
+    """Position plan of a mechanism: points complex, m, shape (n,); NaN where a group does not assemble.
+
+    ``directions`` are unit vectors of the links, from the first named point of each to its next; ``feet`` name, for rockers
+    with an offset, the foot of the perpendicular from the pivot on the slot. ``sines`` are, by the first link of a group next to
+    the crank, those of the angle between its lines in the plans of velocities, where they are known better than the lines.
+    """
+
+    mechanism: Mechanism
+    plan: Plan
+    phi: Any
+    points: dict[str, Step] = field(default_factory=dict)
+    directions: dict[str, Step] = field(default_factory=dict)
+    guide_points: dict[str, Step] = field(default_factory=dict)
+    guide_directions: dict[str, Step] = field(default_factory=dict)
+    contact: Step | None = None
+    rays: dict[tuple[str, str], Step] = field(default_factory=dict)
+    feet: dict[str, str] = field(default_factory=dict)
+    sines: dict[str, Step] = field(default_factory=dict)
+
+    def known_sine(self, group: StructuralGroup) -> tuple[Step, ...]:
+        """The sine between a group's lines as a further argument of the rule that crosses them, where it is known."""
+        sine = self.sines.get(group.links[0])
+        return () if sine is None else (sine,)
+
+    def direction(self, p: str, q: str) -> Step:
+        """Step of the direction from point ``p`` to ``q``, drawn once."""
+        if (p, q) not in self.rays:
+            self.rays[p, q] = self.plan.add(self.plan.free(p + q), rules.RAY, self.points[p], self.points[q])
+        return self.rays[p, q]
+
+
+def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",)) -> Positions:
+    """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,)."""
+    plan = Plan("positions", "Планы положений механизма", "m", labels)
+    inner = {g.inner for g in mechanism.groups if g.inner}
+    plan.reserved = frozenset({*mechanism.fixed, mechanism.crank.pin, *inner, *(p.name for p in mechanism.points)})
+    pos = Positions(mechanism, plan, phi)
+    for name, at in mechanism.fixed.items():
+        pos.points[name] = plan.add(name, rules.GIVEN, at)
+    for guide in mechanism.guides.values():
+        if guide.link == mechanism.frame:
+            _fixed_guide(pos, guide)
+    crank = mechanism.crank
+    pos.points[crank.pin] = plan.add(crank.pin, rules.LAY_OFF, pos.points[crank.pivot], crank.length, phi)
+    pos.directions[crank.link] = pos.direction(crank.pivot, crank.pin)
+    _further_points(pos, crank.link)
+    for group in mechanism.groups:
+        for name in group.guides:
+            if name not in pos.guide_points:
+                _moving_guide(pos, mechanism.guides[name])
+        DYADS[group.kind](pos, group)
+        for link in group.links:
+            _further_points(pos, link)
+    return pos
+
+
+def _fixed_guide(pos: Positions, guide: Guide) -> None:
+    assert not isinstance(guide.through, str)
+    point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), rules.GIVEN, guide.through, say="Отметим точку {name} направляющей.")
+    pos.guide_points[guide.name] = point
+    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.GIVEN_DIRECTION, _unit(guide.direction),
+                                                    say=f"Через точку {point.name} проведём направляющую {{name}}.")
+
+
+def _moving_guide(pos: Positions, guide: Guide) -> None:
+    assert isinstance(guide.through, str)
+    assert guide.towards is not None
+    pos.guide_points[guide.name] = pos.points[guide.through]
+    u = _line_on(pos, guide.link, guide.through, guide.towards)
+    pos.guide_directions[guide.name] = _turned_by(pos, guide.name, u, guide.direction)
+
+
+def _line_on(pos: Positions, link: str, start: str, towards: str) -> Step:
+    """Direction fixed on a link, from ``start`` ``towards`` another of its points.
+
+    Towards the pin that slides along the link it is the slot's direction: with an offset the line to the pin itself turns
+    on the link. Towards the guide the link slides along it is the guide's direction.
+    """
+    if towards in pos.guide_directions and towards not in pos.points:
+        return pos.guide_directions[towards]
+    for g in pos.mechanism.groups:
+        if g.kind == 3 and g.offset and link in g.links and towards == g.outer[0]:
+            return pos.directions[link]
+    return pos.direction(start, towards)
+
+
+def _turned_by(pos: Positions, name: str, u: Step, angle: float) -> Step:
+    return u if angle == 0 else pos.plan.add(pos.plan.free(name), TURNED_BY, u, angle)
+
+
+def _unit(angle: float) -> complex:
+    """Unit vector; exact for multiples of 90 degrees, where cos(pi/2) would leave 6e-17."""
+    quarter = angle / (np.pi / 2)
+    if quarter == round(quarter):
+        return (1 + 0j, 1j, -1 + 0j, -1j)[round(quarter) % 4]
+    return complex(np.cos(angle), np.sin(angle))
+
+
+def _further_points(pos: Positions, link: str) -> None:
+    for p in pos.mechanism.points:
+        if p.link == link and p.name not in pos.points:
+            u = _turned_by(pos, f"{p.start}{p.name}", _line_on(pos, link, p.start, p.towards), p.angle)
+            pos.points[p.name] = pos.plan.add(p.name, rules.ALONG, pos.points[p.start], u, p.distance)
+
+
+def _crossing(pos: Positions, g: StructuralGroup) -> tuple[Step, ...]:
+    """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
+    found = crossing(pos.mechanism, g, pos.phi)
+    if found is None:
+        return ()
+    pos.sines[g.links[0]] = found.sine
+    return found.lengths
+
+
+def _rrr(pos: Positions, g: StructuralGroup) -> None:
+    p, q = g.outer
+    assert g.inner is not None
+    pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_ARC, pos.points[p], g.lengths[0], pos.points[q], g.lengths[1], g.side,
+                                       *_crossing(pos, g))
+    pos.directions[g.links[0]] = pos.direction(p, g.inner)
+    pos.directions[g.links[1]] = pos.direction(q, g.inner)
+
+
+def _rrp(pos: Positions, g: StructuralGroup) -> None:
+    assert g.inner is not None
+    guide = g.guides[0]
+    pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_LINE, pos.points[g.outer[0]], g.lengths[0], pos.guide_points[guide],
+                                       pos.guide_directions[guide], g.side, *_crossing(pos, g))
+    pos.directions[g.links[0]] = pos.direction(g.outer[0], g.inner)
+    pos.directions[g.links[1]] = pos.guide_directions[guide]
+
+
+def _rpr(pos: Positions, g: StructuralGroup) -> None:
+    p, q = g.outer
+    if g.offset:
+        # The guide line passes the pivot at the offset: its foot is where the tangent from the pin touches that circle.
+        given = pos.points[p], pos.points[q], abs(g.offset), g.side
+        foot = pos.plan.add(pos.plan.free(f"{q}₁"), rules.TANGENT, *given)
+        pos.points[foot.name] = foot
+        pos.feet[g.links[1]] = foot.name
+        u = pos.plan.add(pos.plan.free(foot.name + p), ALONG_TANGENT, foot, *given, *_crossing(pos, g))
+        pos.rays[foot.name, p] = u
+    else:
+        u = pos.direction(q, p)
+    pos.directions[g.links[1]] = pos.directions[g.links[0]] = u
+
+
+def _prp(pos: Positions, g: StructuralGroup) -> None:
+    assert g.inner is not None
+    a, b = g.guides
+    pos.points[g.inner] = pos.plan.add(g.inner, rules.LINE_LINE, pos.guide_points[a], pos.guide_directions[a],
+                                       pos.guide_points[b], pos.guide_directions[b])
+    for link, guide in zip(g.links, g.guides, strict=True):
+        pos.directions[link] = pos.guide_directions[guide]
+
+
+def _rpp(pos: Positions, g: StructuralGroup) -> None:
+    assert g.inner is not None
+    guide = g.guides[0]
+    u = pos.guide_directions[guide]
+    slot = pos.plan.add(f"n{g.links[1]}–n{g.links[1]}", TURNED_BY, u, g.slot,
+                        say=f"Паз звена {g.links[1]}: под углом {{1}} к {{0}} возьмём направление {{name}}.")
+    pos.points[g.inner] = pos.plan.add(g.inner, rules.LINE_LINE, pos.points[g.outer[0]], slot, pos.guide_points[guide], u,
+                                       say="Через точку {0} параллельно {1} проведём прямую до пересечения с {3} в точке {name}.")
+    pos.directions[g.links[0]] = slot
+    pos.directions[g.links[1]] = u
+
+
+DYADS: dict[int, Callable[[Positions, StructuralGroup], None]] = {1: _rrr, 2: _rrp, 3: _rpr, 4: _prp, 5: _rpp}
+"""Construction of each kind of group."""

@@ -1,0 +1,146 @@
+"""Zhukovsky's lever: the velocity plan turned by 90 degrees with all forces at its points.
+
+The moment of a force about the pole is its power (with the sign turned): their sum is zero, which gives the balancing
+force without any reaction. Source: manual 000, section 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.plan import Plan, symbol
+from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.methods.linkage.forces import GearForce, Load, contact_point
+from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
+
+TURNED = Rule("turned plan point", lambda v: 1j * v, ("point",), "point",
+              "Повернём вектор p{0} плана скоростей на 90°: точка {name}.")
+COUPLE_FORCE = Rule("force of a couple", lambda m, x, y: 1j * m * ar.ray(x, y) / np.abs(y - x), ("number", "point", "point"),
+                    "force", "Момент заменим парой сил {name} = M/{1}{2} = {value}, перпендикулярных {1}{2}.")
+OPPOSITE_FORCE = Rule("second force of a couple", lambda f: -f, ("force",), "force", "Вторая сила пары: {name} = −{0}.")
+
+
+def _balance(pole: Any, at: Any, u: Any, *terms: Any) -> Any:
+    total = 0.0
+    for point, force in zip(terms[::2], terms[1::2], strict=True):
+        total = total + ar.moment(pole, point, force)
+    return -total / ar.moment(pole, at, u)
+
+
+BALANCE = Rule("balance of the lever", _balance, ("point", "point", "direction"), "number",
+               "Из суммы моментов всех сил относительно полюса {0} найдём {name} = {value}.")
+
+
+@dataclass(frozen=True)
+class Hung:
+    """A force hung on the lever: symbol, point of the turned plan, force N, signed arm m/s (counter-clockwise positive)."""
+
+    symbol: str
+    at: Step
+    force: Step
+    arm: Step
+
+
+@dataclass
+class Lever:
+    """Zhukovsky's lever of all positions; ``balancing`` is the force along ``direction`` (N) or the moment (N m)."""
+
+    plan: Plan
+    velocities: Velocities
+    points: dict[str, Step] = field(default_factory=dict)
+    hung: list[Hung] = field(default_factory=list)
+    balancing: Step | None = None
+    contact: Step | None = None
+    direction: complex | None = None
+
+
+def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]], driver: GearForce | None) -> Lever:
+    """Record the lever from the velocity plan, the external and inertia forces and the couples."""
+    pos = vel.positions
+    m = pos.mechanism
+    c = m.crank
+    plan = Plan("lever", "Рычаг Жуковского", "m/s", pos.plan.labels)
+    pole = plan.add("p", POLE, 0j)
+    result = Lever(plan, vel)
+
+    def turned(v: Step) -> Step:
+        if v is vel.pole:
+            return pole
+        if v.name not in plan:
+            plan.add(v.name, TURNED, v)
+        result.points[v.name] = plan[v.name]
+        return plan[v.name]
+
+    by_step = {id(step): vel.points[name] for name, step in pos.points.items()}
+    terms: list[Step] = []
+
+    def hang(sign: str, at: Step, force: Step) -> None:
+        if at is pole:
+            return  # a force at a point at rest has no arm
+        arm = plan.add(f"h {sign}", rules.ARM, pole, at, force)
+        result.hung.append(Hung(sign, at, force, arm))
+        terms.extend((at, force))
+
+    for load in loads:
+        hang(load.symbol, turned(by_step[id(load.at)]), load.vector)
+    for link, of_link in couples.items():
+        turning = _turning(vel, link)
+        if turning is None:
+            continue  # a link that does not turn against the frame: its couples do no work
+        big_x, big_y, x, y = _long_reference(vel, turning)
+        for couple in of_link:
+            sign = couple.name.removeprefix("M")
+            f = plan.add(f"FМ{sign}", COUPLE_FORCE, couple, pos.points[big_x], pos.points[big_y])
+            hang(f"F̅_{{М{sign}}}", turned(y), f)
+            if x is not vel.pole:
+                hang(f"F̅_{{М{sign}}}′", turned(x), plan.add(f"FМ{sign}′", OPPOSITE_FORCE, f))
+    if driver is None:
+        # A pure moment is balanced by a force across the crank at its pin: M = F l.
+        b = turned(vel.points[c.pin])
+        across = plan.add(f"⟂{c.pivot}{c.pin}", rules.TURN, pos.direction(c.pivot, c.pin))
+        force = plan.add("Fур", BALANCE, pole, b, across, *terms)
+        result.balancing = plan.add("Mур", MOMENT_OF, force, c.length)
+        result.contact = b
+        hang("F̅_{Мур}", b, plan.add("Fур на рычаге", VECTOR_OF, force, across))
+        return result
+    at = contact_point(pos, driver)
+    f_step = plan.add(plan.free("f"), SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
+    contact = plan.add(plan.free("f′"), TURNED, f_step)
+    result.direction = driver.direction(c.sense)
+    result.balancing = plan.add(driver.name, BALANCE, pole, contact, result.direction, *terms)
+    force = plan.add(f"{driver.name} на рычаге", VECTOR_OF, result.balancing, result.direction)
+    result.contact = contact
+    arm = plan.add(f"h {driver.name}", rules.ARM, pole, contact, force)
+    result.hung.append(Hung(symbol(driver.name), contact, force, arm))
+    return result
+
+
+def _turning(vel: Velocities, link: str) -> str | None:
+    """The link whose turning a link shares (a stone turns with its rocker), itself where it turns alone; None at rest."""
+    omega = vel.omega[link]
+    while omega.rule is SAME and isinstance(omega.args[0], Step):
+        omega = omega.args[0]
+    return next((name for name in vel.reference if vel.omega[name] is omega), None)
+
+
+def _long_reference(vel: Velocities, link: str) -> tuple[str, str, Step, Step]:
+    """The pivot and the farthest named point of a link: the couple's forces are smallest and drawn best there."""
+    big_q, big_b, q, b = vel.reference[link]
+    m = vel.positions.mechanism
+    far = max((p for p in m.points if p.link == link and p.start == big_q), key=lambda p: abs(p.distance), default=None)
+    lengths = {name: length for g in m.groups for name, length in zip(g.links, g.lengths, strict=False)}
+    # The pin of a stone is no lasting point of its rocker, a hinge at the other end of a rod is.
+    if far is None or abs(far.distance) <= lengths.get(link, 0.0):
+        return big_q, big_b, q, b
+    return big_q, far.name, q, vel.points[far.name]
+
+
+MOMENT_OF = Rule("moment of a force across the crank", lambda f, length: f * length, ("number", "length"), "number",
+                 "{name} = F·l = {value} Н·м.")
+VECTOR_OF = Rule("force along a line", lambda f, u: f * u, ("number", "direction"), "force", "Сила {name} = {value}.")

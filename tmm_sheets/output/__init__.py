@@ -1,0 +1,1 @@
+"""Sheets as files: one project or many, what has not changed, and paper."""

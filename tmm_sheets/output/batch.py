@@ -1,0 +1,211 @@
+"""Many projects at once: a pool of processes, or the workers of a dask cluster; failures are collected, the rest goes on.
+
+A project is built by the same code with the same inputs wherever that happens, so the bytes do not depend on the number
+of workers. What is current stays (see :mod:`tmm_sheets.output.build_store`): an interrupted batch goes on where it stopped.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import tomllib
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from pathlib import Path
+
+from tmm_sheets import catalogue
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.output.building import Order, build, folder_name
+
+LARGEST_CHUNK = 25
+"""Most projects of one task for a worker: a second or so of waiting for its result, and next to nothing for handing it over."""
+SMALLEST_DASK_CHUNK, LARGEST_DASK_CHUNK = 25, 100
+"""Projects of one task for a cluster: 1.5 ms for handing it over are then nothing."""
+CHUNKS_EACH = 64
+"""Least number of tasks for each worker, so that all of them end together."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one project: ``problem`` is empty when it was built; counts of files, bytes of those made now."""
+
+    project: str
+    problem: str = ""
+    made: int = 0
+    unchanged: int = 0
+    size: int = 0
+    warnings: tuple[str, ...] = ()
+
+
+def one(project: str, order: Order, parent: Path) -> Outcome:
+    """Build one project into its folder below ``parent``; whatever goes wrong is told, not raised."""
+    warnings: tuple[str, ...] = ()
+    try:
+        variant = catalogue.read(project, order.corrected)
+        warnings = tuple(variant.warnings)
+        built = build(variant, order, order.outlet(parent / folder_name(variant.project.name)))
+    except (BadInput, CannotBuild) as e:
+        return Outcome(project, str(e), warnings=warnings)
+    except MemoryError:
+        return Outcome(project, "not enough memory", warnings=warnings)
+    except OSError as e:
+        return Outcome(project, f"{e.filename or 'output'}: {(e.strerror or str(e)).lower()}", warnings=warnings)
+    except Exception as e:
+        if os.environ.get("TMM_SHEETS_TRACEBACK"):
+            raise
+        return Outcome(project, f"internal error: {type(e).__name__}: {e}", warnings=warnings)
+    made = len(built.sizes)
+    return Outcome(project, "", made, len(built.paths) - made, sum(built.sizes.values()), warnings)
+
+
+def several(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:
+    """Build some projects one after the other: the task of one worker."""
+    return [one(project, order, parent) for project in projects]
+
+
+def _interruptible(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:
+    """The same in a process of the pool: Ctrl-C ends it after cleaning up half-written files, and without a traceback."""
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # a shell's background job: the parent does not hear it either
+        return several(projects, order, parent)
+    found: list[Outcome] = []
+    if signal.getsignal(signal.SIGINT) is _leave:
+        return found
+    after = _deaf
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        for project in projects:
+            found.append(one(project, order, parent))
+    except KeyboardInterrupt:
+        after = _leave
+    finally:
+        signal.signal(signal.SIGINT, after)
+    return found
+
+
+def _deaf(*_: object) -> None:
+    """Between two tasks Ctrl-C is the parent's business."""
+
+
+def _leave(*_: object) -> None:
+    """The same once a task was interrupted: no more tasks are begun."""
+
+
+def _start() -> None:
+    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _deaf)
+
+
+def _chunks(projects: Sequence[str], size: int) -> list[Sequence[str]]:
+    return [projects[k : k + size] for k in range(0, len(projects), size)]
+
+
+def processors() -> int:
+    """Processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> Iterator[Outcome]:
+    """Build projects in ``workers`` processes; outcomes as they come."""
+    workers = min(workers, len(projects))
+    if workers <= 1:
+        for project in projects:
+            yield one(project, order, parent)
+        return
+    chunks = _chunks(projects, max(1, min(LARGEST_CHUNK, len(projects) // (workers * CHUNKS_EACH))))
+    method = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
+    pool = ProcessPoolExecutor(workers, multiprocessing.get_context(method), initializer=_start)
+    try:
+        tasks = {pool.submit(_interruptible, chunk, order, parent): chunk for chunk in chunks}
+        for task in as_completed(tasks):
+            try:
+                yield from task.result()
+            except BrokenProcessPool:
+                why = "its process was killed, perhaps for want of memory: repeat the command with fewer --jobs"
+                yield from (Outcome(project, why) for project in tasks[task])
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: str) -> Iterator[Outcome]:
+    """Build projects on a dask cluster whose workers have this program and see the same output folder."""
+    try:
+        from distributed import Client
+        from distributed import as_completed as finished
+    except ImportError:
+        raise BadInput("--dask needs dask.distributed", hint="pip install 'tmm-sheets[cluster]'") from None
+    try:
+        client = Client(address, timeout=20)
+    except (OSError, ValueError) as e:
+        hint = "give the scheduler's address, such as tcp://127.0.0.1:8786"
+        raise BadInput(f"no dask scheduler answers at {address}: {e}", hint=hint) from None
+    with client:
+        each = len(projects) // (max(len(client.scheduler_info()["workers"]), 1) * 4)
+        chunks = _chunks(projects, max(SMALLEST_DASK_CHUNK, min(LARGEST_DASK_CHUNK, each)))
+        tasks = {client.submit(several, chunk, order, parent.absolute(), pure=False): chunk for chunk in chunks}
+        for task in finished(tasks):
+            try:
+                yield from task.result()
+            except Exception as e:  # whatever a worker or the way to it died of
+                yield from (Outcome(project, f"its worker was lost: {type(e).__name__}") for project in tasks[task])
+
+
+def chosen(projects: Sequence[str], families: Sequence[str], lists: Sequence[Iterable[str]]) -> tuple[str, ...]:
+    """Names of a batch: those given, all of some families of shipped projects, and those of lists, one a line.
+
+    Raises
+    ------
+    BadInput
+        when a family is not known, or when two project files would go into the same folder.
+    """
+    names = list(projects)
+    if families:
+        shipped = catalogue.shipped()
+        for family in families:
+            found = [name for name in shipped if family == "all" or name == family or name.startswith(f"{family}/")]
+            if not found:
+                known = dict.fromkeys(name.partition("/")[0] for name in shipped)
+                raise BadInput(f'no family "{family}"', hint=f"shipped are {', '.join(known)}; all takes every project")
+            names += found
+    for lines in lists:
+        names += (line.strip() for line in lines if line.strip() and not line.lstrip().startswith("#"))
+    names = list(dict.fromkeys(names))
+    _refuse_common_folders(names)
+    return tuple(names)
+
+
+def _refuse_common_folders(names: Iterable[str]) -> None:
+    taken: dict[str, str] = {}
+    for name in names:
+        inside = name
+        if name.endswith(catalogue.SUFFIX):
+            try:
+                inside = str(tomllib.loads(Path(name).read_text(encoding="utf-8-sig"))["project"]["name"])
+            except (OSError, ValueError, KeyError, TypeError):
+                continue  # its own message comes when it is built
+        folder = folder_name(inside)
+        if folder in taken:
+            raise BadInput(f'{taken[folder]} and {name} would both go into the folder "{folder}"',
+                           hint="give them different names in [project]")
+        taken[folder] = name
+
+
+def summary(done: Sequence[Outcome], parent: Path, seconds: float) -> str:
+    """One line that tells what a batch came to."""
+    built = [o for o in done if not o.problem]
+    new = [o for o in built if o.made]
+    files, size = sum(o.made for o in new), sum(o.size for o in new)
+    parts = [f"{len(new)} built" if new else "", f"{len(built) - len(new)} unchanged" if len(built) > len(new) else "",
+             f"{len(done) - len(built)} failed" if len(done) > len(built) else ""]
+    return (f"{parent}: {', '.join(filter(None, parts))}; {files} files, {size / 1e6:.1f} MB of sheets "
+            f"in {seconds:.1f} s, {len(done) / seconds:.2g} projects/s")
+
+
+def table(failures: Sequence[Outcome], total: int) -> str:
+    """The failures of a batch of ``total`` projects, one a line with its first reason."""
+    width = max(len(f.project) for f in failures)
+    lines = [f"not built: {len(failures)} of {total}"]
+    lines += [f"  {f.project:{width}}  {f.problem.splitlines()[0]}" for f in sorted(failures, key=lambda f: f.project)]
+    return "\n".join(lines)

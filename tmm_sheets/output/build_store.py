@@ -1,0 +1,164 @@
+"""Where the files of one project go, a folder or an archive, and the record there of what each of them was made from.
+
+A file is current when the record names the same inputs for it and its content is the one that was written then; so an
+interrupted or repeated build makes only what is missing or has changed, and a file changed by hand is made again.
+"""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from hashlib import blake2b
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from tmm_sheets import __version__, files
+from tmm_sheets.errors import BadInput, Problem
+
+RECORD = ".tmm-sheets.json"
+SCHEMA = 1
+DAWN = (1980, 1, 1, 0, 0, 0)
+"""The date of every member of an archive: the earliest a zip file knows, so that the same sheets are the same bytes."""
+
+
+def fingerprint(*parts: str | bytes) -> str:
+    """Digest of a sequence of texts and contents."""
+    digest = blake2b(digest_size=16)
+    for part in parts:
+        data = part.encode() if isinstance(part, str) else part
+        digest.update(len(data).to_bytes(8, "big"))
+        digest.update(data)
+    return digest.hexdigest()
+
+
+@cache
+def program() -> str:
+    """Fingerprint of this program: its version, its source and its templates. Other libraries are not looked at."""
+    from tmm_sheets.resources import template
+
+    package = Path(__file__).parents[1]
+    sources = sorted(p for p in package.rglob("*.py") if "_templates" not in p.parts)
+    templates = sorted(p for p in template("").rglob("*") if p.is_file())
+    return fingerprint(__version__, *(part for p in (*sources, *templates) for part in (p.name, p.read_bytes())))
+
+
+@dataclass
+class Record:
+    """What is known of the files of an earlier build: for each name what it was made from and its content, as fingerprints.
+
+    ``whole`` is the fingerprint of the inputs with which all sheets of the project passed together.
+    """
+
+    files: dict[str, tuple[str, str]] = field(default_factory=dict)
+    whole: str = ""
+
+    @classmethod
+    def read(cls, data: bytes | None) -> Record:
+        """The record of these bytes; an empty one when they are not such a record."""
+        try:
+            tree = json.loads(data or b"")
+            if tree["schema"] != SCHEMA:
+                return cls()
+            return cls({str(k): (str(made), str(content)) for k, (made, content) in tree["files"].items()}, str(tree["whole"]))
+        except (ValueError, KeyError, TypeError, AttributeError):
+            return cls()
+
+    def data(self) -> bytes:
+        """Its bytes."""
+        tree = {"schema": SCHEMA, "whole": self.whole, "files": {k: list(self.files[k]) for k in sorted(self.files)}}
+        return (json.dumps(tree, indent=1) + "\n").encode()
+
+
+class Folder:
+    """Files in a folder."""
+
+    def __init__(self, path: Path) -> None:
+        self.place = path
+
+    def check(self) -> None:
+        """Refuse a place that cannot be written, before any work is done for it."""
+        files.check_folder(self.place)
+
+    def path(self, name: str) -> Path:
+        """Path to tell the user."""
+        return self.place / name
+
+    def read(self, name: str) -> bytes | None:
+        """Content of a file; None when there is none."""
+        try:
+            return (self.place / name).read_bytes()
+        except OSError:
+            return None
+
+    def write(self, made: Mapping[str, bytes]) -> None:
+        """Write files, all or none."""
+        files.write_all({self.place / name: data for name, data in made.items()})
+
+
+class Archive:
+    """Files in one zip file."""
+
+    def __init__(self, path: Path) -> None:
+        self.place = path if path.suffix == ".zip" else path.with_name(f"{path.name}.zip")
+
+    def check(self) -> None:
+        """Refuse a place that cannot be written, before any work is done for it."""
+        files.check_folder(self.place.parent)
+        if self.place.exists() and not zipfile.is_zipfile(self.place):
+            raise BadInput(Problem("expected a zip file", str(self.place), hint="choose another place with -o"))
+
+    def path(self, name: str) -> Path:
+        """Path to tell the user."""
+        return self.place / name
+
+    def read(self, name: str) -> bytes | None:
+        """Content of a member; None when there is none."""
+        try:
+            with zipfile.ZipFile(self.place) as archive:
+                return archive.read(name)
+        except (OSError, KeyError, zipfile.BadZipFile):
+            return None
+
+    def write(self, made: Mapping[str, bytes]) -> None:
+        """Write members, those not written now stay; the archive appears whole or not at all."""
+        members = dict(made)
+        if self.place.exists():
+            with zipfile.ZipFile(self.place) as old:
+                members = {name: old.read(name) for name in old.namelist()} | members
+        buffer = BytesIO()
+        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name in sorted(members):
+                member = zipfile.ZipInfo(name, DAWN)
+                member.compress_type = zipfile.ZIP_DEFLATED
+                member.external_attr = 0o644 << 16
+                member.create_system = 3  # the same bytes on every system
+                archive.writestr(member, members[name])
+        files.write_all({self.place: buffer.getvalue()})
+
+
+Outlet = Folder | Archive
+
+
+def record_of(outlet: Outlet) -> Record:
+    """The record that stands at a place."""
+    return Record.read(outlet.read(RECORD))
+
+
+def current(outlet: Outlet, record: Record, name: str, made_from: str) -> bool:
+    """True when the file is there as it was made from these very inputs."""
+    known = record.files.get(name)
+    if known is None or known[0] != made_from:
+        return False
+    data = outlet.read(name)
+    return data is not None and fingerprint(data) == known[1]
+
+
+def keep(outlet: Outlet, record: Record, made: Mapping[str, bytes], made_from: Mapping[str, str], whole: str | None) -> None:
+    """Write files together with the record of them."""
+    known: dict[str, Any] = record.files | {name: (made_from[name], fingerprint(data)) for name, data in made.items()}
+    told = Record(known, record.whole if whole is None else whole)
+    outlet.write({**made, RECORD: told.data()})

@@ -1,0 +1,135 @@
+"""Building the sheets of one project: what is current stays, the rest is composed and written in each format asked for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.errors import BadInput
+from tmm_sheets.explain import Stopwatch
+from tmm_sheets.output.build_store import Archive, Folder, Outlet, current, fingerprint, keep, program, record_of
+
+if TYPE_CHECKING:
+    from tmm_sheets.drawing.marks import Drawing
+    from tmm_sheets.project import Project
+    from tmm_sheets.task.variant import Variant
+
+BACKENDS = {form: f"tmm_sheets.backends.{form}" for form in ("dxf", "pdf", "svg", "png", "hpgl")}
+"""Formats of drawings and the modules that write them, each imported only when asked for."""
+
+SUFFIXES = {"hpgl": "plt"}
+"""Ends of file names that are not the name of the format."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is to be built of every project: ``sheets`` (empty: all), formats, their settings, and where it goes.
+
+    ``force`` makes everything again; ``archive`` puts each project into a zip file.
+    """
+
+    sheets: tuple[int, ...] = ()
+    formats: tuple[str, ...] = ("dxf", "pdf")
+    settings: Mapping[str, dict[str, Any]] = field(default_factory=dict)
+    corrected: bool = False
+    force: bool = False
+    archive: bool = False
+
+    def outlet(self, place: Path) -> Outlet:
+        """The folder, or the archive of that name."""
+        return Archive(place) if self.archive else Folder(place)
+
+
+@dataclass(frozen=True)
+class Built:
+    """Files of a project in the order asked for, those of them that were made now with their sizes, and what was drawn."""
+
+    paths: tuple[Path, ...]
+    sizes: Mapping[Path, int]
+    drawings: Mapping[int, Drawing]
+    opened: Project
+
+
+def folder_name(project: str) -> str:
+    """Name of a folder for a project."""
+    return re.sub(r"[^\w@.+=-]+", "-", project).strip("-.") or "project"
+
+
+def _quiet(what: str) -> None:
+    pass
+
+
+def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | None = None,
+          say: Callable[[str], None] = _quiet) -> Built:
+    """Build what is not current.
+
+    Raises
+    ------
+    BadInput
+        for a sheet that is not there, a scale factor nobody uses, a place that cannot be written.
+    CannotBuild
+        when a sheet cannot be drawn; nothing of the project is written then.
+    """
+    from tmm_sheets.project import Project
+
+    watch = watch or Stopwatch()
+    opened = Project(variant)
+    numbers = chosen(variant, order.sheets)
+    outlet.check()
+    wanted = {(form, n): f"sheet{n}.{SUFFIXES.get(form, form)}" for form in order.formats for n in numbers}
+    inputs = fingerprint(program(), variant.text)
+    set_so = {form: repr(sorted(order.settings.get(form, {}).items())) for form in order.formats}
+    made_from = {name: fingerprint(inputs, set_so[form]) for (form, _), name in wanted.items()}
+    with watch.phase("compare with what is there"):
+        record = record_of(outlet)
+        due = {key: name for key, name in wanted.items()
+               if order.force or not current(outlet, record, name, made_from[name])}
+    # Only all sheets together can tell whether each scale factor of the file is of use.
+    whole = len(numbers) == len(variant.sheets)
+    check = whole and (order.force or record.whole != inputs)
+    drawings, used = {}, set()
+    for n in numbers if check else sorted({n for _, n in due}):
+        say(f"sheet {n}")
+        with watch.phase(f"sheet {n}"):
+            from tmm_sheets.sheets import sheet
+
+            composed = sheet.composed(opened, n)
+        drawings[n] = composed.drawing
+        used |= set(composed.scales)
+    if check:
+        _refuse_idle_scales(variant, used)
+    made: dict[str, bytes] = {}
+    for form in dict.fromkeys(form for form, _ in due):
+        with watch.phase(f"import of the {form} writer"):
+            render = import_module(BACKENDS[form]).render
+        for n in (n for f, n in due if f == form):
+            say(f"sheet {n} as {form}")
+            with watch.phase(f"{form} of sheet {n}"):
+                made[wanted[form, n]] = render(drawings[n], **order.settings.get(form, {}))
+    if made or check:
+        with watch.phase("write files"):
+            keep(outlet, record, made, made_from, inputs if check else None)
+    sizes = {outlet.path(name): len(data) for name, data in made.items()}
+    return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened)
+
+
+def _refuse_idle_scales(variant: Variant, used: set[str]) -> None:
+    """A scale factor for a plan that no sheet has is a slip of the pen."""
+    hint = f"plans with a scale factor are {', '.join(sorted(used))}"
+    idle = [name for name in variant.scales if name not in used]
+    if idle:
+        raise BadInput(variant.problem("no sheet draws a plan of this name", "scales", name, hint=hint) for name in idle)
+
+
+def chosen(variant: Variant, sheets: tuple[int, ...]) -> list[int]:
+    """Numbers of the sheets asked for, all of them for none; BadInput for one that is not there."""
+    count = len(variant.sheets)
+    for n in sheets:
+        if not 1 <= n <= count:
+            raise BadInput(f"no sheet {n}: {variant.project.name} has sheets 1 to {count}",
+                           hint=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))  # fmt: skip
+    return sorted(set(sheets)) or list(range(1, count + 1))

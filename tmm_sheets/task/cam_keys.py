@@ -1,0 +1,50 @@
+"""Keys of ``[cam]`` that belong to one kind of follower or one kind of law only.
+
+Works on the raw table of the file, so that it can report beside the errors of the values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from tmm_sheets.task.toml_lines import KeyPath
+
+Found = tuple[KeyPath, str, str]
+"""Key path, message, hint."""
+
+FOLLOWER_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "translating roller": (
+        ("stroke", "pressure_angle"), ("eccentricity", "limit", "centre", "roller", "curvature_share", "follower_mass")),
+    "oscillating roller": (
+        ("arm", "swing", "pressure_angle"), ("rotation", "limit", "centre", "roller", "curvature_share", "follower_inertia")),
+    "flat": (("stroke",), ("base_radius", "follower_mass")),
+}
+"""Keys that a follower must and may have beside those that all have."""
+
+EXAMPLES = {"stroke": '"10 mm"', "pressure_angle": '"30 deg"', "arm": '"90 mm"', "swing": '"30 deg"',
+            "table": "[[0, 1], [0.5, 0], [1, -1]]", "fall_table": "[[0, 1], [0.5, 0], [1, -1]]"}
+
+
+def check_cam(data: dict[str, Any]) -> Iterator[Found]:
+    """Every missing or superfluous key of the follower, the law and the closure."""
+    cam = data.get("cam")
+    if not isinstance(cam, dict):
+        return
+    follower = cam.get("follower")
+    if isinstance(follower, str) and follower in FOLLOWER_KEYS:
+        must, may = FOLLOWER_KEYS[follower]
+        for key in must:
+            if key not in cam:
+                yield ("cam", key), f'missing; follower = "{follower}" needs it, for example {key} = {EXAMPLES[key]}', ""
+        own = {key for keys in FOLLOWER_KEYS.values() for key in (*keys[0], *keys[1])}
+        for key in cam:
+            if key in own and key not in (*must, *may):
+                yield ("cam", key), f'follower = "{follower}" has no such key', f"its own keys are {', '.join((*must, *may))}"
+        if follower == "flat" and cam.get("closure") == "geometric":
+            yield ("cam", "closure"), 'expected "force": the second disc of a geometric closure needs a roller', ""
+    for law, table in (("law", "table"), ("fall_law", "fall_table")):
+        if cam.get(law) == "table" and table not in cam:
+            yield ("cam", table), f'missing; {law} = "table" needs it, for example {table} = {EXAMPLES[table]}', ""
+        if table in cam and cam.get(law) != "table":
+            yield ("cam", table), f'is read with {law} = "table" only', ""

@@ -1,0 +1,118 @@
+"""``sixbar/T:V``: task T = 1..10, variant V = 1..5 of manual 001, six-bar mechanisms with 24 positions.
+
+The tables are ``variants/sixbar/taskTT.toml``, the mechanisms ``templates/schemes/sixbar_TT.toml`` under the common head
+``templates/schemes/sixbar.toml``. Suspected misprints of the tables are told with the value that is suggested instead.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+from decimal import Decimal
+from string import Template
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets import resources
+from tmm_sheets.errors import BadInput
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.variant import Variant
+
+TASKS, VARIANTS = range(1, 11), range(1, 6)
+
+
+@dataclass(frozen=True)
+class Misprint:
+    """A number of the table that is probably printed wrong: symbol, unit, as printed, suggested, why."""
+
+    symbol: str
+    unit: str
+    printed: Decimal
+    suggested: Decimal
+    certainty: str
+    reason: str
+
+    def warning(self, corrected: bool) -> str:
+        """One line about it."""
+        used = "the suggested value is used" if corrected else f"the printed value is used, --corrected takes {self.suggested}"
+        return (f"{self.symbol} = {self.printed} {self.unit} is a suspected misprint ({self.certainty}), suggested "
+                f"{self.suggested} {self.unit}: {self.reason}; {used}")
+
+
+def names() -> tuple[str, ...]:
+    """All fifty projects."""
+    return tuple(f"sixbar/{task}:{variant}" for task in TASKS for variant in VARIANTS)
+
+
+def read(name: str, corrected: bool = False) -> Variant:
+    """Project of ``sixbar/T:V``.
+
+    Raises
+    ------
+    BadInput
+        when there is no such task or variant.
+    """
+    from tmm_sheets.task import variant
+
+    task, number = _parts(name)
+    text, warnings = project_file(task, number, corrected)
+    return variant.parse(text, name, warnings)
+
+
+def _parts(name: str) -> tuple[int, int]:
+    match = re.fullmatch(r"sixbar/(\d{1,2}):(\d)", name)
+    if match is None:
+        raise BadInput(f'there is no project "{name}"', hint="write sixbar/task:variant, for example sixbar/3:2")
+    task, number = int(match[1]), int(match[2])
+    for what, value, known in (("task", task, TASKS), ("variant", number, VARIANTS)):
+        if value not in known:
+            raise BadInput(f"{name}: there is no {what} {value}", hint=f"{what}s are {known[0]} to {known[-1]}")
+    return task, number
+
+
+def project_file(task: int, number: int, corrected: bool = False) -> tuple[str, tuple[str, ...]]:
+    """Text of the project file of a variant, and the warnings about its misprints."""
+    table = tomllib.loads((resources.variants() / f"sixbar/task{task:02d}.toml").read_text(encoding="utf-8"), parse_float=Decimal)
+    values = {symbol: Decimal(row[number - 1]) for symbol, row in table["values"].items()} | table.get("dash", {})
+    sources = {symbol: f"001, task {task}, variant {number}: {symbol}" for symbol in values}
+    for symbol in table.get("dash", {}):
+        sources[symbol] += " is a dash"
+    for symbol, note in table.get("note", {}).items():
+        sources[symbol] += f", {note}"
+    misprints = _misprints(table, number)
+    for m in misprints:
+        if corrected:
+            values[m.symbol] = m.suggested
+            sources[m.symbol] += f", printed {m.printed}, suspected misprint ({m.certainty})"
+        else:
+            sources[m.symbol] += f", suspected misprint ({m.certainty}) for {m.suggested}"
+    fields = {
+        **{symbol: str(value) for symbol, value in values.items()},
+        **{f"{symbol}_source": source for symbol, source in sources.items()},
+        **{key: str(value) for key, value in _derived(task, values).items()},
+        **{key: value if isinstance(value, str) else str(value).replace("'", '"') for key, value in table["cycle"].items()},
+        "name": f"sixbar/{task}:{number}", "title": table["title"], "task": str(task), "variant": str(number),
+        "number": f"{task:02d}.{number:02d}",
+    }  # fmt: skip
+    parts = (resources.template(f"schemes/{name}.toml").read_text(encoding="utf-8") for name in ("sixbar", f"sixbar_{task:02d}"))
+    return Template("\n".join(parts)).substitute(fields), tuple(m.warning(corrected) for m in misprints)
+
+
+def _misprints(table: dict[str, Any], number: int) -> list[Misprint]:
+    return [
+        Misprint(m["quantity"], table["unit"][m["quantity"]], Decimal(table["values"][m["quantity"]][number - 1]),
+                 Decimal(m["suggested"]), m["certainty"], m["reason"])
+        for m in table.get("misprint", []) if m["variant"] == number
+    ]  # fmt: skip
+
+
+def _derived(task: int, d: dict[str, Decimal]) -> dict[str, Decimal]:
+    """Coordinates (m) that follow from the table: height of the guide of link 5, place of the pivot of rocker 5."""
+    if task in (1, 2, 3):
+        return {"guide_y": d["b"] - d["a"]}
+    if task == 4:
+        return {"guide_y": d["b"] + d["a"]}
+    if task in (8, 9):
+        return {"pivot_x": (d["l2"] ** 2 - d["r"] ** 2).sqrt()}
+    return {}

@@ -1,0 +1,235 @@
+"""Names of points, links and guides in a project file: each defined once, before it is used, on the right link.
+
+Works on the raw tables of the file, so that it can report beside the errors of the values; ill-typed entries are passed
+over here, the reader of values names them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+from typing import Any
+
+from tmm_sheets.task.toml_lines import KeyPath
+
+Found = tuple[KeyPath, str, str]
+"""Key path, message, hint."""
+
+GROUP_KEYS: dict[int, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    1: (("outer", "inner", "lengths"), ("side",)),
+    2: (("outer", "inner", "length", "guide"), ("side",)),
+    3: (("outer",), ("offset", "side")),
+    4: (("guides", "inner"), ()),
+    5: (("outer", "guide", "slot", "inner"), ()),
+}
+"""Keys an Assur group must and may have besides kind and links, by kind: RRR, RRP, RPR, PRP, RPP."""
+
+OUTER_POINTS = {1: 2, 2: 1, 3: 2, 4: 0, 5: 1}
+"""Number of outer turning pairs, by kind."""
+
+FRAME = "0"
+
+
+def check_names(data: dict[str, Any]) -> Iterator[Found]:
+    """Every misused name and every missing or superfluous key of a group."""
+    yield from _Names(data).check()
+
+
+def _tables(data: dict[str, Any], key: str) -> list[tuple[KeyPath, dict[str, Any]]]:
+    found = data.get(key, [])
+    if not isinstance(found, list):
+        return []
+    return [((key, i), table) for i, table in enumerate(found) if isinstance(table, dict)]
+
+
+def _table(data: dict[str, Any], key: str) -> dict[str, Any]:
+    found = data.get(key, {})
+    return found if isinstance(found, dict) else {}
+
+
+def _words(value: Any) -> list[str]:
+    return [v for v in value if isinstance(v, str)] if isinstance(value, list) else []
+
+
+class _Names:
+    """Walks through the file in the order in which the mechanism is put together."""
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self.data = data
+        self.on: dict[str, set[str]] = {FRAME: set(_table(data, "points"))}
+        self.aims: dict[str, set[str]] = {}
+        self.points = set(self.on[FRAME])
+        self.waiting = _tables(data, "point")
+        self.guides: dict[str, dict[str, Any]] = {}
+
+    def check(self) -> Iterator[Found]:
+        yield from self.crank()
+        yield from self.guide_names()
+        for path, group in _tables(self.data, "group"):
+            yield from self.group(path, group)
+            yield from self.attach()
+        yield from self.left_over()
+        yield from self.links()
+        yield from self.uses()
+
+    def define(self, path: KeyPath, name: Any, *links: str) -> Iterator[Found]:
+        if not isinstance(name, str):
+            return
+        if name in self.points:
+            yield path, f'the point "{name}" is there already', "give it another name"
+        self.points.add(name)
+        for link in links:
+            self.on[link].add(name)
+
+    def known(self, path: KeyPath, name: Any, among: set[str], what: str) -> Iterator[Found]:
+        if not isinstance(name, str) or name in among:
+            return
+        near = get_close_matches(name, sorted(among), n=1)
+        listed = ", ".join(sorted(among)) or "none"
+        yield path, f'unknown {what} "{name}"', f'did you mean "{near[0]}"?' if near else f"known here are {listed}"
+
+    def crank(self) -> Iterator[Found]:
+        crank = _table(self.data, "crank")
+        if not crank:
+            if "group" in self.data:
+                yield ("group",), "groups need a [crank] they are attached to", ""
+            return
+        link = str(crank.get("link", "1"))
+        self.on[link] = set()
+        yield from self.known(("crank", "pivot"), crank.get("pivot"), self.on[FRAME], "fixed point")
+        if isinstance(crank.get("pivot"), str):
+            self.on[link].add(crank["pivot"])
+        yield from self.define(("crank", "pin"), crank.get("pin"), link)
+        yield from self.attach()
+
+    def guide_names(self) -> Iterator[Found]:
+        for path, guide in _tables(self.data, "guide"):
+            name = guide.get("name")
+            if isinstance(name, str):
+                if name in self.guides:
+                    yield (*path, "name"), f'the guide "{name}" is there already', "give it another name"
+                self.guides[name] = guide
+            if "link" in guide:
+                if not isinstance(guide.get("through"), str) or "towards" not in guide:
+                    yield path, 'a guide on a moving link needs "through" and "towards", two points of the link', ""
+            else:
+                if "towards" in guide:
+                    yield (*path, "towards"), "a fixed guide has none", 'give its "direction" as an angle'
+                yield from self.known((*path, "through"), guide.get("through"), self.on[FRAME], "fixed point")
+
+    def group(self, path: KeyPath, group: dict[str, Any]) -> Iterator[Found]:
+        given = group.get("kind")
+        kind = given if isinstance(given, int) and given in GROUP_KEYS and not isinstance(given, bool) else 0
+        must, may = GROUP_KEYS.get(kind, ((), tuple(group)))
+        for key in must:
+            if key not in group:
+                yield path, f'a group of kind {kind} needs "{key}"', f"kind {kind} has links, {', '.join(must + may)}"
+        for key in group:
+            if key not in ("kind", "links", *must, *may) and any(key in m + n for m, n in GROUP_KEYS.values()):
+                yield (*path, key), f"a group of kind {kind} has none", f"kind {kind} has links, {', '.join(must + may)}"
+        outer = _words(group.get("outer"))
+        if kind and "outer" in group and isinstance(group["outer"], list) and len(group["outer"]) != OUTER_POINTS[kind]:
+            count = OUTER_POINTS[kind]
+            yield (*path, "outer"), f"expected {count} point{'s' * (count > 1)} for a group of kind {kind}", ""
+        for i, name in enumerate(outer):
+            yield from self.known((*path, "outer", i), name, self.points, "point")
+        yield from self.guide_use((*path, "guide"), group.get("guide"))
+        for i, name in enumerate(_words(group.get("guides"))):
+            yield from self.guide_use((*path, "guides", i), name)
+        links = _words(group.get("links"))
+        for i, link in enumerate(links):
+            if link in self.on or link in links[:i]:
+                yield (*path, "links", i), f'the link "{link}" is there already', "give each link its own number"
+        self.join(kind, links, outer)
+        self.slide(kind, links, [group["guide"]] if isinstance(group.get("guide"), str) else _words(group.get("guides")))
+        if kind in (1, 2, 4, 5):
+            inner_links = links[1:] if kind == 5 else links
+            yield from self.define((*path, "inner"), group.get("inner"), *inner_links)
+
+    def guide_use(self, path: KeyPath, name: Any) -> Iterator[Found]:
+        yield from self.known(path, name, set(self.guides), "guide")
+        guide = self.guides.get(name, {}) if isinstance(name, str) else {}
+        if "link" in guide:
+            link = str(guide["link"])
+            if link not in self.on:
+                yield path, f'the guide "{name}" is on link "{link}", which is not attached yet', "change the order"
+                return
+            for key, known in (("through", self.on[link]), ("towards", self.on[link] | self.aims.get(link, set()))):
+                if isinstance(guide.get(key), str):
+                    yield from self.known(path, guide[key], known, f"point of link {link}")
+
+    def join(self, kind: int, links: list[str], outer: list[str]) -> None:
+        for i, link in enumerate(links):
+            self.on.setdefault(link, set())
+            if i < len(outer):
+                self.on[link].add(outer[i])
+        if kind == 3 and len(links) == len(outer) == 2:
+            # The rocker's line passes through the pin of the stone: it may give a direction, but is no point of the rocker.
+            self.aims[links[1]] = {outer[0]}
+
+    def slide(self, kind: int, links: list[str], guides: list[str]) -> None:
+        """A link that slides along a guide has its direction: it may be given as that "towards" which a point lies."""
+        sliding = {2: links[1:], 4: links, 5: links}.get(kind, [])
+        for link, guide in zip(sliding, guides if kind == 4 else guides * len(sliding), strict=False):
+            self.aims.setdefault(link, set()).add(guide)
+
+    def attach(self) -> Iterator[Found]:
+        """Take in the further points whose link and base points are there by now."""
+        progress = True
+        while progress:
+            progress = False
+            for item in list(self.waiting):
+                path, point = item
+                link, start, towards = point.get("link"), point.get("from"), point.get("towards")
+                if not (isinstance(link, str) and isinstance(start, str) and isinstance(towards, str)) or link not in self.on:
+                    continue
+                if start in self.on[link] and towards in self.on[link] | self.aims.get(link, set()):
+                    self.waiting.remove(item)
+                    progress = True
+                    if start == towards:
+                        yield (*path, "towards"), 'expected another point than "from"', ""
+                    yield from self.define((*path, "name"), point.get("name"), link)
+
+    def left_over(self) -> Iterator[Found]:
+        for path, point in self.waiting:
+            link = point.get("link")
+            if not isinstance(link, str):
+                continue
+            yield from self.known((*path, "link"), link, set(self.on), "link")
+            here = self.on.get(link, self.points)
+            yield from self.known((*path, "from"), point.get("from"), here, f"point of link {link}")
+            aims = here | self.aims.get(link, set())
+            yield from self.known((*path, "towards"), point.get("towards"), aims, f"point of link {link}")
+            name = point.get("name")
+            if isinstance(name, str):
+                self.points.add(name)
+                self.on.setdefault(link, set()).add(name)
+
+    def links(self) -> Iterator[Found]:
+        moving = set(self.on) - {FRAME}
+        seen: set[str] = set()
+        for path, link in _tables(self.data, "link"):
+            name = link.get("name")
+            yield from self.known((*path, "name"), name, moving, "link")
+            if isinstance(name, str):
+                if name in seen:
+                    yield (*path, "name"), f'the link "{name}" is described twice', ""
+                seen.add(name)
+                yield from self.known((*path, "centre"), link.get("centre"), self.on.get(name, self.points), "point of the link")
+
+    def uses(self) -> Iterator[Found]:
+        moving = set(self.on) - {FRAME}
+        cycle = _table(self.data, "cycle")
+        seen: set[str] = set()
+        for path, force in [*_tables(self.data, "force"), *_tables(self.data, "moment")]:
+            link = force.get("link")
+            yield from self.known((*path, "link"), link, moving, "link")
+            if path[0] == "force" and isinstance(link, str) and link in self.on:
+                yield from self.known((*path, "point"), force.get("point"), self.on[link], f"point of link {link}")
+            name = force.get("name")
+            if isinstance(name, str) and name in seen:
+                yield (*path, "name"), f'"{name}" is there already', "give it another name"
+            seen.add(str(name))
+        yield from self.known(("cycle", "output"), cycle.get("output"), self.points, "point")
+        for i, name in enumerate(_words(cycle.get("diagrams"))):
+            yield from self.known(("cycle", "diagrams", i), name, self.points | moving, "point or link")
