@@ -75,7 +75,7 @@ def runs_of(speed: Callable[[Floats], Any], turn: float = TURN) -> list[Run]:
         elif signs[i] != signs[j]:
             ends.append((after[1] if zeros else root(speed, after[0], after[1]), signs[j]))
     if not ends:
-        return [Run(0.0, turn, signs[0])]
+        return [Run(0.0, turn, signs[moving[0]])]
     ends = sorted((float(np.mod(angle, turn)), sense) for angle, sense in ends)
     follow = [*(angle for angle, _ in ends[1:]), ends[0][0] + turn]
     return [Run(angle, end, sense) for (angle, sense), end in zip(ends, follow, strict=True)]
