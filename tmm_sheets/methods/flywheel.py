@@ -388,7 +388,7 @@ class Flywheel(ABC):
         result = [""] * (len(self.edges) - 1)
         widths = np.diff(self.edges)
         for (start, _), (end, name) in pairwise(self._numbered.items()):
-            by_width = sorted(range(start, end), key=lambda k: -widths[k])
+            by_width = sorted(range(start, end), key=lambda k: -round(float(widths[k]), 9))
             for rank, k in enumerate(by_width):
                 result[k] = name + lettered(rank)
         return tuple(result)

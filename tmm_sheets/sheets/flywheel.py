@@ -10,6 +10,7 @@ from __future__ import annotations
 from cmath import rect
 from itertools import pairwise
 from math import degrees, pi
+from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.wittenbauer import Wittenbauer
 
 Options = dict[str, Any]
+CROWD = 4
+"""So many intervals between two positions on an average are drawn, with their rays, as they are."""
 _BELOW = 7.0  # room of position numbers beside an axis
 
 
@@ -79,7 +82,11 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw: Flywheel = project.flywheel
     s, r, plan = fw.scales, fw.reduced, fw.work_plan
     varying, constant = _indices(fw)
-    graphs.heading(canvas, box, options, "Графики приведённых моментов сил", f"{s.moment}, {s.angle}, H = {number(s.pole)} мм")
+    # Of very many intervals (a digitised diagram) one between any two numbers stands for all.
+    drawn = [n for n in fw.intervals if len(fw.intervals) <= CROWD * len(fw.labels) or n[-1:] not in ascii_lowercase]
+    left_out = f"; показаны {len(drawn)} из {len(fw.intervals)} лучей" if len(drawn) < len(fw.intervals) else ""
+    graphs.heading(canvas, box, options, "Графики приведённых моментов сил",
+                   f"{s.moment}, {s.angle}, H = {number(s.pole)} мм{left_out}")
     phi = [_inside(fw, a, b) for a, b in _stretches(fw)]
     ordinates = []
     for p in phi:
@@ -103,7 +110,7 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     for p in points:
         canvas.line(g(p.real), g(p), "thin")
     shown: dict[float, list[str]] = {}
-    for name in fw.intervals:
+    for name in drawn:
         middle = plan[f"m{name}"].value
         if abs(middle.imag) > 0.05:
             same = next((y for y in shown if abs(y - middle.imag) < 1e-6), middle.imag)
@@ -149,10 +156,12 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.line(g(0j), g(end), "curve")
     for a, b in pairwise(ends):
         canvas.line(g(a), g(b), "construction")
+    uprights = []
     for k in fw.at_positions:
         x = ends[k].real
         heights = (0.0, ends[k].imag, x * end.imag / end.real)
-        canvas.line(g(complex(x, min(heights))), g(complex(x, max(heights))), "thin")
+        uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
+        canvas.line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
     graphs.axes(canvas, g, end.real, low, high, "A, Дж")
     graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, np.zeros(len(fw.labels)))
     k = len(curve) // 2
@@ -163,7 +172,7 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     note = (f"A_{varying}({fw.labels[-1]}) = {fixed(float(fw.work[-1]), 1)} Дж по ординатам середин интервалов,",
             f"по площади графика {fixed(float(fw.work_converged[-1]), 1)} Дж ({'' if share.startswith('−') else '+'}{share} %)")
     graphs.note(canvas, Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high), note,
-                (g(curve), g(np.linspace(0, end, 50)), g(np.linspace(0, end.real, 50) + 0j)))
+                [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])])
 
 
 def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
