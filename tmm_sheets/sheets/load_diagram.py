@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fixed, number
+from tmm_sheets.construction.scale import fixed, number, times
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets.frame import pick
@@ -44,7 +44,7 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     strokes = cycle.strokes
     if strokes is not None and len(strokes.runs) > 2 and any(f.motion is not None and f.point == strokes.output for f in shown):
         a, b = (fixed(degrees(x) % degrees(cycle.period), 1) for x in (strokes.begin, strokes.end))
-        said = f"Точка {strokes.output} меняет направление {len(strokes.runs)} раза за оборот; рабочий ход φ = {a}°…{b}°"
+        said = f"Точка {strokes.output} меняет направление {times(len(strokes.runs))} за оборот; рабочий ход φ = {a}°…{b}°"
         canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
 
     def at(angle: Any, value: Any) -> Any:
