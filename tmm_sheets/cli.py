@@ -119,6 +119,8 @@ def check(project: str, corrected: bool) -> None:
 
         for line in flat_crossings.lines(opened):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
+    if opened.variant.flywheel is not None and opened.flywheel.remark:
+        click.echo(f"{opened.variant.project.name}: {opened.flywheel.remark}", err=True)
     click.echo(f"{opened.variant.project.name}: OK")
 
 

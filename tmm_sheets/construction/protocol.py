@@ -71,6 +71,8 @@ def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str) ->
         return ""
     if kind in ("length", "vector", "force", "angle", "inclination", "number") and not np.isfinite(value):
         return "∞" if np.isinf(value) else "—"
+    if kind == "ordinate":
+        return f"{fixed(to_mm(float(value)), 1)} мм" if unit == "мм" else f"{number(to_mm(float(value)))} {unit}"
     if kind in ("length", "vector"):
         return f"{fixed(to_mm(abs(value)), 1)} мм" if unit == "мм" else f"{number(to_mm(abs(value)))} {unit}"
     if kind == "force":

@@ -10,6 +10,7 @@ from __future__ import annotations
 from cmath import rect
 from itertools import pairwise
 from math import degrees, pi
+from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
 Options = dict[str, Any]
+CROWD = 4
+"""So many intervals between two positions on an average are drawn, with their rays, as they are."""
 _BELOW = 7.0  # room of position numbers beside an axis
 
 
@@ -79,7 +82,11 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw: Flywheel = project.flywheel
     s, r, plan = fw.scales, fw.reduced, fw.work_plan
     varying, constant = _indices(fw)
-    graphs.heading(canvas, box, options, "Графики приведённых моментов сил", f"{s.moment}, {s.angle}, H = {number(s.pole)} мм")
+    # Of very many intervals (a digitised diagram) one between any two numbers stands for all.
+    drawn = [n for n in fw.intervals if len(fw.intervals) <= CROWD * len(fw.labels) or n[-1:] not in ascii_lowercase]
+    left_out = f"; показаны {len(drawn)} из {len(fw.intervals)} лучей" if len(drawn) < len(fw.intervals) else ""
+    graphs.heading(canvas, box, options, "Графики приведённых моментов сил",
+                   f"{s.moment}, {s.angle}, H = {number(s.pole)} мм{left_out}")
     phi = [_inside(fw, a, b) for a, b in _stretches(fw)]
     ordinates = []
     for p in phi:
@@ -103,7 +110,7 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     for p in points:
         canvas.line(g(p.real), g(p), "thin")
     shown: dict[float, list[str]] = {}
-    for name in fw.intervals:
+    for name in drawn:
         middle = plan[f"m{name}"].value
         if abs(middle.imag) > 0.05:
             same = next((y for y in shown if abs(y - middle.imag) < 1e-6), middle.imag)
@@ -149,16 +156,23 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.line(g(0j), g(end), "curve")
     for a, b in pairwise(ends):
         canvas.line(g(a), g(b), "construction")
+    uprights = []
     for k in fw.at_positions:
         x = ends[k].real
         heights = (0.0, ends[k].imag, x * end.imag / end.real)
-        canvas.line(g(complex(x, min(heights))), g(complex(x, max(heights))), "thin")
+        uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
+        canvas.line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
     graphs.axes(canvas, g, end.real, low, high, "A, Дж")
     graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, np.zeros(len(fw.labels)))
     k = len(curve) // 2
     canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
     canvas.label(g(end), "K", 1j if end.imag > 0 else -1j)
+    share = fixed(100 * fw.work_error, 2)
+    note = (f"A_{varying}({fw.labels[-1]}) = {fixed(float(fw.work[-1]), 1)} Дж по ординатам середин интервалов,",
+            f"по площади графика {fixed(float(fw.work_converged[-1]), 1)} Дж ({'' if share.startswith('−') else '+'}{share} %)")
+    graphs.note(canvas, Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high), note,
+                [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])])
 
 
 def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -167,7 +181,7 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     s = fw.scales
     ratio = s.work.mu / s.energy.mu
     graphs.heading(canvas, box, options, "График суммарной работы A_Σ(φ_1) = ΔE(φ_1)",
-             f"{s.energy}" if abs(ratio - 1) < 1e-9 else f"{s.energy} (ординаты увеличены в {times(ratio)})")
+             f"{s.energy}{_enlarged(ratio)}")
     canvas.of = fw.total_plan.name
     g = _energy_graph(fw, box, options)
     points = s.angle.mm(fw.reduced.phi) + 1j * fw.total_plan["ΔE"].value
@@ -177,6 +191,13 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
         canvas.line(g(p.real), g(p), "thin")
     graphs.axes(canvas, g, points[-1].real, curve.imag.min(), curve.imag.max(), "ΔE, Дж")
     graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, points.imag)
+
+
+def _enlarged(ratio: float) -> str:
+    """What the ordinates are against those of the graph of works, to be said behind the scale factor."""
+    if abs(ratio - 1) < 1e-9:
+        return ""
+    return f" (ординаты увеличены в {times(ratio)})" if ratio > 1 else f" (ординаты уменьшены в {times(1 / ratio)})"
 
 
 def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -236,11 +257,12 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     for p, names in seen.items():
         canvas.label(g(p), ", ".join(names), (p - middle) / abs(p - middle))
     reach = curve.real.max() + graphs.OVER
-    low, high = min(curve.imag.min(), plan["b"].value.imag, 0), max(curve.imag.max(), plan["a"].value.imag, 0)
+    low, high = _energy_range(fw)
     canvas.arrow(g(-12.0), g(reach), "axis", 3.0)
     canvas.label(g(reach), "J^пр, кг·м^2", -1 + 1j, 3.5, 1.5, leader=False)
     canvas.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
     canvas.text(g(1j * (high + graphs.OVER)) + 2, "ΔE, Дж", 3.5)
+    beside = abs(fw.ab_mm) < 12.0
     for name, end in (("max", "a"), ("min", "b")):
         contact, cut, u = plan[f"T_{name}"].value, plan[end].value, plan[f"t_{name}"].value
         room = (curve.real.max() - cut.real) / u.real
@@ -248,13 +270,17 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
             t = (bound - g.origin.imag - cut.imag) / u.imag
             room = min(room, t) if t > 0 else room
         canvas.line(g(cut - 6 * u), g(cut + room * u), "axis")
-        vertex = cut + 0.45 * room * u
+        # The angles of tangents close together are marked one above the other.
+        vertex = cut + (0.7 if beside and name == "max" else 0.45) * room * u
         canvas.line(g(vertex), g(vertex + 45), "thin")
         canvas.angle_mark(complex(g(vertex)), 0.0, float(plan[f"ψ_{name}"].value), 40.0,
                           f"ψ_{name} = {fixed(degrees(plan[f'ψ_{name}'].value), 2)}°")
         canvas.dot(g(contact), 0.7)
-        canvas.label(g(cut), end, -1 + (1j if end == "a" else -1j), height=5)
-    _segment(canvas, g, plan["a"].value, plan["b"].value, [p.imag for p in points], f"|ab| = {fixed(fw.ab_mm, 1)}")
+        canvas.label(g(cut), end, -1 + (1j if (end == "a") == (fw.ab_mm >= 0) else -1j), height=5)
+    ends = sorted((plan["a"].value, plan["b"].value), key=lambda z: float(z.imag))
+    length = fixed(fw.ab_mm, 1) if abs(fw.ab_mm) >= 1 else number(fw.ab_mm, 2)
+    text = f"|ab| = {length}" if fw.ab_mm >= 0 else f"ab = {length}"
+    _segment(canvas, g, ends[0], ends[1], [p.imag for p in points], text)
 
 
 def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
@@ -272,9 +298,15 @@ def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
 
 
 def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
-    """Sketch of the wheel to a standard scale: front view and section through the axis, with dimensions in mm."""
+    """Sketch of the wheel to a standard scale: front view and section through the axis, with dimensions in mm.
+
+    Words in its place when no flywheel is needed.
+    """
     fw: Flywheel = project.flywheel
     w = fw.wheel
+    if w is None:
+        _no_wheel(fw, canvas, box)
+        return
     rim = w.form == "rim"
     d, b, h = 1000 * w.diameter, 1000 * w.width, 1000 * w.thickness if rim else 0.0
     outer = d + h
@@ -320,6 +352,28 @@ def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         canvas.text(side - half - 8.5 + 1j * (r - h * k / 2 - 1.75), f"H = {h:.0f}", 3.5, "right")
 
 
+def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
+    left = canvas.title(box, "Маховик не требуется")
+    there, delta = fw.J_first - fw.J_flywheel, fw.running(fw.J_running).delta
+    held = "J_{кр} + J_р·u^2" if fw.J_rotor else "J_{кр}"
+    lines = [f"J_м = {number(fw.J_flywheel, 4)} кг·м^2 ≤ 0",
+             f"{held} = {number(there, 4)} кг·м^2;  необходимо {number(max(fw.J_first, 0.0), 4)} кг·м^2"]
+    if not np.isnan(delta):
+        lines.append(f"Без маховика δ = {number(delta, 4)} {'≤' if delta <= fw.data.delta else '>'} {number(fw.data.delta)}")
+    height = min(5.0, *(5.0 * left.width / letter(line, 5.0).width for line in lines))
+    for i, line in enumerate(lines):
+        canvas.text(left.centre + 2.0j * height * (len(lines) / 2 - i - 1), line, height, "centre")
+
+
+def disagreement(fw: Flywheel) -> list[str]:
+    """Lines for the sheet where the drawn construction and the limit do not agree whether a flywheel is needed."""
+    if fw.needed == (fw.J_flywheel_converged > 0):
+        return []
+    return [f"По построению маховик {'нужен' if fw.needed else 'не нужен'}, в пределе n → ∞ – "
+            f"{'не нужен' if fw.needed else 'нужен'}:",
+            f"|J_м| меньше погрешности построения {number(abs(fw.J_flywheel - fw.J_flywheel_converged), 2)} кг·м^2"]
+
+
 def inertia_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Table of the terms of the reduced moment of inertia at the positions."""
     fw: Flywheel = project.flywheel
@@ -349,23 +403,21 @@ def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None
 def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Formulas with their numbers: tangents, segment, moment of inertia drawn and in the limit, sizes, mass."""
     fw = _with_tangents(project)
-    s, w, d = fw.scales, fw.wheel, fw.data
+    s, d = fw.scales, fw.data
     omega, psi = fw.reduced.omega1, fw.psi
-    rim = w.form == "rim"
+    below = "" if fw.ab_mm >= 0 else " (a ниже b)"
+    length = fixed(fw.ab_mm, 2) if abs(fw.ab_mm) >= 10 else number(fw.ab_mm, 4)
+    segment, rotor = "|ab|" if fw.ab_mm >= 0 else "ab", " − J_р·u^2" if fw.J_rotor else ""
     rows = [
         f"ω_1 = {fixed(omega, 3)} с^{{−1}};  δ = {number(d.delta)};  ρ = {number(d.density)} кг/м^3",
         *(f"tg ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {fixed(float(np.tan(a)), 4)};  ψ_{name} = {fixed(degrees(a), 2)}°"
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
-        f"|ab| = {fixed(fw.ab_mm, 2)} мм",
-        f"J_м = |ab|·μ_E/(δ·ω_1^2) = {fixed(fw.ab_mm, 2)}·{number(s.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2) = "
-        f"{number(fw.J_flywheel, 5)} кг·м^2",
-        f"При n → ∞ положений: J_м = {number(fw.J_flywheel_converged, 7)} кг·м^2 (отличие {fixed(fw.difference_percent, 2)} %)",
-        f"{'Обод со спицами' if rim else 'Диск'}:  κ = B/D = {number(d.width_ratio)}"
-        + (f";  c = H/D = {number(d.thickness_ratio)}" if rim else ""),
-        f"D = ({'4J_м/(πρκc)' if rim else '32J_м/(πρκ)'})^{{1/5}} = {fixed(w.diameter, 3)} м",
-        f"B = κD = {fixed(w.width, 3)} м" + (f";  H = cD = {fixed(w.thickness, 3)} м" if rim else ""),
-        f"m = {4 if rim else 8}J_м/D^2 = {number(w.mass, 4)} кг",
-        f"V = ω_1·D/2 = {fixed(w.speed, 2)} м/с {'<' if w.speed < 30 else '≥'} 30 м/с",
+        f"{segment} = {length} мм{below}",
+        f"J_м = {segment}·μ_E/(δ·ω_1^2){rotor} = {length}·{number(s.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2)"
+        f"{f' − {number(fw.J_rotor, 4)}' if rotor else ''} = {number(fw.J_flywheel, 5)} кг·м^2",
+        f"При n → ∞ положений: J_м = {number(fw.J_flywheel_converged, 7)} кг·м^2 ({_difference(fw)})",
+        *disagreement(fw),
+        *_sizes(fw),
     ]
     left = canvas.title(box, "Расчёт маховика")
     step = min(left.height / len(rows), 13.0)
@@ -373,6 +425,29 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     height = 5.0 if step >= 8 and widest <= box.width else 3.5
     for i, row in enumerate(rows):
         canvas.text(complex(box.x0, left.y1 - (i + 1) * step + 3), row, height)
+
+
+def _difference(fw: Flywheel) -> str:
+    """How far drawn and converged are apart: in percent, beside a small converged one in kg m2."""
+    if fw.needed and abs(fw.difference_percent) < 100:
+        return f"отличие {fixed(fw.difference_percent, 2)} %"
+    return f"отличие {number(fw.J_flywheel - fw.J_flywheel_converged, 3)} кг·м^2"
+
+
+def _sizes(fw: Flywheel) -> list[str]:
+    """Sizes and mass of the wheel as formulas, or that none is needed."""
+    w, d = fw.wheel, fw.data
+    if w is None:
+        return ["J_м ≤ 0: маховик не требуется"]
+    rim = w.form == "rim"
+    return [
+        f"{'Обод со спицами' if rim else 'Диск'}:  κ = B/D = {number(d.width_ratio)}"
+        + (f";  c = H/D = {number(d.thickness_ratio)}" if rim else ""),
+        f"D = ({'4J_м/(πρκc)' if rim else '32J_м/(πρκ)'})^{{1/5}} = {fixed(w.diameter, 3)} м",
+        f"B = κD = {fixed(w.width, 3)} м" + (f";  H = cD = {fixed(w.thickness, 3)} м" if rim else ""),
+        f"m = {4 if rim else 8}J_м/D^2 = {number(w.mass, 4)} кг",
+        f"V = ω_1·D/2 = {fixed(w.speed, 2)} м/с {'<' if w.speed < 30 else '≥'} 30 м/с",
+    ]
 
 
 # --- parts shared by the views --------------------------------------------------------------------------
@@ -402,10 +477,16 @@ def _inside(fw: Flywheel, a: float, b: float) -> Any:
     return np.concatenate(([a], fw.samples[(fw.samples > a) & (fw.samples < b)], [b]))
 
 
+def _energy_range(fw: Wittenbauer) -> tuple[float, float]:
+    """Lowest and highest ordinate of the graph of dE, of the ends of ab and of the axis, mm."""
+    ends = [fw.energy_mass_plan[end].value.imag for end in "ab"]
+    curve = fw.energy_curve(fw.samples)
+    return min(float(curve.min()), *ends, 0.0), max(float(curve.max()), *ends, 0.0)
+
+
 def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
     """Axes of the graph of dE, and the level of the energy-mass diagram: room for ``b`` below, for the tangent above."""
-    low = min(float(fw.energy_curve(fw.samples).min()), fw.energy_mass_plan["b"].value.imag, 0.0)
-    high = max(float(fw.energy_curve(fw.samples).max()), fw.energy_mass_plan["a"].value.imag, 0.0)
+    low, high = _energy_range(fw)
     spare = box.height - (8.0 + high - low + graphs.HEAD + graphs.OVER)
     graphs.check_room(box, box.y1 - spare, "flywheel.total_work")
     return graphs.Graph(complex(options["axis"], box.y0 + 8.0 - low + max(spare, 0.0) / 2))
@@ -417,8 +498,11 @@ def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:
     return graphs.Graph(complex(options["axis"], box.y1 - 16 - max(spare / 2, 3.0)), -1j)
 
 
-def _segment(canvas: Canvas, g: graphs.Graph, a: complex, b: complex, levels: list[float], text: str) -> None:
-    """Dimension of ab on the energy axis; its number stands in the widest gap between the projection lines."""
+def _segment(canvas: Canvas, g: graphs.Graph, b: complex, a: complex, levels: list[float], text: str) -> None:
+    """Dimension of ab on the energy axis, from its lower end to its upper one.
+
+    Its number stands in the widest gap between the projection lines.
+    """
     x = -14.0
     p, q = complex(g(b + x)), complex(g(a + x))
     canvas.line(g(a), q - 2, "thin")

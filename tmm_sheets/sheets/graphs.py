@@ -110,3 +110,26 @@ def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
     width = (box.width - first) / columns
     height = 3.5 if high >= 6 and max(letter(cell, 3.5).width for line in rows for cell in line[1:]) <= width - 1 else 2.5
     canvas.table(complex(box.x0, left.y1), [first, *[width] * columns], rows, high, height)
+
+
+def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) -> None:
+    """Short lines of text in the part of a graph that its curves (points close together) leave free the widest.
+
+    Numbers and letters at the curves need some room as well; smaller letters where there is little.
+    """
+    points = np.concatenate([np.ravel(z) for z in ink])
+    for height in (3.5, 2.5):
+        width, high = max(letter(line, height).width for line in lines), len(lines) * 1.7 * height
+        x, y = np.meshgrid(np.arange(room.x0 + 2.0, room.x1 - width, 4.0), np.arange(room.y0, room.y1 - high, 2.0))
+        places = (x + 1j * y).ravel()
+        if not len(places):
+            continue
+        corner = places[:, None]
+        beside = np.maximum(np.maximum(corner.real - points.real, points.real - corner.real - width), 0.0)
+        apart = np.maximum(np.maximum(corner.imag - points.imag, points.imag - corner.imag - high), 0.0)
+        free = np.hypot(beside, apart).min(axis=1)
+        best = int(np.argmax(free))
+        if free[best] >= 6.0:
+            for i, line in enumerate(lines):
+                canvas.text(complex(places[best]) + 1j * (high - (i + 1) * 1.7 * height + 0.35 * height), line, height)
+            return

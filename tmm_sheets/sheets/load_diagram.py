@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import number
+from tmm_sheets.construction.scale import fixed, number, times
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets.frame import pick
@@ -41,6 +41,11 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     canvas.title(box, f"Технологическая нагрузка{' (принято)' if accepted else ''}",
                  f"{scale}, μ_φ = {number(cycle.period / inside.width)} рад/мм")
     origin = complex(inside.x0, inside.y0)
+    strokes = cycle.strokes
+    if strokes is not None and len(strokes.runs) > 2 and any(f.motion is not None and f.point == strokes.output for f in shown):
+        a, b = (fixed(degrees(x) % degrees(cycle.period), 1) for x in (strokes.begin, strokes.end))
+        said = f"Точка {strokes.output} меняет направление {times(len(strokes.runs))} за оборот; рабочий ход φ = {a}°…{b}°"
+        canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
 
     def at(angle: Any, value: Any) -> Any:
         return origin + angle / cycle.period * inside.width + 1j * value / scale.mu

@@ -212,18 +212,22 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     label = fw.labels[k]
     at = {name: float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1")}
     mu = _omega_scale(fw)
+    # Without a flywheel the crank and the rotor alone carry the running.
+    held, bound = ("I_I", "; ") if fw.needed else ("(I_{кр} + I_р·u^2)", " <")
+    if not fw.needed and not fw.J_rotor:
+        held = "I_{кр}"
     rows = [
         f"ω_{{1ср}} = {fixed(omega, 4)} рад/с;  δ = {number(d.delta)}{taken};  M_{constant} = {fixed(fw.M_constant, 1)} Н·м",
         f"I_I = |ab|·μ_T/(δ·ω_1^2) = {fixed(fw.ab_mm, 2)}·{number(fw.scales.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2) = "
         f"{number(fw.J_first, 5)} кг·м^2",
         f"I_м = I_I − (I_{{кр}} + I_р·u^2) = {number(fw.J_first, 5)} − {number(fw.J_first - fw.J_flywheel, 4)} = "
         f"{number(fw.J_flywheel, 5)} кг·м^2",
-        f"μ_ω = μ_T/(I_I·ω_{{1ср}}) = {number(mu.mu)} {mu.unit}",
-        f"ω_{{max}} = {fixed(fast, 4)};  ω_{{ср}}(1 + δ/2) = {fixed(omega * (1 + d.delta / 2), 4)} рад/с",
-        f"ω_{{min}} = {fixed(slow, 4)};  ω_{{ср}}(1 − δ/2) = {fixed(omega * (1 - d.delta / 2), 4)} рад/с",
+        f"μ_ω = μ_T/({held}·ω_{{1ср}}) = {number(mu.mu)} {mu.unit}",
+        f"ω_{{max}} = {fixed(fast, 4)}{bound} ω_{{ср}}(1 + δ/2) = {fixed(omega * (1 + d.delta / 2), 4)} рад/с",
+        f"ω_{{min}} = {fixed(slow, 4)}{bound.replace('<', '>')} ω_{{ср}}(1 − δ/2) = {fixed(omega * (1 - d.delta / 2), 4)} рад/с",
         f"Положение {label}:  ψ = {fixed(degrees(at['ψ']), 2)}°;  d{sign}/dφ = tg ψ·μ_J/μ_φ = {number(at['dJ/dφ'])} кг·м^2",
-        f"M = M_{constant} + M_{varying} = {fixed(at['M'], 1)} Н·м;  I_I + {sign} = {fixed(at['J'], 2)} кг·м^2",
-        f"ε_1 = (M − ω_1^2/2·d{sign}/dφ)/(I_I + {sign}) = {fixed(at['ε1'], 3)} рад/с^2",
+        f"M = M_{constant} + M_{varying} = {fixed(at['M'], 1)} Н·м;  {held} + {sign} = {fixed(at['J'], 2)} кг·м^2",
+        f"ε_1 = (M − ω_1^2/2·d{sign}/dφ)/({held} + {sign}) = {fixed(at['ε1'], 3)} рад/с^2",
     ]
     motor, data = fw.motor, d.motor
     if motor is not None and data is not None:
@@ -234,15 +238,22 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
             f"[δ] = 2(n_с − n_н)/n_н = {fixed(motor.permitted, 4)} {'≥' if motor.steady else '<'} δ: "
             + ("генераторного режима нет" if motor.steady else "двигатель переходит в генераторный режим"),
         ]
-    w = fw.wheel
-    share = f"{number(d.rim_share)}·" if w.form == "rim" and d.rim_share < 1 else ""
-    form = f"D = (4·{share}I_м/(πρκc))^{{1/5}}" if w.form == "rim" else "D = (32I_м/(πρκ))^{1/5}"
-    rows.append(f"{'Обод' if w.form == 'rim' else 'Диск'}:  {form} = {fixed(w.diameter, 3)} м;  B = {fixed(w.width, 3)} м;"
-                + (f"  H = {fixed(w.thickness, 3)} м;" if w.form == "rim" else "") + f"  m = {number(w.mass, 4)} кг")
+    rows += [*flywheel.disagreement(fw), _size(fw)]
     left = canvas.title(box, "Расчёт маховика по методу Мерцалова")
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):
         canvas.text(complex(box.x0, left.y1 - (i + 1) * step + 0.35 * step), line, _height(line, box.width))
+
+
+def _size(fw: Mertsalov) -> str:
+    """Sizes and mass of the wheel, or that none is needed."""
+    w, d = fw.wheel, fw.data
+    if w is None:
+        return "I_м ≤ 0: маховик не требуется; ω_{max}, ω_{min}, ε_1 – без него"
+    share = f"{number(d.rim_share)}·" if w.form == "rim" and d.rim_share < 1 else ""
+    form = f"D = (4·{share}I_м/(πρκc))^{{1/5}}" if w.form == "rim" else "D = (32I_м/(πρκ))^{1/5}"
+    return (f"{'Обод' if w.form == 'rim' else 'Диск'}:  {form} = {fixed(w.diameter, 3)} м;  B = {fixed(w.width, 3)} м;"
+            + (f"  H = {fixed(w.thickness, 3)} м;" if w.form == "rim" else "") + f"  m = {number(w.mass, 4)} кг")
 
 
 def _height(text: str, width: float, height: float = 3.5) -> float:

@@ -69,9 +69,9 @@ def _force(variant: Variant, f: Force, mechanism: Mechanism, cycle: Cycle) -> Ap
     motion = straight_motion(mechanism, cycle, f.point, sense, cycle.strokes, f.first)
     toward = unit(f.direction) if isinstance(f.direction, float) else sense
     against = {"against motion": -1.0, "along motion": 1.0}.get(str(f.direction))
-    laws, signs = _by_stroke(motion, f.stroke, tables, against)
-    always = against is None and f.tables is not None
     motion = motion.within(f.from_, f.to)
+    laws, signs = _by_run(motion, f.stroke, tables, against)
+    always = against is None and f.tables is not None
     law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", always)
     return Applied(f.name, f.link, f.point, toward, law, jumps, motion)
 
@@ -97,21 +97,18 @@ def _moment(m: Moment, mechanism: Mechanism, cycle: Cycle) -> Applied:
         return Applied(m.name, m.link, None, 1 + 0j, law, jumps)
     motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
     against = {"against motion": -1.0, "along motion": 1.0}.get(m.direction)
-    laws, signs = _by_stroke(motion, m.stroke, tables, against)
+    laws, signs = _by_run(motion, m.stroke, tables, against)
     signs = [s * (fixed if fixed is not None else sense) for s in signs]
     law, jumps = stroke_law(motion, laws, signs, m.curve == "smooth")
     return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion)
 
 
-def _by_stroke(motion: Motion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[
+def _by_run(motion: Motion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[
         list[Table | None], list[float]]:
-    """Diagram and sign of each stroke: signs follow the motion unless the direction is fixed."""
-    laws, signs = [], []
-    for n, s in enumerate(motion.strokes):
-        acts = stroke == "both" or (stroke == "working") == s.working
-        laws.append(tables[n % len(tables)] if acts else None)
-        signs.append(1.0 if against is None else against * (1 if s.working else -1))
-    return laws, signs
+    """Diagram of each run, that of its stroke, and sign: it follows the motion unless the direction is fixed."""
+    acts = [stroke == "both" or (stroke == "working") == run.working for run in motion.runs]
+    laws = [tables[run.stroke % len(tables)] if on else None for run, on in zip(motion.runs, acts, strict=True)]
+    return laws, [1.0 if against is None else against * run.sense for run in motion.runs]
 
 
 def unit(angle: float) -> complex:

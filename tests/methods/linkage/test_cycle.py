@@ -9,8 +9,9 @@ import pytest
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import dead_cycle, dead_positions, even_cycle, root, strokes_of
+from tmm_sheets.methods.linkage.cycle import dead_cycle, dead_positions, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.methods.linkage.strokes import root
 
 DEAD = acos(0.08 / 0.26)
 """Angle between the line of the pivots and the crank in a dead position of the shaper."""
@@ -161,18 +162,3 @@ def test_dead_positions_found_as_zeros_where_they_cannot_be_constructed():
 def test_root_to_the_last_bit():
     assert root(np.cos, 0.0, 3.0) == pytest.approx(pi / 2, abs=5e-16)
     assert root(lambda x: np.exp(x) - 5, -10, 10) == pytest.approx(np.log(5), abs=5e-16)
-
-
-@pytest.mark.parametrize("shift", [0.0, 0.1, 1e-9, pi / 720, 2.0])
-def test_strokes_of_a_sine(shift):
-    dead, strokes = strokes_of(lambda t: np.sin(t - shift))
-    assert len(dead) == 2
-    for d in dead:
-        assert abs(np.sin(d - shift)) < 1e-12
-    assert sum(s.end - s.begin for s in strokes) == pytest.approx(2 * pi)
-    for s in strokes:
-        assert s.working == bool(np.sin((s.begin + s.end) / 2 - shift) > 0)
-
-
-def test_a_point_that_goes_round_has_one_endless_stroke():
-    assert strokes_of(lambda t: 2 + np.sin(t))[0] == []

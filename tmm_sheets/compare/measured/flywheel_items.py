@@ -97,9 +97,9 @@ def _results(f: Flywheel, found: Measurables, touching: tuple[Term, ...]) -> Non
            scale=MOMENT, reading=f.scales.moment.mu, signed=False)
     for name, value in (("J_I", f.J_first), ("J_flywheel", f.J_flywheel)):
         scalar(found, TITLE, name, value, "кг·м²", terms, scale=ENERGY, reading=per_mm)
-    if not f.J_flywheel > 0:
-        return
     wheel = f.wheel
+    if wheel is None:
+        return
     # D grows as the fifth root of J, the mass as J/D^2.
     lengths = {"D": wheel.diameter, "B": wheel.width, "H": wheel.thickness}
     for name, value in {**lengths, "m": wheel.mass}.items():

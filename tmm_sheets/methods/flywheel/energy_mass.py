@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.rules import DISTANCE, LINE_LINE
+from tmm_sheets.construction.rules import LINE_LINE
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.integration import Floats, Quadrature
 
@@ -54,6 +54,8 @@ def _touch(angle: Any, side: Any, curve: Curve, samples: Floats) -> Any:
     return complex(curve(np.array([highest(height, samples)]))[0])
 
 
+SEGMENT = Rule("segment of the energy axis", lambda a, b: np.imag(a) - np.imag(b), ("point", "point"), "ordinate",
+               "На оси ΔE измерим отрезок от {1} до {0}, вверх положительный: {name} = {value}.")
 TANGENT_ANGLE = Rule(
     "angle of a tangent", lambda k, omega, delta: np.arctan(k * (omega * (1 + delta / 2)) ** 2), (), "angle",
     "Вычислим угол наклона касательной {name} = {value}.",
@@ -92,7 +94,8 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, curve
     Returns
     -------
     Plan with ``points`` (one per position), ``ψ_max``, ``ψ_min`` (rad), ``T_max``, ``T_min`` (points of contact), ``a``,
-    ``b`` (intercepts on the energy axis) and ``ab`` (their distance, mm).
+    ``b`` (intercepts on the energy axis) and ``ab`` (from b up to a, mm: negative where the upper tangent cuts the axis below the
+    lower one, so that no flywheel is needed).
     """
     plan = Plan("energy-mass", "Диаграмма энергомасс", "mm", labels)
     plan.add("points", PROJECT, energy, inertia)
@@ -103,7 +106,7 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, curve
         contact = plan.add(f"T_{name}", TOUCH, angle, side, curve, samples)
         plan.add(intercept, LINE_LINE, contact, direction, 0j, 1j,
                  say="Касательная в точке {0} пересечёт ось ΔE в точке {name}.")
-    plan.add("ab", DISTANCE, plan["a"], plan["b"])
+    plan.add("ab", SEGMENT, plan["a"], plan["b"])
     return plan
 
 
@@ -111,8 +114,8 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, curve
 class Limit:
     """The limit of the construction for vanishing intervals.
 
-    ``segment`` is ``|ab| mu_E``, J; ``inertia`` that of the flywheel, kg m2; ``error`` the relative difference of the
-    last two refinements; ``phi_max`` and ``phi_min`` the angles of the two contacts, rad.
+    ``segment`` is ``ab mu_E``, J; ``inertia`` that of the flywheel, kg m2, both negative when none is needed; ``error`` the
+    relative difference of the last two refinements; ``phi_max`` and ``phi_min`` the angles of the two contacts, rad.
     """
 
     segment: float
@@ -147,7 +150,7 @@ def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: f
 
             contact.append(highest(height, samples))
             segment += float(height(np.array(contact[-1:]))[0])
-        error = abs(segment - result.segment) / segment if result else np.inf
+        error = abs(segment - result.segment) / (abs(segment) or 1.0) if result else np.inf
         result = Limit(segment, segment / (delta * omega**2), error, contact[0], contact[1])
         if error <= tolerance:
             break

@@ -22,6 +22,7 @@ from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.energy_mass import Limit, limit, speed
+from tmm_sheets.methods.flywheel.running import Energy, Running, steady
 from tmm_sheets.methods.integration import ORIGIN, Floats, Quadrature, differentiate, integrate, ordinates, smooth
 
 RIM_SPEED = 30.0
@@ -287,6 +288,15 @@ def wheel(inertia: float, omega: float, form: str, density: float, width_ratio: 
     return Wheel("disc", d, width_ratio * d, float("nan"), 8 * inertia / d**2, omega * d / 2)
 
 
+def lettered(n: int) -> str:
+    """Letters of the n-th point between two numbers: none, a, b ... z, aa, ab ..."""
+    text = ""
+    while n > 0:
+        n, last = divmod(n - 1, 26)
+        text = chr(ord("a") + last) + text
+    return text
+
+
 def _gather(*points: Any) -> Any:
     return np.array([np.imag(p) for p in points])
 
@@ -307,6 +317,11 @@ ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / 
                "На абсциссе {0} измерим ординату прямой {name} = {value}.")
 SUM = Rule("add ordinates", lambda a, b: a + b, ("length", "length"), "length",
            "Сложим ординаты {0} и {1} с их знаками: {name} = {value}.")
+AREA = Rule("ordinate from an area", lambda y: y, ("ordinate",), "ordinate",
+            "Для проверки: площадь графика момента даёт конечную ординату работы {name} = {value}.", beyond_paper=True)
+BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
+                   "Построенная конечная ордината {0} отличается от неё на {name} = {value}: ордината в середине интервала – "
+                   "не средняя ордината кривой.")
 ENLARGE = Rule("enlarge ordinates", lambda y, times: y * times, ("length", "number"), "length",
                "Умножим ординату {0} на {1}: {name} = {value}.")
 LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("length",), "length", "Отложим ординату {name} = {value}.")
@@ -362,7 +377,7 @@ class Flywheel(ABC):
         last, extra, result = "", 0, []
         for k in range(len(self.edges)):
             last, extra = (self._numbered[k], 0) if k in self._numbered else (last, extra + 1)
-            result.append(last + "abcdefgh"[extra - 1] * (extra > 0))
+            result.append(last + lettered(extra))
         if result[0] == result[-1]:
             result[0] = "0"  # position 12 is the first and the last point of the graph
         return tuple(result)
@@ -373,9 +388,9 @@ class Flywheel(ABC):
         result = [""] * (len(self.edges) - 1)
         widths = np.diff(self.edges)
         for (start, _), (end, name) in pairwise(self._numbered.items()):
-            by_width = sorted(range(start, end), key=lambda k: -widths[k])
+            by_width = sorted(range(start, end), key=lambda k: -round(float(widths[k]), 9))
             for rank, k in enumerate(by_width):
-                result[k] = name + "abcdefgh"[rank - 1] * (rank > 0)
+                result[k] = name + lettered(rank)
         return tuple(result)
 
     @property
@@ -464,6 +479,8 @@ class Flywheel(ABC):
         heights = self.scales.moment.mm(self.reduced.moment(middles))
         integrate(plan, "", self.abscissae, heights, self.scales.pole, borders=self.borders, intervals=self.intervals,
                   mark=self.mark)
+        area = plan.add("∫M", AREA, self.scales.work.mm(float(self.work_converged[-1])))
+        plan.add("ΔA", BESIDE_AREA, plan[self.borders[-1]], area)
         return plan
 
     @cached_property
@@ -543,6 +560,17 @@ class Flywheel(ABC):
         return np.asarray(self.scales.work.real(ordinates(self.work_ends)[list(self.at_positions)]))
 
     @cached_property
+    def work_converged(self) -> Floats:
+        """The same work by the area of the graph of the moment, for vanishing intervals, J."""
+        return Quadrature(self.reduced.moment, self.edges, 4)(self.reduced.phi)
+
+    @property
+    def work_error(self) -> float:
+        """How much greater the work of the cycle is by the ordinates in the middles than by the area, in parts of the area."""
+        area = float(self.work_converged[-1])
+        return float(self.work[-1]) / area - 1 if area else 0.0
+
+    @cached_property
     def M_constant(self) -> float:
         """Constant moment that balances the cycle, N m: the driving one of a working machine."""
         return float(self.scales.moment.real(self.driving_plan["dK"].value.imag))
@@ -588,6 +616,38 @@ class Flywheel(ABC):
         """Moment of inertia of the flywheel for vanishing intervals, kg m2."""
         return self.J_first_converged - self.reduced.crank_inertia - self.J_rotor
 
+    @property
+    def needed(self) -> bool:
+        """False when what turns with the crank already is enough by the drawn construction."""
+        return self.J_flywheel > 0
+
+    @property
+    def J_running(self) -> float:
+        """Moment of inertia of what turns with the crank of the finished machine, with a flywheel only if it is needed, kg m2."""
+        return self.J_first + max(-self.J_flywheel, 0.0)
+
+    def running(self, first: float) -> Running:
+        """Exact running when all that turns with the crank has the moment of inertia ``first``, kg m2."""
+        return steady(self._energy, first, self.reduced.omega1)
+
+    @cached_property
+    def _energy(self) -> Energy:
+        r = self.reduced
+        return Energy(r.moment, lambda phi: np.asarray(r.inertia(phi)) - r.crank_inertia, self.edges)
+
+    @property
+    def remark(self) -> str:
+        """What is worth telling about the flywheel; nothing when one is needed, drawn and in the limit."""
+        there = self.J_first - self.J_flywheel
+        if self.needed and self.J_flywheel_converged > 0:
+            return ""
+        if self.needed == (self.J_flywheel_converged > 0):
+            return (f"no flywheel is needed: {there:.4g} kg m2 turn with the crank, {self.J_first:.4g} are enough "
+                    f"({self.J_first_converged:.4g} in the limit of many positions)")
+        one, other = ("needs a", "none is needed") if self.needed else ("needs no", "one is needed")
+        return (f"the drawn construction {one} flywheel ({self.J_flywheel:.4g} kg m2), in the limit of many positions {other} "
+                f"({self.J_flywheel_converged:.4g} kg m2): the difference is the construction's error")
+
     @cached_property
     def limit(self) -> Limit:
         """Exact flywheel, with its error: that of the energy-mass curve for vanishing intervals."""
@@ -596,16 +656,14 @@ class Flywheel(ABC):
     @property
     def difference_percent(self) -> float:
         """How much the drawn construction differs from the limit, % of the limit."""
-        return 100 * (self.J_flywheel / self.J_flywheel_converged - 1)
+        return 100 * (self.J_flywheel / self.J_flywheel_converged - 1) if self.J_flywheel_converged else float("nan")
 
     @cached_property
-    def wheel(self) -> Wheel:
-        """Sizes of the wheel with the drawn construction's moment of inertia."""
+    def wheel(self) -> Wheel | None:
+        """Sizes of the wheel with the drawn construction's moment of inertia; None when no flywheel is needed."""
         d = self.data
-        if not self.J_flywheel > 0:
-            raise CannotBuild(
-                f"no flywheel is needed: the crank and the rotor have {self.J_first - self.J_flywheel:.4g} kg m2, "
-                f"{self.J_first:.4g} are enough", "leave the view flywheel.wheel out of the sheet")
+        if not self.needed:
+            return None
         return wheel(self.J_flywheel, self.reduced.omega1, d.form, d.density, d.width_ratio, d.thickness_ratio, d.rim_share)
 
     @cached_property
@@ -640,7 +698,7 @@ class Flywheel(ABC):
         angle = plan.add("ψ", TANGENT, touch)
         slope = plan.add("dJ/dφ", SLOPE, angle, s.inertia.mu / s.angle.mu)
         moment = plan.add("M", SUM_OF_MOMENTS, r.moment(at, side=1), self.M_constant)
-        mass = plan.add("J", ALL_INERTIA, self.J_first, np.asarray(r.inertia(at)) - r.crank_inertia)
+        mass = plan.add("J", ALL_INERTIA, self.J_running, np.asarray(r.inertia(at)) - r.crank_inertia)
         plan.add("ε1", ACCELERATION, moment, slope, mass, r.omega1)
         return plan
 
@@ -663,7 +721,9 @@ class Flywheel(ABC):
             "delta": self.data.delta,
             "M_reduced": self.M_reduced,
             "work": self.work,
+            "work_converged": self.work_converged,
             "M_constant": self.M_constant,
+            "M_constant_converged": -float(self.work_converged[-1]) / self.reduced.period,
             "delta_E": self.delta_E,
             "J_reduced": self.J_reduced,
             "ab_mm": self.ab_mm,
@@ -671,12 +731,13 @@ class Flywheel(ABC):
             "J_flywheel": self.J_flywheel,
             "J_flywheel_converged": self.J_flywheel_converged,
             "difference_percent": self.difference_percent,
-            "form": w.form,
-            "D": w.diameter,
-            "B": w.width,
-            "H": w.thickness,
-            "m": w.mass,
-            "v": w.speed,
+            "needed": self.needed,
+            "form": w and w.form,
+            "D": w and w.diameter,
+            "B": w and w.width,
+            "H": w and w.thickness,
+            "m": w and w.mass,
+            "v": w and w.speed,
             "epsilon1": self.acceleration(self.reduced.phi),
             "drawn": self.drawn,
         }

@@ -23,7 +23,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Rule
 from tmm_sheets.methods.flywheel.energy_mass import Curve, highest
 from tmm_sheets.methods.flywheel.flywheel import PLOT, Flywheel, Space
-from tmm_sheets.methods.flywheel.running import Energy, Running, steady
+from tmm_sheets.methods.flywheel.running import Running
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
 
@@ -127,8 +127,8 @@ class Mertsalov(Flywheel):
     # --- results, SI ------------------------------------------------------------------------------------
     @property
     def speed_scale(self) -> Scale:
-        """Scale factor of the angular velocity on the curve T_I: mu_E/(J_I omega)."""
-        return Scale("μ_ω", self.scales.energy.mu / (self.J_first * self.reduced.omega1), "с^{−1}/мм")
+        """Scale factor of the angular velocity on the curve T_I: mu_E/(J_I omega), J_I that of the finished machine."""
+        return Scale("μ_ω", self.scales.energy.mu / (self.J_running * self.reduced.omega1), "с^{−1}/мм")
 
     @property
     def ab_mm(self) -> float:
@@ -170,27 +170,21 @@ class Mertsalov(Flywheel):
 
     @property
     def extremes(self) -> tuple[float, float]:
-        """Angular velocity at the upper and at the lower tangent, rad/s: omega (1 +- delta/2) if nothing was read wrong."""
+        """Angular velocity at the upper and at the lower tangent, rad/s: omega (1 +- delta/2) with a flywheel."""
         axis, mu = self.speed_plan["O"].value.imag, self.speed_scale.mu
         high, low = (self.reduced.omega1 + mu * (self.energy_plan[f"M_{name}"].value.imag - axis) for name in ("max", "min"))
         return float(high), float(low)
 
     # --- how good it is -----------------------------------------------------------------------------------
-    def running(self, first: float) -> Running:
-        """Exact running when all that turns with the crank has the moment of inertia ``first``, kg m2."""
-        return steady(self._energy, first, self.reduced.omega1)
-
-    @cached_property
-    def _energy(self) -> Energy:
-        return Energy(self.reduced.moment, self.inertia, self.edges)
-
     @cached_property
     def compared(self) -> tuple[Compared, ...]:
         """Both methods, drawn and for vanishing intervals, each with the exact running of a machine that has its flywheel."""
         other = Wittenbauer(self.reduced, self.data, self.space)
         found = (("Мерцалов, построение", self.J_first), ("Виттенбауэр, построение", other.J_first),
                  ("Мерцалов, n → ∞", self.J_first_converged), ("Виттенбауэр, n → ∞", other.J_first_converged))
-        return tuple(Compared(name, first, self.running(first)) for name, first in found)
+        # No flywheel takes away from what turns with the crank without it.
+        least = self.reduced.crank_inertia + self.J_rotor
+        return tuple(Compared(name, first, self.running(max(first, least))) for name, first in found)
 
     @property
     def excess(self) -> float:

@@ -66,7 +66,7 @@ class Wittenbauer(Flywheel):
 
     @property
     def ab_mm(self) -> float:
-        """Segment ab on the drawing, mm."""
+        """Segment ab on the drawing, mm; negative where a lies below b: then no flywheel is needed."""
         return float(self.energy_mass_plan["ab"].value)
 
     @property

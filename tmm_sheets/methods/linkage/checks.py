@@ -16,8 +16,9 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import Cycle, Floats
+from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
+from tmm_sheets.methods.linkage.strokes import Floats
 
 SWEEP = 720
 """Crank angles of the fine sweep; between them the narrowest places are searched for."""

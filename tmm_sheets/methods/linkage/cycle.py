@@ -5,12 +5,11 @@ Source: manual 000, sections 2 and 3.1.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
@@ -18,9 +17,9 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 
-Floats = npt.NDArray[np.float64]
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
@@ -29,7 +28,8 @@ class Strokes:
     """Working stroke of the output point between its dead positions.
 
     ``begin`` and ``end`` are crank angles turned from position 0 in the sense of rotation, rad; ``path`` is the unit
-    vector of the working stroke, ``length`` its length, m; ``origin`` the output point at its beginning.
+    vector of the working stroke, ``length`` its length, m; ``origin`` the output point at its beginning. ``runs`` are the
+    stretches between the reversals of the whole turn, the working stroke first.
     """
 
     output: str
@@ -38,6 +38,7 @@ class Strokes:
     path: complex
     length: float
     origin: complex
+    runs: tuple[Run, ...]
 
     def working(self, turned: Any, side: int = 0) -> Any:
         """True on the working stroke; at a dead position itself ``side`` -1 or +1 tells from where it is approached."""
@@ -98,9 +99,9 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
     positions, as the manual does with rounded lengths; without it the exact dead positions are divided.
     """
     _refuse_turning_rocker(m)
-    plan, first, second = _dead_of(m, output, SENSES[working_sense])
+    plan, first, runs = _dead_of(m, output, SENSES[working_sense])
     sense = m.crank.sense
-    exact = float(np.mod(sense * (second - first), 2 * np.pi))
+    _, exact = working_stroke(runs)
     if coefficient is None:
         start, stroke, begin = first, exact, 0.0
     else:
@@ -110,7 +111,7 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
         begin = (stroke - exact) / 2
     rest = 2 * np.pi - stroke
     turned = np.concatenate((stroke / working * np.arange(working), stroke + rest / idle * np.arange(idle)), dtype=np.float64)
-    strokes = _strokes(m, output, first, second, begin, begin + exact)
+    strokes = _strokes(m, output, first, begin, runs)
     return Cycle(tuple(str(i) for i in range(working + idle)), turned, start, sense, 2 * np.pi, strokes, plan)
 
 
@@ -132,51 +133,72 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
     turned = np.array([named[label] for label in order], dtype=np.float64)
     plan, strokes = None, None
     if output is not None and working_sense is not None:
-        plan, first, second = _dead_of(m, output, SENSES[working_sense])
+        plan, first, runs = _dead_of(m, output, SENSES[working_sense])
         begin = float(np.mod(m.crank.sense * (first - start), 2 * np.pi))
         # A dead position that is position 0 up to rounding is position 0.
         begin = 0.0 if min(begin, 2 * np.pi - begin) < 1e-12 else begin
-        width = float(np.mod(m.crank.sense * (second - first), 2 * np.pi))
-        strokes = _strokes(m, output, first, second, begin, begin + width)
+        strokes = _strokes(m, output, first, begin, runs)
     return Cycle(tuple(order), turned, start, m.crank.sense, 2 * np.pi * turns, strokes, plan)
 
 
-def _strokes(m: Mechanism, output: str, first: float, second: float, begin: float, end: float) -> Strokes:
-    out = np.asarray(position_plan(m, np.array([first, second])).points[output].value)
+def _strokes(m: Mechanism, output: str, first: float, begin: float, runs: tuple[Run, ...]) -> Strokes:
+    """Strokes whose working one begins at the crank's world angle ``first``, turned ``begin`` from position 0."""
+    width = working_stroke(runs)[1]
+    out = np.asarray(position_plan(m, np.array([first, first + m.crank.sense * width])).points[output].value)
     path = complex(out[1] - out[0])
-    return Strokes(output, begin, end, path / abs(path), abs(path), complex(out[0]))
+    return Strokes(output, begin, begin + width, path / abs(path), abs(path), complex(out[0]), tuple(r.later(begin) for r in runs))
 
 
-def _dead_of(m: Mechanism, output: str, axis: complex) -> tuple[Plan | None, float, float]:
-    """World crank angles at the beginning and at the end of the output's working stroke.
+def _dead_of(m: Mechanism, output: str, axis: complex) -> tuple[Plan | None, float, tuple[Run, ...]]:
+    """World angle of the crank where the output's (longest) working stroke begins, and the runs of one turn from there on.
 
-    Constructed where the group on the crank pin allows it and the output really stands still there; found as zeros of the
-    output's velocity otherwise.
+    The strokes are those between the true extremes of the way, see :mod:`~tmm_sheets.methods.linkage.strokes`. Their ends are
+    constructed where the group on the crank pin allows it and the output has its extremes there; found as zeros of its velocity
+    otherwise.
     """
-    plan, dead = dead_positions(m)
-    if dead is not None:
-        angles = np.array([np.angle(d) for d in dead])
-        pos = position_plan(m, angles)
-        out = np.asarray(pos.points[output].value)
-        speed = np.abs(velocity_plan(pos).points[output].value)
-        if not np.isnan(out).any() and np.all(speed < 1e-9 * m.crank.speed * m.crank.length):
-            first = int(np.argmin((out * np.conj(axis)).real))
-            return plan, float(angles[first]), float(angles[1 - first])
+    sense = m.crank.sense
 
     def along(turned: Floats) -> Any:
-        phi = m.crank.sense * turned
-        return (velocity_plan(position_plan(m, phi)).points[output].value * np.conj(axis)).real
+        return (velocity_plan(position_plan(m, sense * turned)).points[output].value * np.conj(axis)).real
 
-    found, strokes = strokes_of(along)
-    if not found:
+    runs = runs_of(along)
+    if len(runs) < 2:
         from tmm_sheets.methods.linkage.checks import check_turn  # here: it needs the cycle itself
 
         check_turn(m)  # names the group that does not assemble, and by how much
         raise CannotBuild(f"point {output} has no dead positions: it never turns back",
                           'give the crank angle of position 0 instead: start = "90 deg"')
-    working = [s for s in strokes if s.working]
-    longest = max(working, key=lambda s: s.end - s.begin)
-    return None, m.crank.sense * longest.begin, m.crank.sense * longest.end
+    turned = np.array([r.begin for r in runs])
+    ways = (np.asarray(position_plan(m, sense * turned).points[output].value) * np.conj(axis)).real
+    if not np.ptp(ways) > 1e-9 * m.crank.length:
+        raise CannotBuild(f"point {output} has no working stroke: it does not move that way", "give another working_sense")
+    runs = in_strokes(runs, ways)
+    begin, end = working_stroke(runs)
+    ordered = over_cycle(runs, 2 * np.pi, begin)
+    plan, dead = dead_positions(m)
+    found = None if dead is None else _constructed(m, output, dead, (sense * begin, sense * end))
+    if found is None:
+        return None, sense * begin, tuple(r.later(-ordered[0].begin) for r in ordered)
+    # The constructed angles are put in the place of the found ones.
+    width = float(np.mod(sense * (found[1] - found[0]), 2 * np.pi))
+    places = {begin: 0.0, begin + 2 * np.pi: 2 * np.pi, end: width, end + 2 * np.pi: width + 2 * np.pi}
+
+    def moved(angle: float) -> float:
+        return next((exact for near, exact in places.items() if abs(angle - near) < 1e-12), angle - begin)
+
+    return plan, found[0], tuple(replace(r, begin=moved(r.begin), end=moved(r.end)) for r in ordered)
+
+
+def _constructed(m: Mechanism, output: str, dead: tuple[complex, complex], ends: tuple[float, float]) -> tuple[float, float] | None:
+    """The constructed dead positions (world angles) in the order of the ``ends`` of the stroke; None when they are others."""
+    angles = np.array([np.angle(d) for d in dead])
+    away = np.abs(np.angle(np.exp(1j * (angles[:, None] - np.array(ends)))))
+    which = np.argmin(away, axis=0)
+    speed = np.abs(velocity_plan(position_plan(m, angles)).points[output].value)
+    # A slow reversal is found less exactly than it is constructed.
+    if which[0] == which[1] or away.min(axis=0).max() > 1e-3 or not np.all(speed < 1e-9 * m.crank.speed * m.crank.length):
+        return None
+    return float(angles[which[0]]), float(angles[which[1]])
 
 
 def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[complex, complex] | None]:
@@ -242,62 +264,5 @@ def _refuse_turning_rocker(m: Mechanism) -> None:
                 f"make {c.pivot}{pivot} longer than the crank, or give the crank angle of position 0 instead of start = \"dead\"")
 
 
-@dataclass(frozen=True)
-class Stroke:
-    """One stroke: from ``begin`` to ``end`` (rad turned from position 0, ``end`` > ``begin``); ``working`` or idle."""
-
-    begin: float
-    end: float
-    working: bool
-
-
-SWEEP = 720
-"""Angles per turn at which dead points are looked for before they are found exactly."""
-
-
-def strokes_of(speed: Callable[[Floats], Any], turn: float = 2 * np.pi) -> tuple[list[float], list[Stroke]]:
-    """Dead points and strokes of one turn from the sign of a speed; working strokes where it is positive."""
-    t = np.linspace(0.0, turn, SWEEP + 1)
-    v = np.asarray(speed(t))
-    if np.isnan(v).any():
-        return [], []
-    sign = np.sign(np.where(np.abs(v) < 1e-12 * np.abs(v).max(), 0.0, v))
-    # A zero that falls on an angle of the sweep counts as belonging to the next interval.
-    for i in range(len(sign) - 1, -1, -1):
-        if sign[i] == 0:
-            sign[i] = sign[i + 1] if i + 1 < len(sign) else sign[1]
-    changes = np.flatnonzero(sign[:-1] * sign[1:] < 0)
-    dead = [_zero(speed, t, v, int(i)) for i in changes]
-    if not dead:
-        return [], [Stroke(0.0, turn, bool(sign[0] > 0))]
-    strokes = []
-    for i, a in enumerate(dead):
-        b = dead[i + 1] if i + 1 < len(dead) else dead[0] + turn
-        strokes.append(Stroke(a, b, bool(np.asarray(speed(np.array([(a + b) / 2])))[0] > 0)))
-    return dead, strokes
-
-
-def _zero(speed: Callable[[Floats], Any], t: Floats, v: Any, i: int) -> float:
-    """Zero between two angles of the sweep, or the angle itself where the speed is zero up to rounding."""
-    small = 1e-12 * np.abs(v).max()
-    for j in (i, i + 1):
-        if abs(v[j]) < small:
-            return float(t[j])
-    return root(lambda x: np.asarray(speed(x)), float(t[i]), float(t[i + 1]))
-
-
 def _mm(length: float) -> str:
     return f"{length * 1000:.4g} mm"
-
-
-def root(f: Callable[[Floats], Floats], low: float, high: float) -> float:
-    """Zero of a continuous function between two arguments of opposite sign, by vectorised section to the last bit."""
-    sign = float(np.sign(f(np.array([high]))[0]))
-    for _ in range(20):
-        x = np.linspace(low, high, 9)
-        if not x[0] < x[1] < x[-1]:
-            break
-        values = sign * f(x)
-        i = int(np.argmax(values > 0))
-        low, high = float(x[max(i - 1, 0)]), float(x[i])
-    return (low + high) / 2

@@ -1,14 +1,17 @@
 """Technological forces and moments over the cycle: constants, tables over the stroke or the angle, signs by stroke.
 
-A stroke begins and ends where the point (or link) it belongs to stands still; the law of a force switches there, not where
-a computed velocity happens to be zero. Source: manual 000, sections 4 and 5; manual 001, section 3; manual 003, section 2.
+The strokes are those of :mod:`~tmm_sheets.methods.linkage.strokes`: from one true extreme of the way to the other. The law of
+a force switches in the dead points that were found, not where a computed velocity happens to be zero; inside a stroke a force
+against (or along) the motion turns round with each reversal, and there is none while the output stands still.
+Source: manual 000, sections 4 and 5; manual 001, section 3; manual 003, section 2.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import ceil, floor
 from typing import Any, NoReturn
 
 import numpy as np
@@ -16,8 +19,9 @@ import numpy as np
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
-from tmm_sheets.methods.linkage.cycle import SWEEP, Cycle, Floats, Stroke, Strokes, root, strokes_of
+from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
 from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 
 NEAR = 1e-12
@@ -26,70 +30,70 @@ NEAR = 1e-12
 
 @dataclass(frozen=True)
 class Motion:
-    """Strokes of a point along a line, or of a turning link.
+    """How a point moves along a line, or a link turns: its runs over the cycle, each a part of a stroke.
 
-    ``travelled(turned)`` is the way from where the working strokes begin, as a fraction 0..1 of the whole way; of a link that
-    turns all the way round, the part of its turn from position 0 on. A law that acts on a part of the way only has shorter
-    strokes, see :meth:`within`.
+    ``travelled(turned)`` is the way from where the working strokes begin, as a fraction 0..1 of the whole way between the
+    extremes. A link that turns all the way round is ``endless``: its way is its turns from position 0 on, counted on in the sense
+    it goes round in, which is the working sense (``way`` +1) or not (-1); each turn of the crank is a stroke. A law that acts on
+    a part of the way only has fewer and shorter runs, see :meth:`within`.
     """
 
-    strokes: tuple[Stroke, ...]
-    travelled: Callable[[Floats], Any]
+    runs: tuple[Run, ...]
+    travelled: Callable[[Any], Any]
     period: float
-
-    @property
-    def endless(self) -> bool:
-        """True of a link that never turns back."""
-        return self.strokes[0].end - self.strokes[0].begin >= 2 * np.pi - NEAR
-
-    @property
-    def ends(self) -> tuple[float, ...]:
-        """Angles within one period where a stroke begins or ends: the dead points and the limits of the action."""
-        every = [s.begin for s in self.strokes] + [s.end for s in self.strokes]
-        return () if self.endless else distinct((float(np.mod(t, self.period)) for t in every), self.period)
+    endless: bool = False
+    way: int = 1
 
     def number(self, turned: Any, side: int = 0) -> Any:
-        """Index of the stroke at each angle; -1 between strokes, and at an end unless ``side`` tells from where it is seen."""
+        """Index of the run at each angle; -1 where there is none, and at an end unless ``side`` tells from where it is seen."""
         t = np.asarray(turned, dtype=float)
-        if self.endless:
-            into = np.mod(t - self.strokes[0].begin, self.period)
-            nth = (into + (NEAR if side >= 0 else -NEAR)) // (2 * np.pi)
-            return np.asarray(np.mod(nth, len(self.strokes)), dtype=int)
         found = np.full(t.shape, -1)
-        for i, s in enumerate(self.strokes):
-            into = np.mod(t - s.begin, self.period)
-            into = np.where(self.period - into < NEAR, 0.0, into)
-            width = s.end - s.begin
-            lower = into > NEAR if side <= 0 else into > -NEAR
-            upper = into < width + NEAR if side < 0 else into < width - NEAR
-            found = np.where(lower & upper, i, found)
+        for i, r in enumerate(self.runs):
+            into, width = np.mod(t - r.begin, self.period), r.end - r.begin
+            if side < 0:
+                into = np.where(into <= NEAR, into + self.period, into)
+                inside = into < width + NEAR
+            else:
+                into = np.where(self.period - into < NEAR, 0.0, into)
+                inside = into < width - NEAR if side > 0 else (into > NEAR) & (into < width - NEAR)
+            found = np.where(inside, i, found)
         return found
 
-    def crossings(self, fraction: float) -> tuple[float | None, ...]:
-        """Angle where each stroke passes a fraction of the way; None where it does not."""
-        return tuple(self._crossing(s, fraction) for s in self.strokes)
+    def crossings(self, run: Run, fraction: float) -> list[float]:
+        """Angles inside a run where it passes a fraction of the way, an endless link in any of its turns."""
+        sense = run.sense * self.way
+        if not sense:
+            return []
+        ends = sorted(float(x) for x in self.travelled(np.array([run.begin, run.end])))
+        turns = range(floor(ends[0] - fraction), ceil(ends[1] - fraction) + 1) if self.endless else (0,)
+        levels = [fraction + k for k in turns if ends[0] + NEAR < fraction + k < ends[1] - NEAR]
 
-    def _crossing(self, s: Stroke, fraction: float) -> float | None:
-        sense = 1 if s.working or self.endless else -1
-        end = s.end - (1e-9 if self.endless else 0.0)  # a whole turn ends where it begins
+        def ahead(level: float) -> Callable[[Floats], Floats]:
+            return lambda t: np.asarray(sense * (self.travelled(t) - level))
 
-        def ahead(t: Floats) -> Floats:
-            return np.asarray(sense * (self.travelled(t) - fraction))
-
-        first, last = ahead(np.array([s.begin, end]))
-        return root(ahead, s.begin, end) if first < -NEAR and last > NEAR else None
+        return sorted(root(ahead(level), run.begin, run.end) for level in levels)
 
     def within(self, begin: float, end: float) -> Motion:
-        """The same strokes between two fractions of the way only; what lies outside altogether has no length."""
-        low, high = (c if 0 < fraction < 1 else (None,) * len(self.strokes)
-                     for fraction, c in ((f, self.crossings(f)) for f in (begin, end)))
-        strokes = []
-        for s, a, b in zip(self.strokes, low, high, strict=True):
-            first, last = (a, b) if s.working else (b, a)
-            from_, to = s.begin if first is None else first, s.end if last is None else last
-            middle = float(self.travelled(np.array([(from_ + to) / 2]))[0])
-            strokes.append(Stroke(from_, to if begin < middle < end else from_, s.working))
-        return Motion(tuple(strokes), self.travelled, self.period)
+        """The same motion between two fractions of the way only."""
+        runs = []
+        for r in self.runs:
+            cuts = sorted(c for fraction in (begin, end) if 0 < fraction < 1 for c in self.crossings(r, fraction))
+            for a, b in pairwise((r.begin, *cuts, r.end)):
+                if begin <= float(self.fraction((a + b) / 2)) <= end:
+                    runs.append(replace(r, begin=a, end=b))
+        return replace(self, runs=tuple(runs))
+
+    def fraction(self, turned: Any) -> Any:
+        """The way as a fraction of the whole, 0..1; the end of an endless link's turn is the beginning of the next."""
+        x = np.asarray(self.travelled(np.asarray(turned, dtype=float)))
+        if self.endless:
+            x = np.mod(x, 1.0)
+            x = np.where(x > 1 - NEAR, 0.0, x)
+        return x
+
+    def follows(self, i: int) -> bool:
+        """True where a run begins at the end of the one before it."""
+        return bool(abs(np.angle(np.exp(1j * (self.runs[i].begin - self.runs[i - 1].end) * 2 * np.pi / self.period))) < NEAR)
 
 
 def distinct(angles: Iterable[float], period: float) -> tuple[float, ...]:
@@ -115,68 +119,62 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
         v = velocity_plan(position_plan(m, cycle.world(turned))).points[point].value
         return (np.broadcast_to(v, np.shape(turned)) * np.conj(sense)).real
 
-    if known is not None and known.output == point and abs(known.path - sense) < 1e-9:
-        dead = [known.begin, known.end]
-        strokes = [Stroke(known.begin, known.end, True), Stroke(known.end, known.begin + 2 * np.pi, False)]
-    else:
-        dead, strokes = strokes_of(speed)
-    ways = along(np.asarray(dead, dtype=float)) if dead else np.zeros(1)
+    the_output = known is not None and known.output == point and abs(known.path - sense) < 1e-9
+    runs = known.runs if known is not None and the_output else tuple(runs_of(speed))
+    ways = along(np.array([r.begin for r in runs])) if runs else np.zeros(1)
     low, high = float(ways.min()), float(ways.max())
     if not high - low > 1e-9 * m.crank.length:
         _refuse(m, f"point {point} does not move to and fro that way: its force has no strokes",
                 "give the sense of the working strokes along its path")
-    return Motion(tuple(_repeated(strokes, cycle.period, first)), lambda t: np.clip((along(t) - low) / (high - low), 0.0, 1.0),
-                  cycle.period)
+    return Motion(over_cycle(in_strokes(runs, ways), cycle.period, first),
+                  lambda t: np.clip((along(np.asarray(t)) - low) / (high - low), 0.0, 1.0), cycle.period)
 
 
 def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: float = 0.0) -> Motion:
-    """Strokes of a link that swings, or one endless stroke of a link that turns all the way round."""
+    """Strokes of a link that swings, or of a link that turns all the way round, which may go back for a while as well."""
 
     def speed(turned: Floats) -> Any:
         w = velocity_plan(position_plan(m, cycle.world(turned))).omega[link].value
         return np.broadcast_to(sense * w, np.shape(turned))
 
-    def angle(turned: Floats) -> Any:
+    def angle(turned: Any) -> Any:
         u = position_plan(m, cycle.world(turned)).directions[link].value
         return sense * np.angle(np.broadcast_to(u, np.shape(turned)))
 
-    dead, strokes = strokes_of(speed)
-    if not strokes:
+    runs = runs_of(speed)
+    if not runs:
         _refuse(m, f"link {link} does not turn all the time")
-    strokes = _repeated(strokes, cycle.period, first)
-    if not dead:
-        way = 1 if strokes[0].working else -1
-        base = float(angle(np.zeros(1))[0])
+    # The angle from the whole turn: more than 180 degrees would not show in the angles of the reversals alone.
+    turned = np.unique(np.append(np.linspace(0.0, TURN, SWEEP + 1), [r.begin for r in runs]))
+    swept = np.unwrap(angle(turned))
+    turns = round(float(swept[-1] - swept[0]) / TURN)
+    if not turns and any(r.sense for r in runs):
+        ways = np.interp([r.begin for r in runs], turned, swept)
+        low, swing = float(ways.min()), float(np.ptp(ways))
+        spare = np.pi - swing / 2
 
-        def turn(t: Floats) -> Any:
-            part = np.mod(way * (angle(np.asarray(t)) - base) / (2 * np.pi), 1.0)
-            return np.where(part > 1 - NEAR, 0.0, part)
+        def travelled(t: Any) -> Any:
+            return np.clip((np.mod(angle(t) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
 
-        return Motion(tuple(strokes), turn, cycle.period)
-    # The swing from the whole turn: more than 180 degrees would not show in the angles of the dead points alone.
-    swept = np.unwrap(angle(np.sort(np.append(np.linspace(0.0, 2 * np.pi, SWEEP + 1), dead))))
-    low, swing = float(swept.min()), float(np.ptp(swept))
-    spare = np.pi - swing / 2
+        return Motion(over_cycle(in_strokes(runs, ways), cycle.period, first), travelled, cycle.period)
+    way = 1 if turns >= 0 else -1
+    swept = way * (swept - swept[0]) / TURN
 
-    def travelled(t: Floats) -> Any:
-        return np.clip((np.mod(angle(t) - low + spare, 2 * np.pi) - spare) / swing, 0.0, 1.0)
+    def round_and_round(t: Any) -> Any:
+        nth, into = np.divmod(np.asarray(t, dtype=float), TURN)
+        part = way * (angle(into) - angle(np.zeros(1))[0]) / TURN
+        return part + np.round(np.interp(into, turned, swept) - part) + nth * abs(turns)
 
-    return Motion(tuple(strokes), travelled, cycle.period)
+    # Each turn begins with position 0, where the way does.
+    cut = [p for r in runs for p in ((replace(r, end=TURN), Run(0.0, r.end - TURN, r.sense)) if r.end > TURN + NEAR else (r,))]
+    whole = [replace(r, working=turns > 0) for r in sorted(cut, key=lambda r: r.begin)]
+    return Motion(over_cycle(whole, cycle.period, first), round_and_round, cycle.period, True, way)
 
 
 def _refuse(m: Mechanism, message: str, hint: str = "") -> NoReturn:
     """Say why there are no strokes: first of all whether the mechanism assembles all the way round."""
     check_turn(m)
     raise CannotBuild(message, hint)
-
-
-def _repeated(strokes: list[Stroke], period: float, first: float) -> list[Stroke]:
-    """The strokes of one turn over the whole period, beginning with the one that begins nearest to ``first``."""
-    turns = round(period / (2 * np.pi))
-    every = [Stroke(s.begin + 2 * np.pi * n, s.end + 2 * np.pi * n, s.working) for n in range(turns) for s in strokes]
-    distance = [abs(np.angle(np.exp(1j * (s.begin - first) * 2 * np.pi / period))) for s in every]
-    start = int(np.argmin(distance))
-    return every[start:] + every[:start]
 
 
 @dataclass(frozen=True)
@@ -270,35 +268,49 @@ def jumps_of(table: Table) -> tuple[float, ...]:
 
 def stroke_law(motion: Motion, tables: Sequence[Table | None], signs: Sequence[float], smooth: bool = False,
                always: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
-    """Law over the strokes in their order, and the angles where it is not smooth.
+    """Law over the runs in their order, and the angles where it is not smooth.
 
-    A table over the travelled fraction and a sign for each stroke in turn (None: no force). A resistance has no value at a
-    dead point itself; a pressure acts ``always``, there with the stroke that begins.
+    A table over the travelled fraction (None: no force) and a sign for each run. A resistance has no value at a dead point
+    itself; a pressure acts ``always``, there with the stroke that begins.
     """
+    runs = motion.runs
     curves = [None if table is None else curve_of(table, smooth) for table in tables]
+    over_way = any(table is not None and len(table[0]) > 1 for table in tables)
+    # Where the same goes on from one run to the next: an end that is no exception.
+    same = np.zeros((len(runs), len(runs)), dtype=bool)
+    for i in range(len(runs)):
+        same[i - 1, i] = motion.follows(i) and tables[i] is tables[i - 1] and signs[i] == signs[i - 1]
 
     def law(turned: Any, side: int = 0) -> Any:
         t = np.asarray(turned, dtype=float)
         i = motion.number(t, 1 if always and not side else side)
-        x = motion.travelled(t) if any(table is not None and len(table[0]) > 1 for table in tables) else np.zeros(t.shape)
-        if motion.endless and side < 0:
-            x = np.where(x < NEAR, 1.0, x)  # the end of a turn, not the beginning of the next
+        if runs and not side and (i < 0).any():
+            before, after = motion.number(t, -1), motion.number(t, 1)
+            i = np.where((i < 0) & (before >= 0) & (after >= 0) & same[before, after], after, i)
+        x = motion.fraction(t) if over_way else np.zeros(t.shape)
         value = np.zeros(t.shape)
-        for n, s in enumerate(motion.strokes):
-            curve, sign = curves[n % len(curves)], signs[n % len(signs)]
+        for n, (run, curve) in enumerate(zip(runs, curves, strict=True)):
             if curve is not None:
-                value = np.where(i == n, sign * curve(x, (side or 1) * (1 if s.working or motion.endless else -1)), value)
+                ahead = (side or 1) * run.sense * motion.way
+                # The end of a turn is not the beginning of the next.
+                at = np.where(x < NEAR, 1.0, x) if motion.endless and ahead < 0 else x
+                value = np.where(i == n, signs[n] * curve(at, ahead), value)
         return value
 
-    jumps = list(motion.ends)
-    for n, s in enumerate(motion.strokes):
-        before, table = (tables[k % len(motion.strokes) % len(tables)] for k in (n - 1, n))
-        if motion.endless and (before[1][-1] if before else 0.0) != (table[1][0] if table else 0.0):
-            jumps.append(float(np.mod(s.begin, motion.period)))
-        for fraction in jumps_of(table) if table else ():
-            at = motion.crossings(fraction)[n]
-            jumps += [] if at is None else [float(np.mod(at, motion.period))]
-    return law, distinct(jumps, motion.period)
+    jumps = []
+    for i, run in enumerate(runs):
+        before = runs[i - 1]
+        if not motion.follows(i):
+            jumps += [before.end, run.begin]
+        elif motion.endless:
+            jumps += [run.begin] if law(run.begin, -1) != law(run.begin, 1) else []
+        elif run.stroke != before.stroke or not same[i - 1, i]:
+            jumps.append(run.begin)
+        table = tables[i]
+        if table is not None:
+            fractions = (*jumps_of(table), *((0.0,) if motion.endless and table[1][0] != table[1][-1] else ()))
+            jumps += [at for fraction in fractions for at in motion.crossings(run, fraction)]
+    return law, distinct((float(np.mod(t, motion.period)) for t in jumps), motion.period)
 
 
 def angle_law(table: Table, period: float, smooth: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:

@@ -23,8 +23,8 @@ class Running(Protocol):
     """What the forces need of a crank that does not turn evenly: the flywheel says it."""
 
     @property
-    def J_first(self) -> float:
-        """Moment of inertia of all that turns with the crank, kg m2."""
+    def J_running(self) -> float:
+        """Moment of inertia of all that turns with the crank of the finished machine, kg m2."""
         ...
 
     def acceleration(self, phi: Any) -> Any:
@@ -76,7 +76,7 @@ class Study:
         """External and inertia forces of every link, inertia couples, and their plan."""
         forces = [(f.name, f.link, f.point, f.vector(self.turned)) for f in self.applied if f.point is not None]
         moments = [(f.name, f.link, f.law(self.turned, 0)) for f in self.applied if f.point is None]
-        carried = None if self.running is None else self.running().J_first
+        carried = None if self.running is None else self.running().J_running
         return external_loads(self.positions, self.accelerations, self.gravity, forces, moments, carried)
 
     @cached_property

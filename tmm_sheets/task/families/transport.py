@@ -441,7 +441,8 @@ def _compressor_notes(values: Mapping[str, Value]) -> Iterator[str]:
 def _press_notes(values: Mapping[str, Value]) -> Iterator[str]:
     b = turn("press", _numbers(values)).points["B"]
     if (b.real + values["X"].number).max() > 0:
-        yield "the toggle crosses the straight line: the slider has two lowest positions in one turn"
+        yield ("the toggle crosses the straight line: the slider has two lowest positions in one turn; "
+               "its working stroke ends at the first of them")
 
 
 def _crusher_notes(values: Mapping[str, Value]) -> Iterator[str]:
