@@ -337,8 +337,8 @@ class Force(Table):
 
     ``direction`` against or along the motion, or a fixed world angle. Strokes lie between the true extremes of the way, however
     often the point turns back; inside them a force against the motion follows the velocity's sign. ``sense`` is the way of the
-    working strokes ("+x", "-y" ..., or "+guide", "-guide" along a guide); left out, that of the cycle's output. ``value`` is a constant,
-    ``table`` a diagram: pairs of the fraction of the way from where the working strokes begin (``over`` = "stroke") or of
+    working strokes ("+x", "-y" ..., or "+guide", "-guide" along a guide); left out, that of the cycle's output. ``value`` is a
+    constant, ``table`` a diagram: pairs of the fraction of the way from where the working strokes begin (``over`` = "stroke") or of
     the angle turned from position 0 ("angle") and of the force, or of the pressure (Pa) where ``bore`` is given.
     ``tables`` has one diagram for each stroke in turn ([] for none), the first for the stroke that begins nearest to ``first``.
     ``from`` and ``to`` are the beginning and the end of the action as fractions of the way. ``curve`` is how the points of a
