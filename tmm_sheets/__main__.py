@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from io import TextIOWrapper
 from typing import NoReturn
 
 DONE, CANNOT_BUILD, BAD_INPUT = 0, 1, 2
@@ -17,9 +18,21 @@ def main() -> NoReturn:
     # The arrays here are short: threads of the linear algebra library would only cost start-up time and memory.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    _set_encodings()
     # Nearly all that is made here lives to the end: searching it for garbage every 700 objects costs a tenth of the time.
     gc.set_threshold(200_000)
     sys.exit(_flushed(run(sys.argv[1:])))
+
+
+def _set_encodings() -> None:
+    """UTF-8 for files and pipes, whatever the code page of the console; a terminal shows what it has letters for."""
+    for stream, elsewhere in ((sys.stdout, "surrogateescape"), (sys.stderr, "backslashreplace")):
+        if not isinstance(stream, TextIOWrapper):  # there is none, or a test's
+            continue
+        if stream.isatty():
+            stream.reconfigure(errors="replace")
+        else:
+            stream.reconfigure(encoding="utf-8", errors=elsewhere)
 
 
 def _flushed(status: int) -> int:

@@ -16,7 +16,7 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, texts
 from tmm_sheets.building import Order, build, folder_name
 from tmm_sheets.errors import BadInput, CannotBuild
 
@@ -182,7 +182,7 @@ def _refuse_common_folders(names: Iterable[str]) -> None:
         inside = name
         if name.endswith(catalogue.SUFFIX):
             try:
-                inside = str(tomllib.loads(Path(name).read_text(encoding="utf-8-sig"))["project"]["name"])
+                inside = str(tomllib.loads(texts.decoded(Path(name).read_bytes()).text)["project"]["name"])
             except (OSError, ValueError, KeyError, TypeError):
                 continue  # its own message comes when it is built
         folder = folder_name(inside)

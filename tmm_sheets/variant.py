@@ -29,7 +29,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails
 
-from tmm_sheets import resources, synthesized, units
+from tmm_sheets import resources, synthesized, texts, units
 from tmm_sheets.cam_keys import check_cam
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.names import check_names
@@ -741,13 +741,10 @@ def read(path: Path | str) -> Variant:
     except OSError as e:
         raise BadInput(Problem(f"cannot be read: {e.strerror}", file)) from None
     try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as e:
-        line = data.count(b"\n", 0, e.start) + 1
-        raise BadInput(
-            Problem("not UTF-8 text", file, line, hint="save the file in the encoding UTF-8, not in cp1251 or UTF-16")
-        ) from None
-    return parse(text, file)
+        text, note = texts.decoded(data)
+    except texts.NotText as e:
+        raise BadInput(Problem(str(e), file, e.line, hint="save the file in the encoding UTF-8")) from None
+    return parse(texts.cleaned(text), file, (note,) if note else ())
 
 
 def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
