@@ -32,6 +32,7 @@ from pydantic_core import ErrorDetails
 from tmm_sheets import resources, synthesized, texts, units
 from tmm_sheets.cam_keys import check_cam
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.letters import check_letters, freed
 from tmm_sheets.names import check_names
 from tmm_sheets.toml_lines import KeyPath, TomlLines, scan
 
@@ -756,6 +757,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
     except RecursionError:
         raise BadInput(Problem("lists or tables are nested too deeply", file)) from None
     lines = scan(text)
+    data = freed(data)
     data, found = _with_synthesis(data, file)
     problems = [_problem(file, lines, *one) for one in found]
     variant = None
@@ -763,7 +765,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
         variant = Variant.model_validate(data)
     except ValidationError as e:
         problems += [_problem(file, lines, *_said(error)) for error in e.errors()]
-    problems += [_problem(file, lines, *found) for check in (check_names, check_cam) for found in check(data)]
+    problems += [_problem(file, lines, *found) for check in (check_names, check_cam, check_letters) for found in check(data)]
     if problems or variant is None:
         raise BadInput(sorted(set(problems), key=lambda p: (p.line or 0, p.field)))
     variant._file = file

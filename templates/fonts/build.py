@@ -1,8 +1,8 @@
 """Build the lettering from the stroke font: ``type_b.json`` (strokes, advances) and ``TMMSheetsB.ttf`` (the same, outlined).
 
 Run ``python templates/fonts/build.py`` after a change of the ``.lff`` files; needs fontTools and shapely (extra ``fonts``).
-``lc_opengost-br.lff`` is the font as it was published, ``added.lff`` holds what it lacks and the marks of which letters with accents
-are made.
+``lc_opengost-br.lff`` is the font as it was published, ``added.lff`` what it lacks and the marks that letters with accents are
+made of.
 Both files come from one set of polylines and one table of advances, so that PDF (outlines) and DXF or a plotter (strokes)
 set every letter at the same place. GOST 2.304 type B: d = h/10; here h = 700 units, d = 70 units, 1000 units to the em.
 """
@@ -35,7 +35,7 @@ SOURCES = ("lc_opengost-br.lff", "added.lff")
 ABOVE = "\u0300\u0301\u0302\u0303\u0304\u0306\u0307\u0308\u030a\u030b\u030c\u0312"  # combining marks
 COMMA_ABOVE, COMMA_BELOW, CEDILLA, OGONEK = "\u0312\u0326\u0327\u0328"
 LIFT, X_HEIGHT, FOOT = 2.7, 7.0, 0.5  # LFF units: of a mark over a capital; small letters without stem are lower; feet are lower
-COMPOSED = "ĄąĘę"  # the stroke font has their ogonek apart from the letter
+COMPOSED = "ĄąĘęÅåŮů"  # the stroke font has their ogonek apart from the letter, their ring upon it
 LATIN = [chr(c) for c in range(0xC0, 0x180) if chr(c) not in "×÷"] + list("ƏəȘșȚțẀẁẂẃẄẅẞỲỳ")
 CYRILLIC = [chr(c) for c in (*range(0x400, 0x410), *range(0x450, 0x460))] + list("ӘәҒғҚқҢңӨөҰұҮүҺһҖҗҲҳҶҷҠҡҘҙҪҫ")
 KEEP = (
@@ -84,7 +84,8 @@ def read(sagitta: float) -> dict[str, list[list[complex]]]:
             strokes.extend(glyphs[chr(int(copied[1], 16))])
         elif line and not line.startswith("#"):
             strokes.append(polyline(line, sagitta))
-    return glyphs | {char: composed(char, glyphs) for char in LATIN if char not in glyphs and char not in SAME or char in COMPOSED}
+    made = [c for c in LATIN if c in COMPOSED or (c not in glyphs and c not in SAME)]
+    return glyphs | {char: composed(char, glyphs) for char in made}
 
 
 def composed(char: str, glyphs: dict[str, list[list[complex]]]) -> list[list[complex]]:
