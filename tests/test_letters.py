@@ -19,6 +19,7 @@ CAM = catalogue.read("lugansk/cam_flat").text
 KAZAKH = "ӘәҒғҚқҢңӨөҰұҮүҺһІі"
 SLAVONIC = "ЎўІіЇїЄєҐґЁёЂђЃѓЅѕЈјЉљЊњЋћЌќЏџ"
 LATIN = [chr(c) for c in (*range(0xC0, 0x180), 0x218, 0x219, 0x21A, 0x21B) if chr(c).isalpha()]
+TWINS = "ĐÐ ĸк ŢȚ ţț ЅS ѕs ЈJ јj һh ҮY ІI іi ЇÏ їï ЁË ёë"
 MARKED = [c for c in LATIN if unicodedata.combining(unicodedata.normalize("NFD", c)[-1]) == 230
           and c not in "ďĽľťģ"]  # these have a comma beside or above
 
@@ -39,7 +40,7 @@ def test_letter_is_there_and_keeps_to_its_line(char):
 
 def test_letters_differ():
     """A letter is not its neighbour's or its base's drawing by mistake; few are drawn alike by rights."""
-    alike = {frozenset(pair) for pair in "ĐÐ ĸк ŢȚ ţț ЅS ѕs ЈJ јj һh ҮY ІI іi ЇÏ їï ЁË ёë".split()}
+    alike = {frozenset(pair) for pair in TWINS.split()}
     seen = {}
     for char in dict.fromkeys([*KAZAKH, *SLAVONIC, *LATIN, *"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyzк"]):
         seen.setdefault(b"".join(np.round(s, 6).tobytes() for s in glyph(char).strokes), []).append(char)
