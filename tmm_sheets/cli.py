@@ -227,15 +227,25 @@ def _build_many(
     running = (batch.run(names, order, parent, jobs or batch.processors()) if scheduler is None
                else batch.run_on_dask(names, order, parent, scheduler))  # fmt: skip
     done = []
-    with Bar(len(names)) as bar:
-        for outcome in running:
-            done.append(outcome)
-            bar.step(bool(outcome.problem))
+    stopped: KeyboardInterrupt | None = None
+    try:
+        with Bar(len(names)) as bar:
+            for outcome in running:
+                done.append(outcome)
+                bar.step(bool(outcome.problem))
+    except KeyboardInterrupt as e:
+        stopped = e
     for outcome in sorted(done, key=lambda o: o.project):
         for warning in outcome.warnings:
             click.echo(f"{outcome.project}: {warning}", err=True)
     click.echo(batch.summary(done, parent, monotonic() - start))
     failures = [outcome for outcome in done if outcome.problem]
+    if stopped is not None:
+        if failures:
+            click.echo(batch.table(failures, len(names)), err=True)
+        left = len(names) - len(done)
+        click.echo(f"stopped, {left} of {len(names)} projects left; the same command goes on from there", err=True)
+        raise stopped
     if failures:
         raise CannotBuild(batch.table(failures, len(names)))
 
