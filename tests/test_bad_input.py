@@ -167,8 +167,8 @@ def test_deep_nesting(nesting):
 
 def test_file_that_is_no_text(tmp_path):
     file = tmp_path / "p.toml"
-    file.write_bytes('schema = 1\ntitle = "Станок"\n'.encode("cp1251"))
-    with pytest.raises(BadInput, match=re.escape(f"{file}:2: not UTF-8 text")):
+    file.write_bytes(b'schema = 1\ntitle = "\xff\xfe\0\1"\n')
+    with pytest.raises(BadInput, match=re.escape(f"{file}:2: not a text file")):
         variant.read(file)
 
 
@@ -180,5 +180,5 @@ def test_folder_instead_of_a_file(tmp_path):
 def test_binary_rubbish(tmp_path):
     file = tmp_path / "p.toml"
     file.write_bytes(bytes(range(128)) * 3)
-    with pytest.raises(BadInput, match="not valid TOML"):
+    with pytest.raises(BadInput, match="not a text file"):
         variant.read(file)

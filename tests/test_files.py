@@ -2,7 +2,11 @@
 
 import errno
 import os
+import platform
+import subprocess
+import sys
 from pathlib import Path
+from time import time
 
 import pytest
 
@@ -56,6 +60,22 @@ def test_interrupt_leaves_nothing(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         write_all({tmp_path / "x": b"new"})
     assert listing(tmp_path) == []
+
+
+def test_passing_files_of_the_dead_are_swept(tmp_path):
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    host, me = platform.node(), os.getppid()
+    swept = [f".x.{dead.pid}.part", f".x.{dead.pid}@{host}.part", ".x.99999999999999999999.part"]
+    kept = [f".x.{me}.part", f".x.{me}@{host}.part", ".x.1.part", f".x.{dead.pid}@elsewhere.part", f".xx.{dead.pid}.part",
+            f".y.{dead.pid}.part", f".x.{dead.pid}.part.txt", ".x.part", f"x.{dead.pid}.part"]  # fmt: skip
+    old = [f".x.{dead.pid}@far.part", f".x.{me}@far.part"]
+    for name in (*swept, *kept, *old):
+        (tmp_path / name).write_bytes(b"half")
+    for name in old:
+        os.utime(tmp_path / name, (time() - 90_000,) * 2)
+    write_all({tmp_path / "x": b"new"})
+    assert listing(tmp_path) == sorted(["x", *kept])
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")

@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = "box errors files resources progress __init__"
+NEUTRAL = "box errors files resources progress texts __init__"
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
 RULES = {
@@ -26,6 +26,7 @@ RULES = {
     "task": ("", ""),
     "task.assembly": ("mechanism methods.linkage task", ""),
     "task.variant": ("methods.linkage.synthesis task", ""),
+    "task.letters": ("drawing.lettering task", ""),
     "task.families": ("task", ""),
     "project": (f"task {METHODS}", "mechanism"),
     "results": ("construction sheets", "project methods.linkage"),

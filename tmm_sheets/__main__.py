@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import sys
+from io import TextIOWrapper
 from typing import NoReturn
 
 DONE, CANNOT_BUILD, BAD_INPUT = 0, 1, 2
-INTERRUPTED, BROKEN_PIPE = 130, 141
-"""As a shell reports programs ended by SIGINT and SIGPIPE."""
+BY_SIGNAL, BROKEN_PIPE = 128, 141
+"""As a shell reports programs ended by a signal, whose number is added to the first, and by SIGPIPE."""
 
 
 def main() -> NoReturn:
@@ -17,9 +19,32 @@ def main() -> NoReturn:
     # The arrays here are short: threads of the linear algebra library would only cost start-up time and memory.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", "400000000")  # of formats whose size nobody else can tell beforehand
+    _set_encodings()
+    for name in ("SIGTERM", "SIGHUP"):  # what is half-written is cleaned up, as after Ctrl-C; nohup stays nohup
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, _stop)
     # Nearly all that is made here lives to the end: searching it for garbage every 700 objects costs a tenth of the time.
     gc.set_threshold(200_000)
     sys.exit(_flushed(run(sys.argv[1:])))
+
+
+def _stop(number: int, _: object) -> None:
+    from tmm_sheets.errors import Stopped
+
+    raise Stopped(number)
+
+
+def _set_encodings() -> None:
+    """UTF-8 for files and pipes, whatever the code page of the console; a terminal shows what it has letters for."""
+    for stream, elsewhere in ((sys.stdout, "surrogateescape"), (sys.stderr, "backslashreplace")):
+        if not isinstance(stream, TextIOWrapper):  # there is none, or a test's
+            continue
+        if stream.isatty():
+            stream.reconfigure(errors="replace")
+        else:
+            stream.reconfigure(encoding="utf-8", errors=elsewhere)
 
 
 def _flushed(status: int) -> int:
@@ -41,7 +66,7 @@ def run(arguments: list[str]) -> int:
     import click
 
     from tmm_sheets.cli import commands
-    from tmm_sheets.errors import BadInput, CannotBuild
+    from tmm_sheets.errors import BadInput, CannotBuild, Stopped
 
     try:
         # Not commands.main(): that ends the program by itself and with other statuses on Ctrl-C and closed pipes.
@@ -57,8 +82,8 @@ def run(arguments: list[str]) -> int:
         return _say(str(e), BAD_INPUT)
     except CannotBuild as e:
         return _say(str(e), CANNOT_BUILD)
-    except (KeyboardInterrupt, click.Abort):
-        return INTERRUPTED
+    except (KeyboardInterrupt, click.Abort) as e:
+        return BY_SIGNAL + int(e.number if isinstance(e, Stopped) else signal.SIGINT)
     except BrokenPipeError:
         return BROKEN_PIPE  # main() quiets the buffer
     except OSError as e:

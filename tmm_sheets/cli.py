@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import click
 
 from tmm_sheets import __version__
 from tmm_sheets.box import Box
-from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
@@ -99,12 +99,23 @@ def list_projects(as_json: bool) -> None:
 @PROJECT
 @CORRECTED
 @click.option("--file", "as_file", is_flag=True, help="The project file itself, to be changed and used as one's own.")
-def show(project: str, corrected: bool, as_file: bool) -> None:
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="With --file: write it there.")
+def show(project: str, corrected: bool, as_file: bool, output: Path | None) -> None:
     """Show inputs with units and source, links, pairs, mobility W, Assur groups, formula of structure."""
-    from tmm_sheets import summary
-
+    if output is not None and not as_file:
+        raise click.UsageError("-o goes with --file")
     variant = _read(project, corrected)
-    click.echo(variant.text if as_file else summary.text(variant))
+    if output is not None:
+        from tmm_sheets import files
+
+        files.write_all({output: variant.text.encode()})
+        click.echo(output)
+    elif as_file:
+        click.echo(variant.text, nl=False)
+    else:
+        from tmm_sheets import summary
+
+        click.echo(summary.text(variant))
 
 
 @commands.command()
@@ -128,7 +139,7 @@ def check(project: str, corrected: bool) -> None:
 @click.argument("projects", metavar="PROJECT...", nargs=-1)
 @click.option("--all", "families", multiple=True, metavar="FAMILY",
               help="All shipped projects of a family, such as sixbar, or of all.")
-@click.option("--list", "lists", multiple=True, type=click.File(encoding="utf-8"), metavar="FILE",
+@click.option("--list", "lists", multiple=True, type=click.File("rb"), metavar="FILE",
               help="Projects named in a file, one a line; - for standard input.")
 @CORRECTED
 @click.option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
@@ -145,7 +156,7 @@ def check(project: str, corrected: bool) -> None:
 @click.option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
 @click.option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def build(
-    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[TextIO, ...], corrected: bool, sheets: tuple[int, ...],
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[BinaryIO, ...], corrected: bool, sheets: tuple[int, ...],
     formats: tuple[str, ...], dpi: float, machine: Plotter | None, output: Path | None, archive: bool, force: bool,
     jobs: int | None, scheduler: str | None, explain: bool,
 ) -> None:
@@ -164,6 +175,17 @@ def build(
     if explain:
         raise click.UsageError("--explain is for one project")
     _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
+
+
+def _listed(file: BinaryIO) -> list[str]:
+    """Lines of a list of projects."""
+    from tmm_sheets import texts
+
+    try:
+        return texts.cleaned(texts.decoded(file.read()).text).splitlines()
+    except texts.NotText as e:
+        hint = "a list names a project in each line, in UTF-8"
+        raise BadInput(Problem(str(e), str(getattr(file, "name", "")), e.line, hint=hint)) from None
 
 
 def _build_one(project: str, order: Order, output: Path | None, explain: bool) -> None:
@@ -191,7 +213,7 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool) -
 
 
 def _build_many(
-    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[TextIO, ...], order: Order, parent: Path,
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[BinaryIO, ...], order: Order, parent: Path,
     jobs: int | None, scheduler: str | None,
 ) -> None:
     from time import monotonic
@@ -200,7 +222,7 @@ def _build_many(
     from tmm_sheets.output import batch
     from tmm_sheets.progress import Bar
 
-    names = batch.chosen(projects, families, lists)
+    names = batch.chosen(projects, families, [_listed(file) for file in lists])
     if not names:
         raise BadInput("no projects to build", hint="the list is empty")
     files.check_folder(parent)
@@ -208,15 +230,25 @@ def _build_many(
     running = (batch.run(names, order, parent, jobs or batch.processors()) if scheduler is None
                else batch.run_on_dask(names, order, parent, scheduler))  # fmt: skip
     done = []
-    with Bar(len(names)) as bar:
-        for outcome in running:
-            done.append(outcome)
-            bar.step(bool(outcome.problem))
+    stopped: KeyboardInterrupt | None = None
+    try:
+        with Bar(len(names)) as bar:
+            for outcome in running:
+                done.append(outcome)
+                bar.step(bool(outcome.problem))
+    except KeyboardInterrupt as e:
+        stopped = e
     for outcome in sorted(done, key=lambda o: o.project):
         for warning in outcome.warnings:
             click.echo(f"{outcome.project}: {warning}", err=True)
     click.echo(batch.summary(done, parent, monotonic() - start))
     failures = [outcome for outcome in done if outcome.problem]
+    if stopped is not None:
+        if failures:
+            click.echo(batch.table(failures, len(names)), err=True)
+        left = len(names) - len(done)
+        click.echo(f"stopped, {left} of {len(names)} projects left; the same command goes on from there", err=True)
+        raise stopped
     if failures:
         raise CannotBuild(batch.table(failures, len(names)))
 

@@ -40,6 +40,14 @@ class CannotBuild(Exception):
         return f"{message}\n    {self.hint}" if self.hint else message
 
 
+class Stopped(KeyboardInterrupt):
+    """The program was told to end by a signal, as by Ctrl-C."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.number = number
+
+
 class BadInput(Exception):
     """Wrong usage or unreadable input; exit status 2. Holds every problem found, not the first one only."""
 

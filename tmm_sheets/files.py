@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import os
+import platform
+import re
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+from threading import Lock
+from time import time
 
 from tmm_sheets.errors import BadInput, Problem
+
+WRITING = Lock()
+"""Held while files are written: whoever ends the process at once waits for it, and nothing half-written stays."""
+LONG = 86_400.0
+"""Seconds after which a passing file belongs to nobody, whatever its name says."""
 
 
 def write_all(files: Mapping[Path, bytes]) -> None:
@@ -33,6 +42,11 @@ def put(files: Mapping[Path, bytes]) -> None:
     When anything fails (disk full, no permission) nothing new is left behind, older files stay as they were, and the ``OSError``
     goes on to the caller with the name of the file.
     """
+    with WRITING:
+        _put(files)
+
+
+def _put(files: Mapping[Path, bytes]) -> None:
     passing: dict[Path, Path] = {}
     current = Path()
     try:
@@ -44,7 +58,8 @@ def put(files: Mapping[Path, bytes]) -> None:
                 path.write_bytes(data)
                 continue
             target = path.resolve()
-            passing[target] = target.with_name(f".{target.name}.{os.getpid()}.part")
+            sweep(target)
+            passing[target] = target.with_name(f".{target.name}.{os.getpid()}{_host()}.part")
             passing[target].write_bytes(data)
         for target, part in passing.items():
             current = target
@@ -56,6 +71,37 @@ def put(files: Mapping[Path, bytes]) -> None:
         for part in passing.values():
             with suppress(OSError):
                 part.unlink(missing_ok=True)
+
+
+def sweep(path: Path) -> None:
+    """Remove what killed processes left of a file: passing files of processes that are no more, here or, after a day, elsewhere."""
+    with suppress(OSError):
+        for part in path.parent.iterdir():
+            name = re.fullmatch(rf"\.{re.escape(path.name)}\.(\d+)(@.*)?\.part", part.name)
+            if name is not None and int(name[1]) != os.getpid():
+                with suppress(OSError):
+                    here = name[2] in (None, _host())
+                    if (here and not _alive(int(name[1]))) or time() - part.stat().st_mtime > LONG:
+                        part.unlink()
+
+
+def _host() -> str:
+    """Mark of this machine: folders may be shared by several."""
+    return "@" + re.sub(r"[^\w-]", "-", platform.node())
+
+
+def _alive(process: int) -> bool:
+    """Whether there is such a process; taken for granted where asking would end it."""
+    if os.name == "nt":
+        return True
+    try:
+        os.kill(process, 0)
+        state = Path(f"/proc/{process}/stat")  # of Linux: one that is dead may wait there for its parent
+        return not state.exists() or state.read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()[0] not in "ZX"
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:
+        return True
 
 
 def check_folder(folder: Path) -> None:

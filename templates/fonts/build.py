@@ -1,6 +1,8 @@
 """Build the lettering from the stroke font: ``type_b.json`` (strokes, advances) and ``TMMSheetsB.ttf`` (the same, outlined).
 
-Run ``python templates/fonts/build.py`` after a change of the ``.lff`` file; needs fontTools and shapely (extra ``fonts``).
+Run ``python templates/fonts/build.py`` after a change of the ``.lff`` files; needs fontTools and shapely (extra ``fonts``).
+``lc_opengost-br.lff`` is the font as it was published, ``added.lff`` what it lacks and the marks that letters with accents are
+made of.
 Both files come from one set of polylines and one table of advances, so that PDF (outlines) and DXF or a plotter (strokes)
 set every letter at the same place. GOST 2.304 type B: d = h/10; here h = 700 units, d = 70 units, 1000 units to the em.
 """
@@ -12,6 +14,7 @@ import json
 import math
 import re
 import sys
+import unicodedata
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -26,23 +29,23 @@ OUTLINE_CHORD = 0.001 * CAP
 DOT = 0.36  # least length of a dot's stroke in LFF units: a dot as small as the pen drowns beside a line
 OUTLINE = 2  # the outlines are twice as fine as the table: 2000 units to the em
 
-# Signs the stroke font lacks; centre lines in LFF units (a capital reaches from 0.45 to 8.55).
-OWN = {
-    "→": "0,4.05;7.2,4.05|5.4,5.4;7.2,4.05;5.4,2.7",
-    "←": "7.2,4.05;0,4.05|1.8,5.4;0,4.05;1.8,2.7",
-    "↑": "1.35,0.45;1.35,8.1|0,6.3;1.35,8.1;2.7,6.3",
-    "↓": "1.35,8.1;1.35,0.45|0,2.25;1.35,0.45;2.7,2.25",
-    "∑": "5.4,8.55;0,8.55;3.15,4.5;0,0.45;5.4,0.45",
-    "ℓ": "0,2.7;2.7,6.3;2.7,7.65,A0.5;1.35,7.65,A1;1.35,1.8;2.25,0.45,A0.4;3.15,1.35",
-}
-WIDTH = {"З": 5, "з": 4, "8": 5}  # letters the stroke font makes wider than GOST 2.304 does, in d
-SAME = {"Ω": "Ω", "µ": "μ", "∆": "Δ", "·": "∙", "ϕ": "φ", "\u2011": "-", "\u2010": "-"}
+WIDTH = {"З": 5, "з": 4, "8": 5, "Ҙ": 5, "ҙ": 4}  # letters the stroke font makes wider than GOST 2.304 does, in d
+SAME = {"Ə": "Ә", "ə": "ә", "Ω": "Ω", "µ": "μ", "∆": "Δ", "·": "∙", "ϕ": "φ", "\u2011": "-", "\u2010": "-"}
+SOURCES = ("lc_opengost-br.lff", "added.lff")
+ABOVE = "\u0300\u0301\u0302\u0303\u0304\u0306\u0307\u0308\u030a\u030b\u030c\u0312"  # combining marks
+COMMA_ABOVE, COMMA_BELOW, CEDILLA, OGONEK = "\u0312\u0326\u0327\u0328"
+LIFT, X_HEIGHT, FOOT = 2.7, 7.0, 0.5  # LFF units: of a mark over a capital; small letters without stem are lower; feet are lower
+COMPOSED = "ĄąĘęÅåŮů"  # the stroke font has their ogonek apart from the letter, their ring upon it
+LATIN = [chr(c) for c in range(0xC0, 0x180) if chr(c) not in "×÷"] + list("ƏəȘșȚțẀẁẂẃẄẅẞỲỳ")
+CYRILLIC = [chr(c) for c in (*range(0x400, 0x410), *range(0x450, 0x460))] + list("ӘәҒғҚқҢңӨөҰұҮүҺһҖҗҲҳҶҷҠҡҘҙҪҫ")
 KEEP = (
     [chr(c) for c in range(0x21, 0x7F)]
     + list("«»°±²³·×÷µ½¼¾§")
     + [chr(c) for c in range(0x391, 0x3CA) if c not in (0x3A2, 0x3AA, 0x3AB, 0x3AC, 0x3AD, 0x3AE, 0x3AF, 0x3B0)]
     + [chr(c) for c in range(0x410, 0x450)]
-    + list("ЁёІіЇїЄєҐґ–—‘’“”„…′″‴№∅∆∇−∙√∝∞∟∠∥∫∮≈≠≡≤≥⊥∑→←↑↓ℓΩϕ∼≅∘⁰¹⁴⁵⁶⁷⁸⁹\u2010\u2011")
+    + LATIN
+    + CYRILLIC
+    + list("Ґґ–—‘’“”„…′″‴№∅∆∇−∙√∝∞∟∠∥∫∮≈≠≡≤≥⊥∑→←↑↓ℓΩϕ∼≅∘⁰¹⁴⁵⁶⁷⁸⁹₀₁₂₃₄₅₆₇₈₉ªº¡¿©®™€‰•‹›‚\u2010\u2011")
 )
 
 
@@ -70,18 +73,34 @@ def polyline(text: str, sagitta: float) -> list[complex]:
     return points
 
 
-def read(path: Path, sagitta: float) -> dict[str, list[list[complex]]]:
-    """Glyphs of an LFF file and our own as centre lines in LFF units, arcs cut into chords."""
+def read(sagitta: float) -> dict[str, list[list[complex]]]:
+    """Glyphs of the LFF files as centre lines in LFF units, arcs cut into chords, and those made of a letter and a mark."""
     glyphs: dict[str, list[list[complex]]] = {}
     strokes: list[list[complex]] = []
-    for line in path.read_text(encoding="utf-8").splitlines():
+    for line in (line for name in SOURCES for line in (HERE / name).read_text(encoding="utf-8").splitlines()):
         if head := re.match(r"\[#?([0-9a-fA-F]+)\]", line):
             strokes = glyphs[chr(int(head[1], 16))] = []
         elif copied := re.match(r"C([0-9a-fA-F]+)", line):
             strokes.extend(glyphs[chr(int(copied[1], 16))])
         elif line and not line.startswith("#"):
             strokes.append(polyline(line, sagitta))
-    return glyphs | {char: [polyline(s, sagitta) for s in text.split("|")] for char, text in OWN.items()}
+    made = [c for c in LATIN if c in COMPOSED or (c not in glyphs and c not in SAME)]
+    return glyphs | {char: composed(char, glyphs) for char in made}
+
+
+def composed(char: str, glyphs: dict[str, list[list[complex]]]) -> list[list[complex]]:
+    """A letter with its mark: the mark over or under the middle, an ogonek at the last foot."""
+    base, mark = unicodedata.normalize("NFD", char)
+    if base in "GKLNRTgklnrt" and mark == CEDILLA:  # so it is called, but Latvian and Romanian have a comma
+        mark = COMMA_ABOVE if base == "g" else COMMA_BELOW
+    if mark in ABOVE:
+        base = {"i": "ı", "j": "ȷ"}.get(base, base)
+    points = [p for s in glyphs[base] for p in s]
+    left, right = (end(p.real for p in points) for end in (min, max))
+    at = complex((left + right) / 2, LIFT if mark in ABOVE and max(p.imag for p in points) > X_HEIGHT else 0)
+    if mark == OGONEK:
+        at = complex(max(p.real for p in points if p.imag < FOOT), 0)
+    return [*glyphs[base], *([p + at for p in s] for s in glyphs[mark])]
 
 
 def table(glyphs: dict[str, list[list[complex]]]) -> dict[str, tuple[int, list[list[complex]]]]:
@@ -105,7 +124,7 @@ def write_table(glyphs: dict[str, tuple[int, list[list[complex]]]], path: Path) 
     }
     body = ",\n".join(f"  {json.dumps(c, ensure_ascii=False)}: {json.dumps(r)}" for c, r in rows.items())
     head = {
-        "source": "lc_opengost-br.lff, SIL Open Font License 1.1, see OFL.txt; made by build.py",
+        "source": "lc_opengost-br.lff and added.lff, SIL Open Font License 1.1, see OFL.txt; made by build.py",
         "cap": CAP,
         "stroke": round(D),
         "slant": SLANT,
@@ -183,8 +202,8 @@ def write_ttf(glyphs: dict[str, tuple[int, list[list[complex]]]], path: Path) ->
 def main() -> None:
     """Write both files beside this script, or into the folder given."""
     out = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
-    strokes = table(read(HERE / "lc_opengost-br.lff", STROKE_CHORD))
-    outlines = table(read(HERE / "lc_opengost-br.lff", OUTLINE_CHORD))
+    strokes = table(read(STROKE_CHORD))
+    outlines = table(read(OUTLINE_CHORD))
     write_table(strokes, out / "type_b.json")
     # The finer chords of a round letter may reach one unit further; the advances must be the table's.
     write_ttf({c: (strokes[c][0], s) for c, (_, s) in outlines.items()}, out / "TMMSheetsB.ttf")

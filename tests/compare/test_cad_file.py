@@ -10,7 +10,7 @@ from ezdxf.enums import TextEntityAlignment
 
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.compare.cad.cad_ink import normal
-from tmm_sheets.errors import BadInput
+from tmm_sheets.errors import BadInput, CannotBuild
 
 
 def saved(doc, path, binary=False):
@@ -242,3 +242,85 @@ def test_russian_in_a_file_that_declares_another_code_page(path, encoding):
     space = cad_file.read(path).spaces[0]
     assert [w.text for w in space.writings] == ["План сил"]
     assert [e.layer for e in space.entities] == ["0", "Рамка"]
+
+
+def nested(depth, each):
+    """Blocks of blocks: ``each`` to the power of ``depth`` lines."""
+    doc, space = drawing()
+    name = "line"
+    doc.blocks.new(name).add_line((0, 0), (1, 1))
+    for k in range(depth):
+        outer = doc.blocks.new(f"block{k}")
+        for i in range(each):
+            outer.add_blockref(name, (i, k))
+        name = f"block{k}"
+    space.add_blockref(name, (0, 0))
+    return doc
+
+
+def arrayed(n):
+    doc, space = drawing()
+    doc.blocks.new("line").add_line((0, 0), (1, 1))
+    space.add_blockref("line", (0, 0), {"row_count": n, "column_count": n, "row_spacing": 1, "column_spacing": 1})
+    return doc
+
+
+@pytest.mark.parametrize("doc", [nested(6, 10), nested(15, 3), arrayed(3000)], ids=["six times ten", "three and three", "array"])
+def test_blocks_that_come_to_millions_are_refused_before_they_are_taken_apart(doc, path, monkeypatch):
+    monkeypatch.setattr(cad_file._Reader, "_apart", lambda *_: pytest.fail("taken apart"))
+    with pytest.raises(CannotBuild, match=r"more than 200000 entities\n.*arrays"):
+        cad_file.read(saved(doc, path))
+
+
+def test_what_blocks_come_to_is_counted_right(path):
+    assert len(cad_file.read(saved(nested(3, 4), path)).spaces[0].strokes) == 4**3
+    assert len(cad_file.read(saved(arrayed(30), path)).spaces[0].strokes) == 900
+
+
+def test_blocks_that_hold_one_another(path):
+    doc, space = drawing()
+    a, b = doc.blocks.new("A"), doc.blocks.new("B")
+    for block, other in ((a, "B"), (b, "A"), (b, "B")):
+        block.add_line((0, 0), (100, 100))
+        block.add_blockref(other, (1, 1))
+        block.add_blockref(other, (2, 1))
+    space.add_blockref("A", (0, 0))
+    space.add_line((0, 0), (841, 594))
+    ink = cad_file.read(saved(doc, path))
+    assert len(ink.spaces[0].strokes) == 1 + 1 + 2 * 2  # its own, that of A, two of B in each of two
+    assert "INSERT" in ink.notes[0]
+
+
+def test_curves_vast_beside_the_drawing(path):
+    """A circle of 10^13 mm needs 10^8 chords to be within 0.005 mm."""
+    doc, space = drawing()
+    space.add_line((0, 0), (841, 594))
+    space.add_line((0, 0), (841, 0))
+    space.add_circle((0, 0), 1e13)
+    space.add_arc((0, 0), 1e13, 0, 180)
+    space.add_ellipse((0, 0), (1e13, 0), 0.5)
+    space.add_spline([(0, 0), (1e12, 1e12), (2e12, 0), (3e12, 1e12)])
+    strokes = cad_file.read(saved(doc, path)).spaces[0].strokes
+    assert len(strokes) == 6
+    assert all(len(s.points) < 50_000 for s in strokes)
+    assert np.abs(strokes[2].points) == pytest.approx(1e13, rel=1e-6)
+
+
+def test_hatchings_that_come_to_millions_of_lines(path, monkeypatch):
+    monkeypatch.setattr(cad_file, "MOST_PARTS", 5000)
+    doc, space = drawing()
+    space.add_line((0, 0), (841, 594))
+    for _ in range(4):
+        hatch = space.add_hatch()
+        hatch.paths.add_polyline_path([(0, 0), (800, 0), (800, 500), (0, 500)], is_closed=True)
+        hatch.set_pattern_fill("ANSI31", scale=0.2)
+    with pytest.raises(CannotBuild, match=r"more than 5000 entities\n.*dense hatchings"):
+        cad_file.read(saved(doc, path))
+
+
+def test_a_vast_file(path):
+    with path.open("wb") as file:
+        file.write(b"  0\nSECTION\n")
+        file.truncate(70_000_000)  # sparse
+    with pytest.raises(CannotBuild, match=r"70 MB are more .*64"):
+        cad_file.read(path)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -269,22 +270,124 @@ def test_interrupt_that_the_parent_ignores_stops_no_worker(tmp_path):
     assert len(list(tmp_path.iterdir())) == len(CAMS)
 
 
-@pytest.mark.usefixtures("heard")
-def test_interrupted_batch_leaves_nothing_half_written(tmp_path):
-    # An interrupt may fall between the opening of a file and its being held by anybody; Python then tells of it, if asked to.
-    running = command("build", "--all", "sixbar", "--format", "svg", "--jobs", "2", "-o", tmp_path, start_new_session=True,
-                      warnings="error,ignore::ResourceWarning")
-    end = monotonic() + 30
-    while not any(tmp_path.iterdir()) and monotonic() < end:
+ALL_DONE = 60.0
+"""Seconds for what takes two or three on a machine with nothing else to do."""
+needs_proc = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc here")
+
+
+def until(holds, what):
+    end = monotonic() + ALL_DONE
+    while not holds():
+        assert monotonic() < end, f"waited in vain for {what}"
         sleep(0.02)
-    os.killpg(running.pid, signal.SIGINT)
-    _, errors = running.communicate(timeout=30)
-    assert running.returncode == 130, errors
-    assert errors == ""
-    built = contents(tmp_path)
-    assert len(built) < 100
+
+
+def alive(pid):
+    """Whether a process runs; one that waits for its parent to be told of its end does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+def children(pid):
+    return [int(p) for p in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def begun(folder, *more):
+    """A batch of two processes in the middle of its work, and these processes."""
+    running = command("build", "--all", "sixbar", "--format", "svg", "--jobs", "2", "-o", folder, *more, start_new_session=True)
+    until(lambda: folder.exists() and len(list(folder.iterdir())) > 2, "the first sheets")
+    return running, children(running.pid)
+
+
+def whole(folder):
+    """Everything below a folder is a finished file; the number of sheets."""
+    built = contents(folder)
     assert {name.rpartition("/")[2] for name in built} <= {RECORD, "sheet1.svg", "sheet2.svg"}
     assert all(data.endswith((b"</svg>\n", b"}\n")) for data in built.values())
+    return sum(name.endswith(".svg") for name in built)
+
+
+@needs_proc
+@pytest.mark.usefixtures("heard")
+@pytest.mark.parametrize("to_all", [False, True], ids=["parent", "group"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_batch_in_order(number, to_all, tmp_path):
+    running, workers = begun(tmp_path)
+    (os.killpg if to_all else os.kill)(running.pid, number)
+    said, errors = running.communicate(timeout=ALL_DONE)
+    assert running.returncode == 128 + number, errors
+    *warnings, last = errors.splitlines()
+    assert all(line.startswith("sixbar/") and "suspected misprint" in line for line in warnings)
+    told = re.fullmatch(r"stopped, (\d+) of 50 projects left; the same command goes on from there", last)
+    assert told, errors
+    counts = re.search(r"(\d+) built; (\d+) files", said)
+    assert counts, said
+    assert int(counts[1]) + int(told[1]) == 50
+    assert 0 < int(counts[2]) < 100
+    assert int(counts[2]) <= whole(tmp_path) <= int(counts[2]) + 2 * len(workers)  # of those ended at once some were not told
+    until(lambda: not any(map(alive, workers)), "the end of the workers")
+
+
+@needs_proc
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_workers_do_not_outlive_their_parent(number, tmp_path):
+    running, workers = begun(tmp_path)
+    assert len(workers) == 2
+    running.send_signal(number)
+    running.communicate(timeout=ALL_DONE)
+    until(lambda: not any(map(alive, workers)), "the end of the workers")
+    whole(tmp_path)
+
+
+@needs_proc
+def test_nohup_is_kept(tmp_path):
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        running = command("build", *CAMS, "--format", "svg", "--jobs", "2", "-o", tmp_path, start_new_session=True)
+        until(lambda: any(tmp_path.iterdir()), "the first sheets")
+        os.killpg(running.pid, signal.SIGHUP)
+        running.communicate(timeout=ALL_DONE)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    assert running.returncode == 0
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_one_project(number, tmp_path):
+    """The first file is a pipe nobody reads: the program waits there, with the others beside their places."""
+    out = tmp_path / "out"
+    out.mkdir()
+    os.mkfifo(out / "sheet2.svg")
+    running = command("build", "sixbar/2:1", "--format", "svg", "-o", out)
+    until(lambda: any(p.name.endswith(".part") for p in out.iterdir()), "the first file")
+    running.send_signal(number)
+    _, errors = running.communicate(timeout=ALL_DONE)
+    assert (running.returncode, errors) == (128 + number, "")
+    assert [p.name for p in out.iterdir()] == ["sheet2.svg"]
+
+
+@needs_proc
+def test_what_a_killed_build_left_is_swept(tmp_path, capsys):
+    """The process waits with half its files beside their places, as above, and is killed there."""
+    out = tmp_path / "out"
+    out.mkdir()
+    os.mkfifo(out / "sheet2.svg")
+    arguments = ["build", "sixbar/2:1", "--format", "svg", "-o", str(out)]
+    running = command(*arguments)
+    until(lambda: any(p.name.endswith(".part") for p in out.iterdir()), "the first file")
+    (part,) = (p for p in out.iterdir() if p.name.endswith(".part"))
+    again = command("build", "sixbar/2:1", "--format", "svg", "--sheet", "1", "-o", out)
+    _, errors = again.communicate(timeout=ALL_DONE)
+    assert again.returncode == 0, errors
+    assert part.exists()  # its process lives
+    running.kill()
+    running.communicate()
+    (out / "sheet2.svg").unlink()
+    assert run([*arguments, "--sheet", "1"]) == 0
+    assert "1 of 1 files unchanged" in capsys.readouterr().err
+    assert sorted(p.name for p in out.iterdir()) == [RECORD, "sheet1.svg"]
 
 
 CLUSTER = """

@@ -23,6 +23,7 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
+from tmm_sheets import texts
 from tmm_sheets.compare.elements import Element, View
 from tmm_sheets.errors import BadInput, Problem
 
@@ -46,11 +47,11 @@ def read(path: Path, views: Sequence[View]) -> tuple[ViewPlace, ...]:
         When it cannot be read, names a view the sheet does not have, or lacks points; every problem is told.
     """
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        data = tomllib.loads(texts.cleaned(texts.decoded(path.read_bytes()).text))
     except OSError as e:
         raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path))) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as e:
-        raise BadInput(Problem(str(e), str(path), hint="it is a TOML file in UTF-8 with a [[view]] table for each view")) from None
+    except (tomllib.TOMLDecodeError, texts.NotText) as e:
+        raise BadInput(Problem(str(e), str(path), hint="it is a TOML file with a [[view]] table for each view")) from None
     tables = data.get("view")
     if not isinstance(tables, list) or not tables or not all(isinstance(t, dict) for t in tables):
         raise BadInput(Problem("has no [[view]] table", str(path), field="view",

@@ -106,6 +106,13 @@ def glyph(char: str) -> Glyph:
                  float(ink.real.max()) + half, float(ink.imag.max()) + half)
 
 
+def lacking(text: str) -> str:
+    """Characters of ``text`` that cannot be lettered, each once; an overbar needs a letter before it."""
+    known = _font()["glyphs"]
+    return "".join(dict.fromkeys(c for before, c in zip("\0" + text, text, strict=False)
+                                 if c not in known and not (c == BAR and before in known)))  # fmt: skip
+
+
 def advance(text: str, height: float) -> float:
     """Distance from the origin of the first letter of ``text`` to the origin of what would follow, mm."""
     return height * sum(glyph(c).advance for c in text)

@@ -9,6 +9,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 
+from tmm_sheets import texts
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.resources import template
 
@@ -77,8 +78,8 @@ def plotter(name: str = DEFAULT) -> Plotter:
     if not path.is_file():
         raise ValueError(f"no plotter '{name}': neither a file nor one of {', '.join(names())}")
     try:
-        return _plotter(path.stem, tomllib.loads(path.read_text(encoding="utf-8")))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, ValueError) as e:
+        return _plotter(path.stem, tomllib.loads(texts.cleaned(texts.decoded(path.read_bytes()).text)))
+    except ValueError as e:
         raise ValueError(f"{path}: {e}") from None
 
 

@@ -11,7 +11,7 @@ from functools import cache
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.drawing.lettering import letter, plain
+from tmm_sheets.drawing.lettering import Lettering, letter, plain
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.resources import template
@@ -26,7 +26,7 @@ TURNED = Box(20, 575, 90, 589)
 CAPTION = 2.5
 PITCH = 1.7  # between lines of type B lettering, in letter heights
 SIDE, ENDS = 1.0, 1.25  # least distance of lettering to the lines at its sides, above and below, mm
-NAME_WIDTH = 23 - 2 * SIDE
+NAME_WIDTH, NAME_HEIGHT = 23 - 2 * SIDE, 4.5
 
 FIELDS = frozenset({
     "designation", "title", "project", "letter", "mass", "scale", "developed", "checked", "technical_control", "supervisor",
@@ -91,7 +91,8 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
             canvas.line(origin + complex(x0, y0), origin + complex(x1, y1), style)
     values = _values(fields, sheet_number, sheet_count)
     # All names in one size: the larger only where all of them fit.
-    large = all(letter(plain(fields.get(role, "")), 3.5).width <= NAME_WIDTH for role in ROLES.values())
+    all_names = [letter(plain(fields.get(role, "")), 3.5) for role in ROLES.values()]
+    large = all(name.width <= NAME_WIDTH and 3.5 + 2 * _rise(name, 3.5) <= NAME_HEIGHT for name in all_names)
     names: tuple[float, ...] = (3.5, 2.5) if large else (2.5,)
     role = ""
     for number, kind, word, *corners in data["cells"]:
@@ -154,6 +155,11 @@ def _wrap(text: str, height: float, width: float) -> list[str]:
     return lines
 
 
+def _rise(laid: Lettering, size: float) -> float:
+    """How far marks over capitals (Й, Ö) rise above the line; what is round or a bracket does not count."""
+    return laid.ascent - size if laid.ascent > 1.1 * size + 1e-9 else 0.0
+
+
 def _lines(canvas: Canvas, cell: Box, parts: list[str], sizes: tuple[float, ...], turned: bool = False) -> None:
     """Lettering in the middle of a cell: the largest size at which it fits, in up to three lines, else squeezed into it."""
     width, height = cell.width - 2 * SIDE, cell.height - (2 * ENDS if cell.height > 5 else 0.5)
@@ -162,8 +168,9 @@ def _lines(canvas: Canvas, cell: Box, parts: list[str], sizes: tuple[float, ...]
         lines = [line for part in parts for line in (_wrap(part, size, width) if room > 1 else filter(None, [part]))]
         if not lines:
             return
-        widest = max(letter(plain(line), size).width for line in lines)
-        tall = size * (1 + PITCH * (len(lines) - 1))
+        laid = [letter(plain(line), size) for line in lines]
+        widest = max(line.width for line in laid)
+        tall = size * (1 + PITCH * (len(lines) - 1)) + 2 * _rise(laid[0], size)
         # Three lines need some air between the rules of their cell.
         if widest <= width and tall <= height - (1.0 if len(lines) == 3 else 0.0) and len(lines) <= 3:
             break

@@ -9,15 +9,19 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import threading
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
 from pathlib import Path
+from typing import Any
 
-from tmm_sheets import catalogue
-from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets import catalogue, files, texts
+from tmm_sheets.errors import BadInput, CannotBuild, Stopped
 from tmm_sheets.output.building import Order, build, folder_name
 
 LARGEST_CHUNK = 25
@@ -66,36 +70,38 @@ def several(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome
     return [one(project, order, parent) for project in projects]
 
 
-def _interruptible(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:
-    """The same in a process of the pool: Ctrl-C ends it after cleaning up half-written files, and without a traceback."""
-    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # a shell's background job: the parent does not hear it either
-        return several(projects, order, parent)
-    found: list[Outcome] = []
-    if signal.getsignal(signal.SIGINT) is _leave:
-        return found
-    after = _deaf
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        for project in projects:
-            found.append(one(project, order, parent))
-    except KeyboardInterrupt:
-        after = _leave
-    finally:
-        signal.signal(signal.SIGINT, after)
-    return found
+_ending = threading.Event()
+"""In a process of the pool: no more projects are begun."""
 
 
-def _deaf(*_: object) -> None:
-    """Between two tasks Ctrl-C is the parent's business."""
+def _until_the_end(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:
+    """The same in a process of the pool, up to the project in work when the batch is told to end."""
+    return [one(project, order, parent) for project in projects if not _ending.is_set()]
 
 
-def _leave(*_: object) -> None:
-    """The same once a task was interrupted: no more tasks are begun."""
+def _start(told: Connection) -> None:
+    """A process of the pool begins: signals are its parent's business, and it does not outlive its parent."""
+    for name in ("SIGINT", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
+    # The pool ends the others so when one of them was killed.
+    signal.signal(signal.SIGTERM, lambda *_: threading.Thread(target=_end).start())
+    threading.Thread(target=_watch, args=(told,), daemon=True).start()
 
 
-def _start() -> None:
-    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
-        signal.signal(signal.SIGINT, _deaf)
+def _watch(told: Connection) -> None:
+    """Wait until the parent tells the end of the batch, or is no more."""
+    above = multiprocessing.parent_process()
+    assert above is not None
+    if above.sentinel not in wait([above.sentinel, told]):
+        _ending.set()
+        wait([above.sentinel])
+    _end()
+
+
+def _end() -> None:
+    with files.WRITING:
+        os._exit(1)
 
 
 def _chunks(projects: Sequence[str], size: int) -> list[Sequence[str]]:
@@ -108,7 +114,10 @@ def processors() -> int:
 
 
 def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> Iterator[Outcome]:
-    """Build projects in ``workers`` processes; outcomes as they come."""
+    """Build projects in ``workers`` processes; outcomes as they come.
+
+    A signal that asks for the end lets each process finish the project in its hands; :class:`Stopped` comes after their outcomes.
+    """
     workers = min(workers, len(projects))
     if workers <= 1:
         for project in projects:
@@ -116,17 +125,43 @@ def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> It
         return
     chunks = _chunks(projects, max(1, min(LARGEST_CHUNK, len(projects) // (workers * CHUNKS_EACH))))
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
-    pool = ProcessPoolExecutor(workers, multiprocessing.get_context(method), initializer=_start)
+    context = multiprocessing.get_context(method)
+    told, tell = context.Pipe(duplex=False)
+    with told, tell, _signals(lambda: tell.send_bytes(b".")) as signals:
+        with ProcessPoolExecutor(workers, context, initializer=_start, initargs=(told,)) as pool:
+            tasks = {pool.submit(_until_the_end, chunk, order, parent): chunk for chunk in chunks}
+            for task in as_completed(tasks):
+                try:
+                    yield from task.result()
+                except BrokenProcessPool:
+                    if not signals:  # they went to all processes then
+                        why = "its process was killed, perhaps for want of memory: repeat the command with fewer --jobs"
+                        yield from (Outcome(project, why) for project in tasks[task])
+        if signals:
+            raise Stopped(signals[0])
+
+
+@contextmanager
+def _signals(act: Callable[[], None]) -> Iterator[list[int]]:
+    """What signals ask for the end meanwhile; at the first ``act`` is called, the second ends the program at once."""
+    found: list[int] = []
+
+    def hear(number: int, _: object) -> None:
+        if found:
+            os._exit(128 + number)  # the processes of the pool notice
+        found.append(number)
+        act()
+
+    before: dict[int, Any] = {}
+    if threading.current_thread() is threading.main_thread():
+        numbers = (getattr(signal, name, None) for name in ("SIGINT", "SIGTERM", "SIGHUP"))
+        for number in (n for n in numbers if n is not None and signal.getsignal(n) != signal.SIG_IGN):
+            before[number] = signal.signal(number, hear)
     try:
-        tasks = {pool.submit(_interruptible, chunk, order, parent): chunk for chunk in chunks}
-        for task in as_completed(tasks):
-            try:
-                yield from task.result()
-            except BrokenProcessPool:
-                why = "its process was killed, perhaps for want of memory: repeat the command with fewer --jobs"
-                yield from (Outcome(project, why) for project in tasks[task])
+        yield found
     finally:
-        pool.shutdown(cancel_futures=True)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: str) -> Iterator[Outcome]:
@@ -182,7 +217,7 @@ def _refuse_common_folders(names: Iterable[str]) -> None:
         inside = name
         if name.endswith(catalogue.SUFFIX):
             try:
-                inside = str(tomllib.loads(Path(name).read_text(encoding="utf-8-sig"))["project"]["name"])
+                inside = str(tomllib.loads(texts.decoded(Path(name).read_bytes()).text)["project"]["name"])
             except (OSError, ValueError, KeyError, TypeError):
                 continue  # its own message comes when it is built
         folder = folder_name(inside)
@@ -196,10 +231,10 @@ def summary(done: Sequence[Outcome], parent: Path, seconds: float) -> str:
     """One line that tells what a batch came to."""
     built = [o for o in done if not o.problem]
     new = [o for o in built if o.made]
-    files, size = sum(o.made for o in new), sum(o.size for o in new)
+    count, size = sum(o.made for o in new), sum(o.size for o in new)
     parts = [f"{len(new)} built" if new else "", f"{len(built) - len(new)} unchanged" if len(built) > len(new) else "",
              f"{len(done) - len(built)} failed" if len(done) > len(built) else ""]
-    return (f"{parent}: {', '.join(filter(None, parts))}; {files} files, {size / 1e6:.1f} MB of sheets "
+    return (f"{parent}: {', '.join(filter(None, parts))}; {count} files, {size / 1e6:.1f} MB of sheets "
             f"in {seconds:.1f} s, {len(done) / seconds:.2g} projects/s")
 
 

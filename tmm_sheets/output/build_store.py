@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import blake2b
@@ -83,6 +83,11 @@ class Folder:
         """Refuse a place that cannot be written, before any work is done for it."""
         files.check_folder(self.place)
 
+    def sweep(self, names: Iterable[str]) -> None:
+        """Remove what killed builds left of these files."""
+        for name in (*names, RECORD):
+            files.sweep(self.place / name)
+
     def path(self, name: str) -> Path:
         """Path to tell the user."""
         return self.place / name
@@ -110,6 +115,10 @@ class Archive:
         files.check_folder(self.place.parent)
         if self.place.exists() and not zipfile.is_zipfile(self.place):
             raise BadInput(Problem("expected a zip file", str(self.place), hint="choose another place with -o"))
+
+    def sweep(self, names: Iterable[str]) -> None:
+        """Remove what killed builds left of the archive."""
+        files.sweep(self.place)
 
     def path(self, name: str) -> Path:
         """Path to tell the user."""

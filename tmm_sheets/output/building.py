@@ -81,6 +81,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     numbers = chosen(variant, order.sheets)
     outlet.check()
     wanted = {(form, n): f"sheet{n}.{SUFFIXES.get(form, form)}" for form in order.formats for n in numbers}
+    outlet.sweep(wanted.values())
     inputs = fingerprint(program(), variant.text)
     set_so = {form: repr(sorted(order.settings.get(form, {}).items())) for form in order.formats}
     made_from = {name: fingerprint(inputs, set_so[form]) for (form, _), name in wanted.items()}

@@ -29,10 +29,11 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails
 
-from tmm_sheets import resources
+from tmm_sheets import resources, texts
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.task import synthesis_refs, units
 from tmm_sheets.task.cam_keys import check_cam
+from tmm_sheets.task.letters import check_letters, freed
 from tmm_sheets.task.names import check_names
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
 
@@ -743,13 +744,10 @@ def read(path: Path | str) -> Variant:
     except OSError as e:
         raise BadInput(Problem(f"cannot be read: {e.strerror}", file)) from None
     try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as e:
-        line = data.count(b"\n", 0, e.start) + 1
-        raise BadInput(
-            Problem("not UTF-8 text", file, line, hint="save the file in the encoding UTF-8, not in cp1251 or UTF-16")
-        ) from None
-    return parse(text, file)
+        text, note = texts.decoded(data)
+    except texts.NotText as e:
+        raise BadInput(Problem(str(e), file, e.line, hint="save the file in the encoding UTF-8")) from None
+    return parse(texts.cleaned(text), file, (note,) if note else ())
 
 
 def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
@@ -761,6 +759,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
     except RecursionError:
         raise BadInput(Problem("lists or tables are nested too deeply", file)) from None
     lines = scan(text)
+    data = freed(data)
     data, found = _with_synthesis(data, file)
     problems = [_problem(file, lines, *one) for one in found]
     variant = None
@@ -768,7 +767,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
         variant = Variant.model_validate(data)
     except ValidationError as e:
         problems += [_problem(file, lines, *_said(error)) for error in e.errors()]
-    problems += [_problem(file, lines, *found) for check in (check_names, check_cam) for found in check(data)]
+    problems += [_problem(file, lines, *found) for check in (check_names, check_cam, check_letters) for found in check(data)]
     if problems or variant is None:
         raise BadInput(sorted(set(problems), key=lambda p: (p.line or 0, p.field)))
     variant._file = file

@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from io import BytesIO, StringIO
 from itertools import chain, pairwise
 from math import isfinite, radians
@@ -21,7 +21,7 @@ import numpy as np
 from tmm_sheets.compare.cad.cad_ink import Area, CadInk, Entity, Space, Stroke, Writing, resized
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -31,12 +31,23 @@ UNITS = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 1
 """Millimetres of $INSUNITS."""
 FINE = 5e-6
 """Sagitta of flattened curves, in diagonals of the drawing (0.005 mm on a sheet A1)."""
+COARSEST = 1e-7
+"""Least sagitta of a flattened curve in its own sizes: a circle that is vast beside the drawing still has 7000 chords at most."""
+LARGEST = 64_000_000
+"""Bytes of the largest file; a sheet has 0.1 to 20 million. Read, it takes ten times as much."""
+MOST_PARTS, MOST_POINTS = 200_000, 4_000_000
+"""Most primitives and points of a drawing with its blocks taken apart; a sheet with lettering in strokes has 30,000 and 200,000."""
+DEEPEST = 20
+"""Blocks within blocks."""
+MOST_HATCH = 20_000
+"""Lines of one hatching that are drawn."""
 NARROW = 0.62
 """Average width of a letter in heights, where the font is not known."""
 UNREAD = {"3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "IMAGE", "OLE2FRAME", "ACAD_PROXY_ENTITY", "PDFUNDERLAY", "WIPEOUT"}
 BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
 """Codes of line weights."""
 PRIMITIVE = {"LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"}
+SMALLER = "save only the sheet itself: without other drawings, unused blocks purged, arrays and dense hatchings removed"
 SILENT = {"POINT", "VIEWPORT", "ATTDEF", "RAY", "XLINE", "LIGHT", "SUN"}
 
 
@@ -47,10 +58,12 @@ def read(path: Path) -> CadInk:
     ------
     BadInput
         When there is no such file, it is empty, is a DWG or no DXF at all, or has nothing drawn in it.
+    CannotBuild
+        When the file, or what its blocks and curves come to, is too large.
     """
     document, notes = _open(path)
     unit = UNITS.get(int(document.header.get("$INSUNITS", 0)))
-    reader = _Reader(document)
+    reader = _Reader(document, path)
     model = reader.space("model space", document.modelspace())
     spaces = [model]
     for layout in document.layouts:
@@ -74,6 +87,9 @@ def _open(path: Path) -> tuple[Document, list[str]]:
 
     hint = "save the drawing as DXF (AutoCAD: DXFOUT or Save as; KOMPAS: Сохранить как, DXF)"
     try:
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise CannotBuild(f"{path}: {size / 1e6:.0f} MB are more than can be handled ({LARGEST / 1e6:.0f})", SMALLER)
         with path.open("rb") as file:
             head = file.read(1 << 16)
     except OSError as e:
@@ -151,8 +167,11 @@ class _Look(NamedTuple):
 class _Reader:
     """Takes entities apart, counting what it cannot read."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, file: Path) -> None:
         self.document = document
+        self.file = file
+        self.parts = self.points = 0
+        self.weights: dict[str, int] = {}
         self.hidden = {"defpoints"}
         self.frozen: set[str] = set()
         self.patterns = {line.dxf.name.lower(): _pattern(line) for line in document.linetypes}
@@ -186,12 +205,24 @@ class _Reader:
             found.append("some of the drawing has heights (z): it is seen from above")
         return found
 
+    def count(self, parts: int = 0, points: int = 0) -> None:
+        """Take what was found into account: small files may come to more than the memory holds."""
+        self.parts += parts
+        self.points += points
+        if self.parts > MOST_PARTS or self.points > MOST_POINTS:
+            what = f"{MOST_PARTS} entities" if self.parts > MOST_PARTS else f"{MOST_POINTS} points"
+            raise CannotBuild(f"{self.file}: with its blocks, arrays and curves taken apart it has more than {what}", SMALLER)
+
     def space(self, name: str, layout: Any) -> Space:
         """Everything drawn in a layout."""
         entities: list[Entity] = []
         strokes: list[Stroke] = []
         areas: list[Area] = []
         writings: list[Writing] = []
+        try:
+            self.count(parts=self._weight(layout))
+        except RecursionError:
+            raise CannotBuild(f"{self.file}: its blocks are nested too deeply", SMALLER) from None
         parts = list(self._parts(layout))
         fine = self._fine(e for _, e, _ in parts)
         for outer, e, look in parts:
@@ -216,8 +247,11 @@ class _Reader:
                     lines, outlines = _hatch(e, fine)
                     areas.extend(Area(p, n, not lines) for p in outlines)
                     strokes.extend(Stroke(p, n) for p in lines)
+                    self.count(len(lines), sum(map(len, outlines)))
                 else:
-                    strokes.extend(Stroke(p, n) for p in self._lines(e, kind, fine))
+                    for p in self._lines(e, kind, fine):
+                        strokes.append(Stroke(p, n))
+                        self.count(points=len(p))
                     areas.extend(Area(p, n) for p in _wide(e, kind))
             except (ValueError, TypeError, AttributeError, ZeroDivisionError, KeyError, IndexError, ArithmeticError):
                 self.unread[kind] += 1  # a broken entity must not hide the others
@@ -255,7 +289,20 @@ class _Reader:
             except (ValueError, TypeError, AttributeError, KeyError, ZeroDivisionError, RecursionError):
                 self.unread[e.dxftype()] += 1
 
-    def _apart(self, e: Any, of: _Look | None) -> Iterator[tuple[DXFEntity, _Look]]:
+    def _weight(self, entities: Iterable[Any]) -> int:
+        """How many entities these come to with their blocks taken apart; a block in itself counts once."""
+        total = 0
+        for e in entities:
+            total += 1
+            name = e.dxf.get("name", "") if e.dxftype() == "INSERT" else _geometry(e)
+            if name:
+                if name not in self.weights:
+                    self.weights[name] = 0
+                    self.weights[name] = self._weight(self.document.blocks.get(name) or ())
+                total += (max(e.mcount, 1) if e.dxftype() == "INSERT" else 1) * self.weights[name]
+        return total
+
+    def _apart(self, e: Any, of: _Look | None, within: tuple[str, ...] = ()) -> Iterator[tuple[DXFEntity, _Look]]:
         """Primitives of an entity; ``of`` is the look of the block reference or dimension it is part of."""
         from ezdxf.protocols import SupportsVirtualEntities, virtual_entities
 
@@ -266,12 +313,17 @@ class _Reader:
         if kind == "INSERT" and look.layer.lower() in self.frozen:  # unlike one on a layer that is only off
             self.skipped += 1
             return
+        name = str(e.dxf.get("name", "")).lower() if kind == "INSERT" else ""
+        if (name and name in within) or len(within) > DEEPEST:  # blocks that hold one another
+            self.unread[kind] += 1
+            return
         if kind == "INSERT" and e.mcount > 1:
             inner = e.multi_insert()
         else:
+            within = (*within, name) if name else within
             inner = chain(e.attribs if kind == "INSERT" else (), virtual_entities(e))
         for part in inner:
-            yield from self._apart(part, look)
+            yield from self._apart(part, look, within)
 
     def _look(self, e: Any, of: _Look | None) -> _Look:
         """What an entity does not say itself is told by its layer or, when it says so, by what it is part of."""
@@ -324,7 +376,7 @@ class _Reader:
             self.unread[kind] += 1
             return
         if kind in ("ARC", "CIRCLE", "ELLIPSE", "SPLINE"):  # as paths they would be Bezier curves, 0.03 % of the radius off
-            vertices = list(e.flattening(fine))
+            vertices = list(e.flattening(max(fine, COARSEST * _extent(e, kind))))
             self._high(*(v.z for v in vertices))
             yield _xy(vertices)
             return
@@ -347,6 +399,19 @@ class _Reader:
     def _high(self, *z: float) -> None:
         if not self.heights and max(map(abs, z), default=0.0) > 1e-6:
             self.heights.append(max(map(abs, z)))
+
+
+def _geometry(e: Any) -> str:
+    """Name of the block a dimension or a table is drawn by, if it has one."""
+    return str(e.dxf.get("geometry", "") or "") if e.dxf.is_supported("geometry") else ""
+
+
+def _extent(e: Any, kind: str) -> float:
+    """Rough size of a curve."""
+    if kind == "SPLINE":
+        points = np.array([tuple(p) for p in (e.control_points if len(e.control_points) else e.fit_points)])
+        return float(np.ptp(points, axis=0).max(initial=0.0)) if len(points) else 0.0
+    return float(e.dxf.major_axis.magnitude if kind == "ELLIPSE" else abs(e.dxf.radius))
 
 
 def _xy(vertices: Any) -> Points:
@@ -403,7 +468,7 @@ def _hatch(e: Any, fine: float) -> tuple[list[Points], list[Points]]:
     lines = []
     try:
         for k, (a, b) in enumerate(hatching.hatch_entity(e)):
-            if k > 20_000:
+            if k > MOST_HATCH:
                 break
             lines.append(np.array([complex(a.x, a.y), complex(b.x, b.y)]))
     except hatching.HatchingError:

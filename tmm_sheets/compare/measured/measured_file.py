@@ -17,6 +17,7 @@ from math import degrees, isfinite
 from pathlib import Path
 from typing import Literal
 
+from tmm_sheets import texts
 from tmm_sheets.compare.measured.measurable import DEGREES, MILLIMETRES, Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput, Problem
@@ -161,22 +162,13 @@ def _bytes(path: Path) -> bytes:
 
 
 def _decoded(data: bytes, name: str, notes: list[str]) -> str:
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        notes.append(f"{name}: read as UTF-16")
-        encodings = ["utf-16"]
-    else:
-        encodings = ["utf-8-sig"]
-    for encoding in encodings:
-        try:
-            text = data.decode(encoding)
-        except UnicodeDecodeError:
-            break
-        if "\0" not in text:
-            return text
-    if b"\0" in data:
-        raise BadInput(Problem("not a text file", name, hint="save it as CSV, UTF-8"))
-    notes.append(f"{name}: read in code page 1251, it is not UTF-8")
-    return data.decode("cp1251", errors="replace")
+    try:
+        text, note = texts.decoded(data)
+    except texts.NotText as e:
+        raise BadInput(Problem(str(e), name, e.line, hint="save it as CSV, UTF-8")) from None
+    if note:
+        notes.append(f"{name}: {note}")
+    return texts.cleaned(text)
 
 
 def _check_project(text: str, name: str, project: str) -> None:

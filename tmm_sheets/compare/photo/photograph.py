@@ -7,6 +7,8 @@ rendered by pypdfium2. Both come with the extra ``compare``.
 from __future__ import annotations
 
 from importlib.util import find_spec
+from io import BytesIO
+from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,7 +22,15 @@ Grey = npt.NDArray[np.uint8]
 LEAST_PIXELS = 2_000_000
 """Below this the thin lines of an A1 sheet are a third of a pixel wide."""
 MOST_PIXELS = 400_000_000
-PDF_DPI = 200.0
+"""A scan of an A1 sheet at 600 dpi has 280 million and takes 0.6 GB. More, which a small file may hold, is not even decoded."""
+LONGEST_SIDE = 32_000
+"""Pixels of a side that OpenCV can straighten (16 bits)."""
+LARGEST = 1_500_000_000
+"""Bytes of the largest file that is read."""
+BAND = 4_000_000
+"""Pixels with transparency that are put on white at once."""
+PDF_DPI, MM = 200.0, 72 / 25.4
+SMALLER = "scan at 300 dpi in grey: A1 is 9930 x 7020 pixels then, more does not help"
 PNG, WITH_ALPHA = b"\x89PNG\r\n\x1a\n", (b"\4", b"\6")
 """Beginning of a PNG file, and its colour types with transparency."""
 SHOW = 'a photograph or scan as JPG, PNG or PDF, for example "compare PROJECT --sheet 1 --image photo.jpg"'
@@ -53,10 +63,13 @@ def read(path: Path) -> Picture:
     BadInput
         When the file is missing, empty or no image, or a library is missing.
     CannotBuild
-        When the image has too few pixels.
+        When the image has too few pixels, or more than the memory is to hold.
     """
     need_opencv()
     try:
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise CannotBuild(f"{path}: {size / 1e9:.1f} GB are more than can be read ({LARGEST / 1e9:.1f} GB)", SMALLER)
         data = path.read_bytes()
     except FileNotFoundError:
         raise BadInput(Problem("there is no such file", str(path), hint=f"expected {SHOW}")) from None
@@ -79,15 +92,38 @@ def read(path: Path) -> Picture:
             hint="take the picture with at least 8 million pixels, the sheet filling it; messengers shrink pictures, so send it as "
             "a file",
         )
-    if pixels > MOST_PIXELS:
-        raise CannotBuild(f"{path}: {pixels / 1e6:.0f} million pixels are more than can be handled", hint="scan at 300 dpi or less")
+    _refuse_large(grey.shape[1], grey.shape[0], path)
     return Picture(grey, notes)
+
+
+def _refuse_large(width: int, height: int, path: Path, side: int = LONGEST_SIDE) -> None:
+    """Refuse a picture that would fill the memory, or has a longer side than that."""
+    if width * height > MOST_PIXELS or max(width, height) > side:
+        raise CannotBuild(f"{path}: {width} x {height} pixels are more than can be handled: at most "
+                          f"{MOST_PIXELS / 1e6:.0f} million, {LONGEST_SIDE} along a side", SMALLER)  # fmt: skip
+
+
+def _size(data: bytes) -> tuple[int, int] | None:
+    """Width and height an image file says it has; None when it does not."""
+    from PIL import Image
+
+    most, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None  # it has a limit of its own, which does not know A1
+    try:
+        with Image.open(BytesIO(data)) as image:
+            return image.size
+    except Exception:  # each format has its own ways to be damaged; OpenCV may still read it
+        return None
+    finally:
+        Image.MAX_IMAGE_PIXELS = most
 
 
 def _decoded(data: bytes, path: Path) -> tuple[Any, tuple[str, ...]]:
     """Grey pixels of an image file, None when there are none; what is transparent is white paper."""
     import cv2
 
+    size = _size(data)
+    if size is not None:
+        _refuse_large(*size, path)
     raw = np.frombuffer(data, np.uint8)
     log = cv2.utils.logging.getLogLevel()
     cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what it has to say of a damaged file is told here
@@ -95,18 +131,40 @@ def _decoded(data: bytes, path: Path) -> tuple[Any, tuple[str, ...]]:
         if data[:8] == PNG and data[25:26] in WITH_ALPHA:
             with_alpha: Any = cv2.imdecode(raw, cv2.IMREAD_UNCHANGED)
             if with_alpha is not None and with_alpha.ndim == 3 and with_alpha.shape[2] == 4:
-                most = np.iinfo(with_alpha.dtype).max
-                opaque = with_alpha[:, :, 3]
-                if int(opaque.min()) < most:
-                    seen = cv2.cvtColor(with_alpha[:, :, :3], cv2.COLOR_BGR2GRAY).astype(np.float32)
-                    paper = opaque.astype(np.float32) / most
-                    whole = 255 - paper * (255 - seen * np.float32(255 / most))
-                    return whole.round().astype(np.uint8), (f"{path.name} is transparent; it was put on white",)
+                if int(with_alpha[:, :, 3].min()) < np.iinfo(with_alpha.dtype).max:
+                    return _on_white(with_alpha), (f"{path.name} is transparent; it was put on white",)
+                del with_alpha
         return cv2.imdecode(raw, cv2.IMREAD_GRAYSCALE), ()
     except cv2.error:
         return None, ()
     finally:
         cv2.utils.logging.setLogLevel(log)
+
+
+def _pixels_of(image: Any) -> tuple[int, int]:
+    """Width and height of an image on the page of a PDF."""
+    import ctypes
+
+    from pypdfium2 import raw
+
+    width, height = ctypes.c_uint(), ctypes.c_uint()
+    raw.FPDFImageObj_GetImagePixelSize(image, width, height)
+    return width.value, height.value
+
+
+def _on_white(with_alpha: Any) -> Grey:
+    """Grey pixels of a picture (BGR and opacity) on white paper, a band of rows after the other."""
+    import cv2
+
+    most = np.iinfo(with_alpha.dtype).max
+    whole = np.empty(with_alpha.shape[:2], np.uint8)
+    rows = max(1, BAND // with_alpha.shape[1])
+    for k in range(0, len(whole), rows):
+        band = with_alpha[k : k + rows]
+        seen = cv2.cvtColor(band[:, :, :3], cv2.COLOR_BGR2GRAY).astype(np.float32)
+        paper = band[:, :, 3].astype(np.float32) / most
+        whole[k : k + rows] = (255 - paper * (255 - seen * np.float32(255 / most))).round()
+    return whole
 
 
 def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
@@ -128,6 +186,11 @@ def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
             raise BadInput(Problem("the PDF has no page", str(path), hint=f"expected {SHOW}"))
         page = document[0]
         width, height = page.get_size()
+        if not (isfinite(width) and isfinite(height) and 0 < max(width, height) <= 5 * min(width, height)):
+            raise CannotBuild(f"{path}: the page of {width / MM:.0f} x {height / MM:.0f} mm is not that of a sheet",
+                              hint="scan or print the whole sheet, A1, to one page")
+        for image in page.get_objects(filter=[pypdfium2.raw.FPDF_PAGEOBJ_IMAGE]):
+            _refuse_large(*_pixels_of(image), path, MOST_PIXELS)  # shrunk when the page is drawn, but decoded before
         scale = min(PDF_DPI / 72, (0.5 * MOST_PIXELS / max(width * height, 1.0)) ** 0.5)
         # Scans are often put on a page of another size than the paper's: as many pixels as A1 has at this resolution then.
         scale = max(scale, (30e6 / max(width * height, 1.0)) ** 0.5)
