@@ -237,9 +237,11 @@ def derivatives(s: State, gravity: float) -> Iterator[Residual]:
         # The plan's velocities belong to one speed of the crank.
         rate = slope(other.v[name]) * w + s.v[name][k] * e / w
         yield "derivative of velocity = acceleration", np.abs(rate - s.a[name][k]) / s.sharpest[k]
-    kinetic, potential = (a[k] for a in _energy(s, gravity))
-    change = slope(sum(_energy(other, gravity))) * w + 2 * kinetic * e / w
-    scale = (kinetic + np.abs(potential)) * (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k] + _powers(s, gravity)[k]
+    beside = _energy(other, gravity)
+    change = slope(sum(beside)) * w + 2 * _energy(s, gravity)[0][k] * e / w
+    # The energies beside the position: in it everything may stand still.
+    kinetic, potential = (np.abs(x).reshape(around.shape).max(axis=0) for x in beside)
+    scale = (kinetic + potential) * (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k] + powers(s, gravity)[k]
     scale = scale * (s.reach / s.size)[k]
     yield "power = change of energy", np.where(scale > 0, np.abs(balancing(s, gravity)[k] * w - change) / scale, 0.0)
 
@@ -255,7 +257,7 @@ def _energy(s: State, gravity: float) -> tuple[Any, Any]:
     return kinetic, potential
 
 
-def _powers(s: State, gravity: float) -> Any:
+def powers(s: State, gravity: float) -> Any:
     """Sum of the magnitudes of all powers, W."""
     total = np.zeros(s.phi.shape)
     for link in s.m.links.values():
