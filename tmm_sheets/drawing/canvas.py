@@ -55,13 +55,15 @@ class Note:
 class Part(NamedTuple):
     """A view, or a titled part of one: its marks are those from ``first`` to where the next part begins.
 
-    ``draw`` is the view's name in the arrangement, ``title`` what stands over it on the sheet (lettering markup, may be empty).
+    ``draw`` is the view's name in the arrangement, ``title`` what stands over it on the sheet (lettering markup, may be empty);
+    ``scales`` is how many scale factors were chosen before.
     """
 
     first: int
     draw: str
     title: str
     box: Box
+    scales: int = 0
 
 
 class Group(NamedTuple):
@@ -97,7 +99,7 @@ class Canvas:
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
-        self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box))
+        self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box, len(self.scales)))
 
     def _one(self, kind: Literal["arrow", "dot", "hatch", "lettering"], first: int, text: str = "") -> None:
         if len(self.marks) > first:

@@ -239,10 +239,11 @@ def derivatives(s: State, gravity: float) -> Iterator[Residual]:
         yield "derivative of velocity = acceleration", np.abs(rate - s.a[name][k]) / s.sharpest[k]
     beside = _energy(other, gravity)
     change = slope(sum(beside)) * w + 2 * _energy(s, gravity)[0][k] * e / w
-    # The energies beside the position: in it everything may stand still.
-    kinetic, potential = (np.abs(x).reshape(around.shape).max(axis=0) for x in beside)
-    scale = (kinetic + potential) * (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k] + powers(s, gravity)[k]
-    scale = scale * (s.reach / s.size)[k]
+    # The kinetic energy beside the position: in it everything may stand still. Heights are rounded to a share of the reach.
+    kinetic = beside[0].reshape(around.shape).max(axis=0)
+    weight = gravity * sum(link.mass for link in s.m.links.values())
+    rate = (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k]
+    scale = (kinetic * rate + powers(s, gravity)[k]) * (s.reach / s.size)[k] + weight * s.reach[k] * rate
     yield "power = change of energy", np.where(scale > 0, np.abs(balancing(s, gravity)[k] * w - change) / scale, 0.0)
 
 
