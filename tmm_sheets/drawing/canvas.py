@@ -85,13 +85,15 @@ class Canvas:
     """Collects the marks of a sheet.
 
     ``of`` names the construction step or view the following marks belong to; it ends up on each mark.
-    ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results.
+    ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results; ``chosen``
+    are the names of those that a project file may set.
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again.
     """
 
     marks: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     scales: dict[str, Any] = field(default_factory=dict)
+    chosen: set[str] = field(default_factory=set)
     of: str = ""
     parts: list[Part] = field(default_factory=list)
     groups: list[Group] = field(default_factory=list)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from cmath import rect
 from dataclasses import dataclass
+from math import ceil, floor, pi
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from tmm_sheets.construction.scale import handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import polyline_inside
 from tmm_sheets.drawing.labels import text_box
-from tmm_sheets.drawing.marks import Mark, Points, Text, flat
+from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Text, flat
 
 TOUCH = 2.0
 """So far lines of a view may come out of its box, mm: a quarter of the distance between views, and what indices need."""
@@ -53,22 +55,40 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
     views = _views(canvas)
     for k, (lines, labels) in enumerate(_ink(canvas)):
         part = canvas.parts[k]
-        view = views[k]
         if part.draw in ("title block", "labels"):
             continue
-        beside = [other.box for other, v in zip(canvas.parts, views, strict=True)
-                  if v is view and other.title and _apart(other.box, part.box)]
+        others = [other.box for other, v in zip(canvas.parts, views, strict=True)
+                  if v is views[k] and other.title and _apart(other.box, part.box)]
         worst: tuple[float, str, str] | None = None
-        for marks, slack in ((lines, TOUCH), (labels, BESIDE)):
+        for marks, slack, beside in ((lines, TOUCH, others), (labels, BESIDE, [])):
             for mark in marks:
-                p = text_box(mark) if isinstance(mark, Text) else flat(mark)
-                here = _beyond(p, part.box, view, beside if marks is lines else [], slack, _tie(mark))
-                for out in (here, _across(p, frame, title_block)):
-                    if out is not None and (worst is None or out > worst):
-                        worst = out
+                if _surely_inside(mark, part.box):
+                    continue
+                p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
+                out = _across(p, frame, title_block) or (None if _tie(mark) else _beyond(p, part.box, views[k], beside, slack))
+                worst = max(worst, out) if worst and out else worst or out
         if worst is not None:
             found.append(Leaving(_plain(part.title or part.draw), *worst, _scales(canvas, k)))
     return found
+
+
+WIDEST = 1.2
+"""No letter is wider, in heights."""
+
+
+def _surely_inside(mark: Mark, box: Box) -> bool:
+    """True for most of what keeps its place, without arrays; False asks for a closer look."""
+    if isinstance(mark, Line):
+        return box.contains(mark.a) and box.contains(mark.b)
+    if isinstance(mark, Arc):
+        quarters = range(ceil(2 * mark.start / pi), floor(2 * mark.end / pi) + 1)
+        ends = [mark.start, mark.end, *(k * pi / 2 for k in quarters)]
+        return all(box.contains(mark.centre + rect(mark.radius, t)) for t in ends)
+    if isinstance(mark, Text):
+        reach = WIDEST * mark.height * (len(mark.text) + 1)
+        return box.x0 + reach <= mark.at.real <= box.x1 - reach and box.y0 + reach <= mark.at.imag <= box.y1 - reach
+    x, y = mark.points.real, mark.points.imag
+    return bool(box.x0 <= x.min() and x.max() <= box.x1 and box.y0 <= y.min() and y.max() <= box.y1)
 
 
 def _views(canvas: Canvas) -> list[Box]:
@@ -107,10 +127,8 @@ def _outside(p: Points, box: Box) -> tuple[float, str]:
     return float(out[k]), SIDES[k]
 
 
-def _beyond(p: Points, box: Box, view: Box, beside: list[Box], slack: float, tie: bool) -> tuple[float, str, str] | None:
+def _beyond(p: Points, box: Box, view: Box, beside: list[Box], slack: float) -> tuple[float, str, str] | None:
     """How far a mark leaves its view, or comes into the part beside its own."""
-    if tie:
-        return None
     by, side = _outside(p, view)
     if by > slack:
         return by, side, ""
@@ -134,12 +152,12 @@ def _across(p: Points, frame: Box, title_block: Box) -> tuple[float, str, str] |
 
 
 def _scales(canvas: Canvas, k: int) -> tuple[tuple[str, float], ...]:
-    """Scale factors a part is drawn with: those chosen since the part before it began."""
+    """Scale factors a part is drawn with that a project file may set: those chosen since the part before it began."""
     parts = canvas.parts
-    begin = parts[k - 1].scales if k and parts[k].title else parts[k].scales
     last = k + 1 == len(parts) or not parts[k + 1].title
+    begin = parts[k - 1].scales if parts[k].title else parts[k].scales
     end = parts[k].scales if not last else parts[k + 1].scales if k + 1 < len(parts) else len(canvas.scales)
-    return tuple((name, scale.mu) for name, scale in list(canvas.scales.items())[begin:end])
+    return tuple((name, canvas.scales[name].mu) for name in list(canvas.scales)[begin:end] if name in canvas.chosen)
 
 
 def _plain(title: str) -> str:
