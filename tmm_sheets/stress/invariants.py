@@ -13,6 +13,7 @@ afterwards. So the condition is that of the size, and what it multiplies is a sh
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -49,21 +50,36 @@ class State:
         self.phi = np.asarray(phi, dtype=float)
         self.positions: Positions = position_plan(m, self.phi)
         self.velocities: Velocities = velocity_plan(self.positions)
-        self.accelerations: Accelerations = acceleration_plan(self.velocities)
         self.z = {name: self.spread(step) for name, step in self.positions.points.items()}
         self.v = {name: self.spread(step) for name, step in self.velocities.points.items()}
-        self.a = {name: self.spread(step) for name, step in self.accelerations.points.items()}
         self.u = {name: self.spread(step) for name, step in self.positions.directions.items()}
         self.omega = {name: self.spread(step) for name, step in self.velocities.omega.items()}
-        self.epsilon = {name: self.spread(step) for name, step in self.accelerations.epsilon.items()}
         pivot = m.fixed[m.crank.pivot]
         self.size = self.largest({name: z - pivot for name, z in self.z.items()}) + m.crank.length
         self.reach = self.size + abs(pivot)
         self.built = ~np.isnan(sum(self.z.values()))
 
+    # Nobody asks for accelerations where only positions and velocities are differentiated.
+
+    @cached_property
+    def accelerations(self) -> Accelerations:
+        """The acceleration plan."""
+        return acceleration_plan(self.velocities)
+
+    @cached_property
+    def a(self) -> dict[str, Any]:
+        """Accelerations of the points, m/s2."""
+        return {name: self.spread(step) for name, step in self.accelerations.points.items()}
+
+    @cached_property
+    def epsilon(self) -> dict[str, Any]:
+        """Angular accelerations of the links, rad/s2."""
+        return {name: self.spread(step) for name, step in self.accelerations.epsilon.items()}
+
     def spread(self, step: Any) -> Any:
         """Values of a step, one a position."""
-        return np.broadcast_to(step.value, self.phi.shape)
+        value = step.value
+        return value if np.shape(value) == self.phi.shape else np.broadcast_to(value, self.phi.shape)
 
     def largest(self, values: dict[str, Any]) -> Any:
         """Largest magnitude a position, of what there is."""
