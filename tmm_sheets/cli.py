@@ -202,6 +202,8 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool) -
         built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
     for path in built.paths:
         click.echo(path)
+    for warning in built.warnings:
+        click.echo(f"{variant.project.name}: {warning}", err=True)
     unchanged = len(built.paths) - len(built.sizes)
     if unchanged:
         told = f"{unchanged} of {len(built.paths)} files unchanged (--force makes them again)"

@@ -17,6 +17,7 @@ from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
 from tmm_sheets.stress import report, truth
 from tmm_sheets.stress.cases import BOUNDS, SCENES, memory, run_case
+from tmm_sheets.stress.invariants import State
 
 CASES = 10 * len(SCENES)
 
@@ -83,6 +84,83 @@ def test_decimal_truth_knows_what_does_not_assemble():
         limit = mpmath.asin(mpmath.mpf(0.05) / mpmath.mpf(0.1))
         assert truth.motion(m, float(limit - mpmath.mpf("1e-15"))) is not None
         assert truth.motion(m, float(limit + mpmath.mpf("1e-15"))) is None
+
+
+# --- what the data decide, not the arithmetic ------------------------------------------------------------------------
+
+
+def errors(m, phi):
+    """Largest error of the velocities of the hinge C, m/s, and of its accelerations, m/s2, against 50 digits."""
+    s, true = State(m, [phi]), fifty_digits.motion(m, phi)
+    return tuple(float(abs(mpmath.mpmathify(complex(got["C"][0])) - want["C"])) for got, want in ((s.v, true.v), (s.a, true.a)))
+
+
+@pytest.mark.parametrize("way", [1e3, 1e4, 1e7, -1e10])
+@pytest.mark.parametrize("direction", [0.3, -2.0, 1.57])
+def test_a_guide_given_far_away_is_as_exact_as_a_near_one(way, direction):
+    through = 0.02j * np.exp(1j * direction) + way * np.exp(1j * direction)
+    g = StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",))
+    m = mechanism(g, guides=[Guide("x", "0", complex(through), direction)])
+    for phi in (0.3, -2.0, 3.0):
+        s, true = State(m, [phi]), truth.motion(m, phi)
+        for got, want in ((s.z, true.z), (s.v, true.v), (s.a, true.a)):
+            assert abs(got["C"][0] - want) < 1e-15 * max(abs(got["B"][0]), abs(want))
+
+
+def test_guides_near_the_mechanism_keep_their_own_point():
+    guide = Guide("x", "0", 0.3 + 0.1j, 0.3)
+    m = mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",)), guides=[guide])
+    assert positions.near_point(m, guide) == guide.through
+
+
+def moved(m, phi, name, by):
+    """How much farther off, exactly, velocity and acceleration of C are when a fixed point is moved."""
+    with mpmath.workdps(50):
+        other = replace(m, fixed=m.fixed | {name: mpmath.mpmathify(m.fixed[name]) + by})
+        here, there = fifty_digits.motion(m, phi), fifty_digits.motion(other, phi)
+        return tuple(float(abs(x["C"] - y["C"])) for x, y in ((here.v, there.v), (here.a, there.a)))
+
+
+@pytest.mark.parametrize("away", [1e4, 1e6])
+@pytest.mark.parametrize("phi", [0.4, -1.3, 2.9])
+def test_far_from_the_origin_half_a_unit_of_a_pivot_does_as_much(away, phi):
+    """The error of a mechanism far away is that of the numbers it is given by: pivots are doubles."""
+    at = away * np.exp(0.7j) * 1.0
+    m = mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), ()), fixed={"A": at, "D": at + 0.4 - 0.1j})
+    half = np.spacing(max(at.real, at.imag)) / 2
+    nature = np.max([moved(m, phi, "A", half * np.exp(1j * t)) for t in np.arange(0, 2 * np.pi, 0.5)], axis=0)
+    s = State(m, [phi])
+    found = errors(m, phi)
+    assert (np.array(found) < 4 * nature).all()
+    # And the scale of the residuals is that of what half a unit does.
+    for share, scale in ((nature[0], s.fastest), (nature[1], s.sharpest)):
+        assert 1e-19 < share / (scale * s.condition)[0] < 2e-15
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-5, 1e-7])
+def test_at_a_change_point_half_a_unit_of_the_rod_does_as_much(gap):
+    """Crank and rod of one length fold on the guide's perpendicular: the half-chord there is a difference of lengths."""
+    phi = float(np.pi / 2 - gap)
+    m = mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (0.1,), ("x",)), guides=[Guide("x", "0", 0j, 0.0)])
+    _, error = errors(m, phi)
+    with mpmath.workdps(50):
+        longer = replace(m, groups=(replace(m.groups[0], lengths=(mpmath.mpf(0.1) + np.spacing(0.1) / 2,)),))
+        nature = float(abs(fifty_digits.motion(m, phi).a["C"] - fifty_digits.motion(longer, phi).a["C"]))
+    assert error < nature
+
+
+def test_a_moving_guide_is_known_by_the_points_it_goes_through():
+    """Twice as near to each other, twice as much turns the guide: condition of a slider on a link."""
+    def slider(length):
+        guide = Guide("y", "2", "B", 0.0, "C")
+        rocker = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (length, 0.3), ())
+        slide = StructuralGroup(4, ("4", "5"), (), "E", (), ("y", "x"))
+        return State(mechanism(rocker, slide, fixed={"D": 0.2 + 0j}, guides=[guide, Guide("x", "0", 0.05 + 0j, 1.5)]), [0.3])
+
+    for length in (0.3, 0.2):
+        s = slider(length)
+        turned, across = s.size / length, abs(np.sin(np.angle(s.u["2"]) - 1.5))
+        assert s._condition(s.m.groups[1]) == pytest.approx(turned / across)
 
 
 # --- wrong formulas --------------------------------------------------------------------------------------------------

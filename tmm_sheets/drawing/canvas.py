@@ -55,13 +55,15 @@ class Note:
 class Part(NamedTuple):
     """A view, or a titled part of one: its marks are those from ``first`` to where the next part begins.
 
-    ``draw`` is the view's name in the arrangement, ``title`` what stands over it on the sheet (lettering markup, may be empty).
+    ``draw`` is the view's name in the arrangement, ``title`` what stands over it on the sheet (lettering markup, may be empty);
+    ``scales`` is how many scale factors were chosen before.
     """
 
     first: int
     draw: str
     title: str
     box: Box
+    scales: int = 0
 
 
 class Group(NamedTuple):
@@ -83,13 +85,15 @@ class Canvas:
     """Collects the marks of a sheet.
 
     ``of`` names the construction step or view the following marks belong to; it ends up on each mark.
-    ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results.
+    ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results; ``chosen``
+    are the names of those that a project file may set.
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again.
     """
 
     marks: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     scales: dict[str, Any] = field(default_factory=dict)
+    chosen: set[str] = field(default_factory=set)
     of: str = ""
     parts: list[Part] = field(default_factory=list)
     groups: list[Group] = field(default_factory=list)
@@ -97,7 +101,7 @@ class Canvas:
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
-        self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box))
+        self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box, len(self.scales)))
 
     def _one(self, kind: Literal["arrow", "dot", "hatch", "lettering"], first: int, text: str = "") -> None:
         if len(self.marks) > first:

@@ -50,6 +50,9 @@ class Crowded:
     text: str
     at: complex
 
+    def __str__(self) -> str:
+        return f'no free place for "{self.text}" at ({self.at.real:.0f}, {self.at.imag:.0f}): it stands over lines'
+
 
 def text_box(mark: Text) -> Points:
     """Corners of the rectangle round a run of text (slanted letters reach a little to the right of their advance)."""

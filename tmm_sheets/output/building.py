@@ -46,12 +46,16 @@ class Order:
 
 @dataclass(frozen=True)
 class Built:
-    """Files of a project in the order asked for, those of them that were made now with their sizes, and what was drawn."""
+    """Files of a project in the order asked for, those of them that were made now with their sizes, and what was drawn.
+
+    ``warnings`` tell what of it is not as a sheet should be: views that leave their places, labels without a free place.
+    """
 
     paths: tuple[Path, ...]
     sizes: Mapping[Path, int]
     drawings: Mapping[int, Drawing]
     opened: Project
+    warnings: tuple[str, ...] = ()
 
 
 def folder_name(project: str) -> str:
@@ -92,7 +96,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     # Only all sheets together can tell whether each scale factor of the file is of use.
     whole = len(numbers) == len(variant.sheets)
     check = whole and (order.force or record.whole != inputs)
-    drawings, used = {}, set()
+    drawings, used, warnings = {}, set(), []
     for n in numbers if check else sorted({n for _, n in due}):
         say(f"sheet {n}")
         with watch.phase(f"sheet {n}"):
@@ -101,6 +105,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
             composed = sheet.composed(opened, n)
         drawings[n] = composed.drawing
         used |= set(composed.scales)
+        warnings += [f"sheet {n}: {told}" for told in (*composed.leaving, *composed.crowded)]
     if check:
         _refuse_idle_scales(variant, used)
     made: dict[str, bytes] = {}
@@ -115,7 +120,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
         with watch.phase("write files"):
             keep(outlet, record, made, made_from, inputs if check else None)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
-    return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened)
+    return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened, tuple(warnings))
 
 
 def _refuse_idle_scales(variant: Variant, used: set[str]) -> None:

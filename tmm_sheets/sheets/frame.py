@@ -16,9 +16,13 @@ if TYPE_CHECKING:
 
 
 class Scales(Protocol):
-    """Where chosen scale factors are kept: the canvas, or whatever asks for them without drawing."""
+    """Where chosen scale factors are kept: the canvas, or whatever asks for them without drawing.
+
+    ``chosen`` are the names of those that a project file may set.
+    """
 
     scales: dict[str, Any]
+    chosen: set[str]
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,7 @@ def pick(project: Project, canvas: Scales, name: str, symbol: str, unit: str, le
                           "give the links masses or add a [[force]], or leave this view out of the arrangement")
     scale = Scale(symbol, handy(least) if wanted is None else wanted, unit)
     canvas.scales[name] = scale
+    canvas.chosen.add(name)
     return scale
 
 

@@ -144,7 +144,7 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
 
     found: dict[str, tuple[Scale, int]] = {}
     for n, name in enumerate(project.sheets, 1):
-        kept = SimpleNamespace(scales={})
+        kept = SimpleNamespace(scales={}, chosen=set())
         for view in arrangement(name).views:
             if view.draw == "kinematics.position_plans" and "positions" in parts:
                 positions(project, kept, view.box, view.options)

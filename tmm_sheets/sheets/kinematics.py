@@ -11,6 +11,8 @@ from tmm_sheets.construction.scale import fixed, number
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import Frame, pick
@@ -33,7 +35,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     flat_crossings.warn(project, canvas, box, pos.plan, (i for i, _ in cycle.drawn))
     canvas.scales["dead-positions"] = frame.scale
     canvas.circle(frame(centre), c.length / frame.scale.mu, "thin")
-    _paths(canvas, project, frame, box.y1 - 18.0)
+    _paths(canvas, project, frame, Box(box.x0 + 2.0, box.y0, box.x1 - 2.0, box.y1 - 18.0))
     of = canvas.of
     for i, label in cycle.drawn:
         if i != k:
@@ -54,7 +56,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         _force_graph(canvas, project, frame, Box(box.x0, y, box.x1, y + graph), below)
 
 
-def _paths(canvas: Canvas, project: Project, frame: Frame, top: float) -> None:
+def _paths(canvas: Canvas, project: Project, frame: Frame, room: Box) -> None:
     """Paths of the hinges and of the centres of mass, thin, through many positions."""
     turned = np.linspace(0, 2 * pi, 181)
     pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
@@ -66,11 +68,11 @@ def _paths(canvas: Canvas, project: Project, frame: Frame, top: float) -> None:
             canvas.polyline(frame(z), "thin")
     for name in pos.guide_directions:
         if m.guides[name].link == m.frame:
-            _guide_line(canvas, project, frame, name, top)
+            _guide_line(canvas, project, frame, name, room)
 
 
-def _guide_line(canvas: Canvas, project: Project, frame: Frame, name: str, top: float) -> None:
-    """Centre line of a fixed guide over the path of its slider, not beyond the height ``top`` where the title stands."""
+def _guide_line(canvas: Canvas, project: Project, frame: Frame, name: str, room: Box) -> None:
+    """Centre line of a fixed guide over the path of its slider and beyond, as far as there is room: not into the title."""
     pos = project.study.positions
     u = complex(pos.guide_directions[name].at(0))
     q = complex(pos.guide_points[name].at(0))
@@ -78,8 +80,9 @@ def _guide_line(canvas: Canvas, project: Project, frame: Frame, name: str, top: 
     z = np.concatenate([np.atleast_1d(pos.points[p].value) for p in on])
     t = ((z - q) * np.conj(u)).real
     a, b = frame(q + u * np.nanmin(t)), frame(q + u * np.nanmax(t))
-    over = min(24.0, (top - b.imag) / u.imag if u.imag > 1e-9 else 24.0)
-    canvas.line(a - 24.0 * u, b + max(over, 0.0) * u, "centre")
+    inside = segment_inside(room, a - 24.0 * u, b + 24.0 * u)
+    if inside is not None:
+        canvas.line(*inside, "centre")
 
 
 def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
@@ -234,11 +237,14 @@ def _force_graph(canvas: Canvas, project: Project, frame: Frame, box: Box, below
     a, b = frame(strokes.origin), frame(strokes.origin + strokes.path * strokes.length)
     left, right = sorted((a.real, b.real))
     canvas.arrow(complex(left, y0), complex(left, y0 + top / scale.mu + 9.0), "axis", 3.5)
-    canvas.arrow(complex(left, y0), complex(right + 14.0, y0), "axis", 3.5)
-    canvas.text(complex(left - 2.0, y0 + top / scale.mu + 5.0), f"{linkage.indexed(force.name)}, Н", 3.5, "right")
     way = linkage.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
-    canvas.text(complex(right + 15.5, y0 - 1.2), f"{way}, м", 3.5)
-    canvas.text(complex(right + 3.0, y0 + top / scale.mu), str(scale), 3.5)
+    tip = min(right + 14.0, box.x1 - 1.5 - letter(f"{way}, м", 3.5).width)
+    canvas.arrow(complex(left, y0), complex(tip, y0), "axis", 3.5)
+    canvas.text(complex(left - 2.0, y0 + top / scale.mu + 5.0), f"{linkage.indexed(force.name)}, Н", 3.5, "right")
+    canvas.text(complex(tip + 1.5, y0 - 1.2), f"{way}, м", 3.5)
+    # Beside the end of the graph, or above it where there is no room.
+    room = box.x1 - letter(str(scale), 3.5).width
+    canvas.text(complex(min(right + 3.0, room), y0 + top / scale.mu + (0.0 if right + 3.0 <= room else 2.5)), str(scale), 3.5)
     acting = np.flatnonzero(magnitude > 0)
     xs = np.real(frame(study_points(project, strokes.output, turned)))
     curve = xs[acting] + 1j * (y0 + magnitude[acting] / scale.mu)

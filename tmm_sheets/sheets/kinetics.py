@@ -196,7 +196,9 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     names += centres
     at = [complex(pos.points[n].at(k)) for n in dict.fromkeys(names)] + [s.at for s in shown]
     place = box.inset(3.0, 5.0, 3.0, 19.0)
-    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", *_reach(at, shown), place)
+    z, d = _reach(at, shown)
+    feet = _feet(complex(pos.points[_about(g)].at(k)), shown)
+    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", [*z, *feet], [*d, *(0j for _ in feet)], place)
     canvas.of = f"group {g.name}"
     canvas.title(box, f"Группа Ассура {g.name} ({g.kind}-й вид)", str(frame.scale))
     if g.kind != 5:
@@ -287,16 +289,24 @@ def draw_forces(canvas: Canvas, frame: Frame, shown: Iterable[Shown]) -> None:
 
 
 def _arms(canvas: Canvas, project: Project, frame: Frame, g: StructuralGroup, k: int, shown: list[Shown]) -> None:
-    """Arms of the forces about the point of the moment equations: middle hinge, rocker's pivot, or pin of the block."""
-    pos = project.study.positions
-    about = str(g.inner) if g.kind in (1, 2, 4) else g.outer[-1]
-    draw_arms(canvas, frame, complex(pos.points[about].at(k)), shown)
+    """Arms of the forces about the point of the moment equations."""
+    draw_arms(canvas, frame, complex(project.study.positions.points[_about(g)].at(k)), shown)
+
+
+def _about(g: StructuralGroup) -> str:
+    """Point of a group's moment equations: middle hinge, rocker's pivot, or pin of the block."""
+    return str(g.inner) if g.kind in (1, 2, 4) else g.outer[-1]
 
 
 def _foot(s: Shown, about: complex) -> complex:
     """Foot of the perpendicular from a point on the line of action of a force, in the plan's unit."""
     u = s.vector / abs(s.vector)
     return s.at + float(((about - s.at) * np.conj(u)).real) * u
+
+
+def _feet(about: complex, shown: Iterable[Shown]) -> list[complex]:
+    """Feet of the arms that are drawn about a point, in the plan's unit."""
+    return [_foot(s, about) for s in shown if abs(s.vector) > 0 and "^" not in s.symbol]
 
 
 def draw_arms(canvas: Canvas, frame: Frame, about: complex, shown: Iterable[Shown], prefix: str = "h",
@@ -426,8 +436,9 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     away = _clear(pivot, [complex(pos.points[name].at(k)) for name in pins], shown)
     z, d = _reach(at, shown)
     # The arrows of rotation, with their signs.
-    z.append(pivot)
-    d.append((18.0 if driver is not None else 32.0) * away)
+    feet = _feet(pivot, shown)
+    z += [pivot, *feet]
+    d += [(18.0 if driver is not None else 32.0) * away, *(0j for _ in feet)]
     frame = fit_frame(project, canvas, "scheme-crank", "μ_l", "м/мм", z, d, left.inset(3.0, 3.0, 3.0, 19.0))
     canvas.title(left, "Начальное звено", str(frame.scale))
     if driver is not None:
@@ -482,7 +493,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     shown = [Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k))) for h in lv.hung]
     place = box.inset(2.0, 2.0, 2.0, 19.0)
     at, around = _reach([0j, *points.values()], shown)
-    arms = [z for s in shown if abs(s.vector) > 0 for z in (s.at, _foot(s, 0j))]
+    arms = [*(s.at for s in shown), *_feet(0j, shown)]
     frame = fit_frame(project, canvas, "lever", "μ_V", "(м/с)/мм", [*at, *arms], [*around, *(0j for _ in arms)], place)
     scale = frame.scale
     plain: Scale | None = canvas.scales.get("velocities")

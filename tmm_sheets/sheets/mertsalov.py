@@ -15,6 +15,7 @@ import numpy as np
 
 from tmm_sheets.construction.scale import Scale, fixed, number
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
@@ -99,7 +100,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     graphs.numbers(canvas, g, at, fw.labels, np.ones(len(at)))
     k = int(np.argmax(curve))
     canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
-    _tangent(canvas, project, fw, g, points)
+    _tangent(canvas, project, fw, g, points, box)
 
 
 def _terms(fw: Mertsalov) -> list[tuple[str, Any]]:
@@ -109,17 +110,18 @@ def _terms(fw: Mertsalov) -> list[tuple[str, Any]]:
     return [(name, part) for name, part in found if part.max() > 4.0]
 
 
-def _tangent(canvas: Canvas, project: Any, fw: Mertsalov, g: graphs.Graph, points: Any) -> None:
+def _tangent(canvas: Canvas, project: Any, fw: Mertsalov, g: graphs.Graph, points: Any, box: Box) -> None:
     """Tangent of the graph of inertia at the position of the force analysis, which gives the acceleration of the crank there."""
     k = project.force_index
     plan = fw.position_acceleration
     psi = float(plan["ψ"].value[k])
     at, u = complex(g(points[k])), complex(np.cos(psi), np.sin(psi))
-    reach = 26.0
-    canvas.line(at - reach * u, at + reach * u, "axis")
+    # As long as its place allows: a steep one ends under the heading and above the numbers of the axis.
+    low, high = segment_inside(box.inset(2.0, 2.0, 2.0, graphs.HEAD), at - 26.0 * u, at + 26.0 * u) or (at, at)
+    canvas.line(low, high, "axis")
     canvas.dot(at, 0.7)
     # The vertex of the angle lies on the tangent, away from the curve's own label.
-    vertex = at - 0.8 * reach * u if psi > 0 else at + 0.8 * reach * u
+    vertex = at + 0.8 * ((low if psi > 0 else high) - at)
     side = 1 if psi > 0 else -1
     canvas.line(vertex, vertex + side * 20, "thin")
     start, end = (0.0, psi) if psi > 0 else (np.pi + psi, np.pi)

@@ -15,6 +15,7 @@ from tmm_sheets.drawing.marks import Drawing
 from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.resources import template
+from tmm_sheets.sheets import places
 from tmm_sheets.sheets.arrangement import arrangement as arrange
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ WIDTH, HEIGHT = 841.0, 594.0
 """A1 landscape, mm."""
 INSIDE = Box(20.0, 5.0, WIDTH - 5.0, HEIGHT - 5.0)
 """Inside of the frame: 20 mm at the left for filing, 5 mm elsewhere (GOST 2.301)."""
+TITLE_BLOCK = Box(INSIDE.x1 - 185.0, INSIDE.y0, INSIDE.x1, INSIDE.y0 + 55.0)
+"""Place of the title block (GOST 2.104, form 1)."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,7 @@ class Composed:
     """A finished sheet with what is worth telling about it.
 
     ``parts`` are the views, from the mark each begins with, the last one stands for all labels; ``groups`` the marks that are one
-    thing (arrows, lettering).
+    thing (arrows, lettering). ``leaving`` are the views that do not keep their places.
     """
 
     drawing: Drawing
@@ -40,6 +43,7 @@ class Composed:
     crowded: tuple[Crowded, ...]
     parts: tuple[Part, ...] = ()
     groups: tuple[Group, ...] = ()
+    leaving: tuple[places.Leaving, ...] = ()
 
 
 def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
@@ -93,4 +97,5 @@ def composed(project: Project, n: int) -> Composed:
         crowded += notes.place(canvas, INSIDE)
     title = f"{project.variant.project.title}. {plan.title}"
     drawing = Drawing(WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets")
-    return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups))
+    left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
+    return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left))

@@ -12,28 +12,33 @@ import numpy as np
 from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
 from tmm_sheets.stress import truth
 from tmm_sheets.stress.draw import chain, crank_of, loaded
-from tmm_sheets.stress.invariants import Residual, State, assembled, balancing, derivatives, geometry, rigidity, statics
+from tmm_sheets.stress.invariants import Residual, State, assembled, balancing, derivatives, geometry, powers, rigidity, statics
 
 ANGLES = 24
 """Crank angles of a case."""
 
 BOUNDS = {
-    "link lengths": (2e-15, "of the size"),
-    "closure on guides": (2e-15, "of the size and the way to the guide's point"),
-    "assembly side": (2e-15, "of the size"),
-    "NaN exactly where it cannot assemble": (2e-15, "of the size: what the pin's rounding may decide"),
-    "velocity closure": (1e-13, "of the fastest point"),
-    "acceleration closure": (1e-13, "of the greatest acceleration"),
+    "link lengths": (2e-15, "of the reach"),
+    "closure on guides": (2e-15, "of the reach and the way to the guide's point"),
+    "assembly side": (2e-15, "of the reach"),
+    "NaN exactly where it cannot assemble": (2e-15, "of the reach: what the pin's rounding may decide"),
+    "velocity closure": (2e-14, "of the fastest point"),
+    "acceleration closure": (2e-14, "of the greatest acceleration"),
     "derivative of position = velocity": (1e-9, "of the fastest point; differences of order 8, condition under 100"),
-    "derivative of velocity = acceleration": (1e-8, "of the greatest acceleration; the same, pins 10^4 lengths from the origin"),
+    "derivative of velocity = acceleration": (1e-8, "of the greatest acceleration; the same"),
     "power = change of energy": (1e-8, "of all powers; the same"),
-    "polygon closure": (1e-13, "of the largest force"),
-    "equilibrium of every link": (1e-13, "of the largest force"),
-    "moments on every link": (1e-13, "of the largest moment about the crank pivot"),
-    "lever = kinetostatics": (1e-13, "of the largest moment, times the condition"),
+    "polygon closure": (5e-15, "of the largest force"),
+    "equilibrium of every link": (5e-15, "of the largest force"),
+    "moments on every link": (1e-14, "of the largest moment about the crank pivot"),
+    "lever = kinetostatics": (5e-15, "of the largest moment, times the condition"),
     "energy over the turn": (1e-9, "of the work done to and fro"),
     "velocity at a dead position": (2e-14, "of itself or of the pin's, against 60 digits"),
     "acceleration at a dead position": (2e-14, "of itself or of the pin's, against 60 digits"),
+    "velocity at a change point": (2e-15, "of itself or of the pin's, times the condition, against 60 digits"),
+    "acceleration at a change point": (2e-14, "of itself or of the pin's, times the condition, against 60 digits"),
+    "standstill at the ends of the stroke": (2e-14, "of the pin's velocity"),
+    "one sense and the other": (2e-15, "of the fastest point, of the greatest acceleration"),
+    "picture in a mirror": (2e-15, "of reach times condition; of the fastest point, the greatest acceleration, times its square"),
     "memory of a million positions, MB": (64.0, "plans drawn in chunks"),
 }
 """Bound of each invariant and what it is a share of."""
@@ -163,11 +168,7 @@ def _dead(rng: np.random.Generator) -> Iterator[Residual]:
     expected = np.concatenate((known, ~beyond))
     yield "NaN exactly where it cannot assemble", np.where(s.built != expected, 1.0, 0.0)
     # From 1e-15 rad on: the double next to the limit may be nearer to it than two doubles can tell.
-    for k, t in enumerate(true[1:], 1):
-        if t is not None:
-            pin = m.crank.speed * m.crank.length
-            yield "velocity at a dead position", [abs(s.v["C"][k] - t.v) / max(abs(t.v), pin)]
-            yield "acceleration at a dead position", [abs(s.a["C"][k] - t.a) / max(abs(t.a), pin * m.crank.speed)]
+    yield from _compared(s, [None, *true[1:]])
     yield from geometry(s)
     yield from rigidity(s)
     yield from statics(s, 0.0)
@@ -190,6 +191,113 @@ def _change_points(rng: np.random.Generator) -> Iterator[Residual]:
     yield from assembled(s)
 
 
+def _compared(s: State, true: list[truth.Motion | None]) -> Iterator[Residual]:
+    """Velocity and acceleration of the first group's hinge against exact arithmetic at the first positions of a state."""
+    pin, n = s.m.crank.speed * s.m.crank.length, len(true)
+    v, a = (np.array([np.nan if t is None else getattr(t, name) for t in true]) for name in "va")
+    yield "velocity at a dead position", np.abs(s.v["C"][:n] - v) / np.maximum(np.abs(v), pin)
+    yield "acceleration at a dead position", np.abs(s.a["C"][:n] - a) / np.maximum(np.abs(a), pin * s.m.crank.speed)
+
+
+def _stroke_ends(rng: np.random.Generator) -> Iterator[Residual]:
+    """Crank and rod in line, folded or stretched, exactly or nearly: the slider or rocker stands still."""
+    size = 2.0 ** int(rng.integers(-9, 10))
+    r, l2 = (size * float(rng.integers(low, high)) / 16 for low, high in ((1, 16), (32, 64)))
+    side, turn = int(rng.choice((1, -1))), float(rng.choice((0.0, pi / 2, pi, -pi / 2, rng.uniform(-pi, pi))))
+    links, crank = {n: Link(n) for n in "123"}, replace(crank_of(rng, size), length=r)
+    if rng.random() < 0.5:
+        e = float(rng.choice((0.0, 0.0, r / 2, -r / 2)))
+        guide = Guide("x", "0", complex(e * 1j * np.exp(1j * turn)), turn)
+        g = StructuralGroup(2, ("2", "3"), ("B",), "C", (l2,), ("x",), side)
+        m = Mechanism(crank, {"A": 0j}, {"x": guide}, (g,), (), links)
+        ends = [float(np.arcsin(e / (l2 + r))), pi + float(np.arcsin(e / (l2 - r)))]
+        ends = [turn + (x if side > 0 else pi - x) for x in ends]
+    else:
+        l0, l3 = (size * float(rng.integers(low, high)) / 16 for low, high in ((48, 64), (48, 64)))
+        g = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (l2, l3), (), side)
+        m = Mechanism(crank, {"A": 0j, "D": complex(l0 * np.exp(1j * turn))}, {}, (g,), (), links)
+        cosines = [(x * x + l0 * l0 - l3 * l3) / (2 * x * l0) for x in (l2 + r, l2 - r)]
+        if max(map(abs, cosines)) > 0.98 or r + l0 > l2 + l3:
+            return
+        ends = [turn + side * float(np.arccos(cosines[0])), pi + turn + side * float(np.arccos(cosines[1]))]
+    gaps = np.concatenate(([0.0], 10.0 ** rng.uniform(-16, 0, 5) * rng.choice((1, -1), 5)))
+    phi = np.concatenate([end + gaps for end in ends])
+    s = State(m, phi)
+    yield from _compared(s, [truth.motion(m, float(x)) for x in phi])
+    still = np.abs(s.v["C"][[0, len(gaps)]]) / (crank.speed * r)
+    # The angle of the end is a double, the way beside it is of the second order.
+    yield "standstill at the ends of the stroke", still
+    yield from _everything(loaded(rng, m), phi, _gravity(rng, m))
+
+
+def _tangent(rng: np.random.Generator) -> Iterator[Residual]:
+    """A rod just long enough: the pin's circle touches the limit on one side of the guide, or misses it by some 1e-15."""
+    size = 2.0 ** int(rng.integers(-9, 10))
+    r, e = size * float(rng.integers(1, 64)) / 16, size * float(rng.integers(-16, 17)) / 16
+    side, turn = int(rng.choice((1, -1))), float(rng.choice((0.0, pi / 2, pi, -pi / 2)))
+    rod = (r + abs(e)) * (1 + float(rng.choice((0.0, 0.0, 1e-15, -1e-15, 1e-9))))
+    g = StructuralGroup(2, ("2", "3"), ("B",), "C", (rod,), ("x",), side)
+    through = complex(1j * e) * {0.0: 1, pi / 2: 1j, pi: -1, -pi / 2: -1j}[turn]
+    links = {n: Link(n) for n in "123"}
+    m = Mechanism(replace(crank_of(rng, size), length=r), {"A": 0j}, {"x": Guide("x", "0", through, turn)}, (g,), (), links)
+    near = 10.0 ** rng.uniform(-7, -1, 5)
+    top = turn + (-pi / 2 if e > 0 else pi / 2)
+    phi = np.concatenate((top + near, top - near, [top]))
+    s = State(m, phi)
+    yield from geometry(s)
+    yield from rigidity(s)
+    yield from assembled(s)
+    # A rod longer by half a unit in its last place lifts the half-chord by that over the half-chord: data, not arithmetic.
+    for name, residual in _compared(s, [truth.motion(m, float(x)) for x in phi[:-1]]):
+        yield name.replace("dead position", "change point"), residual / s.condition[:-1]
+
+
+def _senses(rng: np.random.Generator) -> Iterator[Residual]:
+    """Any speed, one sense and the other: the same accelerations, opposite velocities, the same forces."""
+    m, phi = chain(rng)
+    crank = replace(m.crank, speed=10.0 ** float(rng.choice((rng.uniform(-5, -1), rng.uniform(3, 5)))), acceleration=0.0)
+    m = loaded(rng, replace(m, crank=crank))
+    around, gravity = _around(rng, phi), _gravity(rng, m)
+    yield from _everything(m, around, gravity)
+    s, back = State(m, around), State(replace(m, crank=replace(crank, sense=-crank.sense)), around)
+    for name in s.v:
+        yield "one sense and the other", np.abs(s.v[name] + back.v[name]) / s.fastest
+        yield "one sense and the other", np.abs(s.a[name] - back.a[name]) / s.sharpest
+    yield "one sense and the other", _share(balancing(s, gravity) - balancing(back, gravity), powers(s, gravity) / crank.speed)
+
+
+def _mirrored(m: Mechanism) -> Mechanism:
+    """The mechanism as its picture in a mirror is: x stays, y and every sense of turning change their sign."""
+    guides = {name: replace(g, through=g.through if isinstance(g.through, str) else g.through.conjugate(), direction=-g.direction)
+              for name, g in m.guides.items()}
+    # On a guide the side is told along it, and that stays.
+    groups = tuple(replace(g, side=g.side if g.kind == 2 else -g.side, slot=-g.slot) for g in m.groups)
+    return replace(m, crank=replace(m.crank, sense=-m.crank.sense), fixed={name: z.conjugate() for name, z in m.fixed.items()},
+                   guides=guides, groups=groups, points=tuple(replace(p, angle=-p.angle) for p in m.points))
+
+
+def _mirror(rng: np.random.Generator) -> Iterator[Residual]:
+    """A mechanism and its picture in a mirror: sides, offsets, slots and senses of both signs."""
+    m, phi = chain(rng, str(rng.choice(("", "offset"))))
+    m = loaded(rng, m)
+    around = _around(rng, phi)
+    s, other = State(m, around), State(_mirrored(m), -around)
+    grown = s.condition
+    # Positions are off by rounding times the condition; so are directions, and lines that cross by as much again.
+    for name, scale in (("z", s.reach * grown), ("v", s.fastest * grown**2), ("a", s.sharpest * grown**2)):
+        here, there = getattr(s, name), getattr(other, name)
+        for point in here:
+            yield "picture in a mirror", np.abs(here[point] - np.conj(there[point])) / scale
+    mass = sum(link.mass + link.inertia / s.reach**2 for link in m.links.values())
+    total = mass * s.sharpest * s.fastest / m.crank.speed
+    yield "picture in a mirror", _share(balancing(s, 0.0) + balancing(other, 0.0), total * grown**2)
+
+
+def _share(x: Any, of: Any) -> Any:
+    """A magnitude as a share of a scale that may be zero, with it."""
+    return np.abs(x) / np.where(of == 0, 1.0, of)
+
+
 SCENES: dict[str, Scene] = {
     "chain": _chain(""),
     "turns all the way": _round,
@@ -203,6 +311,15 @@ SCENES: dict[str, Scene] = {
     "million turns": _turns,
     "huge and zero masses": _chain("", 6.0, 0.5),
     "no forces": _chain("", 0.0, 1.0),
+    "end of the stroke": _stroke_ends,
+    "rod just long enough": _tangent,
+    "any speed, either sense": _senses,
+    "mirror": _mirror,
+    "tiny crank": _chain("tiny crank"),
+    "offset next to nothing": _chain("offset"),
+    "right angles": _chain("square"),
+    "one line, one pivot": _chain("coincident"),
+    "pin by the pivot": _chain("pin by the pivot"),
 }
 """Scenes by name, run in turn."""
 

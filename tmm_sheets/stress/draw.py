@@ -110,8 +110,15 @@ class Draft:
             turn = 0.0 if self.coin() else self.angle()
             self.guides[name] = Guide(name, link, a, turn, b)
             return name, self.at[a], self.base(link, a, b) * rect(1, turn), link
-        u = float(self.rng.choice((0.0, pi / 2, pi, -pi / 2))) if self.coin() else self.angle()
+        u = float(self.rng.choice((0.0, pi / 2, pi, -pi / 2))) if self.coin() or self.hard == "square" else self.angle()
         through = near + rect(self.length(), self.angle())
+        if self.hard in ("square", "coincident"):
+            through = self.at["A"] + (0j if self.coin() else rect(self.size / 4, u + pi / 2))
+        if self.hard == "coincident":
+            fixed = [g for g in self.guides.values() if isinstance(g.through, complex)]
+            if fixed:
+                u = fixed[0].direction + (0.0 if self.coin() else pi)
+                through = complex(fixed[0].through)
         if self.hard == "guide":
             u = pi / 2 + np.radians(0.05) * self.side()
         if self.hard == "far":
@@ -152,7 +159,7 @@ def rrr(d: Draft, links: tuple[str, str]) -> None:
         v = u * rect(1, d.side() * d.between(0.3, pi - 0.3))
         if d.hard in ("narrow", "collinear"):
             v = u * d.side() if d.hard == "collinear" else d.near_limit(u, least)
-        q = d.pivot(c + d.length() * v)
+        q = "A" if d.hard == "coincident" and p != "B" and d.coin() else d.pivot(c + d.length() * v)
     to_p, to_q = d.at[p] - c, d.at[q] - c
     want(abs(to_p) > d.size / 4 and abs(to_q) > d.size / 4 and abs(d.at[p] - d.at[q]) > d.size / 4)
     want(d.hard in ("narrow", "collinear") or sine(to_p, to_q) > SURE)
@@ -183,12 +190,18 @@ def rrp(d: Draft, links: tuple[str, str]) -> None:
 def rpr(d: Draft, links: tuple[str, str]) -> None:
     """A stone and its rocker, often with an offset; the slot nearly across the line of the pivots where it is meant to be hard."""
     p, owner = d.moving()
-    q = d.moving(besides=owner)[0] if len(d.on) > 1 and d.coin() else d.pivot(d.at[p] + rect(d.length(), d.angle()))
+    way = rect(d.length(), d.angle())
+    if d.hard == "pin by the pivot":
+        way *= 10.0 ** d.between(-9, -1)
+    fixed = d.hard in ("pin by the pivot", "coincident") or len(d.on) == 1 or d.coin()
+    q = d.moving(besides=owner)[0] if not fixed else "A" if d.hard == "coincident" and d.coin() else d.pivot(d.at[p] + way)
     e = d.at[p] - d.at[q]
-    want(abs(e) > d.size / 4)
+    want(abs(e) > d.size / 4 or (d.hard == "pin by the pivot" and abs(e) > 0))
     share = 0.0 if d.coin() else d.between(0.05, 0.8)
     if d.hard == "narrow":
         share = (1 - d.least() ** 2) ** 0.5
+    if d.hard == "offset":
+        share = float(d.rng.choice((0.0, 1e-300, 1e-17, 1e-12, 1e-6)))
     side = d.side()
     d.groups.append(StructuralGroup(3, links, (p, q), None, (), (), side, share * abs(e)))
     d.slots[links[1]] = e / abs(e) * complex((1 - share**2) ** 0.5, side * share)
@@ -236,6 +249,10 @@ BUILD = {1: rrr, 2: rrp, 3: rpr, 4: prp, 5: rpp}
 """How a group of each kind is added to a draft."""
 
 
+EVERYWHERE = ("guide", "far", "square", "coincident", "offset")
+"""What befalls all groups of a mechanism, not only the last."""
+
+
 def crank_of(rng: np.random.Generator, size: float) -> Crank:
     """A crank of about that size: any speed, either sense, even or uneven."""
     speed = 10.0 ** float(rng.uniform(-1, 3))
@@ -258,6 +275,10 @@ def _chain(rng: np.random.Generator, hard: str, kinds: tuple[int, ...]) -> tuple
     size, phi = 10.0 ** float(rng.uniform(-3, 3)), float(rng.uniform(-pi, pi))
     crank = crank_of(rng, size)
     centre = rect(size * (1e4 if hard == "away" else float(rng.uniform(0, 2))), float(rng.uniform(-pi, pi)))
+    if hard == "tiny crank":
+        crank, centre = replace(crank, length=1e-6 * crank.length), 0j
+    if hard == "square":
+        phi = float(rng.choice((0.0, pi / 2, pi, -pi / 2)))
     d = Draft(rng, size, phi, crank)
     d.fixed["A"] = d.at["A"] = centre
     d.at["B"] = centre + rect(crank.length, phi)
@@ -265,7 +286,7 @@ def _chain(rng: np.random.Generator, hard: str, kinds: tuple[int, ...]) -> tuple
     if d.coin():
         d.further("1", "A", "B")
     for i, kind in enumerate(kinds):
-        d.hard = hard if i + 1 == len(kinds) or hard in ("guide", "far") else ""
+        d.hard = hard if i + 1 == len(kinds) or hard in EVERYWHERE else ""
         n = len(d.on) + 1
         BUILD[kind](d, (str(n), str(n + 1)))
         if i + 1 < len(kinds):

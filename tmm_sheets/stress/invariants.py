@@ -3,11 +3,17 @@
 A residual is divided by what it is a small difference of, and, where errors of the data grow on the way, by the condition of
 the position: the product of 1/sine of the angle under which the lines of each group cross, and of size over the shortest length
 they are measured on. What is left is some units of 1.1e-16 whatever the mechanism.
+
+Two lengths are told apart: the size, how far the mechanism's points are from the crank's pivot, and the reach, how far they are
+from the origin. Coordinates are rounded to a share of the reach: half a unit in the last place of a pin's moves every point that
+hangs on it by as much times the condition, and its velocity by as much times the angular velocity, whatever is done to it
+afterwards. So the condition is that of the size, and what it multiplies is a share of the reach.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -44,19 +50,36 @@ class State:
         self.phi = np.asarray(phi, dtype=float)
         self.positions: Positions = position_plan(m, self.phi)
         self.velocities: Velocities = velocity_plan(self.positions)
-        self.accelerations: Accelerations = acceleration_plan(self.velocities)
         self.z = {name: self.spread(step) for name, step in self.positions.points.items()}
         self.v = {name: self.spread(step) for name, step in self.velocities.points.items()}
-        self.a = {name: self.spread(step) for name, step in self.accelerations.points.items()}
         self.u = {name: self.spread(step) for name, step in self.positions.directions.items()}
         self.omega = {name: self.spread(step) for name, step in self.velocities.omega.items()}
-        self.epsilon = {name: self.spread(step) for name, step in self.accelerations.epsilon.items()}
-        self.size = self.largest(self.z) + m.crank.length
+        pivot = m.fixed[m.crank.pivot]
+        self.size = self.largest({name: z - pivot for name, z in self.z.items()}) + m.crank.length
+        self.reach = self.size + abs(pivot)
         self.built = ~np.isnan(sum(self.z.values()))
+
+    # Nobody asks for accelerations where only positions and velocities are differentiated.
+
+    @cached_property
+    def accelerations(self) -> Accelerations:
+        """The acceleration plan."""
+        return acceleration_plan(self.velocities)
+
+    @cached_property
+    def a(self) -> dict[str, Any]:
+        """Accelerations of the points, m/s2."""
+        return {name: self.spread(step) for name, step in self.accelerations.points.items()}
+
+    @cached_property
+    def epsilon(self) -> dict[str, Any]:
+        """Angular accelerations of the links, rad/s2."""
+        return {name: self.spread(step) for name, step in self.accelerations.epsilon.items()}
 
     def spread(self, step: Any) -> Any:
         """Values of a step, one a position."""
-        return np.broadcast_to(step.value, self.phi.shape)
+        value = step.value
+        return value if np.shape(value) == self.phi.shape else np.broadcast_to(value, self.phi.shape)
 
     def largest(self, values: dict[str, Any]) -> Any:
         """Largest magnitude a position, of what there is."""
@@ -65,12 +88,12 @@ class State:
     @property
     def fastest(self) -> Any:
         """Scale of the velocities: points, and points carried with links."""
-        return self.largest(self.v) + self.m.crank.speed * self.m.crank.length + self.largest(self.omega) * self.size
+        return self.largest(self.v) + self.m.crank.speed * self.m.crank.length + self.largest(self.omega) * self.reach
 
     @property
     def sharpest(self) -> Any:
         """Scale of the accelerations."""
-        turning = (self.largest(self.omega) ** 2 + self.largest(self.epsilon)) * self.size
+        turning = (self.largest(self.omega) ** 2 + self.largest(self.epsilon)) * self.reach
         return self.largest(self.a) + self.m.crank.speed**2 * self.m.crank.length + turning
 
     def guide(self, name: str) -> tuple[Any, Any]:
@@ -88,19 +111,30 @@ class State:
     def _condition(self, g: StructuralGroup) -> Any:
         size = self.size
         with np.errstate(divide="ignore", invalid="ignore"):
+            turned: Any = 1.0
+            for name in g.guides:
+                turned = turned * size / self._base(name)
             if g.kind == 1:
                 (p, q), c = g.outer, str(g.inner)
                 r, t = self.z[c] - self.z[p], self.z[c] - self.z[q]
                 return size / min(g.lengths) * size / np.abs(self.z[p] - self.z[q]) / np.abs(cross(r, t) / np.abs(r * t))
             if g.kind == 2:
                 r = self.z[str(g.inner)] - self.z[g.outer[0]]
-                return size / g.lengths[0] / np.abs(dot(r, self.guide(g.guides[0])[1]) / np.abs(r))
+                return turned * size / g.lengths[0] / np.abs(dot(r, self.guide(g.guides[0])[1]) / np.abs(r))
             if g.kind == 3:
                 r = self.z[g.outer[0]] - self.z[g.outer[1]]
                 return size / np.abs(r) / np.abs(dot(r, self.u[g.links[1]]) / np.abs(r))
             u = self.guide(g.guides[0])[1]
             v = self.guide(g.guides[1])[1] if g.kind == 4 else self.u[g.links[0]]
-            return 1 / np.abs(cross(u, v))
+            return turned / np.abs(cross(u, v))
+
+    def _base(self, name: str) -> Any:
+        """Distance of the points that tell the direction of a guide; the size for one that is given by its angle."""
+        guide = self.m.guides[name]
+        if isinstance(guide.through, complex):
+            return self.size
+        towards = str(guide.towards)
+        return np.abs(self.z[towards] - self.z[guide.through]) if towards in self.z else self._base(towards)
 
 
 def geometry(s: State) -> Iterator[Residual]:
@@ -110,29 +144,29 @@ def geometry(s: State) -> Iterator[Residual]:
         if g.kind in (1, 2):
             c = s.z[str(g.inner)]
             # The direction of a guide is rounded: a turn of 1e-16 about a point far away.
-            reach = s.size if g.kind == 1 else s.size + np.abs(s.guide(g.guides[0])[0] - c)
+            reach = s.reach if g.kind == 1 else s.reach + np.abs(s.guide(g.guides[0])[0] - c)
             for p, length in zip(at, g.lengths, strict=True):
                 yield "link lengths", np.abs(np.abs(c - p) - length) / reach
         if g.kind == 1:
-            yield "assembly side", np.maximum(0, -g.side * cross(at[1] - at[0], c - at[0])) / s.size**2
+            yield "assembly side", np.maximum(0, -g.side * cross(at[1] - at[0], c - at[0])) / s.size / s.reach
         if g.kind == 2:
             u = s.guide(g.guides[0])[1]
-            yield "assembly side", np.maximum(0, -g.side * dot(u, c - at[0])) / s.size
+            yield "assembly side", np.maximum(0, -g.side * dot(u, c - at[0])) / s.reach
         if g.kind == 3:
-            yield "closure on guides", np.abs(cross(s.u[g.links[1]], at[0] - at[1]) + g.side * g.offset) / s.size
+            yield "closure on guides", np.abs(cross(s.u[g.links[1]], at[0] - at[1]) + g.side * g.offset) / s.reach
             # The stone stays on its side of the rocker's pivot.
-            yield "assembly side", np.maximum(0, -dot(s.u[g.links[1]], at[0] - at[1])) / s.size
+            yield "assembly side", np.maximum(0, -dot(s.u[g.links[1]], at[0] - at[1])) / s.reach
         if g.inner:
             for name in g.guides:
                 p, u = s.guide(name)
-                reach = s.size + np.abs(s.z[g.inner] - p)
+                reach = s.reach + np.abs(s.z[g.inner] - p)
                 yield "closure on guides", np.abs(cross(u, s.z[g.inner] - p)) / reach
         if g.kind == 5:
-            yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - at[0])) / s.size
+            yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - at[0])) / s.reach
         for link in g.links:
             yield "link lengths", np.abs(np.abs(s.u[link]) - 1)
     for point in s.m.points:
-        yield "link lengths", np.abs(np.abs(s.z[point.name] - s.z[point.start]) - abs(point.distance)) / s.size
+        yield "link lengths", np.abs(np.abs(s.z[point.name] - s.z[point.start]) - abs(point.distance)) / s.reach
 
 
 def rigidity(s: State) -> Iterator[Residual]:
@@ -164,22 +198,22 @@ def assembled(s: State) -> Iterator[Residual]:
     for g in s.m.groups:
         at = [s.z[name] for name in g.outer]
         there = ~np.isnan(sum(at)) if at else np.ones(s.phi.shape, dtype=bool)
-        reach = s.size
+        reach = s.reach
         if g.kind == 1:
             d = np.abs(at[1] - at[0])
             margin = np.minimum(sum(g.lengths) - d, d - abs(g.lengths[0] - g.lengths[1]))
             built = ~np.isnan(s.z[str(g.inner)])
-            reach = s.size + sum(g.lengths)
+            reach = s.reach + sum(g.lengths)
         elif g.kind == 2:
             p, u = s.guide(g.guides[0])
             margin = g.lengths[0] - np.abs(cross(u, p - at[0]))
             there = there & ~np.isnan(p * u)
             built = ~np.isnan(s.z[str(g.inner)])
-            reach = s.size + np.abs(p - at[0]) + g.lengths[0]
+            reach = s.reach + np.abs(p - at[0]) + g.lengths[0]
         elif g.kind == 3:
             margin = np.abs(at[1] - at[0]) - g.offset
             built = ~np.isnan(s.u[g.links[1]])
-            reach = s.size + g.offset
+            reach = s.reach + g.offset
         else:
             continue
         yield "NaN exactly where it cannot assemble", np.where(there & (built != (margin >= 0)), np.abs(margin) / reach, 0.0)
@@ -219,9 +253,13 @@ def derivatives(s: State, gravity: float) -> Iterator[Residual]:
         # The plan's velocities belong to one speed of the crank.
         rate = slope(other.v[name]) * w + s.v[name][k] * e / w
         yield "derivative of velocity = acceleration", np.abs(rate - s.a[name][k]) / s.sharpest[k]
-    kinetic, potential = (a[k] for a in _energy(s, gravity))
-    change = slope(sum(_energy(other, gravity))) * w + 2 * kinetic * e / w
-    scale = (kinetic + np.abs(potential)) * (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k] + _powers(s, gravity)[k]
+    beside = _energy(other, gravity)
+    change = slope(sum(beside)) * w + 2 * _energy(s, gravity)[0][k] * e / w
+    # The kinetic energy beside the position: in it everything may stand still. Heights are rounded to a share of the reach.
+    kinetic = beside[0].reshape(around.shape).max(axis=0)
+    weight = gravity * sum(link.mass for link in s.m.links.values())
+    rate = (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k]
+    scale = (kinetic * rate + powers(s, gravity)[k]) * (s.reach / s.size)[k] + weight * s.reach[k] * rate
     yield "power = change of energy", np.where(scale > 0, np.abs(balancing(s, gravity)[k] * w - change) / scale, 0.0)
 
 
@@ -236,7 +274,7 @@ def _energy(s: State, gravity: float) -> tuple[Any, Any]:
     return kinetic, potential
 
 
-def _powers(s: State, gravity: float) -> Any:
+def powers(s: State, gravity: float) -> Any:
     """Sum of the magnitudes of all powers, W."""
     total = np.zeros(s.phi.shape)
     for link in s.m.links.values():
@@ -258,7 +296,7 @@ def statics(s: State, gravity: float) -> Iterator[Residual]:
     couples = {str(i): s.spread(c) for i, c in enumerate(c for of in forces.link_couples.values() for c in of)}
     couples |= {name: s.spread(c) for name, c in forces.couples.items()}
     # Far from the origin the pin's own coordinates are that much worse than the crank.
-    total = strongest * s.size + s.largest(couples) * s.size / m.crank.length
+    total = strongest * s.reach + s.largest(couples) * s.reach / m.crank.length
     with np.errstate(divide="ignore", invalid="ignore"):
         for link in m.links:
             pull: Any = sum((s.spread(load.vector) for load in loads[link]), np.zeros(s.phi.shape, dtype=complex))

@@ -16,7 +16,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.methods.linkage.positions import near_point, position_plan, unit
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 
@@ -219,9 +219,8 @@ def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[complex, complex] |
         return plan, _dead_rocker(m, plan, centre, group)
     if group.kind == 2 and m.guides[group.guides[0]].link == m.frame:
         guide = m.guides[group.guides[0]]
-        assert not isinstance(guide.through, str)
-        through = plan.add(f"{guide.name}₀", rules.GIVEN, guide.through)
-        along = plan.add(guide.name, rules.GIVEN_DIRECTION, complex(np.cos(guide.direction), np.sin(guide.direction)))
+        through = plan.add(f"{guide.name}₀", rules.GIVEN, near_point(m, guide))
+        along = plan.add(guide.name, rules.GIVEN_DIRECTION, unit(guide.direction))
         ends = [plan.add(f"{group.inner}{prime}", rules.ARC_LINE, centre, abs(group.lengths[0] + sign * c.length), through, along,
                          group.side) for prime, sign in (("′", 1), ("″", -1))]
     elif group.kind == 1 and group.outer[0] == c.pin and group.outer[1] in m.fixed:

@@ -17,7 +17,7 @@ import numpy as np
 
 from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, angle_of, direction
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
 OF_ANGLE = Rule("length from the crank angle", lambda f, phi: f(phi), (), "length", "{name} = {value}.", beyond_paper=True)
 SINE_ARCS = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
@@ -121,13 +121,25 @@ def _line(m: Mechanism, g: StructuralGroup) -> tuple[Length, None] | None:
     if pin is None or isinstance(guide.through, str):
         return None
     (l1, ahead), length = pin, Decimal(g.lengths[0])
-    pivot = m.fixed[m.crank.pivot]
-    angle, cos, sin = direction(guide.direction)
-    x, y = Decimal(pivot.real) - Decimal(guide.through.real), Decimal(pivot.imag) - Decimal(guide.through.imag)
-    e0 = cos * y - sin * x
-    start = angle - ahead
+    e0 = _height(m.fixed[m.crank.pivot], guide)[0]
+    start = direction(guide.direction)[0] - ahead
     below, above = Cosine(length + e0, l1, start + PI / 2), Cosine(length - e0, l1, start - PI / 2)
     return lambda phi: np.sqrt(below(phi) * above(phi)), None
+
+
+def _height(at: complex, guide: Guide) -> tuple[Decimal, Decimal, Decimal]:
+    """Distance of a point from a fixed guide, positive on its left, and the guide's direction."""
+    assert not isinstance(guide.through, str)
+    _, cos, sin = direction(guide.direction)
+    x, y = Decimal(at.real) - Decimal(guide.through.real), Decimal(at.imag) - Decimal(guide.through.imag)
+    return cos * y - sin * x, cos, sin
+
+
+def foot_on_guide(at: complex, guide: Guide) -> complex:
+    """Foot of the perpendicular from a point on a fixed guide: the nearest double to it, however far away the guide's own point."""
+    with localcontext(prec=DIGITS):
+        height, cos, sin = _height(at, guide)
+        return complex(float(Decimal(at.real) + height * sin), float(Decimal(at.imag) - height * cos))
 
 
 LENGTHS: dict[int, Callable[[Mechanism, StructuralGroup], tuple[Length, Length | None] | None]] = {1: _arcs, 2: _line, 3: _slot}

@@ -16,9 +16,9 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.dead_centres import crossing
+from tmm_sheets.methods.linkage.dead_centres import crossing, foot_on_guide
 
-TURNED_BY = Rule("turn a direction", lambda u, angle: u * _unit(angle), ("direction", "angle"), "direction",
+TURNED_BY = Rule("turn a direction", lambda u, angle: u * unit(angle), ("direction", "angle"), "direction",
                  "Под углом {1} к {0} проведём направление {name}.")
 ALONG_TANGENT = Rule(
     "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
@@ -85,11 +85,29 @@ def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",
 
 
 def _fixed_guide(pos: Positions, guide: Guide) -> None:
-    assert not isinstance(guide.through, str)
-    point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), rules.GIVEN, guide.through, say="Отметим точку {name} направляющей.")
+    at = near_point(pos.mechanism, guide)
+    point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), rules.GIVEN, at, say="Отметим точку {name} направляющей.")
     pos.guide_points[guide.name] = point
-    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.GIVEN_DIRECTION, _unit(guide.direction),
+    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.GIVEN_DIRECTION, unit(guide.direction),
                                                     say=f"Через точку {point.name} проведём направляющую {{name}}.")
+
+
+AWAY = 4.0
+"""So many times the mechanism's size away a guide's own point is not drawn."""
+
+
+def near_point(m: Mechanism, guide: Guide) -> complex:
+    """A point of a fixed guide to draw it through: its own, or the one nearest to the crank's pivot when its own is far away.
+
+    A direction is known to 1e-16 rad: about a point a thousand lengths away that shifts the guide by 1e-13 of a length, which the
+    half-chords taken from the crank angle do not share. The nearest point comes from the numbers of the guide as they are given.
+    """
+    assert not isinstance(guide.through, str)
+    pivot = m.fixed[m.crank.pivot]
+    from_foot = (guide.through - pivot) / unit(guide.direction)
+    fixed = max(abs(z - pivot) for z in m.fixed.values())
+    size = m.crank.length + sum(sum(g.lengths) for g in m.groups) + fixed + abs(from_foot.imag)
+    return guide.through if abs(from_foot.real) <= AWAY * size else foot_on_guide(pivot, guide)
 
 
 def _moving_guide(pos: Positions, guide: Guide) -> None:
@@ -118,7 +136,7 @@ def _turned_by(pos: Positions, name: str, u: Step, angle: float) -> Step:
     return u if angle == 0 else pos.plan.add(pos.plan.free(name), TURNED_BY, u, angle)
 
 
-def _unit(angle: float) -> complex:
+def unit(angle: float) -> complex:
     """Unit vector; exact for multiples of 90 degrees, where cos(pi/2) would leave 6e-17."""
     quarter = angle / (np.pi / 2)
     if quarter == round(quarter):
