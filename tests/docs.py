@@ -9,8 +9,9 @@ import inspect
 import re
 from collections.abc import Iterator
 from functools import partial
+from math import degrees
 from pathlib import Path
-from types import NoneType, UnionType
+from types import ModuleType, NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import click
@@ -18,11 +19,20 @@ from pydantic import AfterValidator, BeforeValidator, WrapValidator
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from tmm_sheets import cli, resources, units, variant
+from tmm_sheets import catalogue, cli, resources, units, variant
+from tmm_sheets.backends import dxf
 from tmm_sheets.cam_keys import FOLLOWER_KEYS
+from tmm_sheets.drawing import marks, styles
+from tmm_sheets.drawing.marks import Arc, Drawing, Line
 from tmm_sheets.mechanism.model import FORMS
+from tmm_sheets.methods import cycle
+from tmm_sheets.methods import positions as positions_module
 from tmm_sheets.names import GROUP_KEYS
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import frame
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.sheet import composed
 
 ROOT = Path(__file__).parents[1]
 PAPERS = (ROOT / "README.md", ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.md")))
@@ -204,7 +214,55 @@ def arrangements() -> str:
     return table(("arrangement", "code", "title", "views"), *rows)
 
 
-MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, example, options, arrangements)}
+# --- one crank angle through the code -------------------------------------------------------------------------------
+
+
+VIEW = "kinematics.position_plans"
+
+
+def walk() -> str:
+    """Position 2 of the shaper at every station from the project file to the DXF file."""
+    task = catalogue.read("lugansk/shaper")
+    project = Project(task)
+    positions = project.study.positions
+    pin = positions.points["B"]
+    z = pin.at(2)
+    sheet = composed(project, 1)
+    scale = sheet.scales["positions"]
+    (circle,) = {m.centre for m in sheet.drawing.marks if isinstance(m, Arc) and m.style == "thin" and m.of == VIEW
+                 and abs(m.radius - task.crank.length / scale.mu) < 1e-9}
+    there = Frame(scale, circle)(z)
+    crank = next(m for m in sheet.drawing.marks if isinstance(m, Line) and (m.style, m.of) == ("main", "position plan 2")
+                 and abs(cross(m.b - m.a, there - m.a)) < 1e-6)
+    written = [f"{x:.4f}" for x in (crank.a.real, crank.a.imag, crank.b.real, crank.b.imag)]
+    data = dxf.render(Drawing(sheet.drawing.width, sheet.drawing.height, "", (crank,))).decode()
+    assert all(f"\n{x}\n" in data for x in written)
+    groups_of_line = ", ".join(f"`{group}` {x}" for group, x in zip((10, 20, 11, 21), written, strict=True))
+    rows = (
+        ("project file", resources, f'`length = "{task.data["crank"]["length"]}"`, `sense = "{task.data["crank"]["sense"]}"`'),
+        ("numbers", variant, f"`crank.length = {task.crank.length}`, `crank.speed = {task.crank.speed:.6f}` rad/s"),
+        ("cycle", cycle, f"label `2`: {degrees(project.cycle.turned[2]):g}° turned from the dead position, crank at "
+                         f"{degrees(project.cycle.phi[2]) % 360:g}° of the world frame"),
+        ("step", positions_module, f"`{pin.name}` by the rule *{pin.rule.name}*: ({z.real:.6f}, {z.imag:.6f}) m"),
+        ("frame", frame, f"origin ({circle.real:g}, {circle.imag:g}) mm, μ_l = {scale.mu:g} m/mm: B at "
+                         f"({there.real:.4f}, {there.imag:.4f}) mm"),
+        ("mark", marks, f"`Line` in the style `{crank.style}`, of `{crank.of}`, shortened by the circles of its hinges"),
+        ("file", dxf, f"`LINE` on the layer `{styles.line_type(crank.style).layer}`: {groups_of_line}"),
+    )
+    return table(("station", "where", "what it is there"), *((name, f"`{path(module)}`", told) for name, module, told in rows))
+
+
+def cross(u: complex, v: complex) -> float:
+    return (u.conjugate() * v).imag / abs(u)
+
+
+def path(module: ModuleType) -> str:
+    if module is resources:
+        return "variants/lugansk/shaper.toml"
+    return Path(module.__file__).relative_to(ROOT).as_posix()
+
+
+MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, example, options, arrangements, walk)}
 
 
 def current(text: str) -> str:

@@ -243,6 +243,7 @@ class Crank(Table):
     speed: Speed = Field(description='speed of rotation, for example "72 rpm" or "7.54 rad/s"')
     """without sign, `sense` has it"""
     sense: Sense = Field(description='"clockwise" or "counter-clockwise"')
+    """of the crank"""
     angular_acceleration: CrankAcceleration = 0.0
     """positive in the sense of rotation; `"flywheel"`: that of the uneven running with the flywheel found, whose inertia the
     crank then carries
@@ -707,6 +708,7 @@ class Cam(Table):
     follower: Literal["translating roller", "oscillating roller", "flat"] = Field(
         description='"translating roller", "oscillating roller" or "flat"'
     )
+    """what the cam moves: a tappet with a roller, a rocker with a roller, a tappet with a flat face"""
     law: CamLaw = Field(description='law of the acceleration, for example "sine"')
     """of both phases"""
     fall_law: CamLaw | None = None
