@@ -7,8 +7,7 @@ What a key means stands in a string under it in ``variant.py``, where only this 
 import ast
 import inspect
 import re
-from collections.abc import Iterator
-from functools import partial
+from collections.abc import Iterator, Mapping
 from math import degrees
 from pathlib import Path
 from types import ModuleType, NoneType, UnionType
@@ -102,11 +101,10 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
     said = []
     for v in validators:
         assert isinstance(v, BeforeValidator | AfterValidator | WrapValidator)
-        if not isinstance(v.func, partial):
+        given = made_with(v)
+        if not given:
             said.append(first_lower(inspect.getdoc(v.func).split("\n")[0].rstrip(".")))
-            continue
-        given = v.func.keywords
-        if "word" in given:
+        elif "word" in given:
             said.append(f'`"{given["word"]}"` or {given["quantity"].name if "quantity" in given else value(base)}')
         elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
             said.append(given["quantity"].name)
@@ -115,6 +113,11 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
         elif "least" in given:
             said.append(f"whole number, {given['least']} or more")
     return ", ".join(reversed(said[:1] if len(said) == 2 and said[1] == "name in quotes" else said))
+
+
+def made_with(validator: Any) -> Mapping[str, Any]:
+    """What a validator holds in its closure: quantity, wording, least, word; nothing for a named function."""
+    return inspect.getclosurevars(validator.func).nonlocals
 
 
 def without_article(text: str) -> str:
@@ -141,7 +144,7 @@ def default(hint: Any, field: FieldInfo) -> str:
 
 def unit(hint: Any) -> str:
     """SI unit of a key; empty for a pure number."""
-    given = [v.func.keywords for v in validators(hint) if isinstance(v.func, partial)]
+    given = list(map(made_with, validators(hint)))
     return next((name for g in given if "quantity" in g for name, f in g["quantity"].units.items() if f.si("1") == 1), "")
 
 

@@ -18,7 +18,7 @@ ROOT = docs.ROOT
 TEXTS = {p.relative_to(ROOT).as_posix(): p.read_text(encoding="utf-8") for p in docs.PAPERS}
 EVERYWHERE = "\n".join(TEXTS.values())
 SECTIONS = [f.alias or name for name, f in variant.Variant.model_fields.items()]
-FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 papers = pytest.mark.parametrize("paper", TEXTS)
 
 
@@ -77,10 +77,10 @@ def test_files_named_in_code_are_there():
 
 def shown(text):
     """Lines of code blocks, fenced or indented, and code in the text: what can be typed, without its comment."""
-    blocks = re.findall(r"^```(?:sh)?\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
-    lines = [line for block in blocks for line in block.splitlines()]
-    lines += [line.strip() for line in text.splitlines() if line.startswith("    ")]
-    lines += re.findall(r"`((?:tmm-sheets|make)[^`\n]*)`", FENCED.sub("", text))
+    outside = FENCED.sub("", text)
+    lines = [line for language, block in FENCED.findall(text) if language in ("", "sh") for line in block.splitlines()]
+    lines += [line.strip() for line in outside.splitlines() if line.startswith("    ")]
+    lines += re.findall(r"`((?:tmm-sheets|make)[^`\n]*)`", outside)
     return [re.sub(r"\s+#.*", "", line) for line in lines]
 
 
@@ -102,12 +102,15 @@ def test_commands_can_be_typed(paper, tmp_path, monkeypatch):
     commands = [c for c in typed(TEXTS[paper], "tmm-sheets") if c[:1] not in ([], ["COMMAND"])]
     for arguments in commands:
         if "--help" not in arguments:
-            parsed(arguments)
+            with parsed(arguments):
+                pass
 
 
 def test_commands_are_found():
     assert len(typed(EVERYWHERE, "tmm-sheets")) > 40
-    assert typed("    make help  # x\n```\ntmm-sheets list\n```\n`tmm-sheets show a` `make` [m](n)\n", "tmm-sheets") == [["list"], ["show", "a"]]
+    text = "    make help  # x\n```toml\na = 1\n```\n```\ntmm-sheets list\n```\n`tmm-sheets show a` `make` [m](n)\n"
+    assert typed(text, "tmm-sheets") == [["list"], ["show", "a"]]
+    assert typed(text, "make") == [["help"], []]
 
 
 def test_wrong_commands_are_found():

@@ -11,7 +11,6 @@ import re
 import tomllib
 from collections.abc import Callable, Sequence
 from difflib import get_close_matches
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from types import UnionType
@@ -40,35 +39,29 @@ from tmm_sheets.toml_lines import KeyPath, TomlLines, scan
 
 
 def _si(quantity: units.Quantity) -> BeforeValidator:
-    return BeforeValidator(partial(units.parse, quantity=quantity))
-
-
-def _si_or_word(value: Any, *, word: str, quantity: units.Quantity) -> float | str:
-    return word if value == word else units.parse(value, quantity)
+    return BeforeValidator(lambda value: units.parse(value, quantity))
 
 
 def _si_or(word: str, quantity: units.Quantity) -> BeforeValidator:
-    return BeforeValidator(partial(_si_or_word, word=word, quantity=quantity))
-
-
-def _within(value: float, *, wording: str, holds: Callable[[float], bool]) -> float:
-    if not holds(value):
-        raise ValueError(f"expected {wording}")
-    return value
+    return BeforeValidator(lambda value: value if value == word else units.parse(value, quantity))
 
 
 def _range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
-    return AfterValidator(partial(_within, wording=wording, holds=holds))
+    def check(value: float) -> float:
+        if not holds(value):
+            raise ValueError(f"expected {wording}")
+        return value
 
-
-def _at_least(value: Any, *, least: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise ValueError(f"expected a whole number, {least} or more")
-    return value
+    return AfterValidator(check)
 
 
 def _whole(least: int) -> BeforeValidator:
-    return BeforeValidator(partial(_at_least, least=least))
+    def check(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or value < least:
+            raise ValueError(f"expected a whole number, {least} or more")
+        return value
+
+    return BeforeValidator(check)
 
 
 def _even_parts(parts: int) -> int:
@@ -554,13 +547,9 @@ class Flywheel(Table):
     """table `[flywheel.motor]`"""
 
 
-def _word_or_value(value: Any, read: Callable[[Any], Any], *, word: str) -> Any:
-    return value if value == word else read(value)
-
-
 def _or_word(word: str) -> WrapValidator:
     """Lets one word stand for the value."""
-    return WrapValidator(partial(_word_or_value, word=word))
+    return WrapValidator(lambda value, read: value if value == word else read(value))
 
 
 class Gear(Table):
