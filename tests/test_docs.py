@@ -35,6 +35,11 @@ def test_the_two_commands_and_the_picture_come_first():
         assert picture.stat().st_size < 400_000
 
 
+def test_papers_travel_in_the_sdist():
+    build = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]["build"]
+    assert {"README.md", "README.ru.md", "docs"} <= set(build["targets"]["sdist"]["include"])
+
+
 # --- links ----------------------------------------------------------------------------------------------------------
 
 
