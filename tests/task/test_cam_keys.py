@@ -1,7 +1,4 @@
-"""Keys of [cam]: what each follower, law and closure must, may and must not have; README tells the same."""
-
-import re
-from pathlib import Path
+"""Keys of [cam]: what each follower, law and closure must, may and must not have."""
 
 import pytest
 
@@ -11,7 +8,6 @@ from tmm_sheets.task.cam_keys import EXAMPLES, FOLLOWER_KEYS
 
 HEAD = 'schema = 1\n[project]\nname = "x"\ntitle = "y"\nsheets = ["cam"]\n[cam]\n'
 COMMON = {"law": '"sine"', "rise": '"100 deg"', "fall": '"70 deg"'}
-README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
 def text(follower, **keys):
@@ -76,14 +72,3 @@ def test_diagram_is_read():
     cam = variant.parse(source, "x.toml").cam
     assert cam.diagram("table") == ([0.0, 0.5, 0.5, 1.0], [1.0, 1.0, -1.0, -1.0])
     assert cam.fall_law == "cosine"
-
-
-@pytest.mark.parametrize("follower", FOLLOWER_KEYS)
-def test_readme_lists_the_keys_of_every_follower(follower):
-    row = next(line for line in README.splitlines() if line.startswith(f'| `"{follower}"`')).split("|")
-    assert tuple(tuple(re.findall(r"`(\w+)`", cell)) for cell in row[2:4]) == FOLLOWER_KEYS[follower]
-
-
-def test_readme_names_every_key_of_the_cam():
-    described = README[README.index("The cam. All followers"):README.index("Units (Latin")]
-    assert set(variant.Cam.model_fields) - set(re.findall(r"`(\w+)[` ]", described)) == set()

@@ -114,7 +114,7 @@ def commands(project: str) -> list[tuple[list[str], bool]]:
 
 
 def table(project: str, say: Callable[[str], None]) -> str:
-    """The table in Markdown, as it stands in README."""
+    """The table in Markdown, as it stands in docs/accuracy.md."""
     rows = []
     for arguments, forced in commands(project):
         say(" ".join(arguments))

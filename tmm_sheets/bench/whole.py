@@ -144,7 +144,7 @@ def _plain(drawing: Any) -> dict[str, Any]:
 
 
 def table(found: Whole) -> str:
-    """The comparison in Markdown, as it stands in README."""
+    """The comparison in Markdown, as it stands in docs/accuracy.md."""
     plain = f"the same {found.entities} entities by plain library calls"
     rows = [(f"`build {found.project}`, cold", found.build), (plain, found.plain),
             ("`import ezdxf, reportlab` alone", found.imports)]  # fmt: skip

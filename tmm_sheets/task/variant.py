@@ -44,6 +44,10 @@ def _si(quantity: units.Quantity) -> BeforeValidator:
     return BeforeValidator(lambda value: units.parse(value, quantity))
 
 
+def _si_or(word: str, quantity: units.Quantity) -> BeforeValidator:
+    return BeforeValidator(lambda value: value if value == word else units.parse(value, quantity))
+
+
 def _range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
     def check(value: float) -> float:
         if not holds(value):
@@ -63,6 +67,7 @@ def _whole(least: int) -> BeforeValidator:
 
 
 def _even_parts(parts: int) -> int:
+    """Even, 12 at most."""
     if parts % 2 or parts > 12:
         raise ValueError("expected an even number of parts, 12 at most")
     return parts
@@ -87,9 +92,8 @@ Angle = Annotated[float, _si(units.ANGLE)]
 AcuteAngle = Annotated[float, _si(units.ANGLE), _ACUTE]
 PhaseAngle = Annotated[float, _si(units.ANGLE), _PHASE]
 Speed = Annotated[float, _si(units.ANGULAR_VELOCITY), _positive("speed of rotation")]
-CrankAcceleration = Annotated[
-    float | Literal["flywheel"], BeforeValidator(lambda v: v if v == "flywheel" else units.parse(v, units.ANGULAR_ACCELERATION))
-]
+CrankAcceleration = Annotated[float | Literal["flywheel"], _si_or("flywheel", units.ANGULAR_ACCELERATION)]
+Start = Annotated[str | float, _si_or("dead", units.ANGLE)]
 Gravity = Annotated[float, _si(units.ACCELERATION), _not_negative("gravity")]
 Mass = Annotated[float, _si(units.MASS), _not_negative("mass")]
 Inertia = Annotated[float, _si(units.INERTIA), _not_negative("moment of inertia")]
@@ -107,12 +111,14 @@ Sense = Literal["clockwise", "counter-clockwise"]
 
 
 def _name(value: Any) -> str:
+    """Name in quotes."""
     if not isinstance(value, str) or not value.strip():
         raise ValueError('expected a name in quotes, for example "B"')
     return value
 
 
 def _direction(value: Any) -> float | str:
+    """`"against motion"`, `"along motion"` or an angle."""
     if isinstance(value, str) and value in ("against motion", "along motion"):
         return value
     try:
@@ -122,7 +128,7 @@ def _direction(value: Any) -> float | str:
 
 
 def _through(value: Any) -> str | tuple[float, float]:
-    """A point by its name or its two coordinates."""
+    """Name of a point or its two coordinates."""
     if isinstance(value, str) and value.strip():
         return value
     if isinstance(value, list) and len(value) == 2:
@@ -134,7 +140,10 @@ Name = Annotated[str, BeforeValidator(_name)]
 
 
 def _diagram(value: Any) -> tuple[tuple[str | float, str | float], ...]:
-    """Pairs of a diagram as written; their units follow from the table they stand in and are read there."""
+    """List of pairs.
+
+    They stay as written: their units follow from the table they stand in and are read there.
+    """
     if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
         raise ValueError('expected a list of pairs, for example [[0, "0 N"], [0.6, "0 N"], [1, "1000 kN"]]')
     return tuple((p[0], p[1]) for p in value)
@@ -155,6 +164,7 @@ def diagram(pairs: Sequence[tuple[Any, Any]], argument: units.Quantity, value: u
 
 
 def _shares(pairs: Sequence[tuple[Any, Any]]) -> Sequence[tuple[Any, Any]]:
+    """Shares of the phase from 0 to 1."""
     x, _ = diagram(pairs, units.NUMBER, units.NUMBER)
     if len(x) < 2 or x[0] != 0 or x[-1] != 1:
         reach = f"from {x[0]:g} to {x[-1]:g}" if x else "an empty table"
@@ -166,6 +176,7 @@ CamDiagram = Annotated[tuple[tuple[Any, Any], ...], AfterValidator(_shares), Bef
 
 
 def _arrangement(name: str) -> str:
+    """Name of an arrangement."""
     known = sorted(p.stem for p in resources.template("sheets").glob("*.toml"))
     if name not in known:
         near, listed = _nearest(name, known)
@@ -190,94 +201,126 @@ class Heading(Table):
     name: Name = Field(description='name of the project, "family/name"')
     title: str = Field(description="title as it stands on the sheets")
     variant: str = ""
+    """the variant of the task, as it stands in `show` and in the results"""
     sheets: tuple[SheetName, ...] = Field(min_length=1, description='the sheets in order, for example ["gear", "cam"]')
 
 
 class TitleBlock(Table):
-    """``[title_block]``: what stands in the title block (GOST 2.104)."""
+    """``[title_block]``: what stands in the title block (GOST 2.104); what is left out stays empty."""
 
     form: Literal["1", "2a"] = "1"
+    """form of GOST 2.104: the whole block, or the small one for following sheets"""
     designation: str = ""
+    """field 2; the code of the sheet is added to it (`Д1`, `Д2` ...)"""
     institution: str = ""
+    """field 9, upper line"""
     group: str = ""
+    """field 9, lower line"""
     student: str = ""
+    """field 11: who developed it; also the author in the files"""
     supervisor: str = ""
+    """field 11: the head of the project"""
     checker: str = ""
+    """field 11: who checks it"""
     letter: str = ""
+    """field 4: `У` for a study project"""
     first_sheet: Count = 1
+    """running number of the first sheet"""
 
 
 class Crank(Table):
-    """``[crank]``: the initial link. ``speed`` rad/s without sign, ``angular_acceleration`` rad/s2, positive in ``sense``.
-
-    The acceleration ``"flywheel"`` is that of the uneven running with the flywheel found; the crank then carries its inertia.
-    """
+    """``[crank]``: the initial link."""
 
     link: Name = Field(description='number of the link, for example "1"')
     pivot: Name = Field(description='fixed point it turns about, for example "A"')
     pin: Name = Field(description='point at its end, for example "B"')
     length: Length = Field(description='length with its unit, for example "0.08 m"')
     speed: Speed = Field(description='speed of rotation, for example "72 rpm" or "7.54 rad/s"')
+    """without sign, `sense` has it"""
     sense: Sense = Field(description='"clockwise" or "counter-clockwise"')
+    """of the crank"""
     angular_acceleration: CrankAcceleration = 0.0
+    """positive in the sense of rotation; `"flywheel"`: that of the uneven running with the flywheel found, whose inertia the
+    crank then carries
+    """
 
 
 class Guide(Table):
-    """``[[guide]]``: a straight guide, fixed or (with ``link``) on a moving link.
+    """``[[guide]]``: a straight guide for a slider or a stone, on the frame or (with ``link``) on a moving link.
 
-    Fixed: ``through`` a point or coordinates (m) under the world angle ``direction`` (rad). On a link: ``through`` one of
-    its points, ``direction`` against the line from there ``towards`` another of its points.
+    In SI ``through`` is a point's name or coordinates in m, ``direction`` in rad.
     """
 
     name: Name = Field(description="name of the guide")
     through: Annotated[str | tuple[float, float], BeforeValidator(_through)] = Field(
         description='a point of the guide: ["0 m", "0.33 m"] or the name of a point'
     )
+    """with `link` a point of that link"""
     direction: Angle = 0.0
+    """of a fixed guide against the x axis; of one on a link against the line from `through` to `towards`"""
     link: Name | None = None
+    """the moving link that carries the guide; left out: the frame"""
     towards: Name | None = None
+    """with `link`: another of its points; for a guide on a slider also the guide the slider runs on"""
 
 
 class Group(Table):
-    """``[[group]]``: an Assur group of two links. Which keys a kind has: :data:`tmm_sheets.task.names.GROUP_KEYS`."""
+    """``[[group]]``: an Assur group of two links (class II, order 2), in the order in which they can be drawn.
+
+    Which keys a kind has: :data:`tmm_sheets.task.names.GROUP_KEYS`.
+    """
 
     kind: Literal[1, 2, 3, 4, 5] = Field(description="kind of the group, 1 (RRR) to 5 (RPP)")
     links: tuple[Name, Name] = Field(description='the two links, for example ["2", "3"]')
     outer: tuple[Name, ...] = ()
+    """points of the outer turning pairs"""
     inner: Name | None = None
+    """name of the point the group adds"""
     lengths: tuple[Length, Length] | None = None
+    """kind 1: from the outer points to the inner one"""
     length: Length | None = None
+    """kind 2: of the rod"""
     offset: Coordinate = 0.0
+    """kind 3: distance of the slot from the rocker's pivot"""
     guide: Name | None = None
+    """kinds 2 and 5: the guide of the slider"""
     guides: tuple[Name, Name] | None = None
+    """kind 4: the guides of both links"""
     slot: Angle | None = None
+    """kind 5: direction of the second sliding pair against the guide"""
     side: Side = 1
+    """which of the two ways the group is put together; 1: left of the line from the first outer point to the second, or further
+    along the guide
+    """
 
 
 class Point(Table):
-    """``[[point]]``: a further point of a link, at ``distance`` (m) from ``from`` under ``angle`` (rad) to the line ``towards``."""
+    """``[[point]]``: a further point of a link: a hinge of a later group, a centre of mass, a point whose path is wanted."""
 
     name: Name = Field(description="name of the point")
     link: Name = Field(description="the link it belongs to")
     from_: Name = Field(alias="from", description="a point of the link the distance is measured from")
     towards: Name = Field(description="a point that gives the direction")
+    """another point of the link; on a slider also its guide"""
     distance: Coordinate = Field(description='distance with its unit; negative: away from "towards"')
     angle: Angle = 0.0
+    """turns it from that line: the link may be a plate"""
 
 
 class Link(Table):
-    """``[[link]]``: mass (kg) at ``centre`` and inertia (kg m2) about it; links that are not listed have none.
-
-    ``pivot_inertia`` (kg m2) about the fixed point the link turns about, where the task gives it beside ``inertia``: the
-    energy is taken with it.
-    """
+    """``[[link]]``: mass and moment of inertia of a link; links that are not listed have none."""
 
     name: Name = Field(description="number of the link")
     title: str = ""
+    """what the link is: crank, coupler, rocker"""
     mass: Mass = 0.0
+    """of the whole link"""
     centre: Name | None = None
+    """the point where the mass is; needed with `mass`"""
     inertia: Inertia = 0.0
+    """about the centre of mass"""
     pivot_inertia: Inertia | None = None
+    """about the fixed point the link turns about, where the task gives it beside `inertia`: the energy is taken with it"""
 
     @model_validator(mode="after")
     def _mass_has_centre(self) -> Self:
@@ -287,29 +330,36 @@ class Link(Table):
 
 
 class Cycle(Table):
-    """``[cycle]``: the positions of the mechanism.
+    """``[cycle]``: the numbered positions of the mechanism, from a dead position or from a crank angle."""
 
-    ``start`` is ``"dead"`` (the dead position where the working stroke of ``output`` begins) or a crank angle (rad). With a
-    crank angle: ``positions`` in one turn, ``turns`` of the cycle, ``zero`` the label of position 0, ``extra`` further
-    positions by label and angle turned from position 0. ``diagrams`` are the points (S, V, a) and links (psi, omega, epsilon)
-    whose kinematic diagrams are drawn; left out, the output.
-    """
-
-    start: Annotated[str | float, BeforeValidator(lambda v: v if v == "dead" else units.parse(v, units.ANGLE))] = Field(
+    start: Start = Field(
         description='"dead" or the crank angle of position 0, for example "90 deg"'
     )
+    """`"dead"`: where the working stroke of `output` begins"""
     output: Name | None = None
+    """the point whose strokes count"""
     working_sense: Literal["+x", "-x", "+y", "-y"] | None = None
+    """the way of the output on the working stroke"""
     positions: Annotated[int, _whole(4)] | None = None
+    """parts of one turn, with a crank angle as `start`"""
     working: Count | None = None
+    """parts of the working stroke, with `start = "dead"`"""
     idle: Count | None = None
+    """parts of the idle stroke"""
     division: Literal["nominal", "exact"] = "exact"
+    """`nominal`: the strokes take the crank angles of K instead of those of the lengths"""
     coefficient: Annotated[float, _si(units.NUMBER), _range("K of 1 or more", lambda x: x >= 1)] | None = None
+    """K, for `division = "nominal"`"""
     force_position: Name | None = None
+    """label of the position of the force analysis, drawn thick; left out: position 0"""
     zero: Name = "0"
+    """label of position 0"""
     turns: Literal[1, 2] = 1
+    """turns of the crank in a cycle"""
     extra: dict[Name, Angle] = {}
+    """further positions by label and angle turned from position 0: `{ "1′" = "22.5 deg" }`"""
     diagrams: tuple[Name, ...] = ()
+    """points (S, V, a) and links (ψ, ω, ε) whose kinematic diagrams are drawn; left out: the output"""
 
     @model_validator(mode="after")
     def _whole_turn(self) -> Self:
@@ -331,19 +381,15 @@ class Forces(Table):
     """``[forces]``: what acts on all links."""
 
     gravity: Gravity = 9.81
+    """free fall; 0 for a mechanism in a horizontal plane"""
 
 
 class Force(Table):
-    """``[[force]]``: a technological force (N) at a point of a link.
+    """``[[force]]``: a technological force at a point of a link: one of ``value``, ``table`` and ``tables``.
 
-    ``direction`` against or along the motion, or a fixed world angle. Strokes lie between the true extremes of the way, however
-    often the point turns back; inside them a force against the motion follows the velocity's sign. ``sense`` is the way of the
-    working strokes ("+x", "-y" ..., or "+guide", "-guide" along a guide); left out, that of the cycle's output. ``value`` is a
-    constant, ``table`` a diagram: pairs of the fraction of the way from where the working strokes begin (``over`` = "stroke") or of
-    the angle turned from position 0 ("angle") and of the force, or of the pressure (Pa) where ``bore`` is given.
-    ``tables`` has one diagram for each stroke in turn ([] for none), the first for the stroke that begins nearest to ``first``.
-    ``from`` and ``to`` are the beginning and the end of the action as fractions of the way. ``curve`` is how the points of a
-    diagram are joined: straight lines, or a smooth curve that rises and falls only where they do.
+    Strokes lie between the true extremes of the way, however often the point turns back; inside them a force against the motion
+    follows the velocity's sign.
+    SI: N, with ``bore`` Pa; arguments are fractions of the way of ``point`` or, with ``over`` = "angle", rad.
     """
 
     name: Name = Field(description='symbol of the force, for example "F5"')
@@ -352,18 +398,31 @@ class Force(Table):
     direction: Annotated[str | float, BeforeValidator(_direction)] = Field(
         description='"against motion", "along motion" or an angle'
     )
+    """the first two follow the motion of the point; an angle is a fixed direction of the world frame"""
     stroke: Literal["working", "idle", "both"] = "both"
+    """the strokes it acts on"""
     sense: Name | None = None
+    """the way of its working strokes: `+x`, `-y` ..., or `+name`, `-name` along a guide; left out: that of the cycle's output"""
     value: Newtons | None = None
+    """a constant force"""
     over: Literal["stroke", "angle"] = "stroke"
+    """argument of the diagrams: fraction of the stroke, or crank angle turned from position 0"""
     table: Diagram | None = None
+    """a diagram, for example `[[0, "0 N"], [0.6, "0 N"], [1, "1000 kN"]]`"""
     tables: tuple[Diagram, ...] | None = None
+    """a diagram for each stroke in turn, `[]` for none"""
     first: Angle = 0.0
+    """with `tables`: the first is for the stroke that begins nearest to this crank angle"""
     bore: Length | None = None
+    """diameter of a piston: the diagrams are then pressures"""
     ambient: Pressure = 0.0
+    """with `bore`: pressure on the other side of the piston"""
     curve: Literal["straight", "smooth"] = "straight"
+    """how the points of a diagram are joined; a smooth curve rises and falls only where they do"""
     from_: Fraction = Field(default=0.0, alias="from")
+    """where the action begins, as a fraction of the way"""
     to: Fraction = 1.0
+    """where it ends"""
     accepted: bool = Field(default=False, description='true: our own assumption, marked "принято" on the sheet')
 
     @model_validator(mode="after")
@@ -382,22 +441,31 @@ class Force(Table):
 
 
 class Moment(Table):
-    """``[[moment]]``: a technological moment (N m) on a link, like a force: ``sense`` is that of its working strokes."""
+    """``[[moment]]``: a technological moment on a link: one of ``value``, ``table`` and ``tables``."""
 
     name: Name = Field(description='symbol of the moment, for example "M5"')
     link: Name = Field(description="the link it acts on")
     direction: Literal["against motion", "along motion", "clockwise", "counter-clockwise"] = Field(
         description='"against motion", "along motion", "clockwise" or "counter-clockwise"'
     )
+    """the first two follow the motion of the link"""
     stroke: Literal["working", "idle", "both"] = "both"
+    """the strokes it acts on"""
     sense: Sense = Field(default="counter-clockwise", description="sense of rotation of the link on the working stroke")
     value: Torque | None = None
+    """a constant moment"""
     over: Literal["stroke", "angle"] = "stroke"
+    """argument of the diagrams: fraction of the link's way, or crank angle turned from position 0"""
     table: Diagram | None = None
+    """a diagram, as for forces"""
     tables: tuple[Diagram, ...] | None = None
+    """a diagram for each stroke in turn, `[]` for none"""
     first: Angle = 0.0
+    """as for forces"""
     curve: Literal["straight", "smooth"] = "straight"
+    """as for forces"""
     accepted: bool = False
+    """true: our own assumption, marked "принято" on the sheet"""
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
@@ -421,14 +489,19 @@ def _diagrams(load: Force | Moment, quantity: units.Quantity) -> tuple[tuple[lis
 
 
 class Balancing(Table):
-    """``[balancing]``: what drives the crank: a pure moment, or the force of a gear pair on the crank shaft (module in m)."""
+    """``[balancing]``: what drives the crank: a pure moment, or the force of a gear pair on the crank shaft."""
 
     kind: Literal["moment", "gear force"] = Field(description='"moment" or "gear force"')
+    """what drives the crank"""
     name: Name = Field(description='symbol, for example "F1"')
     teeth: Teeth | None = None
+    """of the wheel on the crank shaft"""
     module: Length | None = None
+    """of the gear pair"""
     pressure_angle: AcuteAngle | None = None
+    """of the gear pair"""
     mate: Angle | None = None
+    """direction from the crank pivot to the centre of the other wheel"""
 
     @model_validator(mode="after")
     def _gear_is_whole(self) -> Self:
@@ -442,11 +515,7 @@ class Balancing(Table):
 
 
 class Motor(Table):
-    """``[flywheel.motor]``: the motor to be checked (W, rad/s) and the gear train between it and the crank.
-
-    ``synchronous`` and ``rated`` are its speeds; ``efficiency`` that of the train, ``ratio`` the rotor's speed over the crank's,
-    left out: with the rated speed; ``rotor_inertia`` kg m2. ``accepted``: our own assumption, marked "принято" on the sheet.
-    """
+    """``[flywheel.motor]``: the motor to be checked and the gear train between it and the crank."""
 
     name: Name = Field(description='type of the motor, for example "4А160М6"')
     power: Annotated[float, _si(units.POWER), _positive("power")] = Field(description='power, for example "15 kW"')
@@ -454,27 +523,32 @@ class Motor(Table):
     rated: Speed = Field(description='speed under the full load, for example "975 rpm"')
     efficiency: InnerFraction = Field(description="efficiency of the gear train, for example 0.85")
     rotor_inertia: Inertia = 0.0
+    """of the rotor about its axis"""
     ratio: PositiveNumber | None = None
+    """speed of the rotor over that of the crank; left out: with the rated speed"""
     accepted: bool = False
+    """true: our own assumption, marked "принято" on the sheet"""
 
 
 class Flywheel(Table):
-    """``[flywheel]``: how even the rotation must be, and what the flywheel is made of (density kg/m3).
-
-    ``weights``: the reduced moment counts the weights of the links. ``rim_share`` is the part of the moment of inertia
-    that the rim has. ``accepted``: delta is our own assumption, marked "принято" on the sheet.
-    """
+    """``[flywheel]``: how even the rotation must be, and what the flywheel is made of."""
 
     method: Literal["wittenbauer", "mertsalov"] = Field(description='"wittenbauer" or "mertsalov"')
+    """energy-mass curve, or the energy of the crank's group"""
     delta: InnerFraction = Field(description="coefficient of non-uniformity, for example 0.025")
     form: Literal["rim", "disc"] = "rim"
+    """a rim with spokes, or a disc"""
     density: Density = Field(description='density, for example "7300 kg/m3"')
     width_ratio: InnerFraction = Field(description="B/D, for example 0.2")
     thickness_ratio: InnerFraction = Field(description="H/D, for example 0.12")
     rim_share: Annotated[float, _si(units.NUMBER), _range("a number above 0, 1 at most", lambda x: 0 < x <= 1)] = 1.0
+    """part of the moment of inertia that the rim has"""
     weights: bool = False
+    """true: the reduced moment counts the weights of the links"""
     accepted: bool = False
+    """true: delta is our own assumption, marked "принято" on the sheet"""
     motor: Motor | None = None
+    """table `[flywheel.motor]`"""
 
 
 def _or_word(word: str) -> WrapValidator:
@@ -483,24 +557,27 @@ def _or_word(word: str) -> WrapValidator:
 
 
 class Gear(Table):
-    """``[gear]``: a pair of external spur gears (module in m, shifts in modules).
-
-    ``teeth = "reducer"``: the simple stage of ``[reducer]``, with its tooth numbers, module, addendum and clearance.
-    ``shift = "rule"``: the least shift without undercut. ``profile``: teeth with a fillet of constant radius, or as the
-    rack cuts them, with a trochoid and, where it happens, undercut.
-    """
+    """``[gear]``: a pair of external involute spur gears."""
 
     teeth: Annotated[tuple[Teeth, Teeth], _or_word("reducer")] = Field(description="tooth numbers, for example [14, 28]")
+    """`"reducer"`: the simple stage of `[reducer]` with its module, addendum and clearance"""
     module: Length | None = Field(default=None, description='module, for example "3.5 mm"')
+    """needed unless `teeth = "reducer"`"""
     shift: Annotated[tuple[Number, Number], _or_word("rule")] = Field(
         default=(0.0, 0.0), description="shifts, for example [0.2, 0]"
     )
+    """in modules; `"rule"`: the least shifts without undercut"""
     pressure_angle: AcuteAngle = Field(description='profile angle of the rack, for example "20 deg"')
     addendum: PositiveNumber | None = None
+    """coefficient ha*; left out: 1"""
     clearance: PositiveNumber | None = None
+    """coefficient c*; left out: 0.25"""
     driver: Literal[1, 2] = 1
+    """the wheel that drives"""
     sense: Sense = "clockwise"
+    """sense of rotation of wheel 1"""
     profile: Literal["fillet", "rack"] = "fillet"
+    """`fillet`: a fillet of constant radius; `rack`: as a rack cuts the teeth, with undercut where it happens"""
 
     @model_validator(mode="after")
     def _module_from_one_place(self) -> Self:
@@ -516,22 +593,28 @@ class Gear(Table):
 
 
 class Synthesis(Table):
-    """``[synthesis]``: conditions from which lengths are found (m, m/s); they stand where they are used as "synthesis l_AB".
+    """``[synthesis]``: conditions from which lengths are found.
 
-    ``kind`` "quick return": crank and rocker from ``coefficient`` K, the ``stroke`` of the rocker's end and the
-    ``centre_distance``; lengths l_AB, l_CD. "engine": crank and slider from ``[crank] speed``, the ``mean_velocity`` of the
-    piston and ``rod_ratio`` = l_BC/l_AB; lengths H, l_AB, l_BC. With ``centre_ratio`` also l_CS or l_BS. Found lengths are
-    rounded to ``round``.
+    Where one is used, ``"synthesis l_AB"`` or ``"0.5 synthesis l_CD"`` stands instead of a length.
+    ``"quick return"`` finds l_AB and l_CD, ``"engine"`` H, l_AB and l_BC; with ``centre_ratio`` also l_CS or l_BS.
     """
 
     kind: Literal["quick return", "engine"] = Field(description='"quick return" or "engine"')
+    """crank and rocker, or crank and slider"""
     coefficient: Annotated[float, _si(units.NUMBER), _range("K greater than 1", lambda x: x > 1)] | None = None
+    """quick return: K, the ratio of mean velocities"""
     stroke: Length | None = None
+    """quick return: of the rocker's end"""
     centre_distance: Length | None = None
+    """quick return: between the pivots of crank and rocker"""
     mean_velocity: Annotated[float, _si(units.VELOCITY), _positive("velocity")] | None = None
+    """engine: of the piston"""
     rod_ratio: Annotated[float, _si(units.NUMBER), _range("a ratio greater than 1", lambda x: x > 1)] | None = None
+    """engine: l_BC/l_AB"""
     centre_ratio: PositiveNumber | None = None
+    """place of the centre of mass on rocker or rod, as a share of its length"""
     round: Length | None = None
+    """found lengths are rounded to this step"""
 
     @model_validator(mode="after")
     def _conditions_of_the_kind(self) -> Self:
@@ -546,36 +629,50 @@ class Synthesis(Table):
 
 
 class Reducer(Table):
-    """``[reducer]``: a planetary reducer with a simple stage (modules in m, speeds rad/s without sign).
+    """``[reducer]``: a planetary reducer with a simple stage; tooth numbers that are not given are searched.
 
     Wheels are numbered from the input on, those of the simple stage first where it stands ``before`` the planetary one:
-    z1, z2 | z3 sun, z4 satellites, z5 ring; ``after``: z1 .. z3 or z1 .. z4 | z5, z6. ``stages`` equal stages of a
-    single row have z1 .. z3, z4 .. z6 | z7, z8. ``teeth`` gives tooth numbers, at least that of the pinion of the simple
-    stage; the others are searched. ``driver`` of a single row is the sun or the ring, the other one is fixed; satellite
-    blocks on two suns or two rings are driven by the carrier.
+    z1, z2 | z3 sun, z4 satellites, z5 ring; ``after``: z1 .. z3 or z1 .. z4 | z5, z6. Two stages of a single row have
+    z1 .. z3, z4 .. z6 | z7, z8.
     """
 
     scheme: Literal["single row", "external-internal", "two external", "two internal"] = Field(
         description='"single row", "external-internal", "two external" or "two internal"'
     )
+    """`single row`: sun, satellites, ring; `external-internal`: sun, blocks of two satellites, ring;
+    `two external`, `two internal`: the carrier drives, blocks between two suns or two rings
+    """
     simple: Literal["before", "after"] = Field(description='the simple stage stands "before" or "after" the planetary one')
     stages: Literal[1, 2] = 1
+    """2: two equal single rows"""
     driver: Literal["sun", "ring", "carrier"] | None = None
+    """of a single row: the other central wheel is fixed; left out: the sun"""
     ratio: PositiveNumber | None = None
+    """ratio of the whole reducer, this or `output_speed`"""
     input_speed: Speed = Field(description='speed of the input, for example "1250 rpm"')
     output_speed: Speed | None = Field(default=None, description='speed of the output, for example "300 rpm"')
+    """this or `ratio`"""
     teeth: dict[Name, Teeth] = Field(description="tooth numbers that are given, for example { z5 = 12 }")
+    """the pinion of the simple stage must be there, any other may"""
     module: Length = Field(description='module of the planetary stage, for example "5 mm"')
     simple_module: Length = Field(description='module of the simple stage, for example "10 mm"')
     satellites: Annotated[int, _whole(2)] = Field(description="number of satellites, for example 3")
     addendum: PositiveNumber = 1.0
+    """coefficient ha*"""
     clearance: PositiveNumber = 0.25
+    """coefficient c*"""
     pair_efficiency: Fraction = 0.98
+    """efficiency of one pair of wheels"""
     tolerance: InnerFraction = 0.05
+    """greatest deviation of the ratio"""
     simple_ratio: tuple[PositiveNumber, PositiveNumber] | None = None
+    """limits of the ratio of the simple stage, for example `[1.5, 4]`"""
     least_teeth: Teeth = 15
+    """of the planetary wheels"""
     most_teeth: Teeth | None = None
+    """of the planetary wheels"""
     strict_internal: bool = False
+    """true: no interference in internal pairs"""
 
     @model_validator(mode="after")
     def _ratio_is_known(self) -> Self:
@@ -596,33 +693,34 @@ class Reducer(Table):
 
 
 class Cam(Table):
-    """``[cam]``: a disc cam and its follower (lengths in m, angles in rad).
+    """``[cam]``: a disc cam and its follower.
 
-    Translating followers have a ``stroke``, a rocker its ``arm`` and ``swing``; which keys a follower
-    has: :data:`tmm_sheets.task.cam_keys.FOLLOWER_KEYS`.
-    ``eccentricity`` left out: the most favourable one; positive to the side to which the S' of the rise are laid off.
-    ``table`` and ``fall_table`` are diagrams of the relative acceleration over the share of the phase, for the laws named
-    "table": speeding up is positive; two pairs with one argument make a corner or a jump. Without a law of its own the fall
-    is the mirror image of the rise. ``parts`` are the equal parts of each phase. ``centre`` is where the axis of the cam
-    is put: in the vertex of the allowed zone, or where the cam is least. ``curvature_share`` is the largest roller by the
-    smallest radius of curvature (left out: 0.7 .. 0.8). ``speed``, with ``follower_mass`` (kg) or, for
-    a rocker, ``follower_inertia`` (kg m2), is what the closing spring needs: its largest force is ``spring_factor`` times
-    the largest force of inertia, ``preload`` its share in the lowest position.
+    Which keys belong to which follower: :data:`tmm_sheets.task.cam_keys.FOLLOWER_KEYS`.
     """
 
     follower: Literal["translating roller", "oscillating roller", "flat"] = Field(
         description='"translating roller", "oscillating roller" or "flat"'
     )
+    """what the cam moves: a tappet with a roller, a rocker with a roller, a tappet with a flat face"""
     law: CamLaw = Field(description='law of the acceleration, for example "sine"')
+    """of both phases"""
     fall_law: CamLaw | None = None
+    """left out: the fall mirrors the rise"""
     table: CamDiagram | None = None
+    """for `law = "table"`: relative acceleration over the share of the phase, speeding up positive, for example
+    `[[0, 1], [0.4, 0], [1, -0.5]]`; smoothly joined, two pairs with one share are a corner or a jump
+    """
     fall_table: CamDiagram | None = None
+    """the same for `fall_law = "table"`"""
     rise: PhaseAngle = Field(description='phase angle of the rise, for example "100 deg"')
     upper_dwell: PhaseAngle = 0.0
+    """phase angle of the upper dwell"""
     fall: PhaseAngle = Field(description='phase angle of the fall, for example "70 deg"')
     parts: Annotated[int, AfterValidator(_even_parts), _whole(4)] = 8
+    """equal parts of each phase"""
     stroke: Length | None = Field(default=None, description='stroke of the follower, for example "10 mm"')
     eccentricity: Coordinate | None = None
+    """left out: the most favourable one; positive to the side to which the S′ of the rise are laid off"""
     arm: Length | None = Field(default=None, description='length of the rocker, for example "90 mm"')
     swing: AcuteAngle | None = Field(default=None, description='angle through which the rocker swings, for example "30 deg"')
     rotation: Literal["same", "opposite"] = Field(
@@ -630,17 +728,29 @@ class Cam(Table):
     )
     pressure_angle: AcuteAngle | None = Field(default=None, description='permitted pressure angle, for example "30 deg"')
     limit: Literal["rise", "both"] = "both"
+    """the phases whose pressure angle is limited; `rise` goes with force closure"""
     centre: Literal["vertex", "least"] = "vertex"
+    """where the axis of the cam is put: the vertex of the allowed zone, or the point of it that makes the cam least"""
     base_radius: Length | None = None
+    """of the cam with a flat follower; left out: the least"""
     sense: Sense = "clockwise"
+    """sense of rotation of the cam"""
     roller: Length | None = None
+    """radius of the roller; left out: by both rules, r_p ≤ (0.3…0.4) r0 and r_p ≤ (0.7…0.8) ρ_min"""
     curvature_share: InnerFraction | None = None
+    """the largest roller as a share of the least radius of curvature ρ_min; left out: 0.7…0.8"""
     closure: Literal["force", "geometric"] = "force"
+    """`force`: a spring, chosen when `speed` and the follower's mass or inertia are there; `geometric`: a second disc"""
     speed: Speed | None = Field(default=None, description='speed of the cam, for example "300 rpm"')
+    """for the spring"""
     follower_mass: Annotated[float, _si(units.MASS), _positive("mass")] | None = None
+    """of a translating or flat follower, for the spring"""
     follower_inertia: Annotated[float, _si(units.INERTIA), _positive("moment of inertia")] | None = None
+    """of a rocker about its pivot, for the spring"""
     spring_factor: Annotated[float, _si(units.NUMBER), _range("a number from 1 to 5", lambda x: 1 <= x <= 5)] = 1.75
+    """largest force of the spring over the largest force of inertia"""
     preload: InnerFraction = 0.3
+    """force of the spring in the lowest position as a share of the largest"""
 
     @model_validator(mode="after")
     def _phases_fit(self) -> Self:
@@ -666,6 +776,7 @@ class Variant(Table):
     points: dict[Name, tuple[Coordinate, Coordinate]] = Field(
         default={}, description='coordinates x and y with their units, for example C = ["0 m", "-0.26 m"]'
     )
+    """the fixed points in the world frame: x right, y up, origin in the crank pivot"""
     guide: tuple[Guide, ...] = ()
     group: tuple[Group, ...] = ()
     point: tuple[Point, ...] = ()
@@ -680,6 +791,9 @@ class Variant(Table):
     reducer: Reducer | None = None
     cam: Cam | None = None
     scales: dict[Name, PositiveNumber] = {}
+    """scale factors that the program is not to choose itself, by the names of plans in `protocol`, SI per mm:
+    `velocities = 0.02`
+    """
 
     _file: str = PrivateAttr(default="")
     _lines: TomlLines = PrivateAttr(default_factory=TomlLines)

@@ -1,0 +1,286 @@
+"""The tables of docs/ that follow from the program: keys of the project file, units, options, arrangements, examples.
+
+A line ``<!-- made: NAME ARGUMENT -->`` begins such a part, ``<!-- end -->`` ends it; ``make docs`` writes what is between anew.
+What a key means stands in a string under it in ``variant.py``, where only this module looks for it: the program starts no slower.
+"""
+
+import ast
+import inspect
+import re
+from collections.abc import Iterator, Mapping
+from math import degrees
+from pathlib import Path
+from types import ModuleType, NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import click
+from pydantic import AfterValidator, BeforeValidator, WrapValidator
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
+
+from tmm_sheets import catalogue, cli, resources
+from tmm_sheets.backends import dxf
+from tmm_sheets.drawing import marks, styles
+from tmm_sheets.drawing.marks import Arc, Drawing, Line
+from tmm_sheets.mechanism.model import FORMS
+from tmm_sheets.methods.linkage import cycle
+from tmm_sheets.methods.linkage import positions as positions_module
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import frame
+from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.task import units, variant
+from tmm_sheets.task.cam_keys import FOLLOWER_KEYS
+from tmm_sheets.task.names import GROUP_KEYS
+
+ROOT = Path(__file__).parents[1]
+PAPERS = (ROOT / "README.md", ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.md")))
+PART = re.compile(r"^(<!-- made: (\w+)(?: (\S+))? -->\n).*?^(<!-- end -->)$", re.MULTILINE | re.DOTALL)
+PAIRS = ("RRR", "RRP", "RPR", "PRP", "RPP")
+
+
+def table(*rows: tuple[str, ...]) -> str:
+    head, *body = [f"| {' | '.join(row)} |" for row in rows]
+    return "\n".join((head, "|" + "---|" * len(rows[0]), *body)) + "\n"
+
+
+def code(*words: Any) -> str:
+    return ", ".join(f"`{word}`" for word in words)
+
+
+# --- keys of the project file ---------------------------------------------------------------------------------------
+
+
+def meanings(model: type[variant.Table]) -> dict[str, str]:
+    """What the strings under the keys of a table say, by key."""
+    (tree,) = ast.parse(inspect.getsource(model)).body
+    found, before = {}, None
+    for node in tree.body:
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and before is not None:
+            found[before] = " ".join(str(node.value.value).split())
+        before = node.target.id if isinstance(node, ast.AnnAssign) else None
+    return found
+
+
+def meaning(model: type[variant.Table], name: str, takes: str) -> str:
+    """Description (what a message about a missing key says) and the string under the key, without what ``takes`` says already."""
+    described = quoted(model.model_fields[name].description or "")
+    news = described.replace(",", " or") != takes.replace(",", " or")
+    return "; ".join(filter(None, (described if news else "", meanings(model).get(name))))
+
+
+def quoted(description: str) -> str:
+    """A description with its examples set as code."""
+    text, for_example, shown = description.partition("for example ")
+    return re.sub(r'("[^"]*")', r"`\1`", text) + for_example + " or ".join(f"`{x}`" for x in shown.split(" or ") if x)
+
+
+def value(hint: Any) -> str:
+    """What a key takes, in words, from its type."""
+    origin, args = get_origin(hint), get_args(hint)
+    if origin is Annotated:
+        return restricted(args[0], args[1:])
+    if origin in (Union, UnionType):
+        return " or ".join(value(a) for a in args if a is not NoneType)
+    if origin is Literal:
+        return " or ".join(f'`"{a}"`' if isinstance(a, str) else f"`{a}`" for a in args)
+    if origin is dict:
+        return f"{plural(value(args[1]))}, by name"
+    if origin is tuple:
+        return f"{'list of' if args[-1] is ... else 'two'} {plural(value(args[0]))}"
+    plain = {bool: "`true` or `false`", str: "text", int: "whole number", float: "number", NoneType: ""}
+    return plain.get(hint, "table")
+
+
+def plural(text: str) -> str:
+    return re.sub(r"^(whole )?([a-z]+)", r"\1\2s", text) if not text.startswith("two") else text
+
+
+def restricted(base: Any, validators: tuple[Any, ...]) -> str:
+    """Value of a type with validators: the named ones tell by their docstring, the others by what they were made with."""
+    said = []
+    for v in validators:
+        assert isinstance(v, BeforeValidator | AfterValidator | WrapValidator)
+        given = made_with(v)
+        if not given:
+            said.append(first_lower(inspect.getdoc(v.func).split("\n")[0].rstrip(".")))
+        elif "word" in given:
+            said.append(f'`"{given["word"]}"` or {given["quantity"].name if "quantity" in given else value(base)}')
+        elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
+            said.append(given["quantity"].name)
+        elif "wording" in given:
+            said.append(without_article(given["wording"]))
+        elif "least" in given:
+            said.append(f"whole number, {given['least']} or more")
+    return ", ".join(reversed(said[:1] if len(said) == 2 and said[1] == "name in quotes" else said))
+
+
+def made_with(validator: Any) -> Mapping[str, Any]:
+    """What a validator holds in its closure: quantity, wording, least, word; nothing for a named function."""
+    return inspect.getclosurevars(validator.func).nonlocals
+
+
+def without_article(text: str) -> str:
+    return re.sub(r"^(a|an) ", "", text)
+
+
+def first_lower(text: str) -> str:
+    return re.sub(r"^(An? )?([A-Z])", lambda m: m[2].lower(), text)
+
+
+def default(hint: Any, field: FieldInfo) -> str:
+    if field.default is PydanticUndefined:
+        return "needed"
+    if field.default in (None, (), {}, "") or isinstance(field.default, variant.Table):
+        return "–"
+    if isinstance(field.default, bool):
+        return f"`{str(field.default).lower()}`"
+    if isinstance(field.default, tuple):
+        return f"`[{', '.join(f'{x:g}' for x in field.default)}]`"
+    if isinstance(field.default, str):
+        return f'`"{field.default}"`'
+    return f"`{field.default:g}`" if field.default == 0 or not unit(hint) else f'`"{field.default:g} {unit(hint)}"`'
+
+
+def unit(hint: Any) -> str:
+    """SI unit of a key; empty for a pure number."""
+    given = list(map(made_with, validators(hint)))
+    return next((name for g in given if "quantity" in g for name, f in g["quantity"].units.items() if f.si("1") == 1), "")
+
+
+def validators(hint: Any) -> tuple[Any, ...]:
+    return get_args(hint)[1:] if get_origin(hint) is Annotated else ()
+
+
+def keys(section: str) -> str:
+    """Every key of a table of the project file; ``flywheel.motor`` is the table in a table."""
+    model: Any = variant.Variant
+    for key in section.split("."):
+        model = variant._model(model.model_fields[key].annotation)
+    return table(("key", "value", "left out", "meaning"), *key_rows(model))
+
+
+def key_rows(model: type[variant.Table]) -> Iterator[tuple[str, ...]]:
+    hints = get_type_hints(model, include_extras=True)
+    for name, field in model.model_fields.items():
+        key = field.alias or name
+        takes = value(hints[name])
+        yield f"`{key}`", takes, default(hints[name], field), meaning(model, name, takes)
+
+
+def whole() -> str:
+    """Keys and tables of a project file that stand in no table of their own."""
+    rows = [row for row in key_rows(variant.Variant) if row[0] in ("`schema`", "`points`", "`scales`")]
+    return table(("key", "value", "left out", "meaning"), *rows)
+
+
+def groups() -> str:
+    rows = ((f"{kind}", f"{PAIRS[kind - 1]} ({FORMS[kind]})", code("links", *must), code(*may) or "–")
+            for kind, (must, may) in GROUP_KEYS.items())
+    return table(("kind", "pairs", "needs", "may have"), *rows)
+
+
+def followers() -> str:
+    rows = ((f'`"{name}"`', code(*must), code(*may)) for name, (must, may) in FOLLOWER_KEYS.items())
+    return table(("follower", "needs", "may have"), *rows)
+
+
+def quantities() -> str:
+    rows = ((q.name, code(*map(spaced, filter(None, q.units))), f"`{q.example}`" if q is units.NUMBER else f'`"{q.example}"`')
+            for q in units.QUANTITIES)
+    return table(("quantity", "units", "for example"), *rows)
+
+
+def spaced(name: str) -> str:
+    """A unit as people write it: kg m2, N mm."""
+    return re.sub(r"^(kg|кг|g|г|k?N|к?Н)(?=[mм])", r"\1 ", name)
+
+
+def example(path: str) -> str:
+    return f"```toml\n{(ROOT / path).read_text(encoding='utf-8')}```\n"
+
+
+# --- commands and sheets --------------------------------------------------------------------------------------------
+
+
+def options(command: str) -> str:
+    """Every option of a command, as ``--help`` has it."""
+    found = cli.commands.commands[command]
+    rows = [helped for p in found.params if isinstance(p, click.Option)
+            if (helped := p.get_help_record(click.Context(found))) is not None]  # fmt: skip
+    return table(("option", "does"), *((f"`{names}`", says.replace("|", "\\|")) for names, says in rows))
+
+
+def arrangements() -> str:
+    names = sorted(p.stem for p in resources.template("sheets").glob("*.toml"))
+    rows = ((f"`{a.name}`", a.code, a.title, code(*dict.fromkeys(v.draw for v in a.views))) for a in map(arrangement, names))
+    return table(("arrangement", "code", "title", "views"), *rows)
+
+
+# --- one crank angle through the code -------------------------------------------------------------------------------
+
+
+VIEW = "kinematics.position_plans"
+
+
+def walk() -> str:
+    """Position 2 of the shaper at every station from the project file to the DXF file."""
+    task = catalogue.read("lugansk/shaper")
+    project = Project(task)
+    positions = project.study.positions
+    pin = positions.points["B"]
+    z = pin.at(2)
+    sheet = composed(project, 1)
+    scale = sheet.scales["positions"]
+    (circle,) = {m.centre for m in sheet.drawing.marks if isinstance(m, Arc) and m.style == "thin" and m.of == VIEW
+                 and abs(m.radius - task.crank.length / scale.mu) < 1e-9}
+    there = Frame(scale, circle)(z)
+    crank = next(m for m in sheet.drawing.marks if isinstance(m, Line) and (m.style, m.of) == ("main", "position plan 2")
+                 and abs(cross(m.b - m.a, there - m.a)) < 1e-6)
+    written = [f"{x:.4f}" for x in (crank.a.real, crank.a.imag, crank.b.real, crank.b.imag)]
+    data = dxf.render(Drawing(sheet.drawing.width, sheet.drawing.height, "", (crank,))).decode()
+    assert all(f"\n{x}\n" in data for x in written)
+    groups_of_line = ", ".join(f"`{group}` {x}" for group, x in zip((10, 20, 11, 21), written, strict=True))
+    rows = (
+        ("project file", resources, f'`length = "{task.data["crank"]["length"]}"`, `sense = "{task.data["crank"]["sense"]}"`'),
+        ("numbers", variant, f"`crank.length = {task.crank.length}`, `crank.speed = {task.crank.speed:.6f}` rad/s"),
+        ("cycle", cycle, f"label `2`: {degrees(project.cycle.turned[2]):g}° turned from the dead position, crank at "
+                         f"{degrees(project.cycle.phi[2]) % 360:g}° of the world frame"),
+        ("step", positions_module, f"`{pin.name}` by the rule *{pin.rule.name}*: ({z.real:.6f}, {z.imag:.6f}) m"),
+        ("frame", frame, f"origin ({circle.real:g}, {circle.imag:g}) mm, μ_l = {scale.mu:g} m/mm: B at "
+                         f"({there.real:.4f}, {there.imag:.4f}) mm"),
+        ("mark", marks, f"`Line` in the style `{crank.style}`, of `{crank.of}`, shortened by the circles of its hinges"),
+        ("file", dxf, f"`LINE` on the layer `{styles.line_type(crank.style).layer}`: {groups_of_line}"),
+    )
+    return table(("station", "where", "what it is there"), *((name, f"`{path(module)}`", told) for name, module, told in rows))
+
+
+def cross(u: complex, v: complex) -> float:
+    return (u.conjugate() * v).imag / abs(u)
+
+
+def path(module: ModuleType) -> str:
+    if module is resources:
+        return "variants/lugansk/shaper.toml"
+    return Path(module.__file__).relative_to(ROOT).as_posix()
+
+
+MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, example, options, arrangements, walk)}
+
+
+def current(text: str) -> str:
+    """A paper with its made parts as they have to be now."""
+    def made(match: re.Match[str]) -> str:
+        head, name, argument, end = match.groups()
+        return f"{head}\n{MAKERS[name](*filter(None, [argument]))}\n{end}"
+
+    return PART.sub(made, text)
+
+
+if __name__ == "__main__":
+    for paper in PAPERS:
+        before = paper.read_text(encoding="utf-8")
+        if (after := current(before)) != before:
+            paper.write_text(after, encoding="utf-8")
+            print(paper.relative_to(ROOT))

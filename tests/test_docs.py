@@ -1,0 +1,294 @@
+"""README and docs/ say what is so: links lead somewhere, commands can be typed, messages are the program's, tables are current."""
+
+import ast
+import re
+import shlex
+import tomllib
+from pathlib import Path
+
+import click
+import pytest
+
+from tests import docs
+from tmm_sheets import __main__, catalogue, cli, resources
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.project import Project
+from tmm_sheets.task import variant
+
+ROOT = docs.ROOT
+TEXTS = {p.relative_to(ROOT).as_posix(): p.read_text(encoding="utf-8") for p in docs.PAPERS}
+EVERYWHERE = "\n".join(TEXTS.values())
+SECTIONS = [f.alias or name for name, f in variant.Variant.model_fields.items()]
+FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+papers = pytest.mark.parametrize("paper", TEXTS)
+
+
+def test_readme_is_short():
+    assert len(TEXTS["README.md"].encode()) <= 8000
+
+
+def test_the_two_commands_and_the_picture_come_first():
+    for paper in ("README.md", "README.ru.md"):
+        first = TEXTS[paper].split("\n##")[0]
+        assert re.findall(r"^    (make.*?)  ", first, re.MULTILINE) == ["make", "make test"]
+        picture = ROOT / re.search(r"!\[.*\]\((.*)\)", first)[1]
+        assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+        assert picture.stat().st_size < 400_000
+
+
+def test_papers_travel_in_the_sdist():
+    build = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]["build"]
+    assert {"README.md", "README.ru.md", "docs"} <= set(build["targets"]["sdist"]["include"])
+
+
+# --- links ----------------------------------------------------------------------------------------------------------
+
+
+def anchors(text):
+    """Anchors of the headings, as forges make them: small letters, hyphens for spaces, no other signs."""
+    headings = re.findall(r"^#+ (.+)$", FENCED.sub("", text), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in headings}
+
+
+def links(text):
+    without_code = re.sub(r"`[^`\n]*`", "", FENCED.sub("", text))
+    return re.findall(r"\[[^\]]*\]\(([^)\s]+)\)", without_code)
+
+
+@papers
+def test_links_lead_somewhere(paper):
+    for link in links(TEXTS[paper]):
+        if re.match(r"[a-z]+:", link):
+            continue
+        place, _, anchor = link.partition("#")
+        target = (ROOT / paper).parent / place if place else ROOT / paper
+        assert target.exists(), f"{paper}: {link}"
+        assert not anchor or anchor in anchors(target.read_text(encoding="utf-8")), f"{paper}: {link}"
+
+
+def test_links_are_found():
+    text = "# A `b` – c?\n[x](y.md#z) `[no](no)` [c](#a-b--c)\n```\n# d\n```\n"
+    assert links(text) == ["y.md#z", "#a-b--c"]
+    assert anchors(text) == {"a-b--c"}
+
+
+def test_files_named_in_code_are_there():
+    """Modules move: a path in backticks is one of this tree, but for places to fill in and what the program writes."""
+    for name in re.findall(r"`((?:tmm_sheets|templates|variants|tests|docs)/[^`<>*]*)`", EVERYWHERE):
+        assert (ROOT / name).exists(), name
+
+
+# --- commands -------------------------------------------------------------------------------------------------------
+
+
+def shown(text):
+    """Lines of code blocks, fenced or indented, and code in the text: what can be typed, without its comment."""
+    outside = FENCED.sub("", text)
+    lines = [line for language, block in FENCED.findall(text) if language in ("", "sh") for line in block.splitlines()]
+    lines += [line.strip() for line in outside.splitlines() if line.startswith("    ")]
+    lines += re.findall(r"`((?:tmm-sheets|make)[^`\n]*)`", outside)
+    return [re.sub(r"\s+#.*", "", line) for line in lines]
+
+
+def typed(text, program):
+    return [shlex.split(line)[1:] for line in shown(text) if re.match(rf"{program}( |$)", line)]
+
+
+def parsed(arguments):
+    """Reads the arguments as the program does, without running anything."""
+    context = click.Context(cli.commands, info_name="tmm-sheets")
+    name, command, rest = cli.commands.resolve_command(context, arguments)
+    return command.make_context(name, rest, parent=context)
+
+
+@papers
+def test_commands_can_be_typed(paper, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ciphers.txt").write_text("press\n")
+    commands = [c for c in typed(TEXTS[paper], "tmm-sheets") if c[:1] not in ([], ["COMMAND"])]
+    for arguments in commands:
+        if "--help" not in arguments:
+            with parsed(arguments):
+                pass
+
+
+def test_commands_are_found():
+    assert len(typed(EVERYWHERE, "tmm-sheets")) > 40
+    text = "    make help  # x\n```toml\na = 1\n```\n```\ntmm-sheets list\n```\n`tmm-sheets show a` `make` [m](n)\n"
+    assert typed(text, "tmm-sheets") == [["list"], ["show", "a"]]
+    assert typed(text, "make") == [["help"], []]
+
+
+def test_wrong_commands_are_found():
+    for line in ("draw press", "build press --colour red", "list press", "plot press --tile a5", "show"):
+        with pytest.raises(click.UsageError):
+            parsed(line.split())
+
+
+@papers
+def test_make_targets_and_modules_are_there(paper):
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+    assert {t for arguments in typed(TEXTS[paper], "make") for t in arguments if "=" not in t} <= targets
+    for module in re.findall(r"python -m (tests[.\w]*)", TEXTS[paper]):
+        assert (ROOT / (module.replace(".", "/") + ".py")).is_file()
+
+
+def test_extras_are_there():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    assert set(re.findall(r"\.\[(\w+)\]", EVERYWHERE)) <= set(extras)
+
+
+def test_the_first_project_works(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    block = TEXTS["README.md"].split("## Your first own project")[1].split("\n##")[0]
+    commands = typed(block, "tmm-sheets")
+    assert len(commands) == 8
+    for arguments in commands:
+        assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
+    assert {p.name for p in Path("out/my").iterdir()} >= {"sheet1.dxf", "sheet4.pdf", "sheet1-a4.pdf", "measured.csv"}
+
+
+QUICK = ("list", "show", "check", "solve", "protocol")
+
+
+@papers
+def test_quick_commands_work(paper, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("my.toml").write_text(catalogue.read("lugansk/shaper").text, encoding="utf-8")
+    for arguments in typed(TEXTS[paper], "tmm-sheets"):
+        if arguments and arguments[0] in QUICK and "PROJECT" not in arguments:
+            assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("name", cli.commands.commands)
+def test_every_option_is_told_and_none_that_is_not(name):
+    (section,) = re.findall(rf"^## {name}\n(.*?)(?=^## |\Z)", TEXTS["docs/commands.md"], re.MULTILINE | re.DOTALL)
+    rows = set(re.findall(r"--[a-z]+(?:-[a-z]+)*", "\n".join(re.findall(r"^\| `([^`]*--[^`]*)`", section, re.MULTILINE))))
+    assert rows == {o for p in cli.commands.commands[name].params for o in p.opts if o.startswith("--")}
+
+
+def test_no_option_is_named_that_no_command_has():
+    known = {o for command in cli.commands.commands.values() for p in command.params for o in p.opts} | {"--help"}
+    text = re.sub(r"^.*(?:python -m|pip install).*$", "", EVERYWHERE, flags=re.MULTILINE)
+    assert set(re.findall(r"(?<![\w-])--[a-z]+(?:-[a-z]+)*", text)) <= known
+
+
+# --- tables made from the program -----------------------------------------------------------------------------------
+
+
+@papers
+def test_made_parts_are_current(paper):
+    assert docs.current(TEXTS[paper]) == TEXTS[paper], "run: make docs"
+    assert len(re.findall(r"<!-- made", TEXTS[paper])) == len(docs.PART.findall(TEXTS[paper])) == TEXTS[paper].count("<!-- end -->")
+
+
+def test_every_table_of_the_project_file_is_told():
+    told = set(re.findall(r"<!-- made: keys (\S+) -->", TEXTS["docs/project-file.md"]))
+    assert told == {s for s in SECTIONS if s not in ("schema", "points", "scales")} | {"flywheel.motor"}
+    assert {"schema", "points", "scales"} <= set(re.findall(r"^\| `(\w+)` \|", docs.whole(), re.MULTILINE))
+
+
+def tables():
+    return [m for m in vars(variant).values() if isinstance(m, type) and issubclass(m, variant.Table) and m is not variant.Table]
+
+
+@pytest.mark.parametrize("table", tables())
+def test_every_key_has_a_value_and_a_meaning(table):
+    assert set(docs.meanings(table)) <= set(table.model_fields), "a string under what is no key"
+    if table is not variant.Variant:
+        for row in docs.key_rows(table):
+            assert all(row), f"{table.__name__}: {row}"
+
+
+def test_meanings_are_read():
+    rows = {row[0]: row[1:] for row in docs.key_rows(variant.Crank)}
+    assert rows["`length`"] == ("length greater than zero", "needed", "length with its unit, for example `\"0.08 m\"`")
+    assert rows["`angular_acceleration`"][:2] == ('`"flywheel"` or angular acceleration', "`0`")
+    assert {row[0]: row[2] for row in docs.key_rows(variant.Forces)} == {"`gravity`": '`"9.81 m/s2"`'}
+
+
+# --- messages -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("paper", ["README.md", "docs/project-file.md"])
+def test_messages_of_the_example_are_real(paper):
+    text = (resources.variants() / "lugansk" / "shaper.toml").read_text(encoding="utf-8")
+    text = text.replace('length = "0.08 m"', 'length = "-0.08 m"').replace('\nname = "x–x"', '\nname = "x–x"\nnam = "x–x"')
+    with pytest.raises(BadInput) as e:
+        variant.parse(text, "my.toml")
+    assert re.findall(r"^    (my\.toml.*|    did you mean.*)$", TEXTS[paper], re.MULTILINE) == str(e.value).splitlines()
+
+
+PLANTS = {
+    "with its unit, not the bare number": ('"60 mm"', "60"),
+    "is a unit of": ('"90 rpm"', '"90 mm"'),
+    "unknown key": ('mass = "6 kg"', 'mas = "6 kg"'),
+    "unknown point": ('outer = ["B", "D"]', 'outer = ["B", "K"]'),
+    "unknown guide": ('"slot", "column"]', '"slot", "colum"]'),
+    "a group of kind": ("kind = 1 ", "kind = 2 "),
+    "does not assemble at": ('["190 mm", "140 mm"]', '["90 mm", "140 mm"]'),
+    "the guides {} and {} are parallel there": ('["190 mm", "140 mm"]', '["90 mm", "140 mm"]'),
+    "needs {} as well": ('working_sense = "+y"\n', ""),
+    "the view does not fit in its place, it needs": ("[cycle]", "[scales]\npositions = 0.0001\n\n[cycle]"),
+    "no sheet draws a plan of this name": ("[cycle]", "[scales]\nposition = 0.01\n\n[cycle]"),
+    "unknown sheet, not in templates/sheets": ('"flywheel"]', '"flywheels"]'),
+    "not valid TOML": ('"F5"', '"F5'),
+}
+"""Messages that docs/project-file.md explains, and the change of tests/projects/feeder.toml that brings each."""
+
+ELSEWHERE = {"is a suspected misprint": "sixbar/4:2", "no tooth set": "transport/compressor@09-В-999"}
+"""Messages that a shipped project brings."""
+
+
+def explained(paper):
+    section = TEXTS[paper].split("## What does this message mean")[1].split("\n## ")[0]
+    rows = re.findall(r"^\| (`.*?`) \|", section, re.MULTILINE)
+    return [message for row in rows for message in re.findall(r"`([^`]+)`", row)]
+
+
+def says(message, text):
+    return re.search(".*".join(map(re.escape, message.split("{}"))), text) is not None
+
+
+def test_every_explained_message_has_a_plant():
+    assert sorted(explained("docs/project-file.md")) == sorted([*PLANTS, *ELSEWHERE])
+
+
+@pytest.mark.parametrize("message", PLANTS)
+def test_explained_messages_of_project_files_come(message, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "tests/projects/feeder.toml").read_text(encoding="utf-8")
+    old, new = PLANTS[message]
+    changed = text.replace(old, new)
+    assert changed != text
+    Path("my.toml").write_text(changed, encoding="utf-8")
+    assert __main__.run(["build", "my.toml", "--format", "svg"]) != __main__.DONE
+    assert says(message, capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("message", ELSEWHERE)
+def test_explained_messages_of_shipped_projects_come(message):
+    task = catalogue.read(ELSEWHERE[message])
+    said = list(task.warnings)
+    try:
+        Project(task).check()
+    except CannotBuild as e:
+        said.append(str(e))
+    assert any(says(message, line) for line in said)
+
+
+def constants():
+    """Every string of the source, the fields of f-strings as {}."""
+    for path in (ROOT / "tmm_sheets").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.JoinedStr):
+                yield "".join(str(v.value) if isinstance(v, ast.Constant) else "{}" for v in node.values)
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield node.value
+
+
+@pytest.mark.parametrize("paper", ["docs/commands.md", "docs/comparing.md"])
+def test_other_explained_messages_are_in_the_source(paper):
+    known = "\n".join(constants())
+    for message in explained(paper):
+        assert message in known, message
