@@ -58,7 +58,7 @@ def one(project: str, order: Order, parent: Path) -> Outcome:
             raise
         return Outcome(project, f"internal error: {type(e).__name__}: {e}", warnings=warnings)
     made = len(built.sizes)
-    return Outcome(project, "", made, len(built.paths) - made, sum(built.sizes.values()), warnings)
+    return Outcome(project, "", made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings)
 
 
 def several(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:

@@ -46,12 +46,16 @@ class Order:
 
 @dataclass(frozen=True)
 class Built:
-    """Files of a project in the order asked for, those of them that were made now with their sizes, and what was drawn."""
+    """Files of a project in the order asked for, those of them that were made now with their sizes, and what was drawn.
+
+    ``warnings`` tell what the drawings leave out.
+    """
 
     paths: tuple[Path, ...]
     sizes: Mapping[Path, int]
     drawings: Mapping[int, Drawing]
     opened: Project
+    warnings: tuple[str, ...] = ()
 
 
 def folder_name(project: str) -> str:
@@ -114,7 +118,12 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
         with watch.phase("write files"):
             keep(outlet, record, made, made_from, inputs if check else None)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
-    return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened)
+    warnings: tuple[str, ...] = ()
+    if drawings and variant.crank is not None:
+        from tmm_sheets.sheets import kinematic_frames
+
+        warnings = tuple(kinematic_frames.left_out(opened))
+    return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened, warnings)
 
 
 def _refuse_idle_scales(variant: Variant, used: set[str]) -> None:

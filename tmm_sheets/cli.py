@@ -115,9 +115,9 @@ def check(project: str, corrected: bool) -> None:
     opened = _open(project, corrected)
     opened.check()
     if opened.variant.crank is not None:
-        from tmm_sheets.sheets import flat_crossings
+        from tmm_sheets.sheets import flat_crossings, kinematic_frames
 
-        for line in flat_crossings.lines(opened):
+        for line in (*kinematic_frames.left_out(opened), *flat_crossings.lines(opened)):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
     click.echo(f"{opened.variant.project.name}: OK")
 
@@ -178,6 +178,8 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool) -
         built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
     for path in built.paths:
         click.echo(path)
+    for warning in built.warnings:
+        click.echo(f"{variant.project.name}: {warning}", err=True)
     unchanged = len(built.paths) - len(built.sizes)
     if unchanged:
         told = f"{unchanged} of {len(built.paths)} files unchanged (--force makes them again)"

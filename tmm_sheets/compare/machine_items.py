@@ -57,7 +57,7 @@ def _others(project: Project, found: Measurables) -> None:
 def _lengths(plan: Plan, found: Measurables, key: str) -> None:
     """All lengths and angles of a plan that were measured or drawn as circles; not those taken from numbers."""
     for step in plan:
-        if step.rule.gives in ("length", "angle", "inclination") and step.rule is not rules.GIVEN_LENGTH and step.args:
+        if step.rule.gives in ("length", "ordinate", "angle", "inclination") and step.rule is not rules.GIVEN_LENGTH and step.args:
             for k in range(np.size(step.value)):
                 found.add(measured_step(plan, found.scales, k, step, key=key))
 

@@ -48,6 +48,7 @@ READING = 0.5
 """Error of a length read off a ruler, mm."""
 
 _DRAWN = ("point", "vector")
+_MEASURED = ("length", "ordinate")
 _BENT = 0.5
 """Share of a displacement by which both sides may disagree before the greater counts."""
 
@@ -109,7 +110,7 @@ class Errors:
 
     def of_plan(self, plan: Plan) -> Mapping[str, Floats]:
         """Error of each point and length of a plan, mm, by the names of the steps."""
-        return {step.name: self.in_mm(step) for step in plan if step.rule.gives in (*_DRAWN, "length") and _numeric(step.value)}
+        return {step.name: self.in_mm(step) for step in plan if step.rule.gives in (*_DRAWN, *_MEASURED) and _numeric(step.value)}
 
     def between(self, tail: Step, head: Step) -> Floats:
         """Error of the distance of two points in their unit, without that of reading it: along the line that joins them.
@@ -241,7 +242,7 @@ class Errors:
                 spread = np.trace(lines, axis1=1, axis2=2) / 2
                 crossing = ~(spread < 1 - 1e-9) & _all_lines([derivatives[i] for i in drawn if i in derivatives])
                 own = own + np.where(crossing[:, None, None], lines, np.eye(2)) * (self.pencil * mu) ** 2
-            elif step.rule.gives == "length" and any(isinstance(a, Step) for a in args):
+            elif step.rule.gives in _MEASURED and any(isinstance(a, Step) for a in args):
                 own = own + np.diag([1.0, 0.0]) * (self.pencil * mu) ** 2
         if np.isnan(base).any():
             own = np.where(np.isnan(base)[:, None, None], np.nan, own)
@@ -290,7 +291,7 @@ class Errors:
         for kind, a in zip(step.rule.takes, step.args, strict=False):
             if kind == "point" and isinstance(a, Step):
                 last = a
-            elif kind == "length" and last is not None and not (isinstance(a, Step) and any(isinstance(x, Step) for x in a.args)):
+            elif kind in _MEASURED and last is not None and not (isinstance(a, Step) and any(isinstance(x, Step) for x in a.args)):
                 noted[id(last)] = True
 
     def _snapped(self, step: Step, args: tuple[Any, ...]) -> dict[int, tuple[int, Any]]:

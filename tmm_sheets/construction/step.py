@@ -17,7 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 Complex = npt.NDArray[np.complex128]
-Kind = Literal["point", "direction", "vector", "force", "length", "angle", "number", "inclination"]
+Kind = Literal["point", "direction", "vector", "force", "length", "ordinate", "angle", "number", "inclination"]
+"""What a value is. A length is an opening of the compass or an arm, without sign; an ordinate is laid off to either side."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Rule:
     compute
         vectorised arithmetic: values of the arguments in, value out; NaN where it cannot be built.
     takes
-        kind of each argument, in order; lengths and vectors are said in millimetres of the drawing, forces in newtons.
+        kind of each argument, in order; lengths, ordinates and vectors are said in millimetres of the drawing, forces in newtons.
     gives
         kind of the result.
     wording

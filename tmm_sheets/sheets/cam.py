@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard, fixed, handy, number
+from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.numbers import fixed, number
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fixed, handy, number
+from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
+from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cam import distinct, for_cams, lines_of_text
 
 if TYPE_CHECKING:
