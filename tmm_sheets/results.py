@@ -12,6 +12,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.numbers import clean, plain, size
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -134,24 +135,44 @@ def listing(tree: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _rows(table: dict[str, Any], prefix: str) -> Iterable[str]:
+NATURAL = {"difference_percent": 100.0, "pressure_angle": 1.0}
+"""Natural magnitude of quantities that may be nothing but rounding throughout: percent, rad."""
+
+
+def _rows(table: dict[str, Any], prefix: str, alike: list[Any] | None = None) -> Iterable[str]:
+    """A line for each entry; ``alike`` are the rows of quantities of the same kind."""
     for key, value in table.items():
         if isinstance(value, dict):
-            yield from _rows(value, f"{prefix}{key}.")
+            yield from _rows(value, f"{prefix}{key}.", _alike(table, key))
         else:
-            yield f"{prefix}{key} = {_short(_without_rounding(value))}"
+            yield f"{prefix}{key} = {_short(_without_rounding(value, [NATURAL[key]] if key in NATURAL else alike or [value]))}"
 
 
-def _without_rounding(value: Any) -> Any:
-    """A row with zeros where its numbers are nothing but the rounding of its largest."""
-    def largest(v: Any) -> float:
-        return max(map(largest, v), default=0.0) if isinstance(v, list) else abs(v) if isinstance(v, float) else 0.0
+def _alike(table: dict[str, Any], key: str) -> list[Any] | None:
+    """Quantities of the same kind as those of ``table[key]``: its own rows; forces and moments are compared with all reactions."""
+    forces = [table[k] for k in ("reactions", "couples", "balancing") if k in table]
+    of = forces if forces and key != "arms" else [table[key]]
+    rows = [v for found in of for v in found.values() if isinstance(v, list)]
+    return rows or None
 
-    def cleaned(v: Any) -> Any:
-        return [cleaned(x) for x in v] if isinstance(v, list) else 0.0 if isinstance(v, float) and abs(v) < least else v
 
-    least = 1e-13 * largest(value)
-    return cleaned(value) if isinstance(value, list) else value
+def _without_rounding(value: Any, alike: list[Any]) -> Any:
+    """A row with zeros where its numbers are nothing but rounding beside those of the same kind."""
+    if not (isinstance(value, list) and value and isinstance(value[0], float | list)):
+        return value
+    sizes = [[_largest(x) for x in v] if isinstance(v, list) else v for v in alike]
+
+    def cleaned(v: Any, kind: float) -> Any:
+        return [cleaned(x, kind) for x in v] if isinstance(v, list) else clean(v, kind) if isinstance(v, float) else v
+
+    return [cleaned(v, size(sizes, i)) for i, v in enumerate(value)]
+
+
+def _largest(value: Any) -> float:
+    """Greatest magnitude in nested lists; 0.0 where there is no number."""
+    if isinstance(value, list):
+        return max(map(_largest, value), default=0.0)
+    return abs(value) if isinstance(value, float) else 0.0
 
 
 def _short(value: Any) -> str:
@@ -164,7 +185,7 @@ def _short(value: Any) -> str:
         return ", ".join(f"{k} {_short(v)}" for k, v in value.items())
     if value is None:
         return "-"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return plain(value) if isinstance(value, float) else str(value)
 
 
 # --- parts ----------------------------------------------------------------------------------------------------------

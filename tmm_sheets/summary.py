@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.numbers import plain
+
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.task.toml_lines import KeyPath
@@ -69,8 +71,8 @@ def _structure(m: Mechanism) -> Iterator[str]:
 
 def _links(m: Mechanism) -> Iterator[tuple[str, str, str]]:
     for name, link in m.links.items():
-        mass = [f"m = {link.mass:g} kg in {link.centre}"] if link.mass else []
-        inertia = [f"J = {link.inertia:g} kg m2"] if link.inertia else []
+        mass = [f"m = {plain(link.mass)} kg in {link.centre}"] if link.mass else []
+        inertia = [f"J = {plain(link.inertia)} kg m2"] if link.inertia else []
         yield name, link.title, ", ".join([" ".join(m.link_points(name)), *mass, *inertia])
 
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from tests.methods.linkage import truth
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, protocols
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentence, sentences
-from tmm_sheets.construction.scale import Scale, fixed
+from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.numbers import fixed
 from tmm_sheets.project import Project
 
 K = 2
@@ -99,6 +100,83 @@ def test_lengths_laid_off_in_the_force_plans(project, plans):
     assert compared == 4
 
 
+# --- arithmetic ------------------------------------------------------------------------------------------------------
+
+NUMBER = r"(?:\((?:−?[\d,]+)\)|−?\d[\d,]*)"
+STATED = (
+    (r"Сложим ординаты ({n}) мм и ({n}) мм с их знаками: \S+ = ({n}) мм", lambda a, b, c: a + b - c),
+    (r"Сложим приведённые моменты ({n}) и ({n}) с их знаками: \S+ = ({n})", lambda a, b, c: a + b - c),
+    (r"Умножим ординату ({n}) мм на ({n}): \S+ = ({n}) мм", lambda a, b, c: a * b - c),
+    (r"Ординату ({n}) мм графика J_II.* = ({n}): \S+ = ({n}) мм", lambda a, b, c: a * b - c),
+    (r"От конца ординаты ({n}) мм отложим вниз ({n}) мм: остаётся \S+ = ({n}) мм", lambda a, b, c: a - b - c),
+    (r"К ординате S ({n}) мм прибавим ординату S'' ({n}) мм: ордината \S+ = ({n}) мм", lambda a, b, c: a + b - c),
+    (r"К радиусу ({n}) мм прибавим запас Δr = ({n}) мм: \S+ = ({n}) мм", lambda a, b, c: a + b - c),
+    (r"Момент инерции всех звеньев J = ({n}) \+ ({n}) = ({n}) кг", lambda a, b, c: a + b - c),
+    (r"площадью ({n}) мм² .*ширины ({n}) мм; его высота \S+ = ({n}) мм", lambda a, b, c: a - b * c),
+    (r"= \(({n}) − ({n})²/2·({n})\)/({n}) = ({n}) рад/с²", lambda m, w, slope, j, e: (m - w * w / 2 * slope) - e * j),
+    (r"Вес \S+ = m·g = ({n})·({n}) = ({n}) Н", lambda a, b, c: a * b - c),
+    (r"Длина \S+ = ({n})·({n}) мм = ({n}) мм", lambda a, b, c: a * b - c),
+    (r"Коэффициент перекрытия \S+ = ({n})° / ({n})° = ({n})", lambda a, b, c: a - b * c),
+    (r"ω1 = ({n}) \+ ({n})·y = ({n}) рад/с", None),
+)
+"""Sentences that state a sum or a product, and what has to vanish."""
+
+
+def read(text):
+    """A printed number, and half a unit of its last place."""
+    plain = text.strip("()").replace(",", ".").replace("−", "-")
+    return float(plain), 0.5 * 10.0 ** -len(plain.partition(".")[2])
+
+
+def holds(relation, texts):
+    values, halves = zip(*map(read, texts), strict=True)
+    rest = relation(*values)
+    allowed = 0.0
+    for i, half in enumerate(halves):
+        moved = (*values[:i], values[i] + half, *values[i + 1:])
+        allowed += abs(relation(*moved) - rest)
+    return abs(rest) <= allowed * (1 + 1e-3) + 1e-9
+
+
+@pytest.mark.parametrize("name", ["lugansk/shaper", "lugansk/engine", "press", "sixbar/3:1", "transport/diesel@01-Т-27",
+                                  "lugansk/cam_flat", "lugansk/cam_rocker"])  # fmt: skip
+def test_the_arithmetic_of_all_sentences(name):
+    """Every sum and product that a sentence states is right within the rounding of its numbers, signs included."""
+    checked, ordinate = 0, ""
+    for line in protocols.lines(Project(catalogue.read(name)), None):
+        if "измерим ординату y = " in line:
+            ordinate = re.search(rf"y = ({NUMBER}) мм", line)[1]
+        for wording, relation in STATED:
+            found = re.search(wording.replace("{n}", NUMBER), line)
+            if found and relation is not None:
+                assert holds(relation, found.groups()), line
+                checked += 1
+            elif found:
+                assert holds(lambda mean, mu, omega, y: mean + mu * y - omega, (*found.groups(), ordinate)), line
+                checked += 1
+    assert checked >= 10
+
+
+def test_what_is_said_beside_a_couple_of_inertia():
+    """M = -J eps: the sign of the moment is against that of the acceleration said before."""
+    said = list(protocols.lines(Project(catalogue.read("lugansk/engine")), None))
+    epsilon = {m[1]: read(m[2])[0] for line in said if (m := re.search(rf"ε(\d) = ({NUMBER}) рад/с²", line))}
+    couples = {m[1]: read(m[2])[0] for line in said if (m := re.search(rf"Mи(\d) = −J·ε = ({NUMBER}) Н·м", line))}
+    assert couples.keys() == {"2", "4"}
+    assert all(couples[k] * epsilon[k] < 0 for k in couples)
+
+
+def test_nothing_but_rounding_is_said_to_be_nothing():
+    """At the dead position of the slotted link of 3:1 all accelerations and moments about its pivot vanish by symmetry."""
+    v = catalogue.read("sixbar/3:1")
+    for label in ("0", "12"):
+        project = Project(v.model_copy(update={"cycle": v.cycle.model_copy(update={"force_position": label})}))
+        said = "\n".join(protocols.lines(project, None))
+        assert "со знаком ε3 = 0 рад/с²" in said
+        assert "dJ/dφ = tg ψ·μ_J/μ_φ = 0 кг·м²" in said
+        assert not re.search(r"0,0{7}|−0(?![\d,])|−0,0+(?!\d)", said)
+
+
 # --- single steps ----------------------------------------------------------------------------------------------------
 
 
@@ -114,6 +192,9 @@ def test_kinds_of_arguments():
     a, v = Step("A", rules.GIVEN, (0j,)), Step("v", rules.GIVEN, (np.array([3 + 4j, 6 + 8j]),))
     step = Step("R", rule, (a, 0.5, np.pi / 6, 0.25, v))
     assert sentence(step, 1, lambda x: 2 * x) == "R: A 1,0 мм 30,0° 0,25 v (20,0 мм) 20,0 мм"
+    # An ordinate keeps its sign, a length has none; a negative number behind an arithmetic sign stands in parentheses.
+    signed = Rule("r", lambda y, r, n: y, ("ordinate", "length", "number"), "ordinate", "{name} = {0} + {1}·{2} = {value}")
+    assert sentence(Step("y", signed, (-3.0, -3.0, -2.0)), 0, lambda x: 2 * x) == "y = −6,0 мм + 6,0 мм·(−2) = −6,0 мм"
     # A plan nobody draws says its own unit.
     assert sentence(step, 1, float, "м/с") == "R: A 0,5 м/с 30,0° 0,25 v (10 м/с) 10 м/с"
 

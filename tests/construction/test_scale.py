@@ -1,4 +1,4 @@
-"""Scale factors: handy series, standard scales, Russian numbers."""
+"""Scale factors: handy series, standard scales."""
 
 from decimal import Decimal
 from fractions import Fraction
@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmm_sheets.construction.scale import HANDY, STANDARD, Scale, fit, fit_standard, fixed, handy, number
+from tmm_sheets.construction.scale import HANDY, STANDARD, Scale, fit, fit_standard, handy
 
 
 @given(st.floats(1e-12, 1e12))
@@ -78,31 +78,3 @@ def test_standard_fit_is_the_largest_that_fits(span, mm):
 def test_too_large_for_any_standard_scale():
     with pytest.raises(ValueError, match="1000000 mm do not fit in 500 mm"):
         fit_standard(1000000, 500)
-
-
-# --- numbers ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("x", "text"),
-    [(0, "0"), (0.0025, "0,0025"), (2.5, "2,5"), (100.0, "100"), (-3.14159, "−3,142"), (12345.678, "12346"), (1e-7, "0,0000001"),
-     (0.1 + 0.2, "0,3"), (99999.0, "99999"), (7744.8836, "7745"), (-0.02, "−0,02"), (1234567.0, "1234567")],
-)
-def test_number(x, text):
-    assert number(x) == text
-
-
-@pytest.mark.parametrize(
-    ("x", "decimals", "text"),
-    [(51.432, 2, "51,43"), (-0.001, 2, "0,00"), (-1.5, 1, "−1,5"), (2.0, 0, "2"), (30.0, 1, "30,0"), (-0.0, 1, "0,0")],
-)
-def test_fixed(x, decimals, text):
-    assert fixed(x, decimals) == text
-
-
-@given(st.floats(-1e9, 1e9))
-def test_numbers_read_back(x):
-    for text, allowed in ((number(x), max(abs(x) * 5e-4, 0)), (fixed(x, 3), 5.0001e-4)):
-        assert "." not in text
-        assert "-" not in text
-        assert abs(float(text.replace(",", ".").replace("−", "-")) - x) <= allowed + abs(x) * 1e-12

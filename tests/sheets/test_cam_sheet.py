@@ -218,3 +218,34 @@ def test_nothing_but_the_cam_is_asked_for():
     data = SimpleNamespace(cam=PROJECTS["manual 000"].cam)
     for name in places(data):
         assert drawn(name, data).marks
+
+
+def rows_of_table(data):
+    canvas = drawn("cam.table", data)
+    texts = [g.text for g in canvas.groups if g.kind == "lettering"]
+    width = 2 * data.cam.law.parts + 3
+    return {row[0]: row[1:] for row in (texts[k : k + width] for k in range(0, len(texts), width))}
+
+
+def test_the_table_has_both_limits_where_the_acceleration_jumps():
+    """Manual 000, section 7, example 3: S'' = +-4 h/phi^2; the least of the table decides r_min, as the graph does."""
+    data = PROJECTS["flat of manual 000"]
+    rows = rows_of_table(data)
+    up, down = 4 * 55 / np.radians(140) ** 2, 4 * 55 / np.radians(120) ** 2
+    read = {name: [float(c.replace(",", ".").replace("−", "-")) for c in cells] for name, cells in rows.items()
+            if name != "Положение"}
+    dds = [read[f"S'' (φ{side}0)·10^3, м"] for side in "−+"]
+    for k, before, after in ((0, 0, up), (4, up, -up), (8, -up, 0), (9, 0, -down), (13, -down, down), (17, down, 0)):
+        assert (dds[0][k], dds[1][k]) == pytest.approx((before, after), abs=0.005)
+    sums = [read[f"(S + S'') (φ{side}0)·10^3, м"] for side in "−+"]
+    assert -min(map(min, sums)) == pytest.approx(data.cam.plate.r_min * 1e3, abs=0.005)
+    assert -min(map(min, sums)) == pytest.approx(down - 27.5, abs=0.005)
+    canvas = drawn("cam_zone.sum_graph", data)
+    heights = [canvas.marks[g.first].points.mean().imag for g in canvas.groups if g.kind == "dot"]
+    assert (max(heights) - min(heights)) * canvas.scales["cam-plate"].mu == pytest.approx(2e-3 * down, rel=1e-6)
+
+
+def test_a_table_without_jumps_has_one_row_of_each():
+    rows = rows_of_table(PROJECTS["flat, spring"])
+    assert not [name for name in rows if "φ−0" in name]
+    assert "S''·10^3, м" in rows

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import degrees
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.scale import fixed, number
-from tmm_sheets.construction.step import Kind, Step, value_at
+from tmm_sheets.construction.step import Kind, Step, value_at, value_of
+from tmm_sheets.numbers import fixed, number, size
 
 
 def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "мм") -> Iterator[str]:
@@ -19,12 +19,31 @@ def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "
 
     A plan that is not drawn has no millimetres: ``to_mm`` leaves its lengths as they are and ``unit`` names theirs.
     """
+    sizes = _sizes(plan, k)
     for step in plan:
-        said = sentence(step, k, to_mm, unit)
-        segments = [f"|{name}{step.name}| = {_said(vector, 'vector', to_mm, unit)}" for name, vector in _segments(plan, step, k)]
+        said = sentence(step, k, to_mm, unit, sizes)
+        segments = [f"|{name}{step.name}| = {_said(vector, 'vector', to_mm, unit, sizes[_sort(step)])}"
+                    for name, vector in _segments(plan, step, k)]
         if segments:
             said += f" {'Отрезки' if len(segments) > 1 else 'Отрезок'} {', '.join(segments)}."
         yield said
+
+
+def _sizes(steps: Iterable[Step], k: int) -> dict[str, float]:
+    """Size of each sort among some steps, at position ``k``."""
+    values: dict[str, list[Any]] = {}
+    for step in steps:
+        if np.asarray(step.value).dtype.kind in "ifc":
+            values.setdefault(_sort(step), []).append(step.value)
+    return {sort: size(found, k) for sort, found in values.items()}
+
+
+def _sort(step: Step) -> str:
+    """What steps of a plan are compared with: numbers with those of their letter (ω2 and ω3, ΣM4 and M50), of F with forces too."""
+    gives = step.rule.gives
+    if gives == "number":
+        return step.name.lstrip("Σ")[:1]
+    return {"force": "F", "vector": "point", "ordinate": "length"}.get(gives, gives)
 
 
 def _segments(plan: Plan, step: Step, k: int) -> list[tuple[str, Any]]:
@@ -49,36 +68,51 @@ def spoken(name: str) -> str:
     return re.sub(r"^(alpha|phi|psi|eps|theta|rho)(?=_|\d|$)", lambda m: _GREEK[m[1]], name)
 
 
-def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "мм") -> str:
-    """One step as a sentence."""
+_OPERAND = re.compile(r"(?<=[·/×+−])( ?)(\{\d\})|(\{\d\})(?=²)")
+"""An argument behind an arithmetic sign or squared: a negative one stands in parentheses there."""
+
+
+def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "мм",
+             sizes: Mapping[str, float] | None = None) -> str:
+    """One step as a sentence; ``sizes`` are those of each sort in its plan."""
+    if sizes is None:
+        sizes = _sizes([step], k)
     wording = step.say if step.say is not None else step.rule.wording
-    shown = [_show(a, kind, k, to_mm, unit) for a, kind in zip(step.args, step.rule.takes, strict=False)]
-    value = _said(value_at(step, k), step.rule.gives, to_mm, unit)
-    said = wording.format(*shown, name=spoken(step.name), value=value)
+    shown = [_show(a, kind, k, to_mm, unit, sizes) for a, kind in zip(step.args, step.rule.takes, strict=False)]
+    value = _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
+
+    def operand(m: re.Match[str]) -> str:
+        space, field = m[1] or "", m[2] or m[3]
+        return f"{space}({field})" if shown[int(field[1:-1])].startswith("−") else m[0]
+
+    said = _OPERAND.sub(operand, wording).format(*shown, name=spoken(step.name), value=value)
     return said.replace("параллельно ⟂", "перпендикулярно ")
 
 
-def _show(arg: Any, kind: Kind, k: int, to_mm: Callable[[float], float], unit: str) -> str:
+def _show(arg: Any, kind: Kind, k: int, to_mm: Callable[[float], float], unit: str, sizes: Mapping[str, float]) -> str:
     if isinstance(arg, Step) and kind in ("point", "direction", "force"):
         return spoken(arg.name)
-    if isinstance(arg, Step) and kind == "vector":
-        return f"{arg.name} ({_said(value_at(arg, k), kind, to_mm, unit)})"
-    return _said(value_at(arg, k), kind, to_mm, unit)
+    own = value_of(arg)
+    of_sort = size([own], k) if np.asarray(own).dtype.kind in "ifc" else 0.0
+    if isinstance(arg, Step):
+        of_sort = max(of_sort, sizes.get(_sort(arg), 0.0))
+    said = _said(value_at(arg, k), kind, to_mm, unit, of_sort)
+    return f"{arg.name} ({said})" if isinstance(arg, Step) and kind == "vector" else said
 
 
-def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str) -> str:
+def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of_sort: float) -> str:
+    """A value with its unit; ``of_sort`` is the size of its sort, in the unit of the plan."""
     if np.ndim(value) or (isinstance(value, complex | np.complexfloating) and kind in ("point", "direction")):
         return ""
-    if kind in ("length", "vector", "force", "angle", "inclination", "number") and not np.isfinite(value):
+    if kind in ("length", "ordinate", "vector", "force", "angle", "inclination", "number") and not np.isfinite(value):
         return "∞" if np.isinf(value) else "—"
-    if kind == "ordinate":
-        return f"{fixed(to_mm(float(value)), 1)} мм" if unit == "мм" else f"{number(to_mm(float(value)))} {unit}"
-    if kind in ("length", "vector"):
-        return f"{fixed(to_mm(abs(value)), 1)} мм" if unit == "мм" else f"{number(to_mm(abs(value)))} {unit}"
+    if kind in ("length", "ordinate", "vector"):
+        real = to_mm(float(value) if kind == "ordinate" else abs(value))
+        return f"{fixed(real, 1)} мм" if unit == "мм" else f"{number(real, kind=to_mm(of_sort))} {unit}"
     if kind == "force":
         return f"{fixed(abs(value), 1)} Н"
     if kind == "angle":
         return f"{fixed(degrees(value) % 360, 1)}°"
     if kind == "inclination":
         return f"{fixed(degrees(value), 1)}°"
-    return number(float(np.real(value))) if kind == "number" else ""
+    return number(float(np.real(value)), kind=of_sort) if kind == "number" else ""

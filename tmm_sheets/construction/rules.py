@@ -46,6 +46,11 @@ ALONG = Rule(
     "На прямой {1} от точки {0} радиусом {2} сделаем засечку: точка {name}.",
     lambda a, v: (Helper("arc", a[0], v, abs(a[2])),),
 )
+OFFSET = Rule(
+    "lay off to one side", ar.along, ("point", "direction", "ordinate"), "point",
+    "От точки {0} вдоль {1} отложим {2}: точка {name}.",
+    lambda a, v: (Helper("arc", a[0], v, abs(a[2])),),
+)
 SHIFT = Rule("lay off a vector", _shift, ("point", "vector"), "point", "От точки {0} отложим {1}: точка {name}.",
              lambda a, v: (Helper("line", a[0], v),))
 TURN = Rule("turn by 90 degrees", ar.turned, ("direction",), "direction", "Повернём направление {0} на 90°.")

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from math import floor, isclose, log10
 from typing import Any
 
+from tmm_sheets.numbers import number
+
 HANDY = (1.0, 2.0, 2.5, 4.0, 5.0)
 """Mantissas that are handy for mental arithmetic (manuals 000 and 003 ask for such scales)."""
 
@@ -70,21 +72,3 @@ def handy(least: float) -> float:
             if candidate > least or isclose(candidate, least, rel_tol=1e-9):
                 return candidate
     raise AssertionError("unreachable: the series covers every decade")
-
-
-def number(x: float, digits: int = 4) -> str:
-    """A number in Russian notation: decimal comma, at most ``digits`` significant digits, no trailing zeros."""
-    if x == 0:
-        return "0"
-    text = f"{x:.{max(digits - 1 - floor(log10(abs(x))), 0)}f}"
-    if "." in text:
-        text = text.rstrip("0").rstrip(".")
-    return text.replace(".", ",").replace("-", "−")
-
-
-def fixed(x: float, decimals: int = 2) -> str:
-    """A number in Russian notation with a fixed number of decimals; minus sign U+2212."""
-    text = f"{x:.{decimals}f}"
-    if float(text) == 0:
-        text = text.lstrip("-")
-    return text.replace(".", ",").replace("-", "−")

@@ -20,6 +20,8 @@ LINES = (2, 1, 3, 4, 5)
 """Numbers of lines a note may have, the most welcome first."""
 CLEAR = 1.5
 """Margin kept round a note, mm."""
+TOGETHER = "\u00a0"
+"""Space of a note at which no line ends: between a number and its unit."""
 STEP = 1.0
 """Distance of the places tried, mm."""
 OUTSIDE = 4.0
@@ -44,7 +46,7 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
 
 
 def _wrapped(text: str, height: float, count: int) -> list[str]:
-    """The text broken between words into ``count`` lines of about one length."""
+    """The text broken between words into ``count`` lines of about one length; ``TOGETHER`` is a space that is not broken."""
     words = text.split(" ")
     widths = [letter(word, height).width for word in words]
     space = letter("н н", height).width - 2 * letter("н", height).width
@@ -59,7 +61,7 @@ def _wrapped(text: str, height: float, count: int) -> list[str]:
             used += width + (space if lines[-1] else 0.0)
             lines[-1].append(word)
         if len(lines) <= count:
-            return [" ".join(line) for line in lines]
+            return [" ".join(line).replace(TOGETHER, " ") for line in lines]
         room += height
 
 

@@ -40,10 +40,10 @@ POLE = Rule(
     "На продолжении оси абсцисс влево от начала координат отложим полюсное расстояние {0}: полюс {name}.",
     lambda a, v: (Helper("line", v, 0j),),
 )
-ORIGIN = Rule("origin of the integral", lambda y: 1j * y, ("length",), "point",
+ORIGIN = Rule("origin of the integral", lambda y: 1j * y, ("ordinate",), "point",
               "На оси ординат нижнего графика отметим начальную точку {name}.")
 MID_ORDINATE = Rule(
-    "ordinate in the middle of an interval", _mid_ordinate, ("length", "length", "length"), "point",
+    "ordinate in the middle of an interval", _mid_ordinate, ("ordinate", "ordinate", "ordinate"), "point",
     "В середине интервала между абсциссами {0} и {1} проведём ординату {2} до кривой: точка {name}.",
     lambda a, v: (Helper("line", complex(v.real, 0), v),),
 )
@@ -53,7 +53,7 @@ CARRY = Rule(
     lambda a, v: (Helper("line", a[0], v),),
 )
 CHORD = Rule(
-    "chord parallel to a ray", _chord, ("point", "direction", "length"), "point",
+    "chord parallel to a ray", _chord, ("point", "direction", "ordinate"), "point",
     "Из точки {0} параллельно лучу {1} проведём хорду до ординаты с абсциссой {2}: точка {name}.",
     lambda a, v: (Helper("line", a[0], v),),
 )

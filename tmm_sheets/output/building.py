@@ -48,7 +48,8 @@ class Order:
 class Built:
     """Files of a project in the order asked for, those of them that were made now with their sizes, and what was drawn.
 
-    ``warnings`` tell what of it is not as a sheet should be: views that leave their places, labels without a free place.
+    ``warnings`` tell what of it is not as a sheet should be: views that leave their places, labels without a free place, plans that
+    cannot be drawn.
     """
 
     paths: tuple[Path, ...]
@@ -120,6 +121,10 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
         with watch.phase("write files"):
             keep(outlet, record, made, made_from, inputs if check else None)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
+    if drawings and variant.crank is not None:
+        from tmm_sheets.sheets import kinematic_frames
+
+        warnings += kinematic_frames.left_out(opened)
     return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened, tuple(warnings))
 
 

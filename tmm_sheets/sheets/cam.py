@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard, fixed, handy, number
+from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.numbers import fixed, number
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -263,16 +264,22 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     diagrams = tuple(zip(reversed(m.names), (m.s, m.ds, m.dds), (m.scales.s, m.scales.ds, m.scales.dds), strict=True))
     factor, unit = (1e3, "·10^3, м") if m.law.symbol == "S" else (1.0, "")
     columns = [["Положение", *m.law.labels], ["φ, град", *(fixed(v, 2) for v in np.degrees(inv.phi))]]
+    sides = m.law.dds_beside
+    jumps = not np.allclose(*sides, rtol=0, atol=1e-9 * float(np.abs(sides).max()))
     for symbol, steps, scale in diagrams:
-        values = m.measured(steps, scale)
-        columns.append([f"y_{{{symbol}}}, мм", *(fixed(v, 1) for v in scale.mm(values))])
-        head = f"{symbol}{unit}" + (", рад" if symbol == "ψ" else "")
-        columns.append([head, *(fixed(v * factor, 2 if unit else 3) for v in values)])
+        # Both limits where the second derivative jumps: one from each side.
+        rows = dict(zip((" (φ−0)", " (φ+0)"), sides, strict=True)) if jumps and steps is m.dds else {"": m.measured(steps, scale)}
+        for side, values in rows.items():
+            columns.append([f"y_{{{symbol}}}{side}, мм", *(fixed(v, 1) for v in scale.mm(values))])
+            head = f"{symbol}{side}{unit}" + (", рад" if symbol == "ψ" else "")
+            columns.append([head, *(fixed(v * factor, 2 if unit else 3) for v in values)])
     if "roller" in cam.traits:
         columns.append(["α, град", *(fixed(v, 1) for v in np.degrees(inv.angles.value))])
     else:
-        columns.append(["(S + S'')·10^3, м", *(fixed(v * 1e3, 2) for v in np.asarray(cam.plate.sums.value))])  # type: ignore[attr-defined]
-    first = 26.0
+        s = m.law.at_positions(lambda p, x: p.s(x))
+        for side, values in (((" (φ−0)", sides[0]), (" (φ+0)", sides[1])) if jumps else (("", sides[0]),)):
+            columns.append([f"(S + S''){side}·10^3, м", *(fixed(v * 1e3, 2) for v in s + values)])
+    first = 32.0 if jumps else 26.0
     width = (box.width - first) / (len(columns[0]) - 1)
     row = min(box.height / len(columns), 8.0)
     canvas.table(complex(box.x0, box.y1), [first, *[width] * (len(columns[0]) - 1)], columns, row, 2.5)

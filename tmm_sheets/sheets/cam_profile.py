@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fixed, number
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
+from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cam import for_cams, lines_of_text, standard
 
 if TYPE_CHECKING:

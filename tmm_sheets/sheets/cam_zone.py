@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fixed, handy, number
+from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
+from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cam import distinct, for_cams, lines_of_text
 
 if TYPE_CHECKING:
@@ -228,12 +229,14 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.label(complex(at(phi[k], total[k])), "S + S''", 1 + 1j, 3.5, 0.8)
     canvas.polyline(np.concatenate(([o], at(phi, total), [o + end])), "curve")
     sums, base = np.asarray(plate.sums.value), law.at_positions(lambda p, x: p.s(x))
-    points, along = at(law.positions, sums), at(law.positions, 0.0)
+    along = at(law.positions, 0.0)
     kept = distinct(law.labels, along.real)
+    sides = [at(law.positions, base + dds) for dds in law.dds_beside]
     for k in kept:
-        canvas.line(complex(along[k]), complex(points[k]), "thin")
-        canvas.line(complex(at(law.positions[k], base[k])), complex(points[k]), "construction")
-        canvas.dot(complex(points[k]), 0.4)
+        for point in dict.fromkeys(complex(points[k]) for points in sides):
+            canvas.line(complex(along[k]), point, "thin")
+            canvas.line(complex(at(law.positions[k], base[k])), point, "construction")
+            canvas.dot(point, 0.4)
         canvas.label(complex(along[k]), law.labels[k], -1j if sums[k] > 0 else 1j, 2.5, 0.6, leader=False)
     lowest = int(np.argmin(total))
     if down > 0:

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fixed
+from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import pick
 

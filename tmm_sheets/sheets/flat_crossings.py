@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction import condition, rules
-from tmm_sheets.construction.scale import fixed
+from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import kinematic_frames
 
 if TYPE_CHECKING:

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fit_standard, fixed, number, times
+from tmm_sheets.construction.scale import fit_standard, times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import graphs
 
 if TYPE_CHECKING:
@@ -341,15 +342,15 @@ def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     for x in (-half, half):
         canvas.line(side + x - 1j * bore, side + x + 1j * bore, "main")
     at = (d if rim else 2 * r / k) * k / 2
-    canvas.dimension(side + half - 1j * at, side + half + 1j * at, -12.0, f"D = {d:.0f}")
-    width = f"B = {b:.0f}"
+    canvas.dimension(side + half - 1j * at, side + half + 1j * at, -12.0, f"D = {fixed(d, 0)}")
+    width = f"B = {fixed(b, 0)}"
     inside = letter(width, 3.5).width <= 2 * half - 1
     canvas.dimension(side - half - 1j * r, side + half - 1j * r, -9.0, width if inside else "")
     if not inside:
         canvas.text(side - half - 8.5 - 1j * (r + 8.0), width, 3.5, "right")
     if rim:
         canvas.dimension(side - half + 1j * (r - h * k), side - half + 1j * r, 7.0, "")
-        canvas.text(side - half - 8.5 + 1j * (r - h * k / 2 - 1.75), f"H = {h:.0f}", 3.5, "right")
+        canvas.text(side - half - 8.5 + 1j * (r - h * k / 2 - 1.75), f"H = {fixed(h, 0)}", 3.5, "right")
 
 
 def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:

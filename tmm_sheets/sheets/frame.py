@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -10,9 +12,14 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import plain
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
+
+
+SHORTEST = 1.0
+"""Length from which on a vector is drawn, mm; shorter ones are said."""
 
 
 class Scales(Protocol):
@@ -44,16 +51,33 @@ def extent(points: Any) -> Box:
     return Box(float(p.real.min()), float(p.imag.min()), float(p.real.max()), float(p.imag.max()))
 
 
+def joined(points: dict[str, complex], pairs: Iterable[tuple[str, str]], near: float = 0.2) -> list[list[str]]:
+    """Names of points that share a dot on the sheet: closer than ``near`` mm, or ends of a vector too short to be drawn."""
+    groups: list[list[str]] = []
+    bound = {frozenset(pair) for pair in pairs}
+    for name, z in points.items():
+        met = [g for g in groups if any(abs(points[other] - z) <= near or frozenset((name, other)) in bound for other in g)]
+        if met:
+            met[0] += [*(other for g in met[1:] for other in g), name]
+            groups = [g for g in groups if g not in met[1:]]
+        else:
+            groups.append([name])
+    return groups
+
+
 def pick(project: Project, canvas: Scales, name: str, symbol: str, unit: str, least: float) -> Scale:
     """Scale factor of a plan: the project file's, or the smallest handy one that is not less than ``least``.
 
-    It is kept on the canvas under the plan's name. Raises :class:`CannotBuild` when the file's factor is too small.
+    ``least`` is what the place needs, not rounded. The factor is kept on the canvas under the
+    plan's name. Raises :class:`CannotBuild` when the file's factor is too small.
     """
     wanted = project.variant.scales.get(name)
     if wanted is not None and wanted < least * (1 - 1e-9):
+        digit = 10.0 ** (floor(log10(least)) - 3)
+        shown = plain(ceil(least / digit * (1 - 1e-9)) * digit, 4)  # rounded down it would be refused once more
         raise CannotBuild(
-            f"scale factor {name} = {wanted:g}: the view does not fit in its place, it needs {handy(least):g} or more",
-            f"leave scales.{name} out of the project file, or make its place larger in templates/sheets")
+            f"scale factor {name} = {wanted:g}: the view does not fit in its place, it needs {shown} or more",
+            f"take {handy(least):g}, leave scales.{name} out of the project file, or make its place larger in templates/sheets")
     if wanted is None and not least > 0:
         raise CannotBuild(f"plan {name}: there is nothing to draw, all its vectors are zero",
                           "give the links masses or add a [[force]], or leave this view out of the arrangement")
@@ -67,19 +91,34 @@ def fit_frame(project: Project, canvas: Scales, name: str, symbol: str, unit: st
     """Smallest handy scale factor with which everything fits the place; its middle comes to the place's middle.
 
     ``points`` are in the plan's unit, ``offsets`` reach from each of them in millimetres of paper whatever the scale
-    (arrows, blocks, labels). Where even the offsets alone do not fit, the largest factor tried is taken.
+    (arrows, blocks, labels).
     """
     z, d = np.ravel(np.asarray(points, dtype=complex)), np.ravel(np.asarray(offsets, dtype=complex))
-    real = extent([z])
-    size = max(real.width / box.width, real.height / box.height)
-    if not size > 0:  # a single point has no scale of its own: that of the position plans will do
+    need = max(_need(z.real, d.real, box.width), _need(z.imag, d.imag, box.height))
+    if not need > 0:  # a single point has no scale of its own: that of the position plans will do
         plans = canvas.scales.get("positions")
-        size = plans.mu if plans is not None else 1.0
-    mu = handy(size)
-    for _ in range(12):
-        drawn = extent([z / mu + d])
-        if drawn.width <= box.width and drawn.height <= box.height:
-            break
-        mu = handy(mu * 1.0001)
-    scale = pick(project, canvas, name, symbol, unit, mu)
+        need = plans.mu if plans is not None else 1.0
+    scale = pick(project, canvas, name, symbol, unit, need)
     return Frame(scale, box.centre - extent([scale.mm(z) + d]).centre)
+
+
+def _need(x: Any, offset: Any, room: float) -> float:
+    """Least scale factor with which ``x / mu + offset`` takes no more than ``room``: the extent is convex in 1/mu.
+
+    0.0 where any will do. Where the offsets alone take more than the room, they may overlap in it: they are left out.
+    """
+    there = ~(np.isnan(x) | np.isnan(offset))
+    x, offset = x[there], offset[there]
+    span = float(np.ptp(x))
+    if not span > 0:
+        return 0.0
+    inverse = room / span
+    while True:
+        drawn = x * inverse + offset
+        last, first = int(np.argmax(drawn)), int(np.argmin(drawn))
+        if drawn[last] - drawn[first] <= room * (1 + 1e-12):
+            return 1.0 / inverse
+        slope, free = float(x[last] - x[first]), room - float(offset[last] - offset[first])
+        if not (slope > 0 and free > 0):
+            return span / room
+        inverse = free / slope

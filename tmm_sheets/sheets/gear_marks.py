@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard, number
+from tmm_sheets.construction.scale import Scale, fit_standard
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import number
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
            ("rf", "r_{f%d}", "thin"))

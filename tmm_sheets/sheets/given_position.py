@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import number
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import number, size
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -49,7 +49,8 @@ def _points(project: Project) -> list[list[str]]:
     study, m, k = project.study, project.mechanism, project.force_index
     names = [name for name in study.positions.points if name not in m.fixed and name in study.velocities.points]
     speed, acceleration = study.velocities.points, study.accelerations.points
-    cells = [[_indexed(name), _size(speed[name], k), _size(acceleration[name], k)] for name in names]
+    of_speed, of_acceleration = (size((step.value for step in of.values()), k) for of in (speed, acceleration))
+    cells = [[_indexed(name), _size(speed[name], k, of_speed), _size(acceleration[name], k, of_acceleration)] for name in names]
     half = (len(cells) + 1) // 2
     head = ["Точка", "V, м/с", "a, м/с²"]
     return [head * 2, *([*left, *right] for left, right in zip(cells[:half], [*cells[half:], ["", "", ""]], strict=False))]
@@ -59,12 +60,14 @@ def _links(project: Project) -> list[list[str]]:
     """Angular velocity, angular acceleration, force and couple of inertia of each link."""
     study, m, k = project.study, project.mechanism, project.force_index
     loads, couples, _ = study.loads
+    omega, epsilon, forces = study.velocities.omega, study.accelerations.epsilon, study.forces
+    of_omega, of_epsilon = (size((step.value for step in of.values()), k) for of in (omega, epsilon))
     rows = [["Звено", "ω, 1/с", "ε, 1/с²", "F_и, Н", "M_и, Н·м"]]
     for name, link in m.links.items():
         inertia = next((load.vector for load in loads.get(name, ()) if load.role == "inertia"), None)
         couple = next((c for c in couples.get(name, ()) if link.inertia), None)
-        rows.append([name, _signed(study.velocities.omega.get(name), k), _signed(study.accelerations.epsilon.get(name), k),
-                     _size(inertia, k), _size(couple, k)])
+        rows.append([name, _signed(omega.get(name), k, of_omega), _signed(epsilon.get(name), k, of_epsilon),
+                     _size(inertia, k, forces.force_size(k)), _size(couple, k, forces.moment_size(k))])
     return rows
 
 
@@ -85,10 +88,10 @@ def _indexed(name: str) -> str:
     return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
 
 
-def _size(step: Any, k: int) -> str:
-    return "−" if step is None else number(float(abs(step.at(k))))
+def _size(step: Any, k: int, kind: float) -> str:
+    return "−" if step is None else number(float(abs(step.at(k))), kind=kind)
 
 
-def _signed(step: Any, k: int) -> str:
+def _signed(step: Any, k: int, kind: float) -> str:
     """A number with its sign, counter-clockwise positive."""
-    return "−" if step is None else number(float(np.real(step.at(k))))
+    return "−" if step is None else number(float(np.real(step.at(k))), kind=kind)

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fixed
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import fixed
 
 Options = dict[str, Any]
 OVER = 8.0

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
+from math import inf
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.scale import Scale, handy
+from tmm_sheets.construction.scale import Scale
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import indicator
 from tmm_sheets.sheets.frame import Frame, Scales, extent, fit_frame, pick
 
@@ -20,7 +23,13 @@ if TYPE_CHECKING:
 GRAPH = 48.0
 """Height kept free over the position plans for the force graph, mm."""
 MARGIN = 22.0
-"""Room for letters round a velocity plan, mm."""
+"""Room for letters beside a velocity plan, mm."""
+HEAD = 16.0
+"""Room for its number and letters over and below it, mm."""
+SMALLEST = 10.0
+"""Size from which on the largest of the velocity plans can be read, mm."""
+BEYOND = 10.0
+"""A velocity plan so many times as large as usual would leave nothing to see of the others."""
 
 
 def graph_force(project: Project) -> Any:
@@ -82,7 +91,11 @@ def plan_extent(plan: Plan, i: int) -> Box:
 
 @dataclass(frozen=True)
 class VelocityLayout:
-    """Velocity plans in rows: index and label of each, its extent, the common scale."""
+    """Velocity plans in rows: index and label of each, its extent, the common scale.
+
+    ``beyond`` are the positions whose plans can't be drawn beside the others, with how many times as large as usual they are;
+    ``every`` is 2, 3 ... where only every second, third ... of too many positions is shown.
+    """
 
     shown: list[tuple[int, str]]
     spans: list[Box]
@@ -90,38 +103,81 @@ class VelocityLayout:
     per_row: int
     inside: Box
     scale: Scale
+    beyond: list[tuple[int, float]]
+    every: int
 
 
 def velocities(project: Project, canvas: Scales, box: Box, options: dict[str, Any]) -> VelocityLayout:
-    """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone."""
-    vel, cycle, k = project.study.velocities, project.cycle, project.force_index
+    """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone.
+
+    ``rows`` are as many as asked for, or more where that many leave no room for the plans.
+    """
+    cycle, k = project.cycle, project.force_index
     inside = box.inset(0, 2.0, 0, 20.0)
-    shown = [(k, cycle.labels[k])] if options.get("only") == "force" else list(cycle.drawn)
-    rows = min(int(options.get("rows", 2)), len(shown))
-    per_row = -(-len(shown) // rows)
-    spans = [plan_extent(vel.plan, i) for i, _ in shown]
-
-    def fits(mu: float) -> bool:
-        heights = 0.0
-        for r in range(rows):
-            row = spans[r * per_row:(r + 1) * per_row]
-            if sum(s.width / mu + MARGIN for s in row) > inside.width:
-                return False
-            heights += max(s.height for s in row) / mu + 16.0
-        return heights <= inside.height
-
-    scale = pick(project, canvas, "velocities", "μ_V", "(м/с)/мм", _least(max(s.width for s in spans), fits))
-    return VelocityLayout(shown, spans, rows, per_row, inside, scale)
-
-
-def _least(span: float, fits: Callable[[float], bool]) -> float:
-    """Smallest handy scale factor with which a layout fits."""
-    mu = handy(span / 400.0)
-    for _ in range(60):
-        if fits(mu):
+    drawn, beyond = [(k, cycle.labels[k])], []
+    if options.get("only") != "force":
+        beyond = beyond_drawing(project)
+        drawn = [(i, label) for i, label in cycle.drawn if i not in dict(beyond)]
+    wanted = project.variant.scales.get("velocities")
+    for every in range(1, len(drawn) + 1):
+        shown = [at for n, at in enumerate(drawn) if n % every == 0 or at[0] == k]
+        spans = [plan_extent(project.study.velocities.plan, i) for i, _ in shown]
+        readable = max(max(s.width, s.height) for s in spans) / SMALLEST
+        need, rows = _fewest_rows(spans, int(options.get("rows", 2)), inside, wanted or readable)
+        if need <= readable or (wanted is not None and need < inf):
             break
-        mu = handy(mu * 1.0001)
-    return mu
+    if not need < inf:
+        raise CannotBuild("the velocity plans have no room for their lettering", "make their place larger in templates/sheets")
+    scale = pick(project, canvas, "velocities", "μ_V", "(м/с)/мм", need)
+    per_row = -(-len(shown) // rows)
+    return VelocityLayout(shown, spans, -(-len(shown) // per_row), per_row, inside, scale, beyond, every)
+
+
+def beyond_drawing(project: Project) -> list[tuple[int, float]]:
+    """Positions next to a dead point: their velocity plans are more than ``BEYOND`` times as large as usual, and how many times.
+
+    Were the scale factor theirs, nothing would be seen of the others. What is usual is the median.
+    """
+    plan = project.study.velocities.plan
+    sizes = {i: max(s.width, s.height) for i, s in ((i, plan_extent(plan, i)) for i, _ in project.cycle.drawn)}
+    usual = float(np.median(list(sizes.values())))
+    return [(i, size / usual) for i, size in sizes.items() if size > BEYOND * usual]
+
+
+def _fewest_rows(spans: list[Box], asked: int, inside: Box, limit: float) -> tuple[float, int]:
+    """Rows, as many as asked for or more, that do with a scale factor of ``limit``, or else those with the least need, and it."""
+    choices = [(_need(spans, rows, inside), rows) for rows in range(min(asked, len(spans)), len(spans) + 1)]
+    return next((choice for choice in choices if choice[0] <= limit), min(choices))
+
+
+def _need(spans: list[Box], rows: int, inside: Box) -> float:
+    """Least scale factor with which plans fit in so many rows, lettering included; infinite where that alone takes the place."""
+    per_row = -(-len(spans) // rows)
+    parted = [spans[i:i + per_row] for i in range(0, len(spans), per_row)]
+    wide = max(_ratio(sum(s.width for s in row), inside.width - MARGIN * len(row)) for row in parted)
+    return max(wide, _ratio(sum(max(s.height for s in row) for row in parted), inside.height - HEAD * len(parted)))
+
+
+def _ratio(real: float, room: float) -> float:
+    return real / room if room > 0 else inf
+
+
+def left_out(project: Project) -> Iterator[str]:
+    """What the sheets leave out of the velocity plans, and why, for the command line."""
+    for box, options in _velocity_views(project):
+        layout = velocities(project, SimpleNamespace(scales={}), box, options)
+        for i, times in layout.beyond:
+            yield (f"position {project.cycle.labels[i]} is next to a dead point: its velocity plan is not drawn, "
+                   f"it is {times:.3g} times as large as usual")
+        if layout.every > 1:
+            yield f"there is no room for {len(project.cycle.drawn)} velocity plans: one in {layout.every} is drawn"
+
+
+def _velocity_views(project: Project) -> Iterator[tuple[Box, dict[str, Any]]]:
+    from tmm_sheets.sheets.arrangement import arrangement
+
+    for name in project.sheets:
+        yield from ((view.box, view.options) for view in arrangement(name).views if view.draw == "kinematics.velocity_plans")
 
 
 def accelerations(project: Project, canvas: Scales, box: Box) -> Frame:
@@ -138,8 +194,6 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
 
     ``parts`` are the plans asked for: positions, velocities, accelerations.
     """
-    from types import SimpleNamespace
-
     from tmm_sheets.sheets.arrangement import arrangement
 
     found: dict[str, tuple[Scale, int]] = {}

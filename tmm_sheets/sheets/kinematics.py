@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fixed, number
+from tmm_sheets.construction.scale import times
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.notes import TOGETHER
+from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
-from tmm_sheets.sheets.frame import Frame, pick
+from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan, Segment
@@ -278,9 +280,11 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     inside, count, margin = layout.inside, len(layout.shown), kinematic_frames.MARGIN
     canvas.title(box, "Планы скоростей" if count > 1 else "План скоростей", str(scale))
     flat_crossings.warn(project, canvas, box, vel.plan, (i for i, _ in shown))
-    heights = [max(s.height for s in spans[r * per_row:(r + 1) * per_row]) / scale.mu + 16.0 for r in range(rows)]
+    _left_out(project, canvas, box, layout)
+    heights = [max(s.height for s in spans[r * per_row:(r + 1) * per_row]) / scale.mu + kinematic_frames.HEAD for r in range(rows)]
     spare = (inside.height - sum(heights)) / rows
     y = inside.y1
+    tiny: dict[str, list[str]] = {}
     for r in range(rows):
         row = range(r * per_row, min((r + 1) * per_row, count))
         used = sum(spans[i].width / scale.mu + margin for i in row)
@@ -295,14 +299,38 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
             canvas.of = f"velocity plan {label}"
             if count > 1:
                 canvas.begin(Box(x, y - heights[r] - spare, x + w, y), f"План скоростей, положение {label}")
-            _draw_plan(canvas, vel.plan, index, frame, "p", symbols_at=count == 1)
+            for name in _draw_plan(canvas, vel.plan, index, frame, "p", symbols_at=count == 1):
+                tiny.setdefault(name, []).append(label)
             canvas.text(complex(middle.real, y - heights[r] - spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
             x += w
         y -= heights[r] + spare
+    canvas.of = "kinematics.velocity_plans"
+    if tiny:
+        canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {_with_positions(tiny) if count > 1 else ', '.join(tiny)}")
 
 
-def _draw_plan(canvas: Canvas, plan: Plan, i: int, frame: Frame, pole: str, symbols_at: bool = False) -> None:
-    """One velocity or acceleration plan: helper lines, vectors with arrow heads, letters of the points."""
+def _with_positions(tiny: dict[str, list[str]]) -> str:
+    """Signs of vectors with the labels of the positions they are tiny at; those of the same positions together."""
+    there: dict[tuple[str, ...], list[str]] = {}
+    for name, labels in tiny.items():
+        there.setdefault(tuple(labels), []).append(name)
+    return "; ".join(f"{', '.join(names)} (положени{'я' if len(at) > 1 else 'е'} {', '.join(at)})" for at, names in there.items())
+
+
+def _left_out(project: Project, canvas: Canvas, box: Box, layout: kinematic_frames.VelocityLayout) -> None:
+    """Notes on the plans that are not drawn."""
+    for i, ratio in layout.beyond:
+        canvas.note(box, f"План скоростей положения {project.cycle.labels[i]} (рядом с мёртвым) не начерчен: "
+                         f"он в {times(round(ratio))} больше обычного")
+    if layout.every > 1:
+        canvas.note(box, f"Начерчены планы скоростей для каждого {layout.every}-го положения")
+
+
+def _draw_plan(canvas: Canvas, plan: Plan, i: int, frame: Frame, pole: str, symbols_at: bool = False) -> list[str]:
+    """One velocity or acceleration plan: helper lines, vectors with arrow heads, letters of the points.
+
+    Returns the signs of the vectors that are too short to be drawn; their ends have their letters at one point.
+    """
     points = kinematic_frames.plan_points(plan, i)
     for step in plan:
         if step.rule.helpers is None:
@@ -312,24 +340,28 @@ def _draw_plan(canvas: Canvas, plan: Plan, i: int, frame: Frame, pole: str, symb
             if h.kind == "line":
                 canvas.ray_line(frame(h.a), frame(h.b), "construction", over=4.0)
     size = max(abs(z) for z in points.values())
+    tiny = {}
     for seg in plan.segments:
         a, b = complex(seg.tail.at(i)), complex(seg.head.at(i))
-        if abs(b - a) > 1e-9 * size:
-            canvas.arrow(frame(a), frame(b), "vector")
-            if symbols_at:
-                canvas.label(frame(_place_of_sign(plan, seg, i)), seg.symbol, 1j * (b - a), 3.5, 1.0)
+        if is_zero(b - a, size):
+            continue
+        if frame.scale.mm(abs(b - a)) < SHORTEST:
+            tiny[seg.tail.name, seg.head.name] = seg.symbol
+            continue
+        canvas.arrow(frame(a), frame(b), "vector")
+        if symbols_at:
+            canvas.label(frame(_place_of_sign(plan, seg, i)), seg.symbol, 1j * (b - a), 3.5, 1.0)
     centre = frame(np.mean(list(points.values())))
-    joint: dict[tuple[int, int], list[str]] = {}
-    for name, z in points.items():
-        q = frame(z)
-        joint.setdefault((round(q.real * 5), round(q.imag * 5)), []).append(name)
-    for names in joint.values():
+    for names in joined({name: frame(z) for name, z in points.items()}, tiny):
         z = points[names[0]]
         q = frame(z)
-        shown = [n for n in names if n != pole]
-        text = ", ".join(([pole] if pole in names else []) + [plan_letter(n) for n in shown])
+        shown = [plan_letter(n) for n in names if n != pole]
         canvas.dot(q, 0.6, "vector")
-        canvas.label(q, text, q - centre if abs(q - centre) > 1 else 0j, 3.5, 1.0)
+        # A long row of letters leaves the pole's own to itself.
+        rows = ([[pole], shown] if len(shown) > 2 else [[pole, *shown]]) if pole in names else [shown]
+        for row in rows:
+            canvas.label(q, ", ".join(row), q - centre if abs(q - centre) > 1 else 0j, 3.5, 1.0)
+    return list(dict.fromkeys(tiny.values()))
 
 
 def _place_of_sign(plan: Plan, seg: Segment, i: int) -> complex:
@@ -372,7 +404,9 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
     frame = kinematic_frames.accelerations(project, canvas, box)
     canvas.title(box, f"План ускорений (положение {project.cycle.labels[k]})", str(frame.scale))
     flat_crossings.warn(project, canvas, box, acc.plan)
-    _draw_plan(canvas, acc.plan, k, frame, "π", symbols_at=True)
+    tiny = _draw_plan(canvas, acc.plan, k, frame, "π", symbols_at=True)
+    if tiny:
+        canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {', '.join(tiny)}")
 
 
 COLUMNS = 7
@@ -407,6 +441,8 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
         lengths += others[:COLUMNS - len(lengths)]
     turning = [(f"ω_{link}", np.abs(w.value)) for link, w in vel.omega.items()
                if np.ndim(w.value) and link in vel.reference]
+    for i, _ in kinematic_frames.beyond_drawing(project):  # no segments of a plan that is not drawn
+        lengths = [(name, np.where((np.arange(len(v)) == i) & name.startswith("|"), np.nan, v)) for name, v in lengths]
     rows = len(cycle.drawn) + 2
     left = right = box
     if lengths and options.get("stacked"):
@@ -424,7 +460,8 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
         row = min((place.height - 15.0) / rows, 7.5)
         canvas.text(complex(place.centre.real, place.y1 - 5.0), title, 3.5, "centre")
         cells = [["№", *(name for name, _ in columns)]]
-        cells += [[label, *(fixed(float(v[i]), decimals) for _, v in columns)] for i, label in cycle.drawn]
+        cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), decimals) for _, v in columns)]
+                  for i, label in cycle.drawn]
         widths = [10.0] + [(place.width - 10.0) / len(columns)] * len(columns)
         canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, min(3.5, row * 0.5))
 

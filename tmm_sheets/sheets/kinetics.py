@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.plan import symbol
-from tmm_sheets.construction.scale import Scale, fixed, number, times
+from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import clean, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
-from tmm_sheets.sheets.frame import Frame, extent, fit_frame, pick
+from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, pick
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -128,7 +130,6 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
     internal = {f"F{a}{b}" for a in g.links for b in g.links}
     shown: list[Shown] = []
     couples: list[Couple] = []
-    largest = max((abs(complex(load.vector.at(k))) for link in g.links for load in forces.loads[link]), default=0.0)
     members = [complex(step.at(k)) for step in pos.points.values()]
     size = max(abs(a - b) for a in members for b in members)
     for link in g.links:
@@ -161,8 +162,8 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
         across = (np.conj(u) * f).imag
         foot -= u * ((foot - origin) * np.conj(u)).real
         offset = couple / across if across else 0.0
-        acts = abs(f) > 1e-9 * largest
-        if abs(couple) > 1e-9 * largest * size and (not acts or abs(offset) > FAR * size):
+        acts = not is_zero(f, forces.force_size(k))
+        if not is_zero(couple, forces.moment_size(k)) and (not acts or abs(offset) > FAR * size):
             # The line of action lies off the sheet, or there is none: the force in the block and the couple of its walls.
             couples.append(Couple(f"M_{{{name}}}", foot, couple))
             offset = 0.0
@@ -185,7 +186,12 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
     if g.kind == 5:
         hinge(i, g.outer[0])
         guided(j, g.guides[0], g.outer[0])
-    return [s for s in shown if abs(s.vector) > 0], couples
+    return acting(shown, forces.force_size(k)), couples
+
+
+def acting(shown: Iterable[Shown], force_size: float) -> list[Shown]:
+    """Those that are forces at all beside ``force_size``, N."""
+    return [s for s in shown if not is_zero(s.vector, force_size)]
 
 
 def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int) -> None:
@@ -226,7 +232,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
             value = float(np.real(couple.at(k)))
             shape = next(shape for shape in linkage.shapes(pos) if shape.link == link)
             centre = project.mechanism.links[link].centre or shape.block or shape.bar[0]
-            if abs(value) > 0:
+            if not is_zero(value, forces.moment_size(k)):
                 z = frame(complex(pos.points[centre].at(k)))
                 symbols.rotation_arrow(canvas, z, 7.0 + 4.0 * n, -1 + 0.2j, value, symbol(couple.name).replace(BAR, ""))
 
@@ -238,7 +244,7 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
     for step in forces.plan:
         if step.rule.name == "component from moments" and step.name[1:2] in g.links:
             sign = f"F_{{{step.name[1:-1]}}}^τ"
-            said.append(f"ΣM_{step.args[1].name} = 0: {sign} = {newtons(abs(complex(step.at(k))))} Н")
+            said.append(f"ΣM_{step.args[1].name} = 0: {sign} = {newtons(clean(abs(complex(step.at(k))), forces.force_size(k)))} Н")
     about = g.outer[0] if g.kind == 5 else g.inner
     for pair in (f"{link}{m.guides[guide].link}" for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")
@@ -350,15 +356,25 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     """Force polygon with numbered vertices, its equation and the values found."""
     points, real = _polygon(fp, k)
     inside = box.inset(*AROUND)
+    size = project.study.forces.force_size(k)
+    sides = [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), size)]
+    canvas.of = fp.plan.name
+    if not sides and size > 0:
+        place = canvas.title(box, fp.plan.title, height=5.0)
+        canvas.text(place.centre, "Все силы равны нулю", 3.5, "centre")
+        return
     need = max(real.width / inside.width, real.height / inside.height)
     scale = pick(project, canvas, fp.plan.name, "μ_F", "Н/мм", need)
     frame = Frame(scale, inside.centre - scale.mm(real.centre))
-    canvas.of = fp.plan.name
     canvas.title(box, fp.plan.title, str(scale), 5.0)
     flat_crossings.warn(project, canvas, box, fp.plan)
-    sides = [s for s in fp.sides if abs(complex(s[2].at(k)) - complex(s[1].at(k))) > 0]
+    number_of = {id(step): n for n, step in fp.plan.steps.items()}
+    tiny = {}
     for sign, tail, head, _ in sides:
         a, b = frame(complex(tail.at(k))), frame(complex(head.at(k)))
+        if abs(b - a) < SHORTEST:
+            tiny[number_of[id(tail)], number_of[id(head)]] = f"{sign} = {newtons(scale.real(abs(b - a)))} Н".replace(" ", TOGETHER)
+            continue
         canvas.arrow(a, b, "vector")
         centre = frame(real.centre)
         middle = (a + b) / 2
@@ -370,20 +386,15 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     for seg in extra:
         canvas.arrow(frame(complex(seg.tail.at(k))), frame(complex(seg.head.at(k))), "vector")
         canvas.label(frame((complex(seg.tail.at(k)) + complex(seg.head.at(k))) / 2), seg.symbol, 0j, 3.5, 1.0)
-    placed: dict[tuple[int, int], list[str]] = {}
-    for name, z in points.items():
-        q = frame(z)
-        placed.setdefault((round(q.real * 2), round(q.imag * 2)), []).append(name)
-    for names in placed.values():
+    for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
         q = frame(points[names[0]])
         canvas.label(q, ", ".join(sorted(names, key=int)), q - frame(real.centre), 2.5, 0.8)
-    number_of = {id(step): n for n, step in fp.plan.steps.items()}
+    if tiny:
+        canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
     terms = [f"{s}({number_of[id(t)]}–{number_of[id(h)]})" for s, t, h, _ in sides]
     _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
     asked = [(s, t, h) for s, t, h, unknown in sides if unknown] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
-    sizes = [abs(complex(h.at(k)) - complex(t.at(k))) for _, t, h in asked]
-    rounding = 1e-9 * max(real.width, real.height)
-    found = [f"{s.replace(BAR, '')} = {newtons(f if f > rounding else 0.0)} Н" for (s, _, _), f in zip(asked, sizes, strict=True)]
+    found = [f"{s.replace(BAR, '')} = {newtons(clean(abs(complex(h.at(k)) - complex(t.at(k))), size))} Н" for s, t, h in asked]
     _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
 
 
@@ -428,6 +439,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     frame_force = complex(forces.reactions[f"F{c.link}{m.frame}"].at(k))
     pivot = complex(pos.points[c.pivot].at(k))
     shown.append(Shown(f"F̅_{{{c.link}{m.frame}}}", pivot, frame_force))
+    shown = acting(shown, forces.force_size(k))
     pins = linkage.crank_pins(pos)
     at = [pivot, *(complex(pos.points[name].at(k)) for name in pins), *(s.at for s in shown)]
     driver = project.driver
@@ -452,7 +464,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     draw_arms(canvas, frame, pivot, [s for s in shown if s.at != pivot])
     draw_forces(canvas, frame, shown)
     symbols.rotation_arrow(canvas, frame(pivot), 14.0, away, c.omega, f"ω_{c.link}")
-    if driver is None and forces.balancing is not None:
+    if driver is None and forces.balancing is not None and not is_zero(forces.balancing.at(k), forces.moment_size(k)):
         symbols.rotation_arrow(canvas, frame(pivot), 24.0, away, float(forces.balancing.at(k)), balancing_sign(project))
     _crank_couples(project, canvas, left, frame(pivot), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
@@ -477,11 +489,11 @@ def _crank_couples(project: Project, canvas: Canvas, box: Box, at: complex, away
     said = []
     for n, couple in enumerate(forces.link_couples.get(c.link, ())):
         sign, value = symbol(couple.name).replace(BAR, ""), float(np.real(couple.at(k)))
-        if value:
+        if not is_zero(value, forces.moment_size(k)):
             symbols.rotation_arrow(canvas, at, 34.0 + 10.0 * n, away, value, sign)
             said.append(f"{sign} = {number(abs(value), 5)} Н·м")
     if said and project.driver is None and forces.balancing is not None:
-        said.append(f"{balancing_sign(project)} = {number(abs(float(forces.balancing.at(k))), 5)} Н·м")
+        said.append(f"{balancing_sign(project)} = {number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))} Н·м")
     if said:
         _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
 
@@ -490,7 +502,8 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
     k, lv = project.force_index, project.study.lever
     points = {name: complex(step.at(k)) for name, step in lv.points.items()}
-    shown = [Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k))) for h in lv.hung]
+    size = project.study.forces.force_size(k)
+    shown = acting((Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k))) for h in lv.hung), size)
     place = box.inset(2.0, 2.0, 2.0, 19.0)
     at, around = _reach([0j, *points.values()], shown)
     arms = [*(s.at for s in shown), *_feet(0j, shown)]
@@ -519,7 +532,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         z = frame(complex(lv.contact.at(k)))
         canvas.line(pole, z, "axis")
         canvas.label(z, "f′", 0j, 3.5, 1.2)
-    draw_arms(canvas, frame, 0j, [s for s in shown if abs(s.vector) > 0], points=[frame(z) for z in points.values()])
+    draw_arms(canvas, frame, 0j, shown, points=[frame(z) for z in points.values()])
     draw_forces(canvas, frame, shown)
 
 
@@ -529,16 +542,15 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     forces: Kinetostatics = study.forces
     assert forces.balancing is not None
     assert study.lever.balancing is not None
-    kinetic, hung = abs(forces.balancing.at(k)), abs(study.lever.balancing.at(k))
     force, sign = project.driver is not None, balancing_sign(project)
+    kind = forces.force_size(k) if force else forces.moment_size(k)
+    kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing))
     unit = "Н" if force else "Н·м"
     difference = abs(kinetic - hung) / hung * 100 if hung else 0.0
-    exponent = f"{difference:.0e}".split("e") if difference else ["0", "0"]
-    shown = "0" if difference == 0 else f"{exponent[0]}·10^{{{int(exponent[1])}}}".replace("-", "−")
     rows = [["Уравновешивающая сила" if force else "Уравновешивающий момент", "Значение"],
             [f"Силовой расчёт: {sign}, {unit}", fixed(kinetic, 2)],
             [f"Рычаг Жуковского: {sign}, {unit}", fixed(hung, 2)],
-            ["Расхождение, %", shown]]
+            ["Расхождение, %", number(difference, 2, 100.0)]]
     row = min(box.height / len(rows), 9.0)
     canvas.table(complex(box.x0, box.y1), [box.width * 0.66, box.width * 0.34], rows, row, 3.5)
 

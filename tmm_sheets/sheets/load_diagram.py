@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fixed, number, times
+from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import pick
 
 if TYPE_CHECKING:

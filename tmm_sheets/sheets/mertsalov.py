@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fixed, number
+from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
 
 if TYPE_CHECKING:
@@ -213,6 +214,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     plan = fw.position_acceleration
     label = fw.labels[k]
     at = {name: float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1")}
+    steepest = size([plan["dJ/dφ"].value], k)
     mu = _omega_scale(fw)
     # Without a flywheel the crank and the rotor alone carry the running.
     held, bound = ("I_I", "; ") if fw.needed else ("(I_{кр} + I_р·u^2)", " <")
@@ -222,12 +224,13 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         f"ω_{{1ср}} = {fixed(omega, 4)} рад/с;  δ = {number(d.delta)}{taken};  M_{constant} = {fixed(fw.M_constant, 1)} Н·м",
         f"I_I = |ab|·μ_T/(δ·ω_1^2) = {fixed(fw.ab_mm, 2)}·{number(fw.scales.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2) = "
         f"{number(fw.J_first, 5)} кг·м^2",
-        f"I_м = I_I − (I_{{кр}} + I_р·u^2) = {number(fw.J_first, 5)} − {number(fw.J_first - fw.J_flywheel, 4)} = "
+        f"I_м = I_I − (I_{{кр}} + I_р·u^2) = {number(fw.J_first, 5)} − {number(fw.J_first - fw.J_flywheel, 4, fw.J_first)} = "
         f"{number(fw.J_flywheel, 5)} кг·м^2",
         f"μ_ω = μ_T/({held}·ω_{{1ср}}) = {number(mu.mu)} {mu.unit}",
         f"ω_{{max}} = {fixed(fast, 4)}{bound} ω_{{ср}}(1 + δ/2) = {fixed(omega * (1 + d.delta / 2), 4)} рад/с",
         f"ω_{{min}} = {fixed(slow, 4)}{bound.replace('<', '>')} ω_{{ср}}(1 − δ/2) = {fixed(omega * (1 - d.delta / 2), 4)} рад/с",
-        f"Положение {label}:  ψ = {fixed(degrees(at['ψ']), 2)}°;  d{sign}/dφ = tg ψ·μ_J/μ_φ = {number(at['dJ/dφ'])} кг·м^2",
+        f"Положение {label}:  ψ = {fixed(degrees(at['ψ']), 2)}°;  d{sign}/dφ = tg ψ·μ_J/μ_φ = "
+        f"{number(at['dJ/dφ'], kind=steepest)} кг·м^2",
         f"M = M_{constant} + M_{varying} = {fixed(at['M'], 1)} Н·м;  {held} + {sign} = {fixed(at['J'], 2)} кг·м^2",
         f"ε_1 = (M − ω_1^2/2·d{sign}/dφ)/({held} + {sign}) = {fixed(at['ε1'], 3)} рад/с^2",
     ]

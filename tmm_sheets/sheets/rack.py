@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fixed, number
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.gear_marks import CIRCLES, arrow_head, in_degrees, ratio, spread, standard
 
 MARGIN = 16.0

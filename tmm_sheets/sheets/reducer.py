@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard, fixed, handy, number
+from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.gear_marks import arrow_head, ratio, ruled_table, spread
 
 COLUMN = 19.0

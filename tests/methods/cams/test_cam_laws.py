@@ -153,3 +153,37 @@ def test_labels_and_shares():
     assert law.positions[-1] == pytest.approx(radians(205))
     np.testing.assert_allclose(law.divided(8)[:9], law.positions[:9], atol=1e-15)
     assert law_of(cam_data(), parts=6).labels == (*"0123456", "6'", *map(str, range(7, 13)))
+
+
+# --- limits from either side ------------------------------------------------------------------------------------------
+
+
+def limits(rise, dwell, fall):
+    """Limits of S'' of constant acceleration at positions 0 .. 16 by hand: +-4 h/angle^2 inside, nothing in a dwell."""
+    up, down = 4 / rise**2, 4 / fall**2
+    before = [0.0, *[up] * 4, *[-up] * 4, 0.0 if dwell else -up, *[-down] * 4, *[down] * 4]
+    after = [*[up] * 4, *[-up] * 4, 0.0 if dwell else -down, *[-down] * 4, *[down] * 4, 0.0]
+    return np.array(before), np.array(after)
+
+
+@pytest.mark.parametrize("dwell", [radians(20), 0.0])
+def test_both_limits_where_the_second_derivative_jumps(dwell):
+    law = PositionFunction.of(radians(140), dwell, radians(120), 0.055, CONSTANT)
+    before, after = limits(radians(140), dwell, radians(120))
+    np.testing.assert_allclose(law.dds_beside[0], 0.055 * before, atol=1e-15)
+    np.testing.assert_allclose(law.dds_beside[1], 0.055 * after, atol=1e-15)
+
+
+def test_limits_of_a_law_that_fills_the_turn():
+    """Without a lower dwell the fall goes over into the rise: the limits at 0 and 16 are those of the other phase."""
+    law = PositionFunction.of(pi, 0.0, pi, 0.02, LAWS["cosine"])
+    before, after = law.dds_beside
+    peak = 0.02 * pi**2 / 2 / pi**2
+    assert before[[0, 8, 9, 17]] == pytest.approx([peak, -peak, -peak, peak])
+    assert after[[0, 8, 9, 17]] == pytest.approx([peak, -peak, -peak, peak])
+
+
+@pytest.mark.parametrize("law", [SINE, TRAPEZOID])
+def test_a_law_without_jumps_has_one_limit(law):
+    before, after = PositionFunction.of(1.0, 0.3, 1.5, 0.02, law).dds_beside
+    np.testing.assert_allclose(before, after, atol=1e-9 * 0.02 * 2 * pi)

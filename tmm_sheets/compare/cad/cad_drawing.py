@@ -22,6 +22,7 @@ from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.report import Report
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.numbers import decimal
 from tmm_sheets.sheets.sheet import Composed, composed
 
 if TYPE_CHECKING:
@@ -201,7 +202,7 @@ def _how(laid: Laid, ink: CadInk) -> list[str]:
         found.append(f"the drawing lies turned by {(-90 * quarter) % 360} degrees; it was turned back")
     rest = (p.degrees + 45) % 90 - 45
     if abs(rest) > 0.02:
-        found.append(f"the drawing is askew by {-rest:.2f} degrees; it was straightened")
+        found.append(f"the drawing is askew by {decimal(-rest)} degrees; it was straightened")
     declared_unit = ink.unit if laid.space.name == "model space" else 1.0  # paper space is in millimetres
     unit = declared_unit or 1.0
     ratio = p.scale / unit

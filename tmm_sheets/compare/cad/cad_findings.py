@@ -9,6 +9,7 @@ from tmm_sheets.compare.cad.cad_ink import Entity
 from tmm_sheets.compare.elements import Element, View
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
+from tmm_sheets.numbers import decimal
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +83,7 @@ def moved(shift: complex, tolerance: float, how: str = "") -> list[str]:
     """A shift in words, when it is more than the tolerance."""
     if abs(shift) <= tolerance:
         return []
-    return [f"shifted {how}by {abs(shift):.2f} mm ({shift.real:+.2f}, {shift.imag:+.2f})"]
+    return [f"shifted {how}by {abs(shift):.2f} mm ({decimal(shift.real, sign=True)}, {decimal(shift.imag, sign=True)})"]
 
 
 def more(size: float) -> str:

@@ -11,6 +11,7 @@ from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, JOINT, LO
 from tmm_sheets.compare.cad.cad_findings import more, moved
 from tmm_sheets.compare.cad.overlaps import Circle, Left, Run, circle, gaps, overlaps, pieces, runs, union
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.numbers import decimal
 
 FARTHEST = 25.0
 """A line whose ends are farther off than this, mm, is another line."""
@@ -164,7 +165,7 @@ def _line(state: Comparison, n: int, c: complex, d: complex, run: Run, rest: lis
     across = abs((shift * np.conj(u)).imag)
     said = moved(1j * u * (shift * np.conj(u)).imag, state.tolerance, "aside ")
     if abs(np.radians(turn)) * abs(q - p) / 2 > max(state.tolerance, 0.3 * across):
-        said.append(f"turned {turn:+.2f}°")
+        said.append(f"turned {decimal(turn, sign=True)}°")
     if abs(size) > state.tolerance:
         said.append(f"{abs(size):.2f} mm too {'long' if size > 0 else 'short'}")
     elif abs((shift * np.conj(u)).real) > state.tolerance:

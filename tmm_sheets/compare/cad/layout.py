@@ -15,6 +15,7 @@ from tmm_sheets.compare.view_places import ViewPlace, mu_of
 from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput
+from tmm_sheets.numbers import decimal
 
 MOST = 800
 """Points of a view that are looked at."""
@@ -214,5 +215,5 @@ def _where(view: View, move: Placing) -> str:
     if abs(move.scale - 1) > 1e-3:
         said.append(f"{move.scale:.4g} times as large")
     if abs(move.degrees) > 0.05:
-        said.append(f"turned {move.degrees:+.2f}°")
+        said.append(f"turned {decimal(move.degrees, sign=True)}°")
     return f'"{view.name}" stands {", ".join(said) or "in its place"}'

@@ -20,8 +20,8 @@ from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angl
 from tmm_sheets.compare.measured.measured_file import Filled, Line, factor_of
 from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.scale import number
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.numbers import number
 
 CURVED = 0.05
 """Share of what a mistake explains that may be off: its displacement is not known better."""

@@ -21,6 +21,7 @@ from tmm_sheets import texts
 from tmm_sheets.compare.measured.measurable import DEGREES, MILLIMETRES, Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.numbers import russian
 
 Column = Literal["id", "plan", "position", "quantity", "steps", "unit", "measured", "factor"]
 COLUMNS: Mapping[Column, str] = {
@@ -102,7 +103,7 @@ def template(project: str, found: Measurables) -> bytes:
 
 
 def _written(x: float) -> str:
-    return f"{x:.10g}".replace(".", ",")
+    return russian(f"{x:.10g}")
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------------

@@ -12,8 +12,8 @@ from tmm_sheets.compare.measured.chain import EXACT, MOST, Judged, Mistake, judg
 from tmm_sheets.compare.measured.measurable import measurables
 from tmm_sheets.compare.report import Report
 from tmm_sheets.construction.protocol import sentence, spoken
-from tmm_sheets.construction.scale import fixed, number
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.numbers import fixed, number, plain
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -106,7 +106,7 @@ def _row(j: Judged) -> tuple[str, ...]:
 def _written(j: Judged) -> str:
     """The measured number; one that no sheet has in the notation of computers."""
     x = j.line.value
-    return number(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else f"{x:.3g}"
+    return number(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else plain(x, 3)
 
 
 def _exact(j: Judged) -> str:

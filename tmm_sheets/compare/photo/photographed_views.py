@@ -26,6 +26,7 @@ from tmm_sheets.compare.photo.traces import Extra
 from tmm_sheets.compare.view_places import ViewPlace, mu_of
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
 from tmm_sheets.errors import BadInput
+from tmm_sheets.numbers import decimal
 
 FOUND = 0.5  # share of a view's lines that must be in its place
 INKED = 0.5
@@ -211,7 +212,7 @@ def _inked(e: Element, ink: Any, level: float) -> bool:
 def _told(view: View, where: Similarity, given: ViewPlace, known: Sequence[Element]) -> str:
     """How large a view was drawn, against ours or against the scale factor it was given."""
     size, degrees = abs(where.turn), float(np.degrees(np.angle(where.turn)))
-    text = f'view "{view.name}" was fitted: {size:.4f} times as large as on our sheet, turned by {degrees:.2f}°'
+    text = f'view "{view.name}" was fitted: {size:.4f} times as large as on our sheet, turned by {decimal(degrees)}°'
     ours = _mu(view, known)
     if given.mu is not None and ours is not None:
         text += f"; with mu = {given.mu:g} it ought to be {ours / given.mu:.4f}"

@@ -147,6 +147,6 @@ def second_disc_of_rocker(inv: Inversion, angle: float, arm: float) -> None:
     second = plan.add("B′", TURNED, inv.ends, inv.centres, abs(angle), float(np.sign(angle)),
                       say="Второе плечо коромысла повёрнуто вокруг {0} относительно первого на постоянный угол {2}: точка {name}.")
     line = plan.add("B′A", rules.RAY, second, inv.ends)
-    tips = plan.add("D′", rules.ALONG, second, line, plan["D"].args[2],
+    tips = plan.add("D′", rules.OFFSET, second, line, plan["D"].args[2],
                     say="От точки {0} к оси коромысла отложим отрезок AB·ψ' = {2}: точка {name}.")
     plan.add("N′", rules.RAY, tips, inv.origin, say="Нормаль {name} второго диска параллельна прямой {0}{1}.")

@@ -29,7 +29,7 @@ LAY_OFF_FROM = Rule(
     lambda a, v: (Helper("line", a[0], v),),
 )
 PITCH_POINT = Rule(
-    "centre of relative rotation", lambda o, u, ds: o + u * ds, ("point", "direction", "length"), "point",
+    "centre of relative rotation", lambda o, u, ds: o + u * ds, ("point", "direction", "ordinate"), "point",
     "Через {0} перпендикулярно к линии толкателя отложим аналог скорости {2}: точка {name} на нормали к профилю.",
     lambda a, v: (Helper("line", a[0], v),),
 )
@@ -73,7 +73,7 @@ def translating(plan: Plan, dimensions: Zone, phi: Reals, s: Reals, ds: Reals) -
     foot = plan.add("T_0", rules.GIVEN, complex(-right * e))
     start = plan.add("B_0", rules.ALONG, foot, 1j, s0,
                      say="По катетам e и S_0 = {2} построим прямоугольный треугольник; вершина {name}.")
-    axis = plan.add("A", rules.ALONG, start, 1j, s,
+    axis = plan.add("A", rules.OFFSET, start, 1j, s,
                     say="На линии толкателя от точки {0} отложим перемещение {2}: точка {name}.")
     # The cam turns by -right * phi, so the follower goes round the standing cam by right * phi.
     ends = plan.add("N", LAY_OFF_FROM, o, start, r0, phi, right)
@@ -103,7 +103,7 @@ def rocker(plan: Plan, dimensions: Zone, phi: Reals, psi: Reals, dpsi: Reals) ->
     side = float(np.sign(ar.cross(pivot - apex, -apex)))
     centres = plan.add("B", rules.ARC_ARC, o, radius, ends, arm, side)
     line = plan.add("BA", rules.RAY, centres, ends)
-    tips = plan.add("D", rules.ALONG, centres, line, (1.0 if same else -1.0) * arm * dpsi,
+    tips = plan.add("D", rules.OFFSET, centres, line, (1.0 if same else -1.0) * arm * dpsi,
                     say="На линии коромысла от точки {0} отложим отрезок AB·ψ' = {2}: точка {name}.")
     normals = plan.add("DO", rules.RAY, tips, o,
                        say="Проведём прямую {0}{1}: нормаль к профилю в точке B ей параллельна.")
@@ -116,14 +116,14 @@ def flat(plan: Plan, r0: float, right: float, phi: Reals, s: Reals, ds: Reals) -
     """Record the inversion of a flat follower for cam angles ``phi``; the plate is perpendicular to its motion."""
     o = plan.add("O", rules.GIVEN, 0j)
     start = plan.add("B_0", rules.ALONG, o, 1j, r0, say="На линии толкателя отложим радиус r_0 = {2}: точка {name}.")
-    axis = plan.add("A", rules.ALONG, start, 1j, s,
+    axis = plan.add("A", rules.OFFSET, start, 1j, s,
                     say="На линии толкателя от точки {0} отложим перемещение {2}: точка {name}.")
     ends = plan.add("N", LAY_OFF_FROM, o, start, r0, phi, right)
     lines = plan.add("ON", rules.RAY, o, ends)
     radius = plan.add("OA", rules.DISTANCE, o, axis)
     centres = plan.add("B", rules.ARC_LINE, o, radius, o, lines, 1.0)
     plates = plan.add("⊥ON", ACROSS_LINE, lines, right, say="Через точку B проведём перпендикуляр {name} к {0}: плоскость тарелки.")
-    plan.add("F", rules.ALONG, centres, plates, ds,
+    plan.add("F", rules.OFFSET, centres, plates, ds,
              say="На тарелке от точки {0} отложим аналог скорости {2}: точка касания с профилем {name}.")
     normals = plan.add("−ON", rules.RAY, centres, o, say="Нормаль к профилю {name} параллельна линии толкателя.")
     angles = plan.add("α", BETWEEN, normals, lines, right)

@@ -258,6 +258,12 @@ class Phase:
         return self.start + self.angle * x
 
 
+def _aside(phase: Phase, x: Any, side: int) -> Any:
+    """Shares of a phase, those of its jumps moved a rounding to one side."""
+    jump = np.isclose(np.asarray(x)[:, None], np.asarray(phase.law.jumps)[None, :], rtol=0, atol=1e-12).any(axis=1)
+    return np.where(jump, x + side * 1e-12, x)
+
+
 @dataclass(frozen=True)
 class PositionFunction:
     """Displacement of the follower over a turn of the cam, with both derivatives, exact for the law.
@@ -339,6 +345,23 @@ class PositionFunction:
     def at_positions(self, function: Callable[[Phase, Any], Any]) -> Reals:
         """A function of the phases, such as ``Phase.dds``, at the numbered positions, shape (2 parts + 2,)."""
         return np.concatenate((function(self.rise, self.shares), function(self.fall, self.shares)))
+
+    @cached_property
+    def dds_beside(self) -> tuple[Reals, Reals]:
+        """Limits of the second derivative at the numbered positions from below and from above, each of shape (2 parts + 2,).
+
+        They differ where it jumps: inside a phase, or where one ends and the next begins.
+        """
+        before, after = (np.concatenate([p.dds(_aside(p, self.shares, side)) for p in (self.rise, self.fall)]) for side in (-1, 1))
+        n, order = self.parts, self.phases
+        for first, last, phase in ((0, n, self.rise), (n + 1, 2 * n + 1, self.fall)):
+            k = order.index(phase)
+            before[first] = order[k - 1].dds(1.0)
+            after[last] = order[(k + 1) % len(order)].dds(0.0)
+        # Without an upper dwell its two ends are one position.
+        if self.upper_dwell not in order:
+            before[n + 1], after[n] = before[n], after[n + 1]
+        return before, after
 
     def divided(self, parts: int) -> Reals:
         """Cam angles of a whole turn, each phase in equal parts, 0 and 2 pi included, rad.

@@ -40,13 +40,13 @@ AMPLITUDE = Rule("amplitude by proportion", lambda a, phase, other: a * (phase /
                  "length", "Из пропорции a_1/a_2 = φ_с²/φ_у² найдём вторую амплитуду {name} = {value}.")
 EQUAL_STROKE = Rule("amplitude for an equal stroke", lambda a: a, ("length",), "length",
                     "Из условия равенства ходов при разных законах найдём вторую амплитуду {name} = {value}.")
-ORDINATE = Rule("lay off an ordinate", lambda x, y: x + 1j * y, ("length", "length"), "point",
+ORDINATE = Rule("lay off an ordinate", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
                 "На вертикали с абсциссой {0} отложим ординату закона {1}: точка {name}.",
                 lambda a, v: (Helper("line", complex(a[0], 0), v),))
-ACROSS = Rule("carry across", lambda p, x: x + 1j * np.imag(p), ("point", "length"), "point",
+ACROSS = Rule("carry across", lambda p, x: x + 1j * np.imag(p), ("point", "ordinate"), "point",
               "Точку {0} перенесём горизонталью на вертикаль с абсциссой {1}: точка {name}.",
               lambda a, v: (Helper("line", a[0], v),))
-EQUAL_AREA = Rule("rectangle of equal area", lambda area, width: area / width, ("number", "length"), "length",
+EQUAL_AREA = Rule("rectangle of equal area", lambda area, width: area / width, ("number", "length"), "ordinate",
                   "Криволинейную трапецию площадью {0} мм² заменим прямоугольником той же площади и той же ширины {1}; "
                   "его высота {name} = {value}.")
 

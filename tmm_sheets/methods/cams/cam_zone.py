@@ -221,12 +221,12 @@ OUTERMOST_DIRECTION = Rule("direction of the outermost ray", lambda ray: ray.dir
                            "Крайний луч {name} проведём под допустимым углом давления к скорости точки B.")
 LOWER = Rule("lower of two points", lambda p, q: p if np.imag(p) <= np.imag(q) else q, ("point", "point"), "point",
              "Из точек {0} и {1} ниже лежит {name}: возьмём в ней центр вращения кулачка.")
-SIGNED = Rule("abscissa", lambda p, right: right * np.real(p), ("point", "number"), "length", "Измерим отрезок {name} = {value}.")
+SIGNED = Rule("abscissa", lambda p, right: right * np.real(p), ("point", "number"), "ordinate", "Измерим отрезок {name} = {value}.")
 TURNED = Rule("turn about the axis of the rocker", lambda a, b, angle, sense: a + (b - a) * np.exp(1j * sense * angle),
               ("point", "point", "angle", "number"), "point",
               "Радиусом {0}{1} из точки {0} проведём дугу и повернём линию коромысла на угол {2}: точка {name}.",
               lambda a, v: (Helper("line", a[0], v),))
-SUM = Rule("add ordinates", lambda a, b: a + b, ("length", "length"), "length",
+SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
            "К ординате S {0} прибавим ординату S'' {1}: ордината {name} = {value}.")
 LOWEST = Rule("lowest ordinate", lambda points, law: max(-lowest_sum(law)[0], 0.0), ("length", "direction"), "length",
               "Наименьшая (отрицательная) ордината графика S + S'' даёт r_min = {value}.")
@@ -311,8 +311,8 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Rea
     n = len(limited) * (law.parts + 1)
     plan = Plan("cam-zone", "Определение основных размеров", "m", law.labels[:n])
     start = plan.add("B", rules.GIVEN, 0j)
-    axis = plan.add("A", rules.ALONG, start, 1j, s[:n], say="На оси S от точки {0} отложим перемещение {2}: точка {name}.")
-    points = plan.add("D", rules.ALONG, axis, complex(right), ds[:n],
+    axis = plan.add("A", rules.OFFSET, start, 1j, s[:n], say="На оси S от точки {0} отложим перемещение {2}: точка {name}.")
+    points = plan.add("D", rules.OFFSET, axis, complex(right), ds[:n],
                       say="Из точки {0} перпендикулярно к оси S отложим аналог скорости {2}: точка {name}.")
     curve = plan.add("S(S')", CURVE, points, cones)
     touching = [plan.add(name, TOUCH, curve, side, alpha) for name, side in (("K_1", 1.0), ("K_2", -1.0))]
@@ -322,7 +322,7 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Rea
         plan.add("V", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
                  say="Касательные {1} и {3} пересекаются в вершине зоны {name}.")
     if e is not None:
-        line = plan.add("e_0", rules.ALONG, start, complex(right), e,
+        line = plan.add("e_0", rules.OFFSET, start, complex(right), e,
                         say="На перпендикуляре к оси S от точки {0} отложим эксцентриситет {2}: точка {name}.")
         met = [plan.add(f"O_{k}", rules.LINE_LINE, line, 1j, touch, border,
                         say="Через {0} параллельно оси S проведём прямую до касательной {3} из {2}: точка {name}.")
@@ -369,7 +369,7 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
     axis = plan.add("B", TURNED, pivot, start, psi[:n], -side)
     line = plan.add("BA", rules.RAY, axis, pivot)
     where = "к оси A" if same else "на продолжении AB"
-    points = plan.add("D", rules.ALONG, axis, line, (1.0 if same else -1.0) * arm * dpsi[:n],
+    points = plan.add("D", rules.OFFSET, axis, line, (1.0 if same else -1.0) * arm * dpsi[:n],
                       say=f"От точки {{0}} {where} отложим x = AB·ψ' = {{2}}: точка {{name}}.")
     curve = plan.add("D(ψ)", CURVE, points, cones)
     found = cones.corner(centre)

@@ -63,7 +63,7 @@ TANGENT_ANGLE = Rule(
 UNDER_ANGLE = Rule("direction under an angle", lambda angle: np.cos(angle) + 1j * np.sin(angle), ("angle",), "direction",
                    "Под углом {0} к оси приведённых моментов инерции возьмём направление {name}.")
 PROJECT = Rule(
-    "project from two graphs", lambda e, j: j + 1j * e, ("length", "length"), "point",
+    "project from two graphs", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
     "С графика ΔE(φ1) проведём горизонталь с ординатой {0}, с графика J(φ1) вертикаль с абсциссой {1}: "
     "на их пересечении точка кривой энергомасс.",
     lambda a, v: (Helper("line", complex(0, v.imag), v), Helper("line", complex(v.real, 0), v)),

@@ -302,7 +302,7 @@ def _gather(*points: Any) -> Any:
 
 
 PLOT = Rule(
-    "plot a point", lambda x, y: x + 1j * y, ("length", "length"), "point",
+    "plot a point", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
     "На абсциссе {0} отложим ординату {1}: точка графика.",
     lambda a, v: (Helper("line", complex(a[0], 0), v),),
 )
@@ -312,19 +312,19 @@ BALANCE = Rule(
     "график работы постоянного момента.",
     lambda a, v: (Helper("line", a[0], v), Helper("line", 0j, v)),
 )
-MEASURE = Rule("measure ordinates", _gather, (), "length", "Измерим ординату графика работ {name} = {value}.")
-ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / np.real(end), ("length", "point"), "length",
+MEASURE = Rule("measure ordinates", _gather, (), "ordinate", "Измерим ординату графика работ {name} = {value}.")
+ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / np.real(end), ("ordinate", "point"), "ordinate",
                "На абсциссе {0} измерим ординату прямой {name} = {value}.")
-SUM = Rule("add ordinates", lambda a, b: a + b, ("length", "length"), "length",
+SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
            "Сложим ординаты {0} и {1} с их знаками: {name} = {value}.")
 AREA = Rule("ordinate from an area", lambda y: y, ("ordinate",), "ordinate",
             "Для проверки: площадь графика момента даёт конечную ординату работы {name} = {value}.", beyond_paper=True)
 BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
                    "Построенная конечная ордината {0} отличается от неё на {name} = {value}: ордината в середине интервала – "
                    "не средняя ордината кривой.")
-ENLARGE = Rule("enlarge ordinates", lambda y, times: y * times, ("length", "number"), "length",
+ENLARGE = Rule("enlarge ordinates", lambda y, times: y * times, ("ordinate", "number"), "ordinate",
                "Умножим ординату {0} на {1}: {name} = {value}.")
-LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("length",), "length", "Отложим ординату {name} = {value}.")
+LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", "Отложим ординату {name} = {value}.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -743,9 +743,9 @@ class Flywheel(ABC):
         }
 
 
-TANGENT = Rule("tangent of a graph", lambda angle: angle, ("angle",), "angle",
+TANGENT = Rule("tangent of a graph", lambda angle: angle, ("inclination",), "inclination",
                "В точке графика J(φ1) проведём касательную; угол её наклона {name} = {value}.")
-SLOPE = Rule("slope of a graph", lambda angle, factor: np.tan(angle) * factor, ("angle", "number"), "number",
+SLOPE = Rule("slope of a graph", lambda angle, factor: np.tan(angle) * factor, ("inclination", "number"), "number",
              "{name} = tg ψ·μ_J/μ_φ = {value} кг·м².")
 SUM_OF_MOMENTS = Rule("add moments", lambda a, b: a + b, ("number", "number"), "number",
                       "Сложим приведённые моменты {0} и {1} с их знаками: {name} = {value} Н·м.")

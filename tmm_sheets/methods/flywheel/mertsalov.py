@@ -35,18 +35,18 @@ def _level(curve: Curve, side: Any, samples: Floats) -> Any:
     return complex(curve(np.array([highest(lambda t: np.asarray(side * np.imag(curve(t))), samples)]))[0])
 
 
-CONVERT = Rule("convert ordinates", lambda y, factor: y * factor, ("length", "number"), "length",
+CONVERT = Rule("convert ordinates", lambda y, factor: y * factor, ("ordinate", "number"), "ordinate",
                "Ординату {0} графика J_II(φ1) пересчитаем в масштаб энергий, умножив на μ_J·ω²/(2μ_E) = {1}: {name} = {value}.")
-LAY_BELOW = Rule("lay off below a curve", lambda a, b: a - b, ("length", "length"), "length",
+LAY_BELOW = Rule("lay off below a curve", lambda a, b: a - b, ("ordinate", "ordinate"), "ordinate",
                  "От конца ординаты {0} отложим вниз {1}: остаётся {name} = {value}.")
 EXTREME = Rule("horizontal tangent", _level, (), "point",
                "Проведём горизонтальную касательную к кривой T_I(φ1): точка касания {name}.")
 MIDDLE = Rule("middle", lambda a, b: (a + b) / 2, ("point", "point"), "point",
               "Через середину отрезка {0}{1} проведём ось средней угловой скорости: точка {name}.")
-FROM_AXIS = Rule("ordinate from an axis", lambda y, axis: y - np.imag(axis), ("length", "point"), "length",
+FROM_AXIS = Rule("ordinate from an axis", lambda y, axis: y - np.imag(axis), ("ordinate", "point"), "ordinate",
                  "От оси средней угловой скорости измерим ординату {name} = {value}.")
-ANGULAR_SPEED = Rule("angular velocity from its graph", lambda y, mu, mean: mean + mu * y, ("length", "number", "number"), "number",
-                     "{name} = {2} + {1}·y = {value} рад/с.")
+ANGULAR_SPEED = Rule("angular velocity from its graph", lambda y, mu, mean: mean + mu * y, ("ordinate", "number", "number"),
+                     "number", "{name} = {2} + {1}·y = {value} рад/с.")
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from math import asin, atan, atan2, cbrt, ceil, cos, floor, hypot, pi, sin, sqrt, tan
 from typing import Any, Literal, Protocol, TypeVar
 
-from tmm_sheets.construction.scale import fixed
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.rack import Rack
+from tmm_sheets.numbers import fixed
 
 FILLET = 0.38
 """Fillet radius of the basic rack in modules (GOST 13755; manual 000, 6.4, item 5)."""

@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH
+from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH, OFFSET
 from tmm_sheets.construction.step import Helper, Rule, Step
 
 Points = npt.NDArray[np.complex128]
@@ -178,7 +178,7 @@ NORMAL = Rule("outward radius", ar.ray, ("point", "point"), "direction", "Про
               lambda a, v: (Helper("line", a[0], a[1]),))
 ROLLING_LINE = Rule("rolling line", lambda u: -1j * u, ("direction",), "direction",
                     "Перпендикулярно радиусу проведём начальную прямую рейки {name}.")
-REFERENCE = Rule("shifted reference line", ar.along, ("point", "direction", "length"), "point",
+REFERENCE = Rule("shifted reference line", ar.along, ("point", "direction", "ordinate"), "point",
                  "От начальной прямой отложим смещение {2}: точка {name} делительной прямой рейки.")
 FLANK = Rule("flank of the rack", _turned_down, ("direction", "angle"), "direction",
              "Под углом профиля {1} к оси зуба рейки проведём его боковую сторону.")
@@ -188,9 +188,11 @@ TOUCH = Rule(
     lambda a, v: (Helper("line", a[0], v),),
 )
 WITHIN = Rule(
-    "point within the straight flank", _within, ("point", "point", "direction", "length", "length"), "point",
+    "point within the straight flank", _within, ("point", "point", "direction", "ordinate", "ordinate"), "point",
     "Точка {0} принадлежит профилю зуба, если лежит в пределах прямолинейной части рейки: точка {name}.",
 )
+
+TRAVEL = Rule("travel of the rack", lambda s: s, ("ordinate",), "ordinate", "Переместим рейку на {value} от среднего положения.")
 
 
 def generating_plan(rack: Rack, rolls: Any) -> Plan:
@@ -217,13 +219,13 @@ def _positions(plan: Plan, rack: Rack, rolls: Any) -> None:
     contact = plan.add("W", ROLL, centre, radius, rolls)
     axis = plan.add("OW", NORMAL, centre, contact)
     line = plan.add("WT", ROLLING_LINE, axis)
-    travel = plan.add("s", GIVEN_LENGTH, rack.r * rolls, say="Переместим рейку на {value} от среднего положения.")
-    moved = plan.add("T", ALONG, contact, line, travel)
+    travel = plan.add("s", TRAVEL, rack.r * rolls)
+    moved = plan.add("T", OFFSET, contact, line, travel)
     middle = plan.add("M", REFERENCE, moved, axis, rack.shift * m)
-    plan.add("F", ALONG, middle, line, rack.half_width)
+    plan.add("F", OFFSET, middle, line, rack.half_width)
     plan.add("flank", FLANK, axis, rack.alpha)
-    end = plan.add("D", ALONG, middle, line, rack.tip_centre.real)
-    plan.add("C", ALONG, end, axis, rack.tip_centre.imag)
+    end = plan.add("D", OFFSET, middle, line, rack.tip_centre.real)
+    plan.add("C", OFFSET, end, axis, rack.tip_centre.imag)
 
 
 def fillet_steps(rack: Rack, normals: Any) -> Step:

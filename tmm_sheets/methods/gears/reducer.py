@@ -20,6 +20,7 @@ from tmm_sheets.methods.gears.tooth_search import (
     simple_numbers,
     stage_numbers,
 )
+from tmm_sheets.numbers import number
 
 
 @dataclass(frozen=True)
@@ -201,7 +202,7 @@ class Reducer:
         """Remarks for the sheet (Russian)."""
         out = []
         if self.simple_ratio < self.scheme.least_simple:
-            out.append(f"передаточное отношение простой ступени меньше {self.scheme.least_simple:g}".replace(".", ","))
+            out.append(f"передаточное отношение простой ступени меньше {number(self.scheme.least_simple)}")
         z, s = self.chosen.stage, self.scheme.signs
         numbers = stage_numbers(self.data, 0)
         for satellite, ring, sign in ((1, 0, s[0]), (2, 3, s[1])):

@@ -53,7 +53,7 @@ def _angular(big_q: Any, big_b: Any, q: Any, b: Any) -> Any:
 
 ANGULAR_ACCELERATION = Rule(
     "angular acceleration", _angular, ("point", "point", "point", "point"), "number",
-    "Угловое ускорение {name} = a^τ / {0}{1} = {value} рад/с².",
+    "Угловое ускорение |{name}| = a^τ / {0}{1}, со знаком {name} = {value} рад/с².",
 )
 
 

@@ -19,6 +19,7 @@ from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
+from tmm_sheets.numbers import size
 
 Role = Literal["weight", "inertia", "applied", "reaction"]
 
@@ -26,7 +27,7 @@ WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force",
 INERTIA = Rule("inertia force", lambda m, a: -m * a, ("number", "point"), "force",
                "Сила инерции {name} = m·a = {0}·a_{1} = {value}, против ускорения {1}.")
 COUPLE = Rule("inertia couple", lambda j, e: -j * e, ("number", "number"), "number",
-              "Момент инерции {name} = J·ε = {value} Н·м против ε.")
+              "Момент инерции {name} = −J·ε = {value} Н·м, против ε.")
 GIVEN_MOMENT = Rule("given moment", lambda m: m, ("number",), "number", "Момент {name} = {value} Н·м.")
 GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {name} = {value}.")
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.")
@@ -96,6 +97,15 @@ class Kinetostatics:
     def external(self) -> list[Load]:
         """Weights, inertia forces and applied forces of all links, without reactions."""
         return [load for loads in self.loads.values() for load in loads if load.role != "reaction"]
+
+    def force_size(self, k: int) -> float:
+        """Size of the forces at position ``k``, N: beside it a force is something or nothing."""
+        return size((load.vector.value for loads in self.loads.values() for load in loads), k)
+
+    def moment_size(self, k: int) -> float:
+        """Moment of such a force across the whole mechanism, N m: beside it a moment is something or nothing."""
+        points = list(self.positions.points.values())
+        return self.force_size(k) * size((p.value - points[0].value for p in points), k)
 
     def reaction(self, j: str, k: str, vector: Step) -> Step:
         """Record F_jk under its name."""

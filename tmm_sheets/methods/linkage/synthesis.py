@@ -16,9 +16,9 @@ import numpy as np
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.scale import number
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import number
 
 SWING = Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",), "angle",
              "Угол между крайними положениями кулисы {name} = 180°·(K − 1)/(K + 1) = {value}.")

@@ -45,7 +45,7 @@ def _angular(big_q: Any, big_b: Any, q: Any, b: Any) -> Any:
 
 ANGULAR_VELOCITY = Rule(
     "angular velocity", _angular, ("point", "point", "point", "point"), "number",
-    "Угловая скорость {name} = |{2}{3}|·μ_V / {0}{1} = {value} рад/с.",
+    "Угловая скорость |{name}| = |{2}{3}|·μ_V / {0}{1}, со знаком {name} = {value} рад/с.",
 )
 SAME = Rule("the same", lambda w: w, ("number",), "number", "{name} = {value}.")
 

@@ -1,0 +1,185 @@
+"""Scale factors of the plans: what is next to a dead point or too short is said, a file's factor is refused by the true need."""
+
+import re
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tmm_sheets import catalogue
+from tmm_sheets.__main__ import run
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import kinematic_frames, sheet
+from tmm_sheets.sheets.frame import joined
+from tmm_sheets.task import variant
+
+HERE = Path(__file__).parent
+CLOSE, CONVEYOR = HERE / "close.toml", HERE.parent / "projects" / "conveyor.toml"
+
+
+def changed(path, *changes):
+    text = path.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    return Project(variant.parse(text, str(path)))
+
+
+def lettering(composed):
+    return [g.text for g in composed.groups if g.kind == "lettering"]
+
+
+# --- next to a dead point ---------------------------------------------------------------------------------------------
+
+
+def plan_sizes(phi):
+    """Sizes of the velocity plans of close.toml by the formulas of the slotted link, m/s."""
+    r, away, reach, omega = 0.1, 0.1005, 0.3, 2 * np.pi
+    b = r * np.exp(1j * phi)
+    from_c, v = b - away, 1j * omega * b
+    omega3 = np.imag(np.conj(from_c) * v) / np.abs(from_c) ** 2
+    points = np.array([0 * b, v, 1j * omega3 * from_c, 1j * omega3 * reach * from_c / np.abs(from_c)])
+    return np.maximum(np.ptp(points.real, axis=0), np.ptp(points.imag, axis=0))
+
+
+@pytest.fixture(scope="module")
+def close():
+    return changed(CLOSE)
+
+
+@pytest.fixture(scope="module")
+def composed(close):
+    return sheet.composed(close, 1)
+
+
+def test_the_scale_serves_the_plans_that_can_be_drawn(close, composed):
+    sizes = plan_sizes(np.radians(np.arange(0, 360, 30)))
+    mu = composed.scales["velocities"].mu
+    assert sizes[0] / np.median(sizes) > 400
+    assert 20 <= sizes[1:].max() / mu <= 60, "the largest plan that is drawn, mm"
+    titles = [p.title for p in composed.parts if p.title.startswith("План скоростей")]
+    assert titles == [f"План скоростей, положение {i}" for i in range(1, 12)]
+
+
+def test_a_plan_that_is_not_drawn_is_said(close, composed, capsys):
+    sizes = plan_sizes(np.radians(np.arange(0, 360, 30)))
+    times = sizes[0] / np.median(sizes)
+    (line,) = kinematic_frames.left_out(close)
+    assert line == f"position 0 is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large as usual"
+    note = " ".join(lettering(composed))
+    assert re.search(rf"План скоростей положения 0 .*{round(times)} раз больше обычного", note)
+    assert run(["check", str(CLOSE)]) == 0
+    assert line in capsys.readouterr().err
+
+
+def test_build_says_it(tmp_path, capsys):
+    assert run(["build", str(CLOSE), "--format", "svg", "-o", str(tmp_path)]) == 0
+    assert "position 0 is next to a dead point" in capsys.readouterr().err
+
+
+def test_the_plans_of_the_dead_point_itself_say_what_is_too_short():
+    """At the dead point the centrifugal acceleration of D, omega3^2 l, is 1e4 times that of the pin: omega3 = omega r / 0.5 mm."""
+    found = sheet.composed(changed(CLOSE, ('force_position = "4"', 'force_position = "0"')), 1)
+    mu = found.scales["accelerations"].mu
+    pin, centre = (2 * np.pi) ** 2 * 0.1, (2 * np.pi * 0.1 / 0.0005) ** 2 * 0.3
+    assert centre / mu > 50
+    assert pin / mu < 1e-2
+    notes = " ".join(t for t in lettering(found) if "a̅" in t or "Меньше" in t)
+    assert "Меньше 1 мм, ≈ 0: a̅_B" in notes
+    drawn = [g for p, q in pairwise(found.parts) if p.title.startswith("План ускорений")
+             for g in found.groups if p.first <= g.first < q.first and g.kind == "arrow"]
+    assert len(drawn) == 1, "only the acceleration of D is an arrow"
+
+
+def test_nothing_is_left_out_of_plans_of_one_size():
+    for name in ("lugansk/shaper", "press", "sixbar/5:2"):
+        assert not list(kinematic_frames.left_out(Project(catalogue.read(name))))
+
+
+def test_points_that_share_a_dot():
+    points = {"p": 0j, "a": 0.7 + 0j, "b": 0.1j, "c": 20 + 0j, "d": 20.1 + 0j, "e": 21 + 0j}
+    assert joined(points, []) == [["p", "b"], ["a"], ["c", "d"], ["e"]]
+    assert joined(points, [("p", "a"), ("e", "d")]) == [["p", "a", "b"], ["c", "d", "e"]]
+    assert joined({"x": 0j, "y": 3 + 0j, "z": 1.5 + 0j}, [("x", "z"), ("z", "y")]) == [["x", "z", "y"]] or \
+        joined({"x": 0j, "y": 3 + 0j, "z": 1.5 + 0j}, [("x", "z"), ("z", "y")]) == [["x", "y", "z"]]
+
+
+# --- many positions ---------------------------------------------------------------------------------------------------
+
+
+def test_forty_plans_are_as_large_as_their_lettering_allows():
+    """With 36 working positions the letters of all plans take more than the place: every second plan is drawn, and it is said."""
+    project = changed(CONVEYOR, ("working = 8", "working = 36"))
+    found = sheet.composed(project, 1)
+    parts = [p for p in found.parts if p.title.startswith("План скоростей")]
+    assert [p.title.split()[-1] for p in parts] == [str(i) for i in range(40) if i % 2 == 0 or i == 3]
+    assert max(project.study.velocities.points["D"].value.__abs__()) / found.scales["velocities"].mu > 10
+    assert "Начерчены планы скоростей" in " ".join(lettering(found))
+    (said,) = kinematic_frames.left_out(project)
+    assert said == "there is no room for 40 velocity plans: one in 2 is drawn"
+    view = next(p.box for p in found.parts if p.draw == "kinematics.velocity_plans")
+    for p, q in pairwise([*parts, next(p for p in found.parts if p.first > parts[-1].first)]):
+        ends = [z for m in found.drawing.marks[p.first:q.first] if hasattr(m, "a") for z in (m.a, m.b)]
+        assert all(p.box.x0 <= z.real <= p.box.x1 for z in ends)
+        assert all(view.y0 <= z.imag <= view.y1 for z in ends)
+
+
+# --- the file's scale factors -------------------------------------------------------------------------------------------
+
+
+def with_scale(name, **factors):
+    v = catalogue.read(name)
+    return Project(v.model_copy(update={"scales": factors}))
+
+
+def test_a_factor_that_fits_is_taken():
+    found = sheet.composed(with_scale("sixbar/8:3", positions=0.0075), 1)
+    assert found.scales["positions"].mu == 0.0075
+
+
+@pytest.mark.parametrize(
+    ("plan", "name"),
+    [("positions", "sixbar/8:3"), ("positions", "lugansk/shaper"), ("velocities", "lugansk/shaper"),
+     ("velocities", "lugansk/engine"),
+     ("accelerations", "lugansk/shaper"), ("lever", "lugansk/engine")],
+)
+def test_the_refusal_names_the_true_need(plan, name):
+    """What it says it needs fits, a hundredth less does not."""
+    with pytest.raises(CannotBuild, match="it needs") as refused:
+        sheet.composed(with_scale(name, **{plan: 1e-9}), 1)
+    need = float(re.search(r"it needs (\S+) or more", str(refused.value))[1])
+    assert sheet.composed(with_scale(name, **{plan: need}), 1).scales[plan].mu == need
+    with pytest.raises(CannotBuild, match="it needs"):
+        sheet.composed(with_scale(name, **{plan: 0.99 * need}), 1)
+
+
+def test_the_ink_fills_the_place_at_the_need():
+    """At the need of 8:3's positions the drawing reaches from side to side of its place, and not beyond."""
+    with pytest.raises(CannotBuild) as refused:
+        sheet.composed(with_scale("sixbar/8:3", positions=1e-9), 1)
+    need = float(re.search(r"it needs (\S+) or more", str(refused.value))[1])
+    found = sheet.composed(with_scale("sixbar/8:3", positions=need), 1)
+    k = next(k for k, p in enumerate(found.parts) if p.draw == "kinematics.position_plans")
+    last = next(p.first for p in found.parts[k + 1:] if p.draw != "kinematics.position_plans")
+    x = [z.real for m in found.drawing.marks[found.parts[k].first:last] if type(m).__name__ == "Line" for z in (m.a, m.b)]
+    place = found.parts[k].box
+    assert place.x0 <= min(x) <= max(x) <= place.x1
+    assert max(x) - min(x) > 0.9 * place.width
+
+
+# --- nothing but rounding -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "label"), [("transport/compressor@00-В-000", None), ("sixbar/3:1", "0"), ("sixbar/3:1", "12"),
+                                             ("sixbar/2:1", "12"), ("lugansk/engine", "0"), ("lugansk/engine", "6")])  # fmt: skip
+def test_no_rounding_noise_on_the_sheets(name, label):
+    """No number on the sheets of linkages is smaller than 1e-7 unless it is 0; there is no minus zero."""
+    v = catalogue.read(name)
+    if label is not None:
+        v = v.model_copy(update={"cycle": v.cycle.model_copy(update={"force_position": label})})
+    project = Project(v)
+    for n in (1, 2):
+        for text in lettering(sheet.composed(project, n)):
+            assert not re.search(r"0,0{7}|10\^\{−\d\d\}|(?<!φ)−0(?![\d,])|−0,0+(?!\d)", text), text

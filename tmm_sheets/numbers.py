@@ -1,0 +1,78 @@
+"""How numbers are written and which of them are nothing: the one place for sheets, protocol, listings and reports.
+
+Rounding leaves about 1e-16 of the terms of a difference. What is below ``NOISE`` of the greatest of its kind (of the plan, the
+column, or the terms it is a difference of) is nothing but that, and is written 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import floor, isfinite, log10
+from typing import Any
+
+NOISE = 1e-9
+"""Share of the size of its kind below which a number is zero."""
+
+
+def size(values: Iterable[Any], k: int) -> float:
+    """Size of a kind of quantities at position ``k``: the greatest there, or what one of them exceeds at every fourth position.
+
+    ``values`` are numbers or arrays over the positions, real or complex; what is undefined does not count. The greatest of all
+    would not do: next to a dead point it is so large that everything else was nothing.
+    """
+    return max((_size(v, k) for v in values), default=0.0)
+
+
+def _size(value: Any, k: int) -> float:
+    import numpy as np
+
+    sizes = np.abs(np.ravel(value))
+    finite = sizes[np.isfinite(sizes)]
+    if not finite.size:
+        return 0.0
+    usual = float(np.quantile(finite, 0.75, method="lower"))
+    return max(usual, float(sizes[k])) if k < sizes.size and np.isfinite(sizes[k]) else usual
+
+
+def is_zero(x: Any, kind: float) -> bool:
+    """True for a number, real or complex, that is nothing but rounding beside ``kind``, the size of its kind."""
+    return bool(abs(x) <= NOISE * kind)
+
+
+def clean(x: Any, kind: float) -> Any:
+    """The number itself, or its zero when it is nothing but rounding beside ``kind``."""
+    return x * 0.0 if is_zero(x, kind) else x
+
+
+def number(x: float, digits: int = 4, kind: float = 0.0) -> str:
+    """A number in Russian notation: decimal comma, at most ``digits`` significant digits, no trailing zeros.
+
+    ``kind`` is the size of its kind, in the same unit: what is nothing beside it is written 0.
+    """
+    if is_zero(x, kind):
+        return "0"
+    text = f"{x:.{max(digits - 1 - floor(log10(abs(x))), 0)}f}"
+    return russian(text.rstrip("0").rstrip(".") if "." in text else text)
+
+
+def fixed(x: float, decimals: int = 2) -> str:
+    """A number in Russian notation with a fixed number of decimals; minus sign U+2212."""
+    return russian(decimal(x, decimals))
+
+
+def decimal(x: float, decimals: int = 2, sign: bool = False) -> str:
+    """A number with a decimal point and a fixed number of decimals; never "-0". With ``sign`` positive ones have a plus."""
+    text = f"{x:.{decimals}f}"
+    if isfinite(x) and float(text) == 0:
+        return text.lstrip("-")
+    return f"+{text}" if sign and x > 0 else text
+
+
+def plain(x: float, digits: int = 6, kind: float = 0.0) -> str:
+    """A number as computers write it, with ``digits`` significant digits; 0 when it is nothing beside ``kind``."""
+    return f"{0.0 if is_zero(x, kind) else x:.{digits}g}"
+
+
+def russian(text: str) -> str:
+    """A written number with decimal comma and true minus."""
+    return text.replace(".", ",").replace("-", "−")
