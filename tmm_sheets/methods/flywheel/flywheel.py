@@ -321,7 +321,7 @@ AREA = Rule("ordinate from an area", lambda y: y, ("ordinate",), "ordinate",
             "Для проверки: площадь графика момента даёт конечную ординату работы {name} = {value}.", beyond_paper=True)
 BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
                    "Построенная конечная ордината {0} отличается от неё на {name} = {value}: ордината в середине интервала – "
-                   "не средняя ордината кривой.")
+                   "не средняя ордината кривой.", beyond_paper=True)
 ENLARGE = Rule("enlarge ordinates", lambda y, times: y * times, ("ordinate", "number"), "ordinate",
                "Умножим ординату {0} на {1}: {name} = {value}.")
 LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", "Отложим ординату {name} = {value}.")
