@@ -16,6 +16,7 @@ import numpy as np
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.plan import pair_index
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
@@ -203,7 +204,7 @@ def _linkage(project: Project, found: Measurables, shown: set[str]) -> None:
         for k in indices:
             for entry in _position(plan, found.scales, k) if plan.pole is None else _segments(plan, found.scales, k):
                 found.add(entry)
-    if project.variant.balancing is not None and "force-1" in "".join(found.scales):
+    if project.variant.balancing is not None and any(fp.plan.name in found.scales for fp in study.forces.plans.values()):
         _forces(project, found)
     _motion_results(project, found, of_velocities)
 
@@ -395,6 +396,8 @@ def _forces(project: Project, found: Measurables) -> None:
     study, k = project.study, project.force_index
     f, lever, label = study.forces, study.lever, study.labels[project.force_index]
     given: set[str] = set()
+    links = (project.mechanism.frame, *project.mechanism.links)
+    opposite = {f"F{pair_index(a, b)}": f"F{pair_index(b, a)}" for a in links for b in links}
     for step in study.loads[2]:
         title = "Силы тяжести и инерции"
         if step.rule.gives in ("force", "number") and not any(step.name == a.name for a in study.applied):
@@ -414,7 +417,7 @@ def _forces(project: Project, found: Measurables) -> None:
             name = re.sub(r"[\u0305{}^]", "", side.symbol).replace("F_", "F")
             found.check(f"{RESULTS}/{label}/{name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float, plan.name)
         for step in plan:
-            if step.rule.gives == "force" and step.name not in given and f"F{step.name[2:3]}{step.name[1:2]}" not in given:
+            if step.rule.gives == "force" and step.name not in given and opposite.get(step.name) not in given:
                 given.add(step.name)
                 found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
     for name, step in f.arms.items():
@@ -453,7 +456,7 @@ def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
         if step.rule is not MOMENTS:
             continue
         about = step.args[0]
-        link = step.name.removeprefix("ΣM")[:1]
+        link = step.name.removeprefix("ΣM").split("–")[0]
         key = "scheme-crank" if link == crank and "scheme-crank" in found.scales else schemes.get(link, "positions")
         for at, force in zip(step.args[1::3], step.args[2::3], strict=False):
             if not isinstance(force, Step) or at is about or not abs(complex(value_at(force, k))) > 0:

@@ -62,7 +62,7 @@ def fit_frame(project: Project, canvas: Scales, name: str, symbol: str, unit: st
     """Smallest handy scale factor with which everything fits the place; its middle comes to the place's middle.
 
     ``points`` are in the plan's unit, ``offsets`` reach from each of them in millimetres of paper whatever the scale
-    (arrows, blocks, labels). Where even the offsets alone do not fit, the largest factor tried is taken.
+    (arrows, blocks, labels). Where even the offsets alone do not fit, the points get half the place.
     """
     z, d = np.ravel(np.asarray(points, dtype=complex)), np.ravel(np.asarray(offsets, dtype=complex))
     real = extent([z])
@@ -76,5 +76,7 @@ def fit_frame(project: Project, canvas: Scales, name: str, symbol: str, unit: st
         if drawn.width <= box.width and drawn.height <= box.height:
             break
         mu = handy(mu * 1.0001)
+    else:
+        mu = handy(2 * size)
     scale = pick(project, canvas, name, symbol, unit, mu)
     return Frame(scale, box.centre - extent([scale.mm(z) + d]).centre)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.plan import pair_index, symbol
 from tmm_sheets.construction.scale import Scale, fixed, number, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
@@ -125,7 +125,7 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
     """External and inertia forces of a group's links and the reactions of the links outside it."""
     forces, pos = project.study.forces, project.study.positions
     m = project.mechanism
-    internal = {f"F{a}{b}" for a in g.links for b in g.links}
+    internal = {f"F{pair_index(a, b)}" for a in g.links for b in g.links}
     shown: list[Shown] = []
     couples: list[Couple] = []
     largest = max((abs(complex(load.vector.at(k))) for link in g.links for load in forces.loads[link]), default=0.0)
@@ -141,7 +141,7 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
 
     def hinge(link: str, point: str, parts: tuple[Step, Step] | None = None) -> None:
         """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
-        name = f"{link}{m.owner(point)}"
+        name = pair_index(link, m.owner(point))
         at = complex(pos.points[point].at(k))
         total = complex(forces.reactions[f"F{name}"].at(k))
         if parts is None:
@@ -153,7 +153,7 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
 
     def guided(link: str, guide: str, about: str) -> None:
         """Reaction of a guide, at the point of the guide line where it balances the moments about ``about``."""
-        name = f"{link}{m.guides[guide].link}"
+        name = pair_index(link, m.guides[guide].link)
         f = complex(forces.reactions[f"F{name}"].at(k))
         u = complex(pos.guide_directions[guide].at(k))
         foot, origin = (complex(pos.points[p].at(k)) for p in (str(g.inner), about))
@@ -233,12 +233,13 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
     """What the moment equations of a group gave: tangential parts of its reactions, arms of its outer guides' reactions."""
     forces, m = project.study.forces, project.mechanism
     said = []
+    own = {f"F{pair_index(link, other)}τ" for link in g.links for other in (m.frame, *m.links)}
     for step in forces.plan:
-        if step.rule.name == "component from moments" and step.name[1:2] in g.links:
+        if step.rule.name == "component from moments" and step.name in own:
             sign = f"F_{{{step.name[1:-1]}}}^τ"
             said.append(f"ΣM_{step.args[1].name} = 0: {sign} = {newtons(abs(complex(step.at(k))))} Н")
     about = g.outer[0] if g.kind == 5 else g.inner
-    for pair in (f"{link}{m.guides[guide].link}" for guide in g.guides for link in g.links):
+    for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")
         length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
         if 0.05 < length < max(box.width, box.height):
@@ -415,9 +416,10 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
     right = Box(left.x1 + 4.0, box.y0, box.x1, box.y1)
     shown = [Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))) for load in forces.loads[c.link]]
-    frame_force = complex(forces.reactions[f"F{c.link}{m.frame}"].at(k))
+    from_frame = pair_index(c.link, m.frame)
+    frame_force = complex(forces.reactions[f"F{from_frame}"].at(k))
     pivot = complex(pos.points[c.pivot].at(k))
-    shown.append(Shown(f"F̅_{{{c.link}{m.frame}}}", pivot, frame_force))
+    shown.append(Shown(f"F̅_{{{from_frame}}}", pivot, frame_force))
     pins = linkage.crank_pins(pos)
     at = [pivot, *(complex(pos.points[name].at(k)) for name in pins), *(s.at for s in shown)]
     driver = project.driver
