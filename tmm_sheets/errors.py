@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 
@@ -38,6 +38,19 @@ class CannotBuild(Exception):
     def __str__(self) -> str:
         message = str(self.args[0])
         return f"{message}\n    {self.hint}" if self.hint else message
+
+
+def together(refused: Mapping[str, CannotBuild], what: str, others: bool) -> CannotBuild:
+    """One refusal for several things by name, each reason once: "sheet 3 (gear) cannot be drawn: why".
+
+    The names matter only where there are ``others`` that could be built, or reasons that differ.
+    """
+    reasons: dict[str, list[str]] = {}
+    for name, reason in refused.items():
+        reasons.setdefault(str(reason), []).append(name)
+    if not others and len(reasons) == 1:
+        return next(iter(refused.values()))
+    return CannotBuild("\n".join(f"{', '.join(names)} cannot be {what}: {reason}" for reason, names in reasons.items()))
 
 
 class BadInput(Exception):

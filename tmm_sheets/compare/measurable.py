@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from math import degrees, hypot, isfinite
 from typing import TYPE_CHECKING, Any, Literal
@@ -20,6 +21,7 @@ from tmm_sheets.construction.plan import pair_index
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.forces import MOMENTS, TANGENTIAL
 from tmm_sheets.methods.velocities import SAME, SIMILAR
 
@@ -131,12 +133,14 @@ class Measurables:
     """All of a project: entries by id, scale factors by key, and the plans with the key of the factor each is drawn with.
 
     ``on_paper`` are the keys of plans whose unit is the millimetre: there a scale factor only tells what the ordinates mean.
+    ``notes`` say what is left out because it cannot be drawn.
     """
 
     entries: dict[str, Measurable] = field(default_factory=dict)
     scales: dict[str, Scale] = field(default_factory=dict)
     plans: list[tuple[Plan, str]] = field(default_factory=list)
     on_paper: set[str] = field(default_factory=set)
+    notes: list[str] = field(default_factory=list)
     checks: dict[str, Check] = field(default_factory=dict)
 
     def check(self, result: str, needs: Iterable[str], compute: Callable[..., float], scale: str = "") -> None:
@@ -166,24 +170,26 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
 
     found = Measurables()
     shown: set[str] = set()
-    for n in range(1, len(project.sheets) + 1):
-        say(f"sheet {n}")
-        composed = sheet.composed(project, n)
+    attempt = sheet.every(project, say)
+    problem = attempt.problem()
+    if problem is not None:
+        found.notes.append(str(problem))
+    for composed in attempt.drawn.values():
         for key, scale in composed.scales.items():
             found.scales.setdefault(key, scale)
         shown |= {str(mark.of) for mark in composed.drawing.marks}
-    if project.variant.crank is not None and project.variant.cycle is not None:
+    from tmm_sheets.compare import diagram_items, flywheel_items, machine_items
+
+    there = project.parts
+    if "positions" in there:
         _linkage(project, found, shown)
-        from tmm_sheets.compare import diagram_items
-
         diagram_items.collect(project, found)
-    if project.variant.flywheel is not None:
-        from tmm_sheets.compare import flywheel_items
-
-        flywheel_items.collect(project, found)
-    from tmm_sheets.compare import machine_items
-
-    machine_items.collect(project, found)
+    for part, collect in (("flywheel", flywheel_items.collect), ("gear", machine_items.gear), ("reducer", machine_items.reducer),
+                          ("cam", machine_items.cam)):
+        if part in there:
+            with suppress(CannotBuild):  # its sheet has said why
+                collect(project, found)
+    machine_items.others(project, found)
     titles = list(dict.fromkeys(e.title for e in found.entries.values()))
     found.entries = dict(sorted(found.entries.items(), key=lambda pair: titles.index(pair[1].title)))
     return found
@@ -204,7 +210,7 @@ def _linkage(project: Project, found: Measurables, shown: set[str]) -> None:
         for k in indices:
             for entry in _position(plan, found.scales, k) if plan.pole is None else _segments(plan, found.scales, k):
                 found.add(entry)
-    if project.variant.balancing is not None and any(fp.plan.name in found.scales for fp in study.forces.plans.values()):
+    if "forces" in project.parts and any(fp.plan.name in found.scales for fp in study.forces.plans.values()):
         _forces(project, found)
     _motion_results(project, found, of_velocities)
 
@@ -427,7 +433,7 @@ def _forces(project: Project, found: Measurables) -> None:
     by = "по плану сил"
     for way, balancing in ((by, f.balancing), ("по рычагу", lever.balancing)):
         if balancing is not None:
-            name = project.variant.balancing.name if project.variant.balancing else "Mур"
+            name = project.balancing
             unit = "Н" if study.driver is not None else "Н·м"
             entry_id = f"{RESULTS}/{label}/{name}{'' if way == by else '-lever'}"
             found.add(size(f"Уравновешивание {way}", entry_id, label, name, unit, k, balancing, by=balancing))

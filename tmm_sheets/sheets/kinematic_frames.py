@@ -145,7 +145,7 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
     found: dict[str, tuple[Scale, int]] = {}
     for n, name in enumerate(project.sheets, 1):
         kept = SimpleNamespace(scales={})
-        for view in arrangement(name).views:
+        for view in arrangement(name).fitted(project.parts).views:
             if view.draw == "kinematics.position_plans" and "positions" in parts:
                 positions(project, kept, view.box, view.options)
             elif view.draw == "kinematics.velocity_plans" and "velocities" in parts:

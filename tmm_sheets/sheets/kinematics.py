@@ -433,6 +433,8 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     for line in (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure):
         canvas.text(complex(box.x0 + 2.0, y), line, 3.5)
         y -= 7.0
+    if not m.groups:
+        return
     rows = [["Группа", "Класс", "Порядок", "Вид", "Пары"]]
     for g, found in zip(reversed(m.groups), m.decompose(), strict=True):
         outer_i, outer_j = found.outer

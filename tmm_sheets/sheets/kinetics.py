@@ -303,7 +303,7 @@ def _foot(s: Shown, about: complex) -> complex:
 def draw_arms(canvas: Canvas, frame: Frame, about: complex, shown: Iterable[Shown], prefix: str = "h",
               points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
-    shown = list(shown)
+    shown = [s for s in shown if abs(s.vector) > 0]
     seen: list[complex] = []
     centre = frame(about)
     busy = [centre, *points, *(frame(s.at) for s in shown), *(frame(_foot(s, about)) for s in shown)]
@@ -340,11 +340,15 @@ def _polygon(fp: ForcePlan, k: int) -> tuple[dict[str, complex], Box]:
 def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
     """Force polygon with numbered vertices, its equation and the values found."""
     points, real = _polygon(fp, k)
+    canvas.of = fp.plan.name
     inside = box.inset(*AROUND)
+    strongest = max((float(np.nanmax(np.abs(load.vector.value))) for load in project.study.forces.external), default=0.0)
+    if max(real.width, real.height) <= 1e-12 * strongest:
+        _fitted(canvas, canvas.title(box, fp.plan.title).centre, "В этом положении сил нет", 3.5, box.width - 4.0)
+        return
     need = max(real.width / inside.width, real.height / inside.height)
     scale = pick(project, canvas, fp.plan.name, "μ_F", "Н/мм", need)
     frame = Frame(scale, inside.centre - scale.mm(real.centre))
-    canvas.of = fp.plan.name
     canvas.title(box, fp.plan.title, str(scale), 5.0)
     flat_crossings.warn(project, canvas, box, fp.plan)
     sides = [s for s in fp.sides if abs(complex(s[2].at(k)) - complex(s[1].at(k))) > 0]
@@ -385,7 +389,7 @@ def newtons(force: float) -> str:
 
 def balancing_sign(project: Project) -> str:
     """Sign of the balancing force or moment in lettering markup, from its name in the project file."""
-    name = project.variant.balancing.name if project.variant.balancing else "Mур"
+    name = project.balancing
     return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
 
 
@@ -443,8 +447,9 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     draw_arms(canvas, frame, pivot, [s for s in shown if s.at != pivot])
     draw_forces(canvas, frame, shown)
     symbols.rotation_arrow(canvas, frame(pivot), 14.0, away, c.omega, f"ω_{c.link}")
-    if driver is None and forces.balancing is not None:
-        symbols.rotation_arrow(canvas, frame(pivot), 24.0, away, float(forces.balancing.at(k)), balancing_sign(project))
+    balancing = float(forces.balancing.at(k)) if driver is None and forces.balancing is not None else 0.0
+    if balancing:
+        symbols.rotation_arrow(canvas, frame(pivot), 24.0, away, balancing, balancing_sign(project))
     _crank_couples(project, canvas, left, frame(pivot), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
 
@@ -510,7 +515,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         z = frame(complex(lv.contact.at(k)))
         canvas.line(pole, z, "axis")
         canvas.label(z, "f′", 0j, 3.5, 1.2)
-    draw_arms(canvas, frame, 0j, [s for s in shown if abs(s.vector) > 0], points=[frame(z) for z in points.values()])
+    draw_arms(canvas, frame, 0j, shown, points=[frame(z) for z in points.values()])
     draw_forces(canvas, frame, shown)
 
 
