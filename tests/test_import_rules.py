@@ -29,7 +29,7 @@ RULES = {
     "task.letters": ("drawing.lettering task", ""),
     "task.families": ("task", ""),
     "project": (f"task {METHODS}", "mechanism"),
-    "results": ("construction sheets", "project methods.linkage"),
+    "results": ("construction project sheets", "methods.linkage"),
     "catalogue": ("task", ""),
     "summary": ("mechanism project task", ""),
     "explain": ("construction", "drawing project"),

@@ -4,7 +4,7 @@ import pytest
 
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.results import assemble, parts_of
+from tmm_sheets.results import assemble
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 
@@ -38,7 +38,7 @@ def read(old="", new=""):
 
 def test_file_is_read_and_built():
     project = Project(read())
-    assert parts_of(project) == ("gear", "reducer")
+    assert project.parts == ("gear", "reducer")
     tree = assemble(project, None)
     assert tree["reducer"]["teeth"] == {"z1": 15, "z2": 30, "z3": 15, "z4": 60, "z5": 12, "z6": 20}
     assert (tree["gear"]["z1"], tree["gear"]["z2"], tree["gear"]["m"]) == (12, 20, 12.0)

@@ -42,8 +42,8 @@ def entries() -> tuple[Entry, ...]:
     for name in shipped():
         family = families.of(name)
         if family is not None:
-            project = family.read(name).project
-            found.append(Entry(name, project.title, project.variant, project.sheets))
+            variant = family.read(name)
+            found.append(Entry(name, variant.project.title, variant.project.variant, variant.sheets))
             continue
         heading = tomllib.loads(_path(name).read_text(encoding="utf-8"))["project"]
         found.append(Entry(name, heading["title"], heading.get("variant", ""), tuple(heading["sheets"])))

@@ -10,7 +10,7 @@ import click
 
 from tmm_sheets import __version__
 from tmm_sheets.box import Box
-from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
@@ -128,7 +128,7 @@ def check(project: str, corrected: bool) -> None:
     if opened.variant.crank is not None:
         from tmm_sheets.sheets import flat_crossings, kinematic_frames
 
-        for line in (*kinematic_frames.left_out(opened), *flat_crossings.lines(opened)):
+        for line in (*kinematic_frames.left_out(opened, range(1, len(opened.sheets) + 1)), *flat_crossings.lines(opened)):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
     if opened.variant.flywheel is not None and opened.flywheel.remark:
         click.echo(f"{opened.variant.project.name}: {opened.flywheel.remark}", err=True)
@@ -212,6 +212,8 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool) -
         from tmm_sheets import explain as report
 
         click.echo(report.text(built.opened, built.drawings, watch))
+    if built.refused is not None:
+        raise built.refused
 
 
 def _build_many(
@@ -272,7 +274,8 @@ def solve(
         raise click.UsageError("give either --phi or --positions, not both")
     from tmm_sheets import results
 
-    found = results.assemble(_open(project, corrected), parts, phi=phi, positions=positions)
+    opened, refused = _open(project, corrected), dict[str, CannotBuild]()
+    found = results.assemble(opened, parts, phi=phi, positions=positions, refused=refused)
     if target is None:
         click.echo(results.listing(found))
     elif target == "-":
@@ -281,6 +284,8 @@ def solve(
         from tmm_sheets import files
 
         files.write_all({Path(target): (results.as_json(found) + "\n").encode()})
+    if refused:
+        raise together(refused, "computed", others=True)
 
 
 @commands.command()
@@ -336,6 +341,7 @@ def plot(
     from tmm_sheets.progress import Progress
 
     jobs: dict[Path, plotting.Job] = {}
+    problem = None
     with Progress() as progress:
         if project.lower().endswith(plotting.FILES):
             if sheets or tile or bar or window or outline == "off":
@@ -351,11 +357,12 @@ def plot(
             if not dry_run:
                 files.check_folder(folder)
             look = plotting.Look(machine, tile, overlap, bar, outline == "on", window)
-            for n in chosen(opened.variant, sheets):
-                progress.say(f"sheet {n} ...")
-                from tmm_sheets.sheets import sheet
+            from tmm_sheets.sheets import sheet
 
-                job = plotting.job(sheet.composed(opened, n).drawing, f"sheet{n}", look)
+            attempt = sheet.every(opened, lambda what: progress.say(f"{what} ..."), chosen(opened.variant, sheets))
+            problem = attempt.problem()
+            for n, composed in attempt.drawn.items():
+                job = plotting.job(composed.drawing, f"sheet{n}", look)
                 jobs[folder / job.name] = job
             made = {path: job.data for path, job in jobs.items()}
         if preview:
@@ -382,6 +389,8 @@ def plot(
             click.echo(f"would send: {shlex.join(plotting.command(job, path, str(printer)))}")
         else:
             click.echo(plotting.send(job, path, str(printer)))
+    if problem is not None:
+        raise problem
 
 
 @commands.command()

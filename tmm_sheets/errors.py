@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 
@@ -46,6 +46,19 @@ class Stopped(KeyboardInterrupt):
     def __init__(self, number: int) -> None:
         super().__init__()
         self.number = number
+
+
+def together(refused: Mapping[str, CannotBuild], what: str, others: bool) -> CannotBuild:
+    """One refusal for several things by name, each reason once: "sheet 3 (gear) cannot be drawn: why".
+
+    The names matter only where there are ``others`` that could be built, or reasons that differ.
+    """
+    reasons: dict[str, list[str]] = {}
+    for name, reason in refused.items():
+        reasons.setdefault(str(reason), []).append(name)
+    if not others and len(reasons) == 1:
+        return next(iter(refused.values()))
+    return CannotBuild("\n".join(f"{', '.join(names)} cannot be {what}: {reason}" for reason, names in reasons.items()))
 
 
 class BadInput(Exception):

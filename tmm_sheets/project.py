@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.errors import CannotBuild
+from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.task.variant import Variant
 
 if TYPE_CHECKING:
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.synthesis import Synthesis
 
 
+LINKAGE = ("positions", "velocities", "accelerations", "forces")
+"""Parts of the results that the linkage has."""
+
+
 class Project:
     """A task with its numbers; the methods are run when somebody reads their results."""
 
@@ -31,7 +35,34 @@ class Project:
     @property
     def sheets(self) -> tuple[str, ...]:
         """Names of the sheets' arrangements, in order."""
-        return self.variant.project.sheets
+        return self.variant.sheets
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """What the project has results and views of, by the tables of its file; forces where something loads its links."""
+        v = self.variant
+        parts: tuple[str, ...] = ()
+        if v.crank is not None:
+            parts += LINKAGE if v.loaded else LINKAGE[:3]
+        return parts + tuple(name for name in ("flywheel", "gear", "reducer", "cam") if getattr(v, name) is not None)
+
+    @property
+    def balancing(self) -> str:
+        """Name of the force or moment that drives the crank: a moment where the file does not tell."""
+        return self.variant.balancing.name if self.variant.balancing is not None else "Mур"
+
+    @property
+    def diagrams(self) -> tuple[str, ...]:
+        """Points and links whose motion is drawn over the crank angle: those named, the output, or what the last group drives."""
+        cycle = self._section("cycle")
+        if cycle.diagrams or cycle.output:
+            return cycle.diagrams or (cycle.output,)
+        m = self.mechanism
+        if not m.groups:
+            return ()
+        g = m.groups[-1]
+        slides = g.kind in (2, 5) and m.guides[g.guides[0]].link == m.frame
+        return (str(g.inner) if slides else g.links[1],)
 
     def _section(self, name: str) -> Any:
         section = getattr(self.variant, name)
@@ -116,6 +147,10 @@ class Project:
     @cached_property
     def flywheel(self) -> Flywheel:
         """Flywheel by the energy-mass curve."""
+        if not self.applied:
+            raise CannotBuild("a flywheel needs a technological force or moment", "add [[force]] or [[moment]] to the project file")
+        if not any(link.mass or link.inertia or link.pivot_inertia for link in self.mechanism.links.values()):
+            raise CannotBuild("a flywheel needs links with masses", "add mass, centre and inertia to [[link]] of the project file")
         from tmm_sheets.methods.flywheel.flywheel import flywheel
 
         return flywheel(self.reduced, self._section("flywheel"))
@@ -144,15 +179,21 @@ class Project:
 
     def check(self) -> None:
         """Assemble everything the project describes; raises :class:`CannotBuild` naming what fails, where and by how much."""
-        if self.variant.crank is not None:
-            self.check_assembly()
-            _ = self.force_index
-        if self.variant.gear is not None:
-            _ = self.gear
-        if self.variant.reducer is not None:
-            _ = self.reducer
-        if self.variant.cam is not None:
-            self.cam.check()
+        refused: dict[str, CannotBuild] = {}
+        for part in self.parts:
+            try:
+                if part == "positions":
+                    _ = self.study, self.force_index, self.diagrams
+                elif part == "forces" and "positions" not in refused:
+                    _ = self.applied
+                elif part == "cam":
+                    self.cam.check()
+                elif part in ("gear", "reducer"):
+                    getattr(self, part)
+            except CannotBuild as e:
+                refused[part] = e
+        if refused:
+            raise together(refused, "built", others=False)
 
     def check_assembly(self) -> None:
         """Assemble the mechanism all round the turn."""

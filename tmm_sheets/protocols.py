@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from tmm_sheets.errors import BadInput
+from tmm_sheets.errors import BadInput, CannotBuild
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -27,10 +27,14 @@ def lines(project: Project, name: str | None) -> Iterator[str]:
     ------
     BadInput
         when no sheet shows a plan of that name.
+    CannotBuild
+        when sheets cannot be drawn: after what the others show, or at once when the plan asked for may be on one of these.
     """
-    found = _drawn(project)
+    found, problem = _drawn(project)
     if name is not None:
         if name not in found:
+            if problem is not None:
+                raise problem
             near = get_close_matches(name, found, n=1)
             hint = f'did you mean "{near[0]}"?' if near else f"its plans are {', '.join(found)}"
             raise BadInput(f'{project.variant.project.name} has no plan "{name}"', hint=hint)
@@ -42,21 +46,24 @@ def lines(project: Project, name: str | None) -> Iterator[str]:
         if i:
             yield ""
         yield from _told(project, plan, scale)
+    if name is None and problem is not None:
+        raise problem
 
 
-def _drawn(project: Project) -> dict[str, tuple[Plan, Scale | None]]:
-    """Plans by name with the scale factors they were drawn with, in the order in which the sheets show them."""
+def _drawn(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], CannotBuild | None]:
+    """Plans by name with the scale factors they were drawn with, in the order of the sheets, and which of these cannot be drawn."""
     from tmm_sheets.explain import parts
     from tmm_sheets.sheets import sheet
 
     scales: dict[str, Scale] = {}
-    for n in range(1, len(project.variant.sheets) + 1):
-        scales |= sheet.composed(project, n).scales
+    attempt = sheet.every(project)
+    for composed in attempt.drawn.values():
+        scales |= composed.scales
     plans = [plan for of_part in parts(project).values() if of_part for plan in of_part]
     first: dict[str, tuple[Plan, Scale | None]] = {}
     for plan in plans:
         first.setdefault(plan.name, (plan, scales.get(plan.name)))
-    return first
+    return first, attempt.problem()
 
 
 def _told(project: Project, plan: Plan, scale: Scale | None) -> Iterator[str]:

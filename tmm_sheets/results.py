@@ -7,12 +7,14 @@ counter-clockwise.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import clean, plain, size
+from tmm_sheets.project import LINKAGE
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -22,20 +24,10 @@ if TYPE_CHECKING:
 SCHEMA = 1
 """Version of the tree; raised when a key changes its meaning."""
 
-LINKAGE = ("positions", "velocities", "accelerations", "forces")
-
-
-def parts_of(project: Project) -> tuple[str, ...]:
-    """Parts a project has numbers for, by the sections of its file."""
-    v = project.variant
-    parts: tuple[str, ...] = ()
-    if v.crank is not None and v.cycle is not None:
-        parts += LINKAGE if v.balancing is not None else LINKAGE[:3]
-    return parts + tuple(name for name in ("flywheel", "gear", "reducer", "cam") if getattr(v, name) is not None)
-
 
 def assemble(
-    project: Project, parts: Iterable[str] | None, *, phi: tuple[float, ...] | None = None, positions: int | None = None
+    project: Project, parts: Iterable[str] | None, *, phi: tuple[float, ...] | None = None, positions: int | None = None,
+    refused: dict[str, CannotBuild] | None = None,
 ) -> dict[str, Any]:
     """The results tree.
 
@@ -44,18 +36,22 @@ def assemble(
     project
         the project.
     parts
-        names of its parts (see :func:`parts_of`); None for all it has.
+        names of its parts (see :attr:`Project.parts`); None for all it has.
     phi
         crank angles in the world frame, rad; by default the project's numbered positions.
     positions
         that many equal parts of the cycle instead, from position 0 on in the sense of rotation.
+    refused
+        takes the parts that cannot be computed with the reasons; the tree then has the others, and the reasons as ``not_computed``.
 
     Raises
     ------
     BadInput
         when a part is asked for that the project does not have.
+    CannotBuild
+        when a part cannot be computed and there is no ``refused`` to take it, or nothing else was asked for.
     """
-    there = parts_of(project)
+    there = project.parts
     asked = there if parts is None else tuple(parts)
     for part in asked:
         if part not in there:
@@ -63,30 +59,51 @@ def assemble(
     tree: dict[str, Any] = {
         "schema": SCHEMA, "project": project.variant.project.name, "variant": project.variant.project.variant,
     }  # fmt: skip
+    lost: dict[str, CannotBuild] = {}
+    scales: dict[str, Any] = {}
     if set(asked) & {*LINKAGE, "flywheel"}:
         tree["structure"] = _structure(project)
-    if set(asked) & set(LINKAGE):
-        study, chosen = _study(project, phi, positions)
-        tree["cycle"] = _cycle(project, study)
-        for name in LINKAGE:
-            if name in asked:
-                tree[name] = _SECTIONS[name](project, study, chosen)
-        tree["condition"] = _condition(study, [name for name in LINKAGE if name in asked], chosen)
-    scales: dict[str, Any] = {}
-    plans = set(asked) & {"positions", "velocities", "accelerations"}
+    linkage = [name for name in LINKAGE if name in asked]
+    if linkage:
+        _put_linkage(project, tree, linkage, _study(project, phi, positions, linkage, lost), lost)
+    plans = set(linkage) - {"forces", *lost}
     if plans:
-        scales |= _drawn_scales(project, plans, by_angle=phi is not None or positions is not None)
-    if "flywheel" in asked:
-        tree["flywheel"] = _flywheel(project, scales)
-    if "gear" in asked:
-        tree["gear"] = project.gear.results()
-    if "reducer" in asked:
-        tree["reducer"] = project.reducer.results()
-    if "cam" in asked:
-        tree["cam"] = project.cam.results()
+        with _losing(lost, "scales"):
+            scales |= _drawn_scales(project, plans, by_angle=phi is not None or positions is not None)
+    for name in ("flywheel", "gear", "reducer", "cam"):
+        if name in asked:
+            with _losing(lost, name):
+                tree[name] = _flywheel(project, scales) if name == "flywheel" else getattr(project, name).results()
     if scales:
         tree["scales"] = scales
+    if lost:
+        if refused is None or lost.keys() >= set(asked):
+            raise together(lost, "computed", others=False)
+        refused |= lost
+        tree["not_computed"] = {name: str(reason) for name, reason in lost.items()}
     return _plain(tree)  # type: ignore[no-any-return]
+
+
+@contextmanager
+def _losing(lost: dict[str, CannotBuild], *parts: str) -> Iterator[None]:
+    """Note that parts cannot be computed, and go on with the others."""
+    try:
+        yield
+    except CannotBuild as e:
+        lost |= dict.fromkeys(parts, e)
+
+
+def _put_linkage(project: Project, tree: dict[str, Any], asked: list[str], found: tuple[Study, list[int]] | None,
+                 lost: dict[str, CannotBuild]) -> None:
+    """Kinematics and forces, with the condition of the plans they come from."""
+    if found is None:
+        return
+    study, chosen = found
+    tree["cycle"] = _cycle(project, study)
+    for name in asked:
+        with _losing(lost, name):
+            tree[name] = _SECTIONS[name](project, study, chosen)
+    tree["condition"] = _condition(study, [name for name in asked if name not in lost], chosen)
 
 
 def _drawn_scales(project: Project, plans: set[str], *, by_angle: bool) -> dict[str, Any]:
@@ -128,6 +145,8 @@ def listing(tree: dict[str, Any]) -> str:
     """The tree as plain text for people: a heading for each part, a line for each quantity, six significant digits."""
     lines = []
     for key, value in tree.items():
+        if key == "not_computed":
+            continue  # that is a message, not a result
         if isinstance(value, dict):
             lines += ["", f"[{key}]", *_rows(value, "")]
         else:
@@ -201,8 +220,15 @@ def _structure(project: Project) -> dict[str, Any]:
     }
 
 
-def _study(project: Project, phi: tuple[float, ...] | None, positions: int | None) -> tuple[Study, list[int]]:
-    """Linkage at the angles asked for, and the positions the forces are told for."""
+def _study(project: Project, phi: tuple[float, ...] | None, positions: int | None, asked: list[str],
+           lost: dict[str, CannotBuild]) -> tuple[Study, list[int]] | None:
+    """Linkage at the angles asked for, and the positions the forces are told for; None when it does not assemble."""
+    with _losing(lost, *asked):
+        return _study_of(project, phi, positions)
+    return None
+
+
+def _study_of(project: Project, phi: tuple[float, ...] | None, positions: int | None) -> tuple[Study, list[int]]:
     import numpy as np
 
     cycle = project.cycle
@@ -271,7 +297,7 @@ def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]
         "arms": {name: abs(at(step)) for name, step in f.arms.items()},
         "balancing": {
             "kind": "moment" if study.driver is None else "force",
-            "name": project.variant.balancing.name if project.variant.balancing else "",
+            "name": project.balancing,
             "kinetostatics": by_statics,
             "lever": by_lever,
             "difference_percent": _percent(by_statics, by_lever),

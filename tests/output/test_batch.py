@@ -430,3 +430,19 @@ def test_bar():
     bar = Bar(100_000)
     bar.done = 1
     assert bar.line(1.0).endswith("1/100000, 1/s, 27:46:39 left")
+
+
+def test_a_sheet_that_cannot_be_drawn_is_told_and_the_others_are_there(tmp_path, capsys):
+    name = "transport/compressor@09-В-999"  # a reducer without a solution
+    arguments = ["build", name, CAMS[0], "--format", "svg", "--jobs", "1", "-o", str(tmp_path)]
+    assert run(arguments) == 1
+    told = capsys.readouterr()
+    assert "1 built, 1 in part; 3 files" in told.out
+    lines = told.err.splitlines()
+    assert lines[0] == "not built: 1 of 2, 1 of them in part"
+    assert lines[1].split()[:4] == [name, "sheet", "3", "(gear_reducer)"]
+    assert {p.name for p in tmp_path.glob("transport*/*.svg")} == {"sheet1.svg", "sheet2.svg"}
+    assert run(arguments) == 1
+    told = capsys.readouterr()
+    assert "1 unchanged, 1 in part; 0 files" in told.out
+    assert "sheet 3 (gear_reducer)" in told.err

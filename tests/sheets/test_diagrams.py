@@ -94,11 +94,11 @@ def test_a_curved_path_is_refused():
         drawn(Project(read("sixbar/1:1")), of=["A"])
 
 
-def test_nothing_to_draw_is_refused():
+def test_what_the_last_group_drives_is_drawn_unless_told():
     project = edited("sixbar/1:1", (r"^diagrams = .*\n", ""), (r"^output = .*\n", ""), (r"^working_sense = .*\n", ""),
                      (r'^stroke = "working".*$', 'stroke = "working"\nsense = "+x"'))
-    with pytest.raises(CannotBuild, match="nothing is named"):
-        drawn(project)
+    assert project.diagrams == ("C",)
+    assert drawn(project).scales == drawn(Project(read("sixbar/1:1"))).scales
 
 
 def test_unknown_name_of_a_diagram():

@@ -9,7 +9,6 @@ from tmm_sheets import summary
 from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Arc, Text, flat
-from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
@@ -106,9 +105,14 @@ force_position = "1"
 """
 
 
-def test_a_mechanism_without_forces_says_so():
-    with pytest.raises(CannotBuild, match="there is nothing to draw, all its vectors are zero"):
-        composed(Project(variant.parse(MASSLESS, "a.toml")), 1)
+def test_a_mechanism_without_forces_gets_its_kinematics():
+    """The same arrangement without what needs forces: no view of force plans, no heading over nothing."""
+    sheet = composed(Project(variant.parse(MASSLESS, "a.toml")), 1)
+    views = {part.draw for part in sheet.parts}
+    assert "kinematics.acceleration_plan" in views
+    assert not [name for name in views if name.startswith("kinetics")]
+    assert not sheet.crowded
+    assert not sheet.leaving
 
 
 def test_one_group_alone():

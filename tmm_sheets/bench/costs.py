@@ -100,7 +100,7 @@ def measure(arguments: list[str], runs: int = RUNS, forced: bool = True) -> Cost
 
 def commands(project: str) -> list[tuple[list[str], bool]]:
     """The commands compared, the whole first, and whether each begins in an empty folder."""
-    from tmm_sheets import catalogue, results
+    from tmm_sheets import catalogue
     from tmm_sheets.project import Project
 
     variant = catalogue.read(project)
@@ -108,7 +108,7 @@ def commands(project: str) -> list[tuple[list[str], bool]]:
     found = [(build, True), ([*build, "--format", "dxf"], True), ([*build, "--format", "pdf"], True)]
     found += [([*build, "--sheet", str(n)], True) for n in range(1, len(variant.sheets) + 1)]
     found += [(build, False)]
-    parts = results.parts_of(Project(variant))
+    parts = Project(variant).parts
     found += [(["solve", project, "--part", part], True) for part in NUMBERS if part in parts]
     return [*found, (["check", project], True), (["show", project], True)]
 

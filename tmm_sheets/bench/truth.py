@@ -12,6 +12,7 @@ from typing import Any
 
 from mpmath import mp
 
+from tmm_sheets.construction.plan import pair_index
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
 DIGITS = 100
@@ -182,6 +183,6 @@ def reactions(m: Mechanism, moved: Motion, gravity: float) -> tuple[dict[str, An
         x = mp.lu_solve(a, b)
         found: dict[str, Any] = {}
         for column, ((one, other), _, force, _) in enumerate(unknowns):
-            for name, sign in ((f"F{one}{other}", 1), (f"F{other}{one}", -1)):
+            for name, sign in ((f"F{pair_index(one, other)}", 1), (f"F{pair_index(other, one)}", -1)):
                 found[name] = found.get(name, 0) + sign * x[column] * force
         return found, x[n - 1]

@@ -34,7 +34,7 @@ CHUNKS_EACH = 64
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one project: ``problem`` is empty when it was built; counts of files, bytes of those made now."""
+    """What became of one project: ``problem`` is empty when all of it was built; counts of files, bytes of those made now."""
 
     project: str
     problem: str = ""
@@ -62,7 +62,8 @@ def one(project: str, order: Order, parent: Path) -> Outcome:
             raise
         return Outcome(project, f"internal error: {type(e).__name__}: {e}", warnings=warnings)
     made = len(built.sizes)
-    return Outcome(project, "", made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings)
+    problem = "" if built.refused is None else str(built.refused)
+    return Outcome(project, problem, made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings)
 
 
 def several(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:
@@ -231,16 +232,20 @@ def summary(done: Sequence[Outcome], parent: Path, seconds: float) -> str:
     """One line that tells what a batch came to."""
     built = [o for o in done if not o.problem]
     new = [o for o in built if o.made]
-    count, size = sum(o.made for o in new), sum(o.size for o in new)
+    count, size = sum(o.made for o in done), sum(o.size for o in done)
+    some = sum(1 for o in done if o.problem and o.made + o.unchanged)
     parts = [f"{len(new)} built" if new else "", f"{len(built) - len(new)} unchanged" if len(built) > len(new) else "",
-             f"{len(done) - len(built)} failed" if len(done) > len(built) else ""]
+             f"{some} in part" if some else "", f"{len(done) - len(built) - some} failed" if len(done) > len(built) + some else ""]
     return (f"{parent}: {', '.join(filter(None, parts))}; {count} files, {size / 1e6:.1f} MB of sheets "
             f"in {seconds:.1f} s, {len(done) / seconds:.2g} projects/s")
 
 
 def table(failures: Sequence[Outcome], total: int) -> str:
-    """The failures of a batch of ``total`` projects, one a line with its first reason."""
+    """The failures of a batch of ``total`` projects, a line each with its first reason; for each sheet where others are built."""
     width = max(len(f.project) for f in failures)
-    lines = [f"not built: {len(failures)} of {total}"]
-    lines += [f"  {f.project:{width}}  {f.problem.splitlines()[0]}" for f in sorted(failures, key=lambda f: f.project)]
+    some = sum(1 for f in failures if f.made + f.unchanged)
+    lines = [f"not built: {len(failures)} of {total}" + (f", {some} of them in part" if some else "")]
+    for f in sorted(failures, key=lambda f: f.project):
+        first, *more = f.problem.splitlines()
+        lines += [f"  {f.project:{width}}  {why}" for why in (first, *(line for line in more if line.startswith("sheet ")))]
     return "\n".join(lines)

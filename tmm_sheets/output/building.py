@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.errors import BadInput
+from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.explain import Stopwatch
 from tmm_sheets.output.build_store import Archive, Folder, Outlet, current, fingerprint, keep, program, record_of
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.marks import Drawing
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.sheet import Composed
     from tmm_sheets.task.variant import Variant
 
 BACKENDS = {form: f"tmm_sheets.backends.{form}" for form in ("dxf", "pdf", "svg", "png", "hpgl")}
@@ -48,14 +50,15 @@ class Order:
 class Built:
     """Files of a project in the order asked for, those of them that were made now with their sizes, and what was drawn.
 
-    ``warnings`` tell what of it is not as a sheet should be: views that leave their places, labels without a free place, plans that
-    cannot be drawn.
+    ``refused`` says which sheets cannot be drawn and why; None when all could. ``warnings`` tell what is not as a sheet should
+    be: views that leave their places, labels without a free place, plans that cannot be drawn.
     """
 
     paths: tuple[Path, ...]
     sizes: Mapping[Path, int]
     drawings: Mapping[int, Drawing]
     opened: Project
+    refused: CannotBuild | None = None
     warnings: tuple[str, ...] = ()
 
 
@@ -70,14 +73,14 @@ def _quiet(what: str) -> None:
 
 def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | None = None,
           say: Callable[[str], None] = _quiet) -> Built:
-    """Build what is not current.
+    """Build what is not current; a sheet that cannot be drawn costs no other one.
 
     Raises
     ------
     BadInput
         for a sheet that is not there, a scale factor nobody uses, a place that cannot be written.
     CannotBuild
-        when a sheet cannot be drawn; nothing of the project is written then.
+        when none of the sheets asked for can be drawn; nothing of the project is written then.
     """
     from tmm_sheets.project import Project
 
@@ -97,18 +100,23 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     # Only all sheets together can tell whether each scale factor of the file is of use.
     whole = len(numbers) == len(variant.sheets)
     check = whole and (order.force or record.whole != inputs)
-    drawings, used, warnings = {}, set(), []
-    for n in numbers if check else sorted({n for _, n in due}):
+    asked = numbers if check else sorted({n for _, n in due})
+
+    @contextmanager
+    def watched(n: int) -> Iterator[None]:
         say(f"sheet {n}")
         with watch.phase(f"sheet {n}"):
-            from tmm_sheets.sheets import sheet
+            yield
 
-            composed = sheet.composed(opened, n)
-        drawings[n] = composed.drawing
-        used |= set(composed.scales)
-        warnings += [f"sheet {n}: {told}" for told in (*composed.leaving, *composed.crowded)]
-    if check:
-        _refuse_idle_scales(variant, used)
+    drawn, problem = _drawn(opened, asked, watched, others=len(asked) < len(numbers))
+    whole_passed = check and problem is None
+    if whole_passed:
+        _refuse_idle_scales(variant, {name for composed in drawn.values() for name in composed.scales})
+    if problem is not None:
+        problem = _with_stale(problem, [name for (_, n), name in wanted.items() if n in asked and n not in drawn], outlet)
+    wanted = {(form, n): name for (form, n), name in wanted.items() if n in drawn or n not in asked}
+    due = {key: name for key, name in due.items() if key in wanted}
+    drawings = {n: composed.drawing for n, composed in drawn.items()}
     made: dict[str, bytes] = {}
     for form in dict.fromkeys(form for form, _ in due):
         with watch.phase(f"import of the {form} writer"):
@@ -117,15 +125,36 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
             say(f"sheet {n} as {form}")
             with watch.phase(f"{form} of sheet {n}"):
                 made[wanted[form, n]] = render(drawings[n], **order.settings.get(form, {}))
-    if made or check:
+    if made or whole_passed:
         with watch.phase("write files"):
-            keep(outlet, record, made, made_from, inputs if check else None)
+            keep(outlet, record, made, made_from, inputs if whole_passed else None)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
+    warnings = [f"sheet {n}: {told}" for n, composed in drawn.items() for told in (*composed.leaving, *composed.crowded)]
     if drawings and variant.crank is not None:
         from tmm_sheets.sheets import kinematic_frames
 
-        warnings += kinematic_frames.left_out(opened)
-    return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened, tuple(warnings))
+        warnings += kinematic_frames.left_out(opened, drawings)
+    return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened, problem, tuple(warnings))
+
+
+def _drawn(opened: Project, asked: list[int], around: Callable[[int], AbstractContextManager[None]], *, others: bool) -> tuple[
+        dict[int, Composed], CannotBuild | None]:
+    """The sheets asked for that can be drawn, and what to say of those that cannot; raised when it is all there is to say."""
+    if not asked:
+        return {}, None
+    from tmm_sheets.sheets import sheet
+
+    found = sheet.attempt(opened, asked, around)
+    problem = found.problem(others)
+    if problem is not None and not found.drawn and not others:
+        raise problem
+    return found.drawn, problem
+
+
+def _with_stale(problem: CannotBuild, names: list[str], outlet: Outlet) -> CannotBuild:
+    """Also say which files of sheets that cannot be drawn now are left from an earlier build."""
+    left = [name for name in names if outlet.read(name) is not None]
+    return CannotBuild(str(problem), f"{', '.join(left)}: left as they were made before, from other inputs") if left else problem
 
 
 def _refuse_idle_scales(variant: Variant, used: set[str]) -> None:
@@ -138,7 +167,7 @@ def _refuse_idle_scales(variant: Variant, used: set[str]) -> None:
 
 def chosen(variant: Variant, sheets: tuple[int, ...]) -> list[int]:
     """Numbers of the sheets asked for, all of them for none; BadInput for one that is not there."""
-    count = len(variant.sheets)
+    count = len(variant.drawable())
     for n in sheets:
         if not 1 <= n <= count:
             raise BadInput(f"no sheet {n}: {variant.project.name} has sheets 1 to {count}",

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tmm_sheets.box import Box
-from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.resources import template
 
 
@@ -19,6 +20,20 @@ class View:
     box: Box
     options: dict[str, Any]
 
+    @property
+    def needs(self) -> str:
+        """The part of a project's results it shows; empty for what every project has."""
+        return NEEDS.get(self.draw, NEEDS.get(self.draw.partition(".")[0], ""))
+
+
+NEEDS = {
+    "kinematics": "positions", "diagrams": "positions", "given_position": "positions", "load_diagram": "positions",
+    "synthesis": "positions", "kinetics": "forces", "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
+    "flywheel": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear", "reducer": "reducer",
+    "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
+}
+"""Parts of the results that views need, by module or by view."""
+
 
 @dataclass(frozen=True)
 class Arrangement:
@@ -28,12 +43,40 @@ class Arrangement:
     title: str
     code: str
     views: tuple[View, ...]
+    without: dict[str, str] = field(default_factory=dict)
+
+    def fitted(self, parts: Collection[str]) -> Arrangement:
+        """What is left of it, or stands instead of it, for a project that has only these parts of the results.
+
+        Raises
+        ------
+        CannotBuild
+            when nothing is left.
+        """
+        missing = list(dict.fromkeys(v.needs for v in self.views if v.needs and v.needs not in parts))
+        for part in missing:
+            if part in self.without:
+                return arrangement(self.without[part]).fitted(parts)
+        views = tuple(v for v in self.views if v.needs not in missing)
+        if not any(v.needs for v in views):
+            lacks, hints = zip(*(MISSING[part] for part in missing), strict=True)
+            raise CannotBuild(f"the project has no {' and no '.join(lacks)}", f"{'; '.join(hints)}, or leave the sheet out")
+        return replace(self, views=views)
+
+
+MISSING = {
+    "positions": ("mechanism", "add [crank], [points] and [[group]] to the project file"),
+    "forces": ("forces and no masses", "add [[link]] with masses or a [[force]] to the project file"),
+    **{part: (f"[{part}]", f"add the table [{part}] to the project file") for part in ("flywheel", "gear", "reducer", "cam")},
+}
+"""What to say of a missing part and what to try."""
 
 
 def arrangement(name: str) -> Arrangement:
     """Read an arrangement; :class:`BadInput` names the file and what is wrong with it.
 
-    ``like`` names another arrangement whose views it has, under a code or a title of its own.
+    ``like`` names another arrangement whose views it has, under a code or a title of its own; ``without`` by part of the results
+    that a project may lack the arrangement to take instead.
     """
     path = template(f"sheets/{name}.toml")
     try:
@@ -48,6 +91,6 @@ def arrangement(name: str) -> Arrangement:
         return Arrangement(name, data.get("title", other.title), data.get("code", other.code), other.views)
     try:
         views = tuple(View(v.pop("draw"), Box(*map(float, v.pop("box"))), v) for v in data.get("view", []))
-        return Arrangement(name, data["title"], data.get("code", ""), views)
+        return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})))
     except (KeyError, TypeError, ValueError) as e:
         raise BadInput(Problem(f"expected title and [[view]] tables with draw and box, found {e!r}", str(path))) from None

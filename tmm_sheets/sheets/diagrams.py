@@ -50,11 +50,8 @@ class Quantity:
 
 
 def _columns(project: Project, options: graphs.Options) -> list[tuple[Quantity, ...]]:
-    """What is drawn, points and links apart. Which: option ``of``, else ``cycle.diagrams``, else the output."""
-    cycle = project.variant.cycle
-    named = options.get("of") or (cycle.diagrams or ((cycle.output,) if cycle.output else ()) if cycle is not None else ())
-    if not named:
-        raise CannotBuild("nothing is named for the kinematic diagrams", 'add for example diagrams = ["C"] to [cycle]')
+    """What is drawn, points and links apart. Which: option ``of``, else those of the project; none for a bare crank."""
+    named = options.get("of") or project.diagrams
     links = [name for name in named if name in project.mechanism.links]
     points = [name for name in named if name not in links]
     return [_of_points(project, points)] * bool(points) + [_of_links(project, links)] * bool(links)
@@ -67,6 +64,8 @@ def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) 
     the sense in which the motion begins there.
     """
     columns = _columns(project, options)
+    if not columns:
+        return
     width = box.width / len(columns)
     room = Box(0, 0, width, box.height)
     angle = _angle(project, room)
@@ -82,6 +81,8 @@ def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) 
 def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """The values of the kinematic diagrams at the positions, one row each."""
     every = [(c.symbol, q.unit, c.at) for column in _columns(project, options) for q in column for c in q.curves]
+    if not every:
+        return
     # The same quantities of one output stand together.
     every.sort(key=lambda row: row[0][1:])
     left = canvas.title(box, "Кинематика выходного звена" if len(every) == 3 else "Кинематика выходных звеньев")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import inf
 from types import SimpleNamespace
@@ -162,10 +162,10 @@ def _ratio(real: float, room: float) -> float:
     return real / room if room > 0 else inf
 
 
-def left_out(project: Project) -> Iterator[str]:
-    """What the sheets leave out of the velocity plans, and why, for the command line."""
-    for box, options in _velocity_views(project):
-        layout = velocities(project, SimpleNamespace(scales={}), box, options)
+def left_out(project: Project, sheets: Iterable[int]) -> Iterator[str]:
+    """What some sheets leave out of the velocity plans, and why, for the command line."""
+    for box, options in _velocity_views(project, sheets):
+        layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), box, options)
         for i, times in layout.beyond:
             yield (f"position {project.cycle.labels[i]} is next to a dead point: its velocity plan is not drawn, "
                    f"it is {times:.3g} times as large as usual")
@@ -173,11 +173,13 @@ def left_out(project: Project) -> Iterator[str]:
             yield f"there is no room for {len(project.cycle.drawn)} velocity plans: one in {layout.every} is drawn"
 
 
-def _velocity_views(project: Project) -> Iterator[tuple[Box, dict[str, Any]]]:
+def _velocity_views(project: Project, sheets: Iterable[int]) -> Iterator[tuple[Box, dict[str, Any]]]:
     from tmm_sheets.sheets.arrangement import arrangement
 
-    for name in project.sheets:
-        yield from ((view.box, view.options) for view in arrangement(name).views if view.draw == "kinematics.velocity_plans")
+    for n in sheets:
+        for view in arrangement(project.sheets[n - 1]).fitted(project.parts).views:
+            if view.draw == "kinematics.velocity_plans":
+                yield view.box, view.options
 
 
 def accelerations(project: Project, canvas: Scales, box: Box) -> Frame:
@@ -199,7 +201,7 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
     found: dict[str, tuple[Scale, int]] = {}
     for n, name in enumerate(project.sheets, 1):
         kept = SimpleNamespace(scales={}, chosen=set())
-        for view in arrangement(name).views:
+        for view in arrangement(name).fitted(project.parts).views:
             if view.draw == "kinematics.position_plans" and "positions" in parts:
                 positions(project, kept, view.box, view.options)
             elif view.draw == "kinematics.velocity_plans" and "velocities" in parts:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.plan import on_link
 from tmm_sheets.construction.scale import times
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
@@ -423,7 +424,7 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     for g in pos.mechanism.groups:
         if g.kind == 3:
             (p, q), j = g.outer, g.links[1]
-            lengths.append((f"|p{plan_letter(p.lower() + j)}|", np.abs(vel.coincident[p + j].value) / mu_v.mu))
+            lengths.append((f"|p{plan_letter(on_link(p.lower(), j))}|", np.abs(vel.coincident[on_link(p, j)].value) / mu_v.mu))
             lengths.append((f"{q}{p}", np.abs(pos.points[p].value - pos.points[q].value) / mu_l.mu))
             carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
             lengths += [(f"|{q.lower()}{plan_letter(x.lower())}|", np.abs(vel.points[x].value) / mu_v.mu) for x in carried]
@@ -475,6 +476,8 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     for line in (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure):
         canvas.text(complex(box.x0 + 2.0, y), line, 3.5)
         y -= 7.0
+    if not m.groups:
+        return
     rows = [["Группа", "Класс", "Порядок", "Вид", "Пары"]]
     for g, found in zip(reversed(m.groups), m.decompose(), strict=True):
         outer_i, outer_j = found.outer

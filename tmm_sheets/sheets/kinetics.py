@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.plan import pair_index, symbol
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
@@ -127,7 +127,7 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
     """External and inertia forces of a group's links and the reactions of the links outside it."""
     forces, pos = project.study.forces, project.study.positions
     m = project.mechanism
-    internal = {f"F{a}{b}" for a in g.links for b in g.links}
+    internal = {f"F{pair_index(a, b)}" for a in g.links for b in g.links}
     shown: list[Shown] = []
     couples: list[Couple] = []
     members = [complex(step.at(k)) for step in pos.points.values()]
@@ -142,7 +142,7 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
 
     def hinge(link: str, point: str, parts: tuple[Step, Step] | None = None) -> None:
         """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
-        name = f"{link}{m.owner(point)}"
+        name = pair_index(link, m.owner(point))
         at = complex(pos.points[point].at(k))
         total = complex(forces.reactions[f"F{name}"].at(k))
         if parts is None:
@@ -154,7 +154,7 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
 
     def guided(link: str, guide: str, about: str) -> None:
         """Reaction of a guide, at the point of the guide line where it balances the moments about ``about``."""
-        name = f"{link}{m.guides[guide].link}"
+        name = pair_index(link, m.guides[guide].link)
         f = complex(forces.reactions[f"F{name}"].at(k))
         u = complex(pos.guide_directions[guide].at(k))
         foot, origin = (complex(pos.points[p].at(k)) for p in (str(g.inner), about))
@@ -241,12 +241,13 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
     """What the moment equations of a group gave: tangential parts of its reactions, arms of its outer guides' reactions."""
     forces, m = project.study.forces, project.mechanism
     said = []
+    own = {f"F{pair_index(link, other)}τ" for link in g.links for other in (m.frame, *m.links)}
     for step in forces.plan:
-        if step.rule.name == "component from moments" and step.name[1:2] in g.links:
+        if step.rule.name == "component from moments" and step.name in own:
             sign = f"F_{{{step.name[1:-1]}}}^τ"
             said.append(f"ΣM_{step.args[1].name} = 0: {sign} = {newtons(clean(abs(complex(step.at(k))), forces.force_size(k)))} Н")
     about = g.outer[0] if g.kind == 5 else g.inner
-    for pair in (f"{link}{m.guides[guide].link}" for guide in g.guides for link in g.links):
+    for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")
         length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
         if 0.05 < length < max(box.width, box.height):
@@ -318,7 +319,7 @@ def _feet(about: complex, shown: Iterable[Shown]) -> list[complex]:
 def draw_arms(canvas: Canvas, frame: Frame, about: complex, shown: Iterable[Shown], prefix: str = "h",
               points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
-    shown = list(shown)
+    shown = [s for s in shown if abs(s.vector) > 0]
     seen: list[complex] = []
     centre = frame(about)
     busy = [centre, *points, *(frame(s.at) for s in shown), *(frame(_foot(s, about)) for s in shown)]
@@ -355,13 +356,12 @@ def _polygon(fp: ForcePlan, k: int) -> tuple[dict[str, complex], Box]:
 def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
     """Force polygon with numbered vertices, its equation and the values found."""
     points, real = _polygon(fp, k)
+    canvas.of = fp.plan.name
     inside = box.inset(*AROUND)
     size = project.study.forces.force_size(k)
     sides = [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), size)]
-    canvas.of = fp.plan.name
-    if not sides and size > 0:
-        place = canvas.title(box, fp.plan.title, height=5.0)
-        canvas.text(place.centre, "Все силы равны нулю", 3.5, "centre")
+    if not sides:
+        _fitted(canvas, canvas.title(box, fp.plan.title).centre, "В этом положении сил нет", 3.5, box.width - 4.0)
         return
     need = max(real.width / inside.width, real.height / inside.height)
     scale = pick(project, canvas, fp.plan.name, "μ_F", "Н/мм", need)
@@ -405,7 +405,7 @@ def newtons(force: float) -> str:
 
 def balancing_sign(project: Project) -> str:
     """Sign of the balancing force or moment in lettering markup, from its name in the project file."""
-    name = project.variant.balancing.name if project.variant.balancing else "Mур"
+    name = project.balancing
     return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
 
 
@@ -436,9 +436,10 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
     right = Box(left.x1 + 4.0, box.y0, box.x1, box.y1)
     shown = [Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))) for load in forces.loads[c.link]]
-    frame_force = complex(forces.reactions[f"F{c.link}{m.frame}"].at(k))
+    from_frame = pair_index(c.link, m.frame)
+    frame_force = complex(forces.reactions[f"F{from_frame}"].at(k))
     pivot = complex(pos.points[c.pivot].at(k))
-    shown.append(Shown(f"F̅_{{{c.link}{m.frame}}}", pivot, frame_force))
+    shown.append(Shown(f"F̅_{{{from_frame}}}", pivot, frame_force))
     shown = acting(shown, forces.force_size(k))
     pins = linkage.crank_pins(pos)
     at = [pivot, *(complex(pos.points[name].at(k)) for name in pins), *(s.at for s in shown)]

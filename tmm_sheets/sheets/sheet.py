@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ from tmm_sheets.drawing.canvas import Canvas, Group, Part
 from tmm_sheets.drawing.labels import Crowded, place
 from tmm_sheets.drawing.marks import Drawing
 from tmm_sheets.drawing.title_block import draw_frame
-from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import places
 from tmm_sheets.sheets.arrangement import arrangement as arrange
@@ -46,6 +47,11 @@ class Composed:
     leaving: tuple[places.Leaving, ...] = ()
 
 
+@contextmanager
+def _plainly(n: int) -> Iterator[None]:
+    yield
+
+
 def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
     """The function a view names: module.function of tmm_sheets.sheets."""
     module, _, function = draw.partition(".")
@@ -60,6 +66,44 @@ def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
     return found
 
 
+@dataclass
+class Attempt:
+    """Sheets by number that could be drawn, and by number and arrangement why others could not."""
+
+    drawn: dict[int, Composed] = field(default_factory=dict)
+    refused: dict[str, CannotBuild] = field(default_factory=dict)
+
+    def problem(self, others: bool = False) -> CannotBuild | None:
+        """What to say of the sheets that cannot be drawn; None when all can. ``others``: there are more sheets, and sound."""
+        return together(self.refused, "drawn", others or bool(self.drawn)) if self.refused else None
+
+
+def attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[None]] = _plainly) -> Attempt:
+    """Draw sheets, each for itself and within ``around`` its number: one that cannot be drawn costs no other."""
+    found = Attempt()
+    for n in numbers:
+        try:
+            with around(n):
+                found.drawn[n] = composed(project, n)
+        except CannotBuild as e:
+            found.refused[f"sheet {n} ({project.sheets[n - 1]})"] = e
+    return found
+
+
+def every(project: Project, say: Callable[[str], None] = lambda _: None, numbers: Iterable[int] = ()) -> Attempt:
+    """Draw sheets of a project, all unless told; CannotBuild when none of them can be drawn."""
+    @contextmanager
+    def told(n: int) -> Iterator[None]:
+        say(f"sheet {n}")
+        yield
+
+    found = attempt(project, numbers or range(1, len(project.variant.drawable()) + 1), told)
+    problem = found.problem()
+    if problem is not None and not found.drawn:
+        raise problem
+    return found
+
+
 def compose(project: Project, n: int) -> Drawing:
     """Draw sheet ``n`` (from 1) of a project."""
     return composed(project, n).drawing
@@ -68,7 +112,7 @@ def compose(project: Project, n: int) -> Drawing:
 def composed(project: Project, n: int) -> Composed:
     """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
     sheets = project.variant.sheets
-    plan = arrange(sheets[n - 1])
+    plan = arrange(sheets[n - 1]).fitted(project.parts)
     canvas = Canvas()
     block = project.variant.title_block
     canvas.of = "title block"

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.plan import on_link, pair_index
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
@@ -185,10 +186,10 @@ def rigidity(s: State) -> Iterator[Residual]:
             guide = s.m.guides[name]
             at, (through, u) = s.z[str(g.inner)], s.guide(name)
             carried: Any = 0j if guide.link == s.m.frame else s.velocities.coincident.get(
-                str(g.inner) + guide.link, s.velocities.points[str(guide.through)])
+                on_link(str(g.inner), guide.link), s.velocities.points[str(guide.through)])
             if guide.link != s.m.frame:
                 start = str(guide.through)
-                base = s.velocities.coincident.get(start + guide.link, s.velocities.points[start])
+                base = s.velocities.coincident.get(on_link(start, guide.link), s.velocities.points[start])
                 carried = s.spread(base) + 1j * s.omega[guide.link] * (at - through)
             yield "velocity closure", np.abs(cross(u, s.v[str(g.inner)] - carried)) / fastest
 
@@ -297,18 +298,18 @@ def statics(s: State, gravity: float) -> Iterator[Residual]:
     couples |= {name: s.spread(c) for name, c in forces.couples.items()}
     # Far from the origin the pin's own coordinates are that much worse than the crank.
     total = strongest * s.reach + s.largest(couples) * s.reach / m.crank.length
+
+    def from_outside(links: tuple[str, ...]) -> Any:
+        """Sum of the reactions on some links from all others."""
+        names = (f"F{pair_index(a, b)}" for a in links for b in (m.frame, *m.links) if b not in links)
+        return sum((reactions[name] for name in names if name in reactions), np.zeros(s.phi.shape, dtype=complex))
+
     with np.errstate(divide="ignore", invalid="ignore"):
         for link in m.links:
-            pull: Any = sum((s.spread(load.vector) for load in loads[link]), np.zeros(s.phi.shape, dtype=complex))
-            for name, f in reactions.items():
-                if name[1] == link:
-                    pull = pull + f
+            pull: Any = sum((s.spread(load.vector) for load in loads[link]), from_outside((link,)))
             yield "equilibrium of every link", np.where(strongest > 0, np.abs(pull) / strongest, 0.0)
         for plan in forces.plans.values():
-            pull = np.zeros(s.phi.shape, dtype=complex)
-            for name, f in reactions.items():
-                if name[1] in plan.links and name[2] not in plan.links:
-                    pull = pull + f
+            pull = from_outside(plan.links)
             for link in plan.links:
                 pull = sum((s.spread(load.vector) for load in loads[link]), pull)
             yield "polygon closure", np.where(strongest > 0, np.abs(pull) / strongest, 0.0)
@@ -335,10 +336,10 @@ def _moments(s: State, loads: Any, link_couples: Any, forces: Any, reactions: di
         at = s.z[pair.name.rstrip("′″")]
         for me, other in (pair.links, pair.links[::-1]):
             if me in turn:
-                turn[me] += cross(at - pivot, reactions[f"F{me}{other}"])
+                turn[me] += cross(at - pivot, reactions[f"F{pair_index(me, other)}"])
                 if pair.motion == "translation":
-                    mine = forces.couples.get(f"F{me}{other}")
-                    turn[me] += s.spread(mine) if mine is not None else -s.spread(forces.couples[f"F{other}{me}"])
+                    mine = forces.couples.get(f"F{pair_index(me, other)}")
+                    turn[me] += s.spread(mine) if mine is not None else -s.spread(forces.couples[f"F{pair_index(other, me)}"])
     return turn
 
 

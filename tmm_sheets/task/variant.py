@@ -202,7 +202,9 @@ class Heading(Table):
     title: str = Field(description="title as it stands on the sheets")
     variant: str = ""
     """the variant of the task, as it stands in `show` and in the results"""
-    sheets: tuple[SheetName, ...] = Field(min_length=1, description='the sheets in order, for example ["gear", "cam"]')
+    sheets: tuple[SheetName, ...] | None = Field(
+        default=None, min_length=1, description='the sheets in order, for example ["gear", "cam"]'
+    )
 
 
 class TitleBlock(Table):
@@ -818,8 +820,42 @@ class Variant(Table):
 
     @property
     def sheets(self) -> tuple[str, ...]:
-        """Arrangements of the sheets to draw: one named like a section is left out when the file has no such section."""
+        """Arrangements of the sheets to draw: one named like a section is left out when the file has no such section.
+
+        Where the file names none, those that its tables call for.
+        """
+        if self.project.sheets is None:
+            return self._called_for
         return tuple(name for name in self.project.sheets if name not in _SECTIONS or getattr(self, name) is not None)
+
+    def drawable(self) -> tuple[str, ...]:
+        """The same; CannotBuild when there are none."""
+        if not self.sheets:
+            raise CannotBuild(str(self.problem("the file has nothing of what these sheets show", "project", "sheets",
+                                               hint="leave sheets out: then the file's tables tell which there are")))
+        return self.sheets
+
+    @property
+    def _called_for(self) -> tuple[str, ...]:
+        gears = "_".join(name for name in ("gear", "reducer") if getattr(self, name) is not None)
+        called = {
+            "kinematics_forces_wide" if self.loaded else "kinematics": self.crank is not None,
+            self._flywheel_sheet: self.flywheel is not None,
+            gears: bool(gears),
+            "cam": self.cam is not None,
+        }
+        return tuple(name for name, needed in called.items() if needed)
+
+    @property
+    def _flywheel_sheet(self) -> str:
+        if self.flywheel is not None and self.flywheel.method == "mertsalov":
+            return "sixbar_2" if self.balancing is None or self.balancing.kind == "moment" else "press_1"
+        return "engine_2" if self.cycle is not None and self.cycle.turns == 2 else "flywheel"
+
+    @property
+    def loaded(self) -> bool:
+        """True when something loads the links: masses, moments of inertia, technological forces or moments."""
+        return bool(self.force or self.moment or any(link.mass or link.inertia for link in self.link))
 
     @property
     def data(self) -> dict[str, Any]:
@@ -873,8 +909,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
     except RecursionError:
         raise BadInput(Problem("lists or tables are nested too deeply", file)) from None
     lines = scan(text)
-    data = freed(data)
-    data, found = _with_synthesis(data, file)
+    data, found = _with_synthesis(_with_cycle(freed(data)), file)
     problems = [_problem(file, lines, *one) for one in found]
     variant = None
     try:
@@ -882,6 +917,9 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
     except ValidationError as e:
         problems += [_problem(file, lines, *_said(error)) for error in e.errors()]
     problems += [_problem(file, lines, *found) for check in (check_names, check_cam, check_letters) for found in check(data)]
+    if variant is not None and variant.project.sheets is None and not variant.sheets:
+        problems.append(_problem(file, lines, ("project",), "there is nothing to draw",
+                                 "add [crank] and [[group]] for a mechanism, [gear], [reducer] or [cam]"))
     if problems or variant is None:
         raise BadInput(sorted(set(problems), key=lambda p: (p.line or 0, p.field)))
     variant._file = file
@@ -890,6 +928,13 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
     variant._text = text
     variant._warnings = warnings
     return variant
+
+
+def _with_cycle(data: dict[str, Any]) -> dict[str, Any]:
+    """A mechanism whose file numbers no positions has twelve, from the x axis on; the axis itself is often a dead position."""
+    if "crank" not in data or "cycle" in data:
+        return data
+    return data | {"cycle": {"start": "0 deg", "positions": 12, "force_position": "1"}}
 
 
 def _with_synthesis(data: dict[str, Any], file: str) -> tuple[dict[str, Any], list[tuple[KeyPath, str, str]]]:

@@ -28,6 +28,11 @@ class Solution:
     unknowns: int = 0
 
 
+def reaction(j: str, k: str) -> str:
+    """F54; F11,0 where the digits would run together."""
+    return f"F{j}{k}" if len(j + k) == 2 else f"F{j},{k}"
+
+
 def slides(m: Mechanism, s: truth.State) -> dict:
     """Direction of each sliding pair, by its two links."""
     found = {}
@@ -97,7 +102,7 @@ def solve(m: Mechanism, phi: float, gravity: float, applied=(), couples=(), driv
     found = Solution(balancing=float(x[-1]), unknowns=n)
     for column, (pair, _, force, couple) in enumerate(columns):
         i, j = pair.links
-        for name, sign in ((f"F{i}{j}", 1), (f"F{j}{i}", -1)):
+        for name, sign in ((reaction(i, j), 1), (reaction(j, i), -1)):
             found.reactions[name] = found.reactions.get(name, 0) + sign * x[column] * force
             if couple:
                 found.couples[name] = sign * float(x[column])

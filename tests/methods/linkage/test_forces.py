@@ -1,6 +1,7 @@
 """Kinetostatics against one linear system of all reactions; closed polygons; power balance; arms by moments."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from tmm_sheets.mechanism.model import Link
 from tmm_sheets.methods.linkage.cycle import even_cycle
 from tmm_sheets.methods.linkage.study import Study
 from tmm_sheets.project import Project
+from tmm_sheets.task import variant
 
 F1 = np.exp(-1j * np.radians(20))
 """Unit vector of the tooth force: the pinion above A drives the wheel clockwise and presses it down."""
@@ -225,5 +227,56 @@ def test_links_with_longer_names(shaper):
     )
     study = Study(renamed, shaper.cycle, shaper.cycle.turned, shaper.cycle.labels, 9.81, tuple, shaper.driver)
     plain = Study(m, shaper.cycle, shaper.cycle.turned, shaper.cycle.labels, 9.81, tuple, shaper.driver)
-    np.testing.assert_array_equal(study.forces.reactions["F330"].value, plain.forces.reactions["F30"].value)
+    np.testing.assert_array_equal(study.forces.reactions["F33,0"].value, plain.forces.reactions["F30"].value)
     np.testing.assert_array_equal(study.forces.balancing.value, plain.forces.balancing.value)
+
+
+RADIAL = Path(__file__).with_name("radial.toml")
+"""Eleven links: the crank's pair with link 10 and the frame's with link 11 must not both be called F110."""
+
+
+@pytest.fixture(scope="module")
+def radial():
+    return Project(variant.read(RADIAL))
+
+
+def radial_truth(project, k):
+    loads = [(f.link, f.point, complex(f.vector(project.study.turned[k]))) for f in project.applied]
+    return statics.solve(project.mechanism, float(project.study.positions.phi[k]), 9.81, loads)
+
+
+def test_two_digit_links_lose_no_reaction(radial):
+    m, study = radial.mechanism, radial.study
+    for k in range(len(study.labels)):
+        true = radial_truth(radial, k)
+        assert len(true.reactions) == 2 * len(m.pairs) == 32
+        assert study.forces.reactions.keys() == true.reactions.keys() - {"F01"} >= {"F1,10", "F11,0", "F0,11", "F10", "F54"}
+        largest = max(map(abs, true.reactions.values()))
+        for name, step in study.forces.reactions.items():
+            assert abs(value(step, k) - true.reactions[name]) < 1e-10 * largest, name
+        for name, step in study.forces.couples.items():
+            assert abs(value(step, k) - true.couples[name]) < 1e-10 * largest * m.crank.length, name
+        assert abs(value(study.forces.balancing, k) - true.balancing) < 1e-10 * largest * m.crank.length
+        assert abs(value(study.lever.balancing, k) - true.balancing) < 1e-10 * largest * m.crank.length
+    assert {"h30", "h50", "h70", "h90", "h11,0"} == study.forces.arms.keys()
+
+
+def test_two_digit_links_in_everything_a_user_reads(radial):
+    """The numbers of both pairs stand in the results, the protocol, the table to fill in and on the sheet, each under its name."""
+    from tmm_sheets import protocols, results
+    from tmm_sheets.compare.measured.measurable import measurables
+    from tmm_sheets.sheets import sheet
+
+    true = radial_truth(radial, radial.force_index)
+    reactions = results.assemble(radial, ("forces",))["forces"]["reactions"]
+    told = "\n".join(protocols.lines(radial, None))
+    entries = measurables(radial, lambda what: None).entries
+    drawn = " ".join(group.text for group in sheet.composed(radial, 1).groups)
+    for name in ("F10,1", "F11,0"):
+        assert complex(*reactions[name][0]) == pytest.approx(true.reactions[name], rel=1e-9)
+        assert f"{name} = |" in told
+        assert entries[f"results/4/{name}"].value == pytest.approx(abs(true.reactions[name]), rel=1e-9)
+        assert f"F_{{{name[1:]}}} = {str(round(abs(true.reactions[name]), 1)).replace('.', ',')} Н" in drawn
+    assert complex(*reactions["F1,10"][0]) == pytest.approx(-true.reactions["F10,1"], rel=1e-9)
+    assert "F1,10 = −F10,1." in told
+    assert "arms/4/h_F1,10(O)" in entries

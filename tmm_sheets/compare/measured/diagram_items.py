@@ -21,9 +21,8 @@ TITLES = {
 
 def collect(project: Project, found: Measurables) -> None:
     """Ordinates of the graphs that the sheets show; their signs depend on the sense one begins with, so magnitudes are compared."""
-    study, cycle = project.study, project.variant.cycle
-    named = (cycle.diagrams or ((cycle.output,) if cycle.output else ())) if cycle is not None else ()
-    for name in named:
+    study = project.study
+    for name in project.diagrams:
         if name in project.mechanism.links:
             _graph(found, "graph-omega", f"ω_{name}", study.velocities.omega[name], study.labels)
             _graph(found, "graph-epsilon", f"ε_{name}", study.accelerations.epsilon[name], study.labels)

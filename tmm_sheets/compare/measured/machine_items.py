@@ -32,19 +32,7 @@ GEAR_ANGLES = ("alpha_w", "tau1", "tau2", "phi_alpha1", "phi_alpha2")
 GEAR_NUMBERS = ("z1", "z2", "x1", "x2", "y", "dy", "eps_alpha", "theta1_greatest", "theta2_greatest")
 
 
-def collect(project: Project, found: Measurables) -> None:
-    """Lengths and angles of gear, reducer and cam, each where the project has it and a sheet shows it, and of dead positions."""
-    v = project.variant
-    if v.gear is not None:
-        _gear(project, found)
-    if v.reducer is not None:
-        _reducer(project, found)
-    if v.cam is not None:
-        _cam(project, found)
-    _others(project, found)
-
-
-def _others(project: Project, found: Measurables) -> None:
+def others(project: Project, found: Measurables) -> None:
     """Dead positions and synthesis: points from those they were drawn from; the chord of a tooth."""
     from tmm_sheets.explain import parts
 
@@ -71,7 +59,8 @@ def _lengths(plan: Plan, found: Measurables, key: str) -> None:
                 found.add(measured_step(plan, found.scales, k, step, key=key))
 
 
-def _gear(project: Project, found: Measurables) -> None:
+def gear(project: Project, found: Measurables) -> None:
+    """Lengths, angles and results of the gear pair, as far as the sheets show it."""
     pair = project.gear
     if "gear-engagement" in found.scales:
         plan = pair.engagement
@@ -105,7 +94,8 @@ def _sliding(plan: Plan, found: Measurables) -> None:
                 calculated=0.0 if ordinate else CALCULATED, head=step, signed=not ordinate))
 
 
-def _reducer(project: Project, found: Measurables) -> None:
+def reducer(project: Project, found: Measurables) -> None:
+    """Results of the reducer."""
     results: Mapping[str, Any] = project.reducer.results()
     for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", "об/мин")):
         for name, value in results.get(group, {}).items():
@@ -115,7 +105,8 @@ def _reducer(project: Project, found: Measurables) -> None:
             scalar(found, "Редуктор", f"reducer-{name}", results[name], "")
 
 
-def _cam(project: Project, found: Measurables) -> None:
+def cam(project: Project, found: Measurables) -> None:
+    """Lengths, angles and results of the cam."""
     cam = project.cam
     m = cam.motion
     if m.plan.name in found.scales:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from math import degrees, hypot, isfinite
 from typing import TYPE_CHECKING, Any, Literal
@@ -16,9 +17,11 @@ import numpy as np
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.plan import pair_index
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.forces import MOMENTS, TANGENTIAL
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 
@@ -130,12 +133,14 @@ class Measurables:
     """All of a project: entries by id, scale factors by key, and the plans with the key of the factor each is drawn with.
 
     ``on_paper`` are the keys of plans whose unit is the millimetre: there a scale factor only tells what the ordinates mean.
+    ``notes`` say what is left out because it cannot be drawn.
     """
 
     entries: dict[str, Measurable] = field(default_factory=dict)
     scales: dict[str, Scale] = field(default_factory=dict)
     plans: list[tuple[Plan, str]] = field(default_factory=list)
     on_paper: set[str] = field(default_factory=set)
+    notes: list[str] = field(default_factory=list)
     checks: dict[str, Check] = field(default_factory=dict)
 
     def check(self, result: str, needs: Iterable[str], compute: Callable[..., float], scale: str = "") -> None:
@@ -165,24 +170,26 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
 
     found = Measurables()
     shown: set[str] = set()
-    for n in range(1, len(project.sheets) + 1):
-        say(f"sheet {n}")
-        composed = sheet.composed(project, n)
+    attempt = sheet.every(project, say)
+    problem = attempt.problem()
+    if problem is not None:
+        found.notes.append(str(problem))
+    for composed in attempt.drawn.values():
         for key, scale in composed.scales.items():
             found.scales.setdefault(key, scale)
         shown |= {str(mark.of) for mark in composed.drawing.marks}
-    if project.variant.crank is not None and project.variant.cycle is not None:
+    from tmm_sheets.compare.measured import diagram_items, flywheel_items, machine_items
+
+    there = project.parts
+    if "positions" in there:
         _linkage(project, found, shown)
-        from tmm_sheets.compare.measured import diagram_items
-
         diagram_items.collect(project, found)
-    if project.variant.flywheel is not None:
-        from tmm_sheets.compare.measured import flywheel_items
-
-        flywheel_items.collect(project, found)
-    from tmm_sheets.compare.measured import machine_items
-
-    machine_items.collect(project, found)
+    for part, collect in (("flywheel", flywheel_items.collect), ("gear", machine_items.gear), ("reducer", machine_items.reducer),
+                          ("cam", machine_items.cam)):
+        if part in there:
+            with suppress(CannotBuild):  # its sheet has said why
+                collect(project, found)
+    machine_items.others(project, found)
     titles = list(dict.fromkeys(e.title for e in found.entries.values()))
     found.entries = dict(sorted(found.entries.items(), key=lambda pair: titles.index(pair[1].title)))
     return found
@@ -203,7 +210,7 @@ def _linkage(project: Project, found: Measurables, shown: set[str]) -> None:
         for k in indices:
             for entry in _position(plan, found.scales, k) if plan.pole is None else _segments(plan, found.scales, k):
                 found.add(entry)
-    if project.variant.balancing is not None and "force-1" in "".join(found.scales):
+    if "forces" in project.parts and any(fp.plan.name in found.scales for fp in study.forces.plans.values()):
         _forces(project, found)
     _motion_results(project, found, of_velocities)
 
@@ -395,6 +402,8 @@ def _forces(project: Project, found: Measurables) -> None:
     study, k = project.study, project.force_index
     f, lever, label = study.forces, study.lever, study.labels[project.force_index]
     given: set[str] = set()
+    links = (project.mechanism.frame, *project.mechanism.links)
+    opposite = {f"F{pair_index(a, b)}": f"F{pair_index(b, a)}" for a in links for b in links}
     for step in study.loads[2]:
         title = "Силы тяжести и инерции"
         if step.rule.gives in ("force", "number") and not any(step.name == a.name for a in study.applied):
@@ -414,7 +423,7 @@ def _forces(project: Project, found: Measurables) -> None:
             name = re.sub(r"[\u0305{}^]", "", side.symbol).replace("F_", "F")
             found.check(f"{RESULTS}/{label}/{name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float, plan.name)
         for step in plan:
-            if step.rule.gives == "force" and step.name not in given and f"F{step.name[2:3]}{step.name[1:2]}" not in given:
+            if step.rule.gives == "force" and step.name not in given and opposite.get(step.name) not in given:
                 given.add(step.name)
                 found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
     for name, step in f.arms.items():
@@ -424,7 +433,7 @@ def _forces(project: Project, found: Measurables) -> None:
     by = "по плану сил"
     for way, balancing in ((by, f.balancing), ("по рычагу", lever.balancing)):
         if balancing is not None:
-            name = project.variant.balancing.name if project.variant.balancing else "Mур"
+            name = project.balancing
             unit = "Н" if study.driver is not None else "Н·м"
             entry_id = f"{RESULTS}/{label}/{name}{'' if way == by else '-lever'}"
             found.add(size(f"Уравновешивание {way}", entry_id, label, name, unit, k, balancing, by=balancing))
@@ -453,7 +462,7 @@ def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
         if step.rule is not MOMENTS:
             continue
         about = step.args[0]
-        link = step.name.removeprefix("ΣM")[:1]
+        link = step.name.removeprefix("ΣM").split("–")[0]
         key = "scheme-crank" if link == crank and "scheme-crank" in found.scales else schemes.get(link, "positions")
         for at, force in zip(step.args[1::3], step.args[2::3], strict=False):
             if not isinstance(force, Step) or at is about or not abs(complex(value_at(force, k))) > 0:

@@ -175,7 +175,7 @@ def _decoded(data: bytes, name: str, notes: list[str]) -> str:
 def _check_project(text: str, name: str, project: str) -> None:
     for number, line in enumerate(text.splitlines()[:10], 1):
         match = re.match(r'\s*"?#\s*проект:\s*([^;,\t"]+)', line)
-        if match and match[1].strip() != project:
+        if match and match[1].strip() != re.split(r'[;,\t"]', project)[0].strip():
             raise BadInput(Problem(f"the file is of the project {match[1].strip()}, not of {project}", name, number,
                                    hint=f"tmm-sheets compare {match[1].strip()} --measured {name}"))
 

@@ -41,7 +41,7 @@ def template(project: Project, folder: Path, say: Callable[[str], None]) -> Repo
              f"    tmm-sheets compare {name} --measured {path}"]
     asked = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": e.unit}
              for e in found.entries.values()]
-    return Report("\n".join(lines), {"project": name, "quantities": asked}, {NAME: data})
+    return Report("\n".join(lines), {"project": name, "quantities": asked}, {NAME: data}, tuple(found.notes))
 
 
 def compare(project: Project, path: Path, pencil: float, reading: float, say: Callable[[str], None]) -> Report:
@@ -52,7 +52,7 @@ def compare(project: Project, path: Path, pencil: float, reading: float, say: Ca
     filled = measured_file.read(path, name, found)
     say("errors")
     judged = judge(filled, found, pencil, reading)
-    return Report(_text(judged, filled), _tree(name, judged, filled, pencil, reading), notes=tuple(filled.notes))
+    return Report(_text(judged, filled), _tree(name, judged, filled, pencil, reading), notes=(*found.notes, *filled.notes))
 
 
 # --- text ------------------------------------------------------------------------------------------------------------------

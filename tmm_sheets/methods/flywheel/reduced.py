@@ -51,7 +51,7 @@ class Reduced:
         Resistances are negative; ``side`` picks the limit at a jump.
         """
         vel = self._velocities(phi)
-        power = 0.0
+        power: Any = np.zeros(np.shape(phi))
         for f in self.forces:
             if f.point is None:
                 power = power + f.law(phi, side) * vel.omega[f.link].value
@@ -76,7 +76,7 @@ class Reduced:
     def inertia(self, phi: Any) -> Any:
         """Reduced moment of inertia of the moving links without the flywheel, kg m2."""
         vel = self._velocities(phi)
-        return sum(terms for _, terms in self._terms(vel)) / self.omega1**2
+        return sum((terms for _, terms in self._terms(vel)), np.zeros(np.shape(vel.positions.phi))) / self.omega1**2
 
     def inertia_slope(self, phi: Any) -> Any:
         """Derivative of the reduced moment of inertia over the crank angle, kg m2/rad.

@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.plan import Plan, on_link
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.positions import Positions
@@ -124,7 +124,7 @@ def _further_points(acc: Accelerations, link: str) -> None:
             big_q, big_b, q, b = acc.reference[link]
             a = acc.plan.add(plan_name(acc.plan, p.name), SIMILAR, q, b, pos.points[big_q], pos.points[big_b], pos.points[p.name])
         else:
-            start = acc.coincident.get(p.start + link, acc.points[p.start])
+            start = acc.coincident.get(on_link(p.start, link), acc.points[p.start])
             a = acc.plan.add(plan_name(acc.plan, p.name), RIGID, start, acc.velocities.omega[link], acc.epsilon[link],
                              pos.points[p.start], pos.points[p.name])
         acc.plan.vector(f"a̅_{p.name}", acc.pole, a)
@@ -144,14 +144,15 @@ def _carrier(acc: Accelerations, guide: str, at: str) -> tuple[Step, Step, str]:
 def _on(acc: Accelerations, link: str, through: str, at: str) -> Step:
     """Acceleration of the point of a link that coincides with ``at``, from the link's point ``through``; drawn once."""
     pos, vel = acc.positions, acc.velocities
-    if at + link not in acc.coincident:
-        start = acc.coincident.get(through + link, acc.points[through])
+    here = on_link(at, link)
+    if here not in acc.coincident:
+        start = acc.coincident.get(on_link(through, link), acc.points[through])
         if through == at:
             return start
-        name = plan_name(acc.plan, at + link)
-        acc.coincident[at + link] = acc.plan.add(name, RIGID, start, vel.omega[link], acc.epsilon[link],
-                                                 pos.points[through], pos.points[at])
-    return acc.coincident[at + link]
+        name = plan_name(acc.plan, here)
+        acc.coincident[here] = acc.plan.add(name, RIGID, start, vel.omega[link], acc.epsilon[link],
+                                            pos.points[through], pos.points[at])
+    return acc.coincident[here]
 
 
 def _coriolis(acc: Accelerations, a: Step, link: str, v_from: Step, v_to: Step, symbol: str) -> Step:
@@ -202,10 +203,10 @@ def _rrp(acc: Accelerations, g: StructuralGroup) -> None:
     p, c, guide = g.outer[0], str(g.inner), g.guides[0]
     carrier, v_carrier, link = _carrier(acc, guide, c)
     n = _normal(acc, acc.points[p], g.links[0], p, c)
-    k = _coriolis(acc, carrier, link, v_carrier, vel.points[c], c + link)
+    k = _coriolis(acc, carrier, link, v_carrier, vel.points[c], on_link(c, link))
     step = plan.add(plan_name(plan, c), rules.LINE_LINE, n, _perpendicular(acc, p, c), k, pos.guide_directions[guide],
                     *pos.known_sine(g))
-    acc.points[c] = acc.coincident[c + g.links[1]] = step
+    acc.points[c] = acc.coincident[on_link(c, g.links[1])] = step
     plan.vector(f"a̅_{{{c}{p}}}^τ", n, step)
     plan.vector(f"a̅_{c}", acc.pole, step)
     _epsilon(acc, g.links[0], p, c, acc.points[p], step)
@@ -215,14 +216,15 @@ def _rrp(acc: Accelerations, g: StructuralGroup) -> None:
 def _rpr(acc: Accelerations, g: StructuralGroup) -> None:
     plan, pos, vel = acc.plan, acc.positions, acc.velocities
     (p, q), (i, j) = g.outer, g.links
-    k = _coriolis(acc, acc.points[p], j, vel.points[p], vel.coincident[p + j], f"{p}{j}{p}")
-    n = _normal(acc, acc.points[q], j, q, p, f"{p}{j}{q}")
-    step = plan.add(plan_name(plan, p + j), rules.LINE_LINE, k, pos.directions[j], n, _perpendicular(acc, q, p),
+    pj = on_link(p, j)
+    k = _coriolis(acc, acc.points[p], j, vel.points[p], vel.coincident[pj], f"{pj}{p}")
+    n = _normal(acc, acc.points[q], j, q, p, f"{pj}{q}")
+    step = plan.add(plan_name(plan, pj), rules.LINE_LINE, k, pos.directions[j], n, _perpendicular(acc, q, p),
                     *pos.known_sine(g))
-    plan.vector(f"a̅_{{{p}{j}{p}}}^r", k, step)
-    plan.vector(f"a̅_{{{p}{j}{q}}}^τ", n, step)
-    plan.vector(f"a̅_{{{p}{j}}}", acc.points[q], step)
-    acc.coincident[p + j] = step
+    plan.vector(f"a̅_{{{pj}{p}}}^r", k, step)
+    plan.vector(f"a̅_{{{pj}{q}}}^τ", n, step)
+    plan.vector(f"a̅_{{{pj}}}", acc.points[q], step)
+    acc.coincident[pj] = step
     _epsilon(acc, j, q, p, acc.points[q], step)
     acc.epsilon[i] = plan.add(f"ε{i}", SAME, acc.epsilon[j])
     if g.offset:
@@ -236,38 +238,39 @@ def _prp(acc: Accelerations, g: StructuralGroup) -> None:
     c = str(g.inner)
     (a1, v1, k1), (a2, v2, k2) = (_carrier(acc, name, c) for name in g.guides)
     u1, u2 = (pos.guide_directions[name] for name in g.guides)
-    e1 = _coriolis(acc, a1, k1, v1, vel.points[c], c + k1)
-    e2 = _coriolis(acc, a2, k2, v2, vel.points[c], c + k2)
+    e1 = _coriolis(acc, a1, k1, v1, vel.points[c], on_link(c, k1))
+    e2 = _coriolis(acc, a2, k2, v2, vel.points[c], on_link(c, k2))
     step = plan.add(plan_name(plan, c), rules.LINE_LINE, e1, u1, e2, u2)
     acc.points[c] = step
     plan.vector(f"a̅_{c}", acc.pole, step)
     for link, k in zip(g.links, (k1, k2), strict=True):
         acc.epsilon[link] = plan.add(f"ε{link}", SAME, acc.epsilon[k])
-        acc.coincident[c + link] = step
+        acc.coincident[on_link(c, link)] = step
 
 
 def _rpp(acc: Accelerations, g: StructuralGroup) -> None:
     plan, pos, vel = acc.plan, acc.positions, acc.velocities
     p, s, guide, (i, j) = g.outer[0], str(g.inner), g.guides[0], g.links
+    pj = on_link(p, j)
     carrier, _, link = _carrier(acc, guide, s)
-    v_pin = vel.coincident[p + j]
-    k1 = _coriolis(acc, acc.points[p], link, vel.points[p], v_pin, f"{p}{j}{p}")
+    v_pin = vel.coincident[pj]
+    k1 = _coriolis(acc, acc.points[p], link, vel.points[p], v_pin, f"{pj}{p}")
     if link == pos.mechanism.frame:
         k2 = carrier
     else:
         through = str(pos.mechanism.guides[guide].through)
-        k2 = _coriolis(acc, _on(acc, link, through, p), link, velocity_on(vel, link, through, p), v_pin, f"{p}{j}{link}")
-    step = plan.add(plan_name(plan, p + j), rules.LINE_LINE, k1, pos.directions[i], k2, pos.guide_directions[guide])
-    plan.vector(f"a̅_{{{p}{j}{p}}}^r", k1, step)
-    plan.vector(f"a̅_{{{p}{j}}}", acc.pole, step)
-    acc.coincident[p + j] = step
+        k2 = _coriolis(acc, _on(acc, link, through, p), link, velocity_on(vel, link, through, p), v_pin, on_link(pj, link))
+    step = plan.add(plan_name(plan, pj), rules.LINE_LINE, k1, pos.directions[i], k2, pos.guide_directions[guide])
+    plan.vector(f"a̅_{{{pj}{p}}}^r", k1, step)
+    plan.vector(f"a̅_{{{pj}}}", acc.pole, step)
+    acc.coincident[pj] = step
     for k in g.links:
         acc.epsilon[k] = plan.add(f"ε{k}", SAME, acc.epsilon[link])
     if link == pos.mechanism.frame:
         acc.points[s] = step
     else:
         acc.points[s] = plan.add(plan_name(plan, s), RIGID, step, vel.omega[link], acc.epsilon[link], pos.points[p], pos.points[s])
-    acc.coincident[s + j] = acc.points[s]
+    acc.coincident[on_link(s, j)] = acc.points[s]
 
 
 GROUPS: dict[int, Callable[[Accelerations, StructuralGroup], None]] = {1: _rrr, 2: _rrp, 3: _rpr, 4: _prp, 5: _rpp}

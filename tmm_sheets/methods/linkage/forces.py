@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan, symbol
+from tmm_sheets.construction.plan import Plan, pair_index, symbol
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
@@ -77,7 +77,7 @@ class ForcePlan:
 class Kinetostatics:
     """Force analysis of all groups and the crank.
 
-    ``loads`` are all forces on each link, reactions included, as they were used; ``reactions`` by name ("F54");
+    ``loads`` are all forces on each link, reactions included, as they were used; ``reactions`` by name ("F54", "F11,10");
     ``couples`` and ``arms`` of sliding pairs by name ("h50"); ``link_couples`` are inertia couples and applied
     moments of each link.
     """
@@ -109,7 +109,7 @@ class Kinetostatics:
 
     def reaction(self, j: str, k: str, vector: Step) -> Step:
         """Record F_jk under its name."""
-        self.reactions[f"F{j}{k}"] = vector
+        self.reactions[f"F{pair_index(j, k)}"] = vector
         return vector
 
 
@@ -182,13 +182,12 @@ def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load
     return k
 
 
-def moment_sum(k: Kinetostatics, name: str, about: Step, links: Iterable[str], without: tuple[str, ...] = ()) -> Step:
+def moment_sum(k: Kinetostatics, name: str, about: Step, links: Iterable[str]) -> Step:
     """Sum of moments of all recorded forces and couples of some links about a point, N m."""
     terms: list[Any] = [about]
     for link in links:
         for load in k.loads[link]:
-            if load.symbol not in without:
-                terms += [load.at, load.vector, 0.0 if load.couple is None else load.couple]
+            terms += [load.at, load.vector, 0.0 if load.couple is None else load.couple]
         for couple in k.link_couples.get(link, ()):
             terms += [about, 0j, couple]
     return k.plan.add(name, MOMENTS, *terms)
@@ -226,7 +225,7 @@ def _chain(fp: ForcePlan, start: int, tail: Step, loads: Iterable[Load]) -> Step
 
 def _close(k: Kinetostatics, fp: ForcePlan, j: str, other: str, tail: Step, head: Step) -> Step:
     """Close a polygon by the reaction on link ``j`` from link ``other``."""
-    name = f"F{j}{other}"
+    name = f"F{pair_index(j, other)}"
     step = fp.plan.add(name, CLOSE, tail, head)
     fp.side(symbol(name), tail, head, unknown=True)
     return k.reaction(j, other, step)
@@ -234,11 +233,12 @@ def _close(k: Kinetostatics, fp: ForcePlan, j: str, other: str, tail: Step, head
 
 def _react(k: Kinetostatics, link: str, on: str, at: Step, vector: Step, couple: Step | None = None) -> Step:
     """The equal and opposite force on the neighbouring link ``on`` from ``link``."""
-    name = f"F{on}{link}"
+    pair = pair_index(on, link)
+    name = f"F{pair}"
     step = k.plan.add(name, OPPOSITE, vector)
     k.reaction(on, link, step)
     if on != k.positions.mechanism.frame:
-        turned = None if couple is None else k.plan.add(f"M{on}{link}", OPPOSITE_COUPLE, couple)
+        turned = None if couple is None else k.plan.add(f"M{pair}", OPPOSITE_COUPLE, couple)
         k.loads[on].append(Load(symbol(name), on, at, step, "reaction", turned))
     return step
 
@@ -257,9 +257,10 @@ def _perpendicular(k: Kinetostatics, name: str, u: Step) -> Step:
     return k.plan.steps[label] if label in k.plan else k.plan.add(label, rules.TURN, u)
 
 
-def _sliding(k: Kinetostatics, name: str, force: Step, about: Step, links: Iterable[str], without: tuple[str, ...] = ()) -> Step:
-    """Couple of a sliding pair's reaction (its force taken at ``about``) and its arm, from moments about that point."""
-    total = moment_sum(k, f"ΣM{name}", about, links, without)
+def _sliding(k: Kinetostatics, j: str, other: str, force: Step, about: Step) -> Step:
+    """Couple of a sliding pair's reaction on link ``j`` (its force taken at ``about``) and its arm, from moments about it."""
+    name = pair_index(j, other)
+    total = moment_sum(k, f"ΣM{j}", about, [j])
     couple = k.plan.add(f"M{name}", OPPOSITE_COUPLE, total)
     k.couples[f"F{name}"] = couple
     k.arms[f"h{name}"] = k.plan.add(f"h{name}", ARM, couple, force)
@@ -271,6 +272,7 @@ def _rpp(k: Kinetostatics, g: StructuralGroup) -> None:
     pos, m = k.positions, k.positions.mechanism
     (i, j), p, guide = g.links, g.outer[0], g.guides[0]
     base = m.guides[guide].link
+    ij, ji = pair_index(i, j), pair_index(j, i)
     across_slot = _perpendicular(k, pos.directions[i].name, pos.directions[i])
     across_guide = _perpendicular(k, guide, pos.guide_directions[guide])
     fp = _force_plan(k, j, (j,))
@@ -288,9 +290,9 @@ def _rpp(k: Kinetostatics, g: StructuralGroup) -> None:
         fp.side(s, tail, head)
     f_jb = _close(k, fp, j, base, end, one)
     # Block: F_ij, its loads, closing force from the link that carries the pin.
-    f_ij = k.reaction(i, j, k.plan.add(f"F{i}{j}", OPPOSITE, f_ji))
-    k.loads[i].insert(0, Load(symbol(f"F{i}{j}"), i, pos.points[p], f_ij, "reaction"))
-    inner = _sliding(k, f"{i}{j}", f_ji, pos.points[p], [i])
+    f_ij = k.reaction(i, j, k.plan.add(f"F{ij}", OPPOSITE, f_ji))
+    k.loads[i].insert(0, Load(symbol(f"F{ij}"), i, pos.points[p], f_ij, "reaction"))
+    inner = _sliding(k, i, j, f_ji, pos.points[p])
     owner = _owner(m, p)
     block = _force_plan(k, i, (i,))
     first = block.plan.add("1", rules.GIVEN, 0j)
@@ -298,9 +300,9 @@ def _rpp(k: Kinetostatics, g: StructuralGroup) -> None:
     tail = _chain(block, 1, first, [k.loads[i][0], *rest])
     f_io = _close(k, block, i, owner, tail, first)
     # The guided link also carries the opposite of the inner couple.
-    on_j = k.plan.add(f"M{j}{i}", OPPOSITE_COUPLE, inner)
-    k.loads[j].append(Load(symbol(f"F{j}{i}"), j, pos.points[p], f_ji, "reaction", on_j))
-    outer = _sliding(k, f"{j}{base}", f_jb, pos.points[p], [j])
+    on_j = k.plan.add(f"M{ji}", OPPOSITE_COUPLE, inner)
+    k.loads[j].append(Load(symbol(f"F{ji}"), j, pos.points[p], f_ji, "reaction", on_j))
+    outer = _sliding(k, j, base, f_jb, pos.points[p])
     _react(k, i, owner, pos.points[p], f_io)
     _react(k, j, base, pos.points[p], f_jb, outer)
 
@@ -310,8 +312,9 @@ def _rpr(k: Kinetostatics, g: StructuralGroup) -> None:
     pos, m = k.positions, k.positions.mechanism
     (i, j), (p, q) = g.links, g.outer
     owner, base = _owner(m, p), _owner(m, q)
+    ji, io = pair_index(j, i), pair_index(i, owner)
     total = moment_sum(k, f"ΣM{i}–{j}", pos.points[q], [i, j])
-    tangential = k.plan.add(f"F{i}{owner}τ", TANGENTIAL, total, pos.points[q], pos.points[p])
+    tangential = k.plan.add(f"F{io}τ", TANGENTIAL, total, pos.points[q], pos.points[p])
     radial = pos.direction(q, p)
     across = _perpendicular(k, f"{q}{p}" if radial is pos.directions[j] else f"напр {j}", pos.directions[j])
     block = _force_plan(k, i, (i,))
@@ -323,20 +326,20 @@ def _rpr(k: Kinetostatics, g: StructuralGroup) -> None:
         pending.append((load.symbol, end, head))
         end = head
     one = block.plan.add("1", rules.LINE_LINE, start, radial, end, across, *pos.known_sine(g))
-    block.plan.add(f"F{i}{owner}n", CLOSE, one, start)
-    block.side(f"F̅_{{{i}{owner}}}^n", one, start, unknown=True)
-    block.side(f"F̅_{{{i}{owner}}}^τ", start, after)
+    block.plan.add(f"F{io}n", CLOSE, one, start)
+    block.side(f"F̅_{{{io}}}^n", one, start, unknown=True)
+    block.side(f"F̅_{{{io}}}^τ", start, after)
     for s, tail, head in pending:
         block.side(s, tail, head)
     f_ij = _close(k, block, i, j, end, one)
-    f_io = k.reaction(i, owner, block.plan.add(f"F{i}{owner}", CLOSE, one, after))
-    block.plan.vector(symbol(f"F{i}{owner}"), one, after)
-    inner = _sliding(k, f"{i}{j}", f_ij, pos.points[p], [i])
-    f_ji = k.reaction(j, i, k.plan.add(f"F{j}{i}", OPPOSITE, f_ij))
+    f_io = k.reaction(i, owner, block.plan.add(f"F{io}", CLOSE, one, after))
+    block.plan.vector(symbol(f"F{io}"), one, after)
+    inner = _sliding(k, i, j, f_ij, pos.points[p])
+    f_ji = k.reaction(j, i, k.plan.add(f"F{ji}", OPPOSITE, f_ij))
     rocker = _force_plan(k, j, (j,))
     first = rocker.plan.add("1", rules.GIVEN, 0j)
-    on_j = k.plan.add(f"M{j}{i}", OPPOSITE_COUPLE, inner)
-    contact = Load(symbol(f"F{j}{i}"), j, pos.points[p], f_ji, "reaction", on_j)
+    on_j = k.plan.add(f"M{ji}", OPPOSITE_COUPLE, inner)
+    contact = Load(symbol(f"F{ji}"), j, pos.points[p], f_ji, "reaction", on_j)
     tail = _chain(rocker, 1, first, [contact, *_order(k.loads[j], "weight")])
     k.loads[j].insert(0, contact)
     f_jb = _close(k, rocker, j, base, tail, first)
@@ -365,7 +368,7 @@ def _group_polygon(k: Kinetostatics, g: StructuralGroup, first: Step | None, las
         pending.append((sign, tail, head))
         tail = head
 
-    one, two = (f"F{link}{carrier}" for link, carrier in zip(g.links, carriers, strict=True))
+    one, two = (f"F{pair_index(link, carrier)}" for link, carrier in zip(g.links, carriers, strict=True))
     if first is not None:
         lay(f"F̅_{{{one[1:]}}}^τ", first)
     after_first = tail
@@ -388,9 +391,10 @@ def _group_polygon(k: Kinetostatics, g: StructuralGroup, first: Step | None, las
         fp.plan.vector(symbol(two), before_last, closing)
     # The inner reaction closes the forces of the first link: the same drawing, one more line.
     split = pending[(first is not None) + len(k.loads[i]) - 1][2] if len(k.loads[i]) + (first is not None) else start
-    inner = k.reaction(i, j, fp.plan.add(f"F{i}{j}", CLOSE, split, closing))
-    fp.plan.vector(symbol(f"F{i}{j}"), split, closing)
-    k.reaction(j, i, k.plan.add(f"F{j}{i}", OPPOSITE, inner))
+    name = f"F{pair_index(i, j)}"
+    inner = k.reaction(i, j, fp.plan.add(name, CLOSE, split, closing))
+    fp.plan.vector(symbol(name), split, closing)
+    k.reaction(j, i, k.plan.add(f"F{pair_index(j, i)}", OPPOSITE, inner))
     return f_one, f_two, fp
 
 
@@ -402,7 +406,7 @@ def _rrr(k: Kinetostatics, g: StructuralGroup) -> None:
     parts = []
     for link, other, end in ((i, a, p), (j, b, q)):
         total = moment_sum(k, f"ΣM{link}", pos.points[c], [link])
-        parts.append(k.plan.add(f"F{link}{other}τ", TANGENTIAL, total, pos.points[c], pos.points[end]))
+        parts.append(k.plan.add(f"F{pair_index(link, other)}τ", TANGENTIAL, total, pos.points[c], pos.points[end]))
     f_one, f_two, _ = _group_polygon(k, g, parts[0], parts[1], pos.direction(p, c), pos.direction(q, c), (a, b),
                                      pos.known_sine(g))
     _react(k, i, a, pos.points[p], f_one)
@@ -415,12 +419,12 @@ def _rrp(k: Kinetostatics, g: StructuralGroup) -> None:
     (i, j), p, c, guide = g.links, g.outer[0], str(g.inner), g.guides[0]
     a, base = _owner(m, p), m.guides[guide].link
     total = moment_sum(k, f"ΣM{i}", pos.points[c], [i])
-    part = k.plan.add(f"F{i}{a}τ", TANGENTIAL, total, pos.points[c], pos.points[p])
+    part = k.plan.add(f"F{pair_index(i, a)}τ", TANGENTIAL, total, pos.points[c], pos.points[p])
     across = _perpendicular(k, guide, pos.guide_directions[guide])
     # The lines of the velocities turned by 90 degrees, one of them the other way round.
     sine = tuple(Step(f"−{s.name}", OPPOSITE, (s,)) for s in pos.known_sine(g))
     f_one, f_two, _ = _group_polygon(k, g, part, None, pos.direction(p, c), across, (a, base), sine)
-    couple = _sliding(k, f"{j}{base}", f_two, pos.points[c], [j])
+    couple = _sliding(k, j, base, f_two, pos.points[c])
     _react(k, i, a, pos.points[p], f_one)
     _react(k, j, base, pos.points[c], f_two, couple)
 
@@ -433,7 +437,7 @@ def _prp(k: Kinetostatics, g: StructuralGroup) -> None:
     u, v = (_perpendicular(k, name, pos.guide_directions[name]) for name in g.guides)
     forces = _group_polygon(k, g, None, None, u, v, bases)
     for link, base, force in zip(g.links, bases, forces[:2], strict=True):
-        couple = _sliding(k, f"{link}{base}", force, pos.points[c], [link])
+        couple = _sliding(k, link, base, force, pos.points[c])
         _react(k, link, base, pos.points[c], force, couple)
 
 

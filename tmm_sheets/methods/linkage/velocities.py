@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.plan import Plan, on_link
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.positions import Positions
@@ -107,7 +107,7 @@ def _further_points(vel: Velocities, link: str) -> None:
             big_q, big_b, q, b = vel.reference[link]
             v = vel.plan.add(plan_name(vel.plan, p.name), SIMILAR, q, b, pos.points[big_q], pos.points[big_b], pos.points[p.name])
         else:
-            start = vel.coincident.get(p.start + link, vel.points[p.start])
+            start = vel.coincident.get(on_link(p.start, link), vel.points[p.start])
             v = vel.plan.add(plan_name(vel.plan, p.name), RIGID, start, vel.omega[link], pos.points[p.start], pos.points[p.name])
         vel.plan.vector(f"V̅_{p.name}", vel.pole, v)
         vel.points[p.name] = v
@@ -126,13 +126,14 @@ def guide_velocity(vel: Velocities, guide: str, at: str) -> tuple[Step, str]:
 def velocity_on(vel: Velocities, link: str, through: str, at: str) -> Step:
     """Velocity of the point of a link that coincides with ``at``, from the link's point ``through``; drawn once."""
     pos = vel.positions
-    if at + link not in vel.coincident:
-        start = vel.coincident.get(through + link, vel.points[through])
+    here = on_link(at, link)
+    if here not in vel.coincident:
+        start = vel.coincident.get(on_link(through, link), vel.points[through])
         if through == at:
             return start
-        name = plan_name(vel.plan, at + link)
-        vel.coincident[at + link] = vel.plan.add(name, RIGID, start, vel.omega[link], pos.points[through], pos.points[at])
-    return vel.coincident[at + link]
+        name = plan_name(vel.plan, here)
+        vel.coincident[here] = vel.plan.add(name, RIGID, start, vel.omega[link], pos.points[through], pos.points[at])
+    return vel.coincident[here]
 
 
 def _perpendicular(vel: Velocities, p: str, q: str) -> Step:
@@ -175,18 +176,19 @@ def _rrp(vel: Velocities, g: StructuralGroup) -> None:
         plan.vector(f"V̅_{{{c}{carrier.name.upper()}}}", carrier, step)
     _omega(vel, g.links[0], p, c, vel.points[p], step)
     vel.omega[g.links[1]] = plan.add(f"ω{g.links[1]}", SAME, vel.omega[link])
-    vel.coincident[c + g.links[1]] = step
+    vel.coincident[on_link(c, g.links[1])] = step
 
 
 def _rpr(vel: Velocities, g: StructuralGroup) -> None:
     pos, plan = vel.positions, vel.plan
     (p, q), (i, j) = g.outer, g.links
+    pj = on_link(p, j)
     n = _perpendicular(vel, q, p)
-    name = plan_name(plan, p + j)
+    name = plan_name(plan, pj)
     step = plan.add(name, rules.LINE_LINE, vel.points[p], pos.directions[j], vel.points[q], n, *pos.known_sine(g))
-    plan.vector(f"V̅_{{{p}{j}}}", vel.points[q], step)
-    plan.vector(f"V̅_{{{p}{j}{p}}}", vel.points[p], step)
-    vel.coincident[p + j] = step
+    plan.vector(f"V̅_{{{pj}}}", vel.points[q], step)
+    plan.vector(f"V̅_{{{pj}{p}}}", vel.points[p], step)
+    vel.coincident[pj] = step
     _omega(vel, j, q, p, vel.points[q], step)
     vel.omega[i] = plan.add(f"ω{i}", SAME, vel.omega[j])
     if g.offset:
@@ -207,28 +209,29 @@ def _prp(vel: Velocities, g: StructuralGroup) -> None:
             plan.vector(f"V̅_{{{c}{v.name.upper()}}}", v, step)
     for link, k in zip(g.links, (k1, k2), strict=True):
         vel.omega[link] = plan.add(f"ω{link}", SAME, vel.omega[k])
-        vel.coincident[c + link] = step
+        vel.coincident[on_link(c, link)] = step
 
 
 def _rpp(vel: Velocities, g: StructuralGroup) -> None:
     pos, plan = vel.positions, vel.plan
     p, s, guide, (i, j) = g.outer[0], str(g.inner), g.guides[0], g.links
+    pj = on_link(p, j)
     carrier, link = guide_velocity(vel, guide, s)
     along, slot = pos.guide_directions[guide], pos.directions[i]
     # Link j does not turn against the guide: its point at the pin and its point on the guide move alike on a fixed
     # guide; on a turning one the point at the pin is taken first.
     if carrier is vel.pole:
-        step = plan.add(plan_name(plan, p + j), rules.LINE_LINE, vel.points[p], slot, carrier, along)
-        plan.vector(f"V̅_{{{p}{j}}}", vel.pole, step)
-        plan.vector(f"V̅_{{{p}{j}{p}}}", vel.points[p], step)
+        step = plan.add(plan_name(plan, pj), rules.LINE_LINE, vel.points[p], slot, carrier, along)
+        plan.vector(f"V̅_{{{pj}}}", vel.pole, step)
+        plan.vector(f"V̅_{{{pj}{p}}}", vel.points[p], step)
         vel.points[s] = step
     else:
         at_pin = velocity_on(vel, link, str(pos.mechanism.guides[guide].through), p)
-        step = plan.add(plan_name(plan, p + j), rules.LINE_LINE, vel.points[p], slot, at_pin, along)
-        plan.vector(f"V̅_{{{p}{j}}}", vel.pole, step)
+        step = plan.add(plan_name(plan, pj), rules.LINE_LINE, vel.points[p], slot, at_pin, along)
+        plan.vector(f"V̅_{{{pj}}}", vel.pole, step)
         vel.points[s] = plan.add(plan_name(plan, s), RIGID, step, vel.omega[link], pos.points[p], pos.points[s])
-    vel.coincident[p + j] = step
-    vel.coincident[s + j] = vel.points[s]
+    vel.coincident[pj] = step
+    vel.coincident[on_link(s, j)] = vel.points[s]
     for k in g.links:
         vel.omega[k] = plan.add(f"ω{k}", SAME, vel.omega[link])
 
