@@ -7,6 +7,7 @@ turn) is judged where the geometry is.
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from collections.abc import Callable, Sequence
@@ -38,8 +39,19 @@ from tmm_sheets.toml_lines import KeyPath, TomlLines, scan
 # --- numbers: SI values with their ranges ---------------------------------------------------------------------------
 
 
+LEAST, GREATEST = 1e-12, 1e12
+"""Sizes of numbers in SI that any machine may have, zero besides: powers and products of what lies beyond are no numbers."""
+
+
+def _parse(value: Any, quantity: units.Quantity) -> float:
+    found = units.parse(value, quantity)
+    if found and not LEAST <= abs(found) <= GREATEST:
+        raise ValueError(f"expected a {quantity.name} of {LEAST:g} to {GREATEST:g} in SI units, not {value!r}; is the unit right?")
+    return found
+
+
 def _si(quantity: units.Quantity) -> BeforeValidator:
-    return BeforeValidator(lambda value: units.parse(value, quantity))
+    return BeforeValidator(lambda value: _parse(value, quantity))
 
 
 def _range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
@@ -51,10 +63,16 @@ def _range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
     return AfterValidator(check)
 
 
-def _whole(least: int) -> BeforeValidator:
+MOST = 100_000
+"""Greatest count: teeth, positions."""
+
+
+def _whole(least: int, most: int = MOST) -> BeforeValidator:
     def check(value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise ValueError(f"expected a whole number, {least} or more")
+        if value > most:
+            raise ValueError(f"expected a whole number of {most} or less")
         return value
 
     return BeforeValidator(check)
@@ -86,7 +104,7 @@ AcuteAngle = Annotated[float, _si(units.ANGLE), _ACUTE]
 PhaseAngle = Annotated[float, _si(units.ANGLE), _PHASE]
 Speed = Annotated[float, _si(units.ANGULAR_VELOCITY), _positive("speed of rotation")]
 CrankAcceleration = Annotated[
-    float | Literal["flywheel"], BeforeValidator(lambda v: v if v == "flywheel" else units.parse(v, units.ANGULAR_ACCELERATION))
+    float | Literal["flywheel"], BeforeValidator(lambda v: v if v == "flywheel" else _parse(v, units.ANGULAR_ACCELERATION))
 ]
 Gravity = Annotated[float, _si(units.ACCELERATION), _not_negative("gravity")]
 Mass = Annotated[float, _si(units.MASS), _not_negative("mass")]
@@ -114,7 +132,7 @@ def _direction(value: Any) -> float | str:
     if isinstance(value, str) and value in ("against motion", "along motion"):
         return value
     try:
-        return units.parse(value, units.ANGLE)
+        return _parse(value, units.ANGLE)
     except ValueError:
         raise ValueError('expected "against motion", "along motion" or an angle, for example "30 deg"') from None
 
@@ -124,11 +142,26 @@ def _through(value: Any) -> str | tuple[float, float]:
     if isinstance(value, str) and value.strip():
         return value
     if isinstance(value, list) and len(value) == 2:
-        return units.parse(value[0], units.LENGTH), units.parse(value[1], units.LENGTH)
+        return _parse(value[0], units.LENGTH), _parse(value[1], units.LENGTH)
     raise ValueError('expected the name of a point or two coordinates, for example ["0 m", "0.33 m"]')
 
 
 Name = Annotated[str, BeforeValidator(_name)]
+
+_USUAL = re.compile("[ -~А-яЁё№«»–—]*")
+
+
+def _drawable(text: str) -> str:
+    """A text for the sheets: letters that the drawing font has."""
+    if not _USUAL.fullmatch(text):
+        font = json.loads(resources.template("fonts/type_b.json").read_text(encoding="utf-8"))["glyphs"]
+        strange = next((c for c in text if c not in font), None)
+        if strange is not None:
+            raise ValueError(f"the drawing font has no {strange!r} (U+{ord(strange):04X})")
+    return text
+
+
+Text = Annotated[str, AfterValidator(_drawable)]
 
 
 def _diagram(value: Any) -> tuple[tuple[str | float, str | float], ...]:
@@ -145,8 +178,8 @@ Pressure = Annotated[float, _si(units.PRESSURE)]
 
 def diagram(pairs: Sequence[tuple[Any, Any]], argument: units.Quantity, value: units.Quantity) -> tuple[list[float], list[float]]:
     """Arguments and values of a diagram in SI; ValueError where a unit is wrong or the arguments do not rise."""
-    x = [units.parse(p[0], argument) for p in pairs]
-    y = [units.parse(p[1], value) for p in pairs]
+    x = [_parse(p[0], argument) for p in pairs]
+    y = [_parse(p[1], value) for p in pairs]
     if any(b < a for a, b in pairwise(x)):
         raise ValueError("expected arguments that rise from pair to pair")
     return x, y
@@ -186,8 +219,8 @@ class Heading(Table):
     """``[project]``: what the project is called and which sheets it has."""
 
     name: Name = Field(description='name of the project, "family/name"')
-    title: str = Field(description="title as it stands on the sheets")
-    variant: str = ""
+    title: Text = Field(description="title as it stands on the sheets")
+    variant: Text = ""
     sheets: tuple[SheetName, ...] | None = Field(
         default=None, min_length=1, description='the sheets in order, for example ["gear", "cam"]'
     )
@@ -197,13 +230,13 @@ class TitleBlock(Table):
     """``[title_block]``: what stands in the title block (GOST 2.104)."""
 
     form: Literal["1", "2a"] = "1"
-    designation: str = ""
-    institution: str = ""
-    group: str = ""
-    student: str = ""
-    supervisor: str = ""
-    checker: str = ""
-    letter: str = ""
+    designation: Text = ""
+    institution: Text = ""
+    group: Text = ""
+    student: Text = ""
+    supervisor: Text = ""
+    checker: Text = ""
+    letter: Text = ""
     first_sheet: Count = 1
 
 
@@ -295,7 +328,7 @@ class Cycle(Table):
     whose kinematic diagrams are drawn; left out, the output.
     """
 
-    start: Annotated[str | float, BeforeValidator(lambda v: v if v == "dead" else units.parse(v, units.ANGLE))] = Field(
+    start: Annotated[str | float, BeforeValidator(lambda v: v if v == "dead" else _parse(v, units.ANGLE))] = Field(
         description='"dead" or the crank angle of position 0, for example "90 deg"'
     )
     output: Name | None = None
@@ -313,6 +346,8 @@ class Cycle(Table):
 
     @model_validator(mode="after")
     def _whole_turn(self) -> Self:
+        if self.start != "dead" and self.positions is None:
+            raise ValueError("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12")
         if self.start == "dead":
             absent = [k for k in ("output", "working_sense", "working", "idle") if getattr(self, k) is None]
             if absent:
@@ -447,7 +482,7 @@ class Motor(Table):
     left out: with the rated speed; ``rotor_inertia`` kg m2. ``accepted``: our own assumption, marked "принято" on the sheet.
     """
 
-    name: Name = Field(description='type of the motor, for example "4А160М6"')
+    name: Annotated[Name, AfterValidator(_drawable)] = Field(description='type of the motor, for example "4А160М6"')
     power: Annotated[float, _si(units.POWER), _positive("power")] = Field(description='power, for example "15 kW"')
     synchronous: Speed = Field(description='synchronous speed, for example "1000 rpm"')
     rated: Speed = Field(description='speed under the full load, for example "975 rpm"')
@@ -645,6 +680,8 @@ class Cam(Table):
     def _phases_fit(self) -> Self:
         if self.rise <= 0 or self.fall <= 0:
             raise ValueError("expected a rise and a fall greater than 0 deg")
+        if min(self.rise, self.fall) < units.parse("0.1 deg", units.ANGLE):
+            raise ValueError("expected a rise and a fall of 0.1 deg or more")
         if self.rise + self.upper_dwell + self.fall > units.parse("360.000001 deg", units.ANGLE):
             raise ValueError("expected rise, upper_dwell and fall of 360 deg together or less")
         return self

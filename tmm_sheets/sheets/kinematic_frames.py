@@ -10,6 +10,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, handy
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import indicator
 from tmm_sheets.sheets.frame import Frame, Scales, extent, fit_frame, pick
 
@@ -21,6 +22,17 @@ GRAPH = 48.0
 """Height kept free over the position plans for the force graph, mm."""
 MARGIN = 22.0
 """Room for letters round a velocity plan, mm."""
+MOST = 72
+"""Most positions of one turn that are drawn: one each 5 degrees."""
+
+
+def check_number(project: Project) -> None:
+    """Refuse more positions than can be told apart on paper."""
+    count = len(project.cycle.drawn)
+    if count > MOST:
+        message = f"{count} positions of one turn cannot be told apart on a sheet, {MOST} at most"
+        hint = "number fewer; solve --positions gives the numbers at any number of them"
+        raise CannotBuild(str(project.variant.problem(message, "cycle", "positions", hint=hint)))
 
 
 def graph_force(project: Project) -> Any:
@@ -98,6 +110,8 @@ def velocities(project: Project, canvas: Scales, box: Box, options: dict[str, An
     inside = box.inset(0, 2.0, 0, 20.0)
     shown = [(k, cycle.labels[k])] if options.get("only") == "force" else list(cycle.drawn)
     rows = min(int(options.get("rows", 2)), len(shown))
+    while -(-len(shown) // rows) * MARGIN > 0.8 * inside.width:
+        rows += 1
     per_row = -(-len(shown) // rows)
     spans = [plan_extent(vel.plan, i) for i, _ in shown]
 
@@ -143,6 +157,8 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
     from tmm_sheets.sheets.arrangement import arrangement
 
     found: dict[str, tuple[Scale, int]] = {}
+    if len(project.cycle.drawn) > MOST:
+        return found  # as many plans fit on no sheet
     for n, name in enumerate(project.sheets, 1):
         kept = SimpleNamespace(scales={})
         for view in arrangement(name).fitted(project.parts).views:
