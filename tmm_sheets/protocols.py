@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
@@ -56,14 +57,33 @@ def _drawn(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], Cann
     from tmm_sheets.sheets import sheet
 
     scales: dict[str, Scale] = {}
-    attempt = sheet.every(project)
+    attempt = sheet.attempt(project, range(1, len(project.variant.drawable()) + 1))
+    problem = attempt.problem()
+    if problem is not None:
+        _construct(project, problem)
     for composed in attempt.drawn.values():
         scales |= composed.scales
     plans = [plan for of_part in parts(project).values() if of_part for plan in of_part]
     first: dict[str, tuple[Plan, Scale | None]] = {}
     for plan in plans:
         first.setdefault(plan.name, (plan, scales.get(plan.name)))
-    return first, attempt.problem()
+    return first, problem
+
+
+def _construct(project: Project, problem: CannotBuild) -> None:
+    """Where sheets cannot be drawn the linkage is constructed all the same: its plans are told without a scale factor.
+
+    Raises the problem when there is nothing to construct.
+    """
+    from tmm_sheets.explain import parts
+
+    with suppress(CannotBuild):
+        if "positions" in project.parts:
+            _ = project.study.accelerations
+        if "forces" in project.parts:
+            _ = project.study.forces, project.study.lever
+    if not any(plans for plans in parts(project).values()):
+        raise problem
 
 
 def _told(project: Project, plan: Plan, scale: Scale | None) -> Iterator[str]:

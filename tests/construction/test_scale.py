@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tmm_sheets.construction.scale import HANDY, STANDARD, Scale, fit, fit_standard, handy
+from tmm_sheets.errors import CannotBuild
 
 
 @given(st.floats(1e-12, 1e12))
@@ -68,7 +69,7 @@ def test_standard_fit_is_the_largest_that_fits(span, mm):
     ratios = [Fraction(drawn, real) for real, drawn in STANDARD]
     fitting = [x for x in ratios if span * float(x) <= mm * (1 + 1e-9)]
     if not fitting:
-        with pytest.raises(ValueError, match="do not fit"):
+        with pytest.raises(CannotBuild, match="do not fit"):
             fit_standard(span, mm)
         return
     real, drawn = fit_standard(span, mm)
@@ -76,5 +77,5 @@ def test_standard_fit_is_the_largest_that_fits(span, mm):
 
 
 def test_too_large_for_any_standard_scale():
-    with pytest.raises(ValueError, match="1000000 mm do not fit in 500 mm"):
+    with pytest.raises(CannotBuild, match=r"1e\+06 mm do not fit in 500 mm"):
         fit_standard(1000000, 500)

@@ -12,7 +12,7 @@ from typing import Any
 
 from mpmath import mp
 
-from tmm_sheets.construction.plan import pair_index
+from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
 DIGITS = 100

@@ -16,16 +16,6 @@ def symbol(name: str) -> str:
     return f"{name[0]}\u0305_{{{name[1:]}}}" if len(name) > 1 else f"{name}\u0305"
 
 
-def pair_index(j: str, k: str) -> str:
-    """Two links as the index of what acts between them: 54; with a comma from two signs on: 1,10 is not 11,0."""
-    return f"{j}{k}" if len(j) == len(k) == 1 else f"{j},{k}"
-
-
-def on_link(point: str, link: str) -> str:
-    """The point of a link that coincides with ``point`` of another one: B3; B,10 where the link's name has two signs or more."""
-    return f"{point}{link}" if len(link) == 1 else f"{point},{link}"
-
-
 @dataclass(frozen=True)
 class Segment:
     """A vector of a plan, drawn as an arrow from ``tail`` to ``head`` and measured as a length on paper."""

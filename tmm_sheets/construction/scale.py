@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import floor, isclose, log10
 from typing import Any
 
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
 
 HANDY = (1.0, 2.0, 2.5, 4.0, 5.0)
@@ -40,16 +41,23 @@ class Scale:
 
 
 def fit(symbol: str, unit: str, span: float, mm: float) -> Scale:
-    """Smallest handy scale factor with which the real ``span`` takes at most ``mm`` millimetres."""
+    """Smallest handy scale factor with which the real ``span`` takes at most ``mm`` millimetres; CannotBuild for none."""
+    if not mm > 0:
+        raise CannotBuild(f"there is no room left for the diagram with the scale factor {symbol} beside what it belongs to",
+                          "are all numbers of the project file as you mean them?")
     return Scale(symbol, handy(span / mm), unit)
 
 
 def fit_standard(span_mm: float, mm: float) -> tuple[int, int]:
-    """Largest GOST 2.302 scale (real, drawn) with which ``span_mm`` millimetres of the object fit in ``mm``."""
+    """Largest GOST 2.302 scale (real, drawn) with which ``span_mm`` millimetres of the object fit in ``mm``.
+
+    Raises CannotBuild when they fit at none.
+    """
     for real, drawn in reversed(STANDARD):
         if span_mm * drawn <= mm * real * (1 + 1e-9):
             return real, drawn
-    raise ValueError(f"{span_mm} mm do not fit in {mm} mm at any standard scale")
+    raise CannotBuild(f"{span_mm:.6g} mm do not fit in {mm:.6g} mm of the sheet at any scale of GOST 2.302, 1:1000 or larger",
+                      "are all numbers of the project file in the units you mean?")
 
 
 def times(ratio: float) -> str:

@@ -30,6 +30,17 @@ SMALLEST = 10.0
 """Size from which on the largest of the velocity plans can be read, mm."""
 BEYOND = 10.0
 """A velocity plan so many times as large as usual would leave nothing to see of the others."""
+MOST = 72
+"""Most positions of one turn that are drawn: one each 5 degrees."""
+
+
+def check_number(project: Project) -> None:
+    """Refuse more positions than can be told apart on paper."""
+    count = len(project.cycle.drawn)
+    if count > MOST:
+        message = f"{count} positions of one turn cannot be told apart on a sheet, {MOST} at most"
+        hint = "number fewer; solve --positions gives the numbers at any number of them"
+        raise CannotBuild(str(project.variant.problem(message, "cycle", "positions", hint=hint)))
 
 
 def graph_force(project: Project) -> Any:
@@ -199,6 +210,8 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
     from tmm_sheets.sheets.arrangement import arrangement
 
     found: dict[str, tuple[Scale, int]] = {}
+    if len(project.cycle.drawn) > MOST:
+        return found  # as many plans fit on no sheet
     for n, name in enumerate(project.sheets, 1):
         kept = SimpleNamespace(scales={}, chosen=set())
         for view in arrangement(name).fitted(project.parts).views:

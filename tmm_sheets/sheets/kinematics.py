@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.plan import on_link
+from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.scale import times
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Combined position plans with path marks and the force graph over the path."""
+    kinematic_frames.check_number(project)
     study, cycle, k = project.study, project.cycle, project.force_index
     pos = study.positions
     m = pos.mechanism
@@ -69,7 +70,7 @@ def _paths(canvas: Canvas, project: Project, frame: Frame, room: Box) -> None:
         z = np.asarray(pos.points[name].value)
         if np.ndim(z):
             canvas.polyline(frame(z), "thin")
-    for name in pos.guide_directions:
+    for name in dict.fromkeys(name for g in m.groups if g.inner for name in g.guides):
         if m.guides[name].link == m.frame:
             _guide_line(canvas, project, frame, name, room)
 

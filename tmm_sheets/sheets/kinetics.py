@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.plan import pair_index, symbol
+from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas

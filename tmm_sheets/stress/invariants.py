@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.plan import on_link, pair_index
+from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics

@@ -6,10 +6,12 @@ over here, the reader of values names them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from difflib import get_close_matches
 from typing import Any
 
+from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.task.toml_lines import KeyPath
 
 Found = tuple[KeyPath, str, str]
@@ -28,6 +30,16 @@ OUTER_POINTS = {1: 2, 2: 1, 3: 2, 4: 0, 5: 1}
 """Number of outer turning pairs, by kind."""
 
 FRAME = "0"
+
+_LETTERS = "A-Za-zА-Яа-яЁёЄєІіЇїҐґΑ-Ωα-ω"
+SPELLINGS = {
+    "point": (re.compile(f"[{_LETTERS}][{_LETTERS}0-9]*"), 'a letter, then letters and digits, for example "B" or "S3"'),
+    "force": (re.compile(f"[{_LETTERS}][{_LETTERS}0-9]*′*"), 'a letter, then letters and digits, for example "F5"'),
+    "link": (re.compile(f"[{_LETTERS}0-9]+"), 'digits or letters, for example "3"'),
+    "position": (re.compile(f"[{_LETTERS}0-9]+[′″]*"), 'digits or letters, for example "1′"'),
+    "guide": (re.compile(f"[{_LETTERS}0-9 .,()/–-]+"), 'letters and digits, for example "x–x"'),
+}
+"""How names are spelt that stand on sheets with their ends as indices, and what to say of others."""
 
 
 def check_names(data: dict[str, Any]) -> Iterator[Found]:
@@ -63,6 +75,8 @@ class _Names:
         self.guides: dict[str, dict[str, Any]] = {}
 
     def check(self) -> Iterator[Found]:
+        for name in self.on[FRAME]:
+            yield from self.spelt(("points", name), name, "point")
         yield from self.crank()
         yield from self.guide_names()
         for path, group in _tables(self.data, "group"):
@@ -72,9 +86,17 @@ class _Names:
         yield from self.links()
         yield from self.uses()
 
+    @staticmethod
+    def spelt(path: KeyPath, name: Any, what: str) -> Iterator[Found]:
+        """Names that the lettering cannot set, or that would run into others."""
+        pattern, expected = SPELLINGS[what]
+        if isinstance(name, str) and name.strip() and not pattern.fullmatch(name):
+            yield path, f'"{name}" is no name of a {what}: expected {expected}', ""
+
     def define(self, path: KeyPath, name: Any, *links: str) -> Iterator[Found]:
         if not isinstance(name, str):
             return
+        yield from self.spelt(path, name, "point")
         if name in self.points:
             yield path, f'the point "{name}" is there already', "give it another name"
         self.points.add(name)
@@ -95,7 +117,10 @@ class _Names:
                 yield ("group",), "groups need a [crank] they are attached to", ""
             return
         link = str(crank.get("link", "1"))
-        self.on[link] = set()
+        yield from self.spelt(("crank", "link"), link, "link")
+        if link == FRAME:
+            yield ("crank", "link"), f'"{FRAME}" is the frame', "give each moving link its own number, beginning with 1"
+        self.on.setdefault(link, set())
         yield from self.known(("crank", "pivot"), crank.get("pivot"), self.on[FRAME], "fixed point")
         if isinstance(crank.get("pivot"), str):
             self.on[link].add(crank["pivot"])
@@ -106,6 +131,7 @@ class _Names:
         for path, guide in _tables(self.data, "guide"):
             name = guide.get("name")
             if isinstance(name, str):
+                yield from self.spelt((*path, "name"), name, "guide")
                 if name in self.guides:
                     yield (*path, "name"), f'the guide "{name}" is there already', "give it another name"
                 self.guides[name] = guide
@@ -138,6 +164,7 @@ class _Names:
             yield from self.guide_use((*path, "guides", i), name)
         links = _words(group.get("links"))
         for i, link in enumerate(links):
+            yield from self.spelt((*path, "links", i), link, "link")
             if link in self.on or link in links[:i]:
                 yield (*path, "links", i), f'the link "{link}" is there already', "give each link its own number"
         self.join(kind, links, outer)
@@ -220,16 +247,44 @@ class _Names:
     def uses(self) -> Iterator[Found]:
         moving = set(self.on) - {FRAME}
         cycle = _table(self.data, "cycle")
-        seen: set[str] = set()
+        taken = self.taken_by_loads()
         for path, force in [*_tables(self.data, "force"), *_tables(self.data, "moment")]:
             link = force.get("link")
             yield from self.known((*path, "link"), link, moving, "link")
             if path[0] == "force" and isinstance(link, str) and link in self.on:
                 yield from self.known((*path, "point"), force.get("point"), self.on[link], f"point of link {link}")
-            name = force.get("name")
-            if isinstance(name, str) and name in seen:
-                yield (*path, "name"), f'"{name}" is there already', "give it another name"
-            seen.add(str(name))
-        yield from self.known(("cycle", "output"), cycle.get("output"), self.points, "point")
-        for i, name in enumerate(_words(cycle.get("diagrams"))):
-            yield from self.known(("cycle", "diagrams", i), name, self.points | moving, "point or link")
+            yield from self.symbol((*path, "name"), force.get("name"), taken)
+        yield from self.symbol(("balancing", "name"), _table(self.data, "balancing").get("name"), taken)
+        wandering = self.points - self.on[FRAME]
+        for path, name, among, what in (
+            (("cycle", "output"), cycle.get("output"), wandering, "point"),
+            *((("cycle", "diagrams", i), name, wandering | moving, "point or link")
+              for i, name in enumerate(_words(cycle.get("diagrams")))),
+        ):  # fmt: skip
+            if isinstance(name, str) and name in self.on[FRAME] - moving:
+                yield path, f"{name} is a fixed point: it has no motion", f"points that move are {', '.join(sorted(wandering))}"
+            else:
+                yield from self.known(path, name, among, what)
+        for label in _table(cycle, "extra"):
+            yield from self.spelt(("cycle", "extra", label), label, "position")
+        yield from self.spelt(("cycle", "zero"), cycle.get("zero"), "position")
+
+    def symbol(self, path: KeyPath, name: Any, taken: dict[str, str]) -> Iterator[Found]:
+        """A force, a moment or what drives the crank: its sign must not be that of another load."""
+        yield from self.spelt(path, name, "force")
+        if isinstance(name, str):
+            if name in taken:
+                yield path, f'"{name}" is {taken[name]}', "give it another name"
+            taken[name] = "there already"
+
+    def taken_by_loads(self) -> dict[str, str]:
+        """Signs of weights, inertia loads and reactions, and what they stand for."""
+        links = sorted(self.on)
+        taken = {f"F{pair_index(j, k)}": f"the force on link {j} from link {k}" for j in links for k in links if j != k}
+        for table in (table for _, table in _tables(self.data, "link") if isinstance(table.get("name"), str)):
+            link = table["name"]
+            if table.get("mass"):
+                taken |= {f"G{link}": f"the weight of link {link}", f"Fи{link}": f"the force of inertia of link {link}"}
+            if table.get("inertia"):
+                taken[f"Mи{link}"] = f"the moment of inertia forces of link {link}"
+        return taken

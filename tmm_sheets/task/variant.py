@@ -40,12 +40,23 @@ from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
 # --- numbers: SI values with their ranges ---------------------------------------------------------------------------
 
 
+LEAST, GREATEST = 1e-12, 1e12
+"""Sizes of numbers in SI that any machine may have, zero besides: powers and products of what lies beyond are no numbers."""
+
+
+def _parse(value: Any, quantity: units.Quantity) -> float:
+    found = units.parse(value, quantity)
+    if found and not LEAST <= abs(found) <= GREATEST:
+        raise ValueError(f"expected a {quantity.name} of {LEAST:g} to {GREATEST:g} in SI units, not {value!r}; is the unit right?")
+    return found
+
+
 def _si(quantity: units.Quantity) -> BeforeValidator:
-    return BeforeValidator(lambda value: units.parse(value, quantity))
+    return BeforeValidator(lambda value: _parse(value, quantity))
 
 
 def _si_or(word: str, quantity: units.Quantity) -> BeforeValidator:
-    return BeforeValidator(lambda value: value if value == word else units.parse(value, quantity))
+    return BeforeValidator(lambda value: value if value == word else _parse(value, quantity))
 
 
 def _range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
@@ -57,10 +68,16 @@ def _range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
     return AfterValidator(check)
 
 
-def _whole(least: int) -> BeforeValidator:
+MOST = 100_000
+"""Greatest count: teeth, positions."""
+
+
+def _whole(least: int, most: int = MOST) -> BeforeValidator:
     def check(value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise ValueError(f"expected a whole number, {least} or more")
+        if value > most:
+            raise ValueError(f"expected a whole number of {most} or less")
         return value
 
     return BeforeValidator(check)
@@ -122,7 +139,7 @@ def _direction(value: Any) -> float | str:
     if isinstance(value, str) and value in ("against motion", "along motion"):
         return value
     try:
-        return units.parse(value, units.ANGLE)
+        return _parse(value, units.ANGLE)
     except ValueError:
         raise ValueError('expected "against motion", "along motion" or an angle, for example "30 deg"') from None
 
@@ -132,7 +149,7 @@ def _through(value: Any) -> str | tuple[float, float]:
     if isinstance(value, str) and value.strip():
         return value
     if isinstance(value, list) and len(value) == 2:
-        return units.parse(value[0], units.LENGTH), units.parse(value[1], units.LENGTH)
+        return _parse(value[0], units.LENGTH), _parse(value[1], units.LENGTH)
     raise ValueError('expected the name of a point or two coordinates, for example ["0 m", "0.33 m"]')
 
 
@@ -156,8 +173,8 @@ Pressure = Annotated[float, _si(units.PRESSURE)]
 
 def diagram(pairs: Sequence[tuple[Any, Any]], argument: units.Quantity, value: units.Quantity) -> tuple[list[float], list[float]]:
     """Arguments and values of a diagram in SI; ValueError where a unit is wrong or the arguments do not rise."""
-    x = [units.parse(p[0], argument) for p in pairs]
-    y = [units.parse(p[1], value) for p in pairs]
+    x = [_parse(p[0], argument) for p in pairs]
+    y = [_parse(p[1], value) for p in pairs]
     if any(b < a for a, b in pairwise(x)):
         raise ValueError("expected arguments that rise from pair to pair")
     return x, y
@@ -365,6 +382,8 @@ class Cycle(Table):
 
     @model_validator(mode="after")
     def _whole_turn(self) -> Self:
+        if self.start != "dead" and self.positions is None:
+            raise ValueError("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12")
         if self.start == "dead":
             absent = [k for k in ("output", "working_sense", "working", "idle") if getattr(self, k) is None]
             if absent:
@@ -758,6 +777,8 @@ class Cam(Table):
     def _phases_fit(self) -> Self:
         if self.rise <= 0 or self.fall <= 0:
             raise ValueError("expected a rise and a fall greater than 0 deg")
+        if min(self.rise, self.fall) < units.parse("0.1 deg", units.ANGLE):
+            raise ValueError("expected a rise and a fall of 0.1 deg or more")
         if self.rise + self.upper_dwell + self.fall > units.parse("360.000001 deg", units.ANGLE):
             raise ValueError("expected rise, upper_dwell and fall of 360 deg together or less")
         return self

@@ -17,7 +17,7 @@ import numpy as np
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.plan import pair_index
+from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at

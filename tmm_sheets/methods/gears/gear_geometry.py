@@ -198,7 +198,7 @@ def _wheel(i: int, data: GearData, alpha_w: float, ra: float, t_tip: float, t_lo
     rf = m * (z / 2 - ha - c + x)
     s = m * (pi / 2 + 2 * x * tan(alpha))
     # The least whole number of teeth free of undercut (17), as the manuals take it, not the exact 17.097.
-    z_min = floor(2 * ha / sin(alpha) ** 2)
+    z_min = max(floor(2 * ha / sin(alpha) ** 2), 1)
     half = s / (2 * r) + involute(alpha)
     rack = Rack(m, alpha, ha, c, z, x)
     if data.profile == "rack":

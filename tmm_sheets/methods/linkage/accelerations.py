@@ -13,7 +13,8 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan, on_link
+from tmm_sheets.construction.indices import on_link
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.positions import Positions
@@ -91,7 +92,7 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None) -> Accelerations:
     centre, pin = pos.points[c.pivot], pos.points[c.pin]
     b_name = plan_name(plan, c.pin)
     if np.any(np.asarray(eps) != 0):
-        n = plan.add("n1", NORMAL, pole, vel.omega[c.link], centre, pin)
+        n = plan.add("n1" if b_name != "n1" else plan.free("n1′"), NORMAL, pole, vel.omega[c.link], centre, pin)
         b = plan.add(b_name, TANGENTIAL, n, acc.epsilon[c.link], centre, pin)
         plan.vector(f"a̅_{c.pin}^n", pole, n)
         plan.vector(f"a̅_{c.pin}^τ", n, b)

@@ -146,6 +146,9 @@ def _strokes(m: Mechanism, output: str, first: float, begin: float, runs: tuple[
     width = working_stroke(runs)[1]
     out = np.asarray(position_plan(m, np.array([first, first + m.crank.sense * width])).points[output].value)
     path = complex(out[1] - out[0])
+    if not abs(path) > 0:
+        raise CannotBuild(f"point {output} has no stroke: it is in one place in both dead positions",
+                          'name another output, or give the crank angle of position 0 instead: start = "90 deg"')
     return Strokes(output, begin, begin + width, path / abs(path), abs(path), complex(out[0]), tuple(r.later(begin) for r in runs))
 
 
@@ -219,11 +222,13 @@ def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[complex, complex] |
         return plan, _dead_rocker(m, plan, centre, group)
     if group.kind == 2 and m.guides[group.guides[0]].link == m.frame:
         guide = m.guides[group.guides[0]]
-        through = plan.add(f"{guide.name}₀", rules.GIVEN, near_point(m, guide))
-        along = plan.add(guide.name, rules.GIVEN_DIRECTION, unit(guide.direction))
+        through = plan.add(plan.free(f"{guide.name}₀"), rules.GIVEN, near_point(m, guide))
+        along = plan.add(plan.free(guide.name), rules.GIVEN_DIRECTION, unit(guide.direction))
         ends = [plan.add(f"{group.inner}{prime}", rules.ARC_LINE, centre, abs(group.lengths[0] + sign * c.length), through, along,
                          group.side) for prime, sign in (("′", 1), ("″", -1))]
     elif group.kind == 1 and group.outer[0] == c.pin and group.outer[1] in m.fixed:
+        if not abs(m.fixed[group.outer[1]] - m.fixed[c.pivot]):
+            return None, None  # rod and rocker turn about the crank's pivot with it
         pivot = plan.add(group.outer[1], rules.GIVEN, m.fixed[group.outer[1]])
         rod, rocker = group.lengths
         ends = [plan.add(f"{group.inner}{prime}", rules.ARC_ARC, centre, abs(rod + sign * c.length), pivot, rocker, group.side)
@@ -231,7 +236,7 @@ def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[complex, complex] |
     else:
         return None, None
     far, near = (complex(e.value - centre.value) for e in ends)
-    if np.isnan(far) or np.isnan(near) or not abs(near):
+    if np.isnan(far) or np.isnan(near) or not abs(far) or not abs(near):
         return None, None
     fold = -1 if group.lengths[0] > c.length else 1
     return plan, (far / abs(far) * c.length, fold * near / abs(near) * c.length)

@@ -14,7 +14,8 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan, pair_index, symbol
+from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations

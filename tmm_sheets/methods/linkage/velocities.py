@@ -13,7 +13,8 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan, on_link
+from tmm_sheets.construction.indices import on_link
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.positions import Positions
