@@ -171,16 +171,23 @@ def geometry(s: State) -> Iterator[Residual]:
 
 
 def rigidity(s: State) -> Iterator[Residual]:
-    """Velocities and accelerations of points on one link, and of points that slide on another."""
+    """Velocities and accelerations of points on one link, and of points that slide on another.
+
+    A link turns as two of its points tell: half a unit in the last place of either's velocity turns it by that over their
+    distance, and moves a point as many times farther away by as many times more.
+    """
     fastest, sharpest = s.fastest, s.sharpest
     for link in s.m.links:
         names = [p.name for p in s.m.pairs if link in p.links and p.motion == "rotation"]
         names += [p.name for p in s.m.points if p.link == link]
         w, e = s.omega[link], s.epsilon[link]
+        told = s.velocities.reference.get(link)
+        base = s.size if told is None else np.abs(s.z[told[1]] - s.z[told[0]])
         for p in names[1:]:
             r = s.z[p] - s.z[names[0]]
-            yield "velocity closure", np.abs(s.v[p] - s.v[names[0]] - 1j * w * r) / fastest
-            yield "acceleration closure", np.abs(s.a[p] - s.a[names[0]] - (1j * e - w * w) * r) / sharpest
+            far = np.maximum(1.0, np.abs(r) / base)
+            yield "velocity closure", np.abs(s.v[p] - s.v[names[0]] - 1j * w * r) / (fastest * far)
+            yield "acceleration closure", np.abs(s.a[p] - s.a[names[0]] - (1j * e - w * w) * r) / (sharpest * far)
     for g in s.m.groups:
         for name in g.guides if g.kind in (2, 4) else ():
             guide = s.m.guides[name]
