@@ -250,8 +250,7 @@ class _DxfReader:
 
     def paper(self, layout: Any, model: DrawingSpace) -> DrawingSpace:
         """A sheet of paper space together with what its viewports show of the model."""
-        alone = self.space(f'layout "{words(layout.name, self.document.encoding)}"', layout)
-        space = replace(alone, paper=True)
+        space = replace(self.space(f'layout "{words(layout.name, self.document.encoding)}"', layout), paper=True)
         for port in layout.query("VIEWPORT"):
             if port.dxf.get("id", 1) == 1 or not port.dxf.get("status", 1) or port.dxf.layer.lower() in self.hidden:
                 continue

@@ -95,8 +95,7 @@ class _ViewFinder:
         """Place the views from the file, then the others near their places or their texts, last those that are nowhere near."""
         for place, whole in given:
             self._place_given(place, whole)
-        lost = [v for v in self.views if v not in self.moves and not self._place_near(v)]
-        self._search(lost)
+        self._search([v for v in self.views if v not in self.moves and not self._place_near(v)])
         return Layout(self.moves, self.share, tuple(self.notes))
 
     def _place_given(self, place: ViewPlace, whole: Placing) -> None:
@@ -110,7 +109,7 @@ class _ViewFinder:
             self.notes.append(f"{_where(v, move)}, as --views says")
 
     def _place_near(self, v: ElementView) -> bool:
-        """Whether a view is in its place, near it or where its texts are, or there is too little of it to be sought elsewhere."""
+        """Place a view near its place or where its texts are; False if it must be sought elsewhere and is large enough for that."""
         self.share[v] = self._inked(v, Placing())
         if v.n == 0 or self.share[v] > 0.93:
             return True
