@@ -19,8 +19,8 @@ import ezdxf
 import numpy as np
 
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_drawing as by_cad
 from tmm_sheets.compare.cad import cad_file, layout, matching
+from tmm_sheets.compare.cad.laying import lay
 from tmm_sheets.compare.cad.placing import Placing, lines
 from tmm_sheets.compare.elements import Element, elements
 from tmm_sheets.project import Project
@@ -243,9 +243,9 @@ def compared(data: bytes, sheet, found):
         path = Path(folder) / "drawing.dxf"
         path.write_bytes(data)
         ink = cad_file.read(path)
-    laid = by_cad._lay({1: sheet}, ink)
-    space = matching.placed(laid.space, laid.placing)
-    places = layout.find(found, lines(s.points for s in space.strokes), space.writings)
+    laid = lay({1: sheet}, ink)
+    space = laid.space.placed(laid.placing)
+    places = layout.find(found, space.lines, space.writings)
     return matching.match(found, space, places.moves, 0.25)
 
 

@@ -115,7 +115,7 @@ def test_paper_space_with_what_its_viewport_shows(path):
     layout.add_line((0, 0), (841, 0))
     layout.add_viewport(center=(200, 100), size=(100, 100), view_center_point=(0, 0), view_height=1.0)
     spaces = cad_file.read(saved(doc, path)).spaces
-    assert [s.name for s in spaces] == ["model space", 'layout "Layout1"']
+    assert [(s.name, s.paper) for s in spaces] == [("model space", False), ('layout "Layout1"', True)]
     shown = spaces[1].strokes[1].points
     assert shown == pytest.approx(np.array([200 + 100j, 250 + 100j]))
 

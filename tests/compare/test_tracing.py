@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.elements import Element, View
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
@@ -13,7 +13,7 @@ from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6
-VIEW = View(0, "view", "view", Box(0, 0, 841, 594))
+VIEW = ElementView(0, "view", "view", Box(0, 0, 841, 594))
 
 
 def line(number, a, b, style="main"):

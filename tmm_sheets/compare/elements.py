@@ -1,16 +1,16 @@
-"""What stands on a sheet as whoever draws it sees it: not marks but lines, arrows, circles, curves, hatchings and lettering.
+"""A sheet as its draughtsman sees it: lines, arrows, circles, curves, hatchings and lettering instead of marks.
 
-A :class:`~tmm_sheets.sheets.sheet.Composed` sheet keeps its marks (see ``drawing/marks.py``) with two things besides: the views
-and titled parts of views they belong to, and the groups that are one thing to the eye. :func:`elements` puts them together:
+A :class:`~tmm_sheets.sheets.sheet.Composed` sheet has, besides its marks (see ``drawing/marks.py``), the views and titled parts of
+views they belong to and the groups that are one thing to the eye. :func:`elements` puts these together:
 
 - an arrow is one element of kind line (or arc), its tip the last point of ``points``; the head is in ``fills``;
 - a dimension line with its heads is one line, its number another element (text);
-- a dashed line is one element in full length: where its ink is, say the ``strokes`` of :func:`dashed`;
-- a curve through many points on one straight line (the path of a slider) is a line;
+- a dashed line is one element of full length; :func:`dashed` tells where its ink is;
+- a polyline through collinear points (the path of a slider) is a line;
 - a hatching is one element, its strokes are in ``pieces``;
 - a letter with its indices, overbars and leader line is one text: ``text`` has the letters in reading order, without markup.
 
-All places are complex, mm of the sheet, x right, y up (as everywhere in ``drawing``).
+Points are complex, mm of the sheet, x to the right, y up (as everywhere in ``drawing``).
 """
 
 from __future__ import annotations
@@ -34,22 +34,26 @@ from tmm_sheets.sheets.sheet import Composed
 Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
 
 STRAIGHT = 0.01
-"""Points this near to one chord, mm, are a straight line."""
+"""Points within this distance of a chord, mm, are on a straight line."""
 REACH = 2.5
-"""How far from a line's end a label's anchor may lie to name it, mm (a hinge's circle and a little more)."""
+"""How far from a line's end a label's anchor may be to name it, mm (the radius of a hinge and a little more)."""
 NAMES = {"title block": "Рамка и основная надпись"}
-"""Views without a title on the sheet."""
+"""Names of views that have no title on the sheet."""
 SAGITTA = 0.005
-"""Between an arc and the chords it is given as in ``points``, mm."""
+"""Sagitta of the chords by which ``points`` approximates an arc, mm."""
 
 
 @dataclass(frozen=True)
-class View:
-    """A place on the sheet with something drawn to a scale of its own.
+class ElementView:
+    """A part of the sheet with a scale of its own.
 
-    ``name`` is its title on the sheet in Russian, without lettering markup ("Планы положений механизма"); where the sheet gives it
-    none, the arrangement's name for it ("cam.table"). Equal names of one sheet are numbered: "…, 2". ``draw`` is the arrangement's
-    name in any case, ``box`` its place, ``n`` its number on the sheet from 0 (0 is the frame with the title block).
+    Attributes
+    ----------
+    n : number on the sheet, from 0 (the frame with the title block)
+    name : title on the sheet in Russian, without lettering markup ("Планы положений механизма"), or ``draw`` where it has none;
+        of equal names on one sheet the second is "…, 2"
+    draw : the arrangement's name for it ("cam.table")
+    box : its place on the sheet
     """
 
     n: int
@@ -60,30 +64,30 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class Element:
-    """One thing on a sheet.
+    """One thing on a sheet, a line or a text for instance.
 
     Attributes
     ----------
     number : from 1, the same for the same sheet of the same project
     view : the view it belongs to
-    name : what to call it in a report: letters at its ends ("B(3)–C(3)") or on it ("p–b"), the text itself for lettering, else the
-        construction step ("position plan 3", "force-4–5") when that is more than the view, or an empty string. Not unique.
+    name : what a report calls it: the letters at its ends ("B(3)–C(3)") or on it ("p–b"), the text itself for lettering, else the
+        construction step ("position plan 3", "force-4–5") if that says more than the view, else empty. Not unique.
     kind : "line", "arc", "circle" (also filled dots), "curve", "text", "hatch", "fill" (heads without a line, quadrants)
     points : centre line, complex, shape (n,), mm: both ends of a line (the tip of an arrow last), an arc or circle in chords
-        with a sagitta of 0.005 mm, a curve's own vertices (the first again at the end when closed); text: the four corners
-        round it, from the lower left counter-clockwise; hatch and fill: the outline or bounding rectangle, closed
+        with a sagitta of 0.005 mm, a curve's own vertices (the first again at the end if closed); text: the four corners
+        of its box, counter-clockwise from the lower left; hatch and fill: the outline or bounding rectangle, closed
     style : line type of ``templates/linetypes.toml``
-    of : what drew it: the view or a step's name
-    centre, radius : of arcs and circles
+    of : what drew it: the name of the view or of a construction step
+    centre, radius : of arcs and circles, mm
     start, end : angles of an arc, rad, counter-clockwise
-    text, height, angle : of lettering: letters in reading order, height of a capital mm, rad
-    fills : filled polygons that belong to it: arrow heads
-    pieces : the strokes of a hatching or the marks of lettering's bars and leader, each an array of points
-    marks : the marks it was put together from
+    text, height, angle : of lettering: letters in reading order, height of a capital, mm, and direction, rad
+    fills : its filled polygons: arrow heads
+    pieces : the strokes of a hatching, or the bars and leader line of lettering, each an array of points
+    marks : the marks it consists of
     """
 
     number: int
-    view: View
+    view: ElementView
     name: str
     kind: Kind
     points: Points
@@ -107,56 +111,47 @@ class Element:
 
     @property
     def arrow(self) -> bool:
-        """Whether it has a head."""
+        """Whether it has an arrow head."""
         return bool(self.fills) and self.kind in ("line", "arc")
 
     @property
     def middle(self) -> complex:
-        """The middle of its bounding rectangle."""
+        """The middle of its bounding rectangle, mm."""
         z = self.points
         return complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
 
 
-def views(sheet: Composed) -> tuple[View, ...]:
-    """The views of a sheet in the order they are drawn, the frame first; what has its own title within a view counts as one."""
+def views(sheet: Composed) -> tuple[ElementView, ...]:
+    """The views of a sheet in drawing order, the frame first; a titled part of a view is a view."""
     return _views(sheet)[0]
 
 
 def elements(sheet: Composed) -> tuple[Element, ...]:
-    """Every element of a sheet, in drawing order, labels last.
-
-    Parameters
-    ----------
-    sheet : as ``sheets.sheet.composed`` returns it
-
-    Returns
-    -------
-    Elements numbered from 1. Together they have every mark of the sheet exactly once.
-    """
+    """The elements of a sheet in drawing order, labels last, numbered from 1; every mark belongs to exactly one."""
     found, of_part = _views(sheet)
     starts = np.array([p.first for p in sheet.parts])
     marks = sheet.drawing.marks
     out: list[Element] = []
     for first, end, group in _groups(marks, sheet.groups):
         part = group.part if group is not None and group.part >= 0 else int(np.searchsorted(starts, first, "right")) - 1
-        out.extend(_element(len(out) + 1, found[of_part[part]], list(marks[first:end]), group))
+        out.append(_element(len(out) + 1, found[of_part[part]], marks[first:end], group))
     return tuple(_named(out, sheet.groups, tuple(found[k] for k in of_part)))
 
 
 def dashed(element: Element) -> tuple[Points, ...]:
-    """Where the element has ink: its line as it is, or the single strokes of a dashed one, each an array of points."""
+    """Where an element has ink: the strokes of a dashed line, hatching or text, else its line; each an array of points, mm."""
     if element.kind in ("hatch", "text"):
         return element.pieces
     return tuple(_line(m) for m in dashes.strokes(element.marks) if not isinstance(m, Fill | Text))
 
 
 def said(markup: str) -> str:
-    """The letters of lettering markup in reading order: M_{пр}^Д is MпрД."""
+    """The letters of lettering markup in reading order: "MпрД" for ``M_{пр}^Д``."""
     return "".join(run.text for run in letter(markup, 5.0).runs)
 
 
 def sampled(points: Points, step: float = 0.5) -> tuple[Points, Points]:
-    """Places along a line at most ``step`` mm apart with the unit normal at each (to the left of the way), both complex."""
+    """Points along a polyline at most ``step`` mm apart, and the unit normal at each, to the left of its direction."""
     run = np.abs(np.diff(points))
     keep = np.concatenate(([True], run > 1e-9))
     points, run = points[keep], run[run > 1e-9]
@@ -167,14 +162,14 @@ def sampled(points: Points, step: float = 0.5) -> tuple[Points, Points]:
     return points[k] + (t - along[k]) * unit, 1j * unit
 
 
-def _views(sheet: Composed) -> tuple[tuple[View, ...], list[int]]:
+def _views(sheet: Composed) -> tuple[tuple[ElementView, ...], list[int]]:
     """The views, and for every part of the sheet the number of its view.
 
-    What a view draws before its first title belongs to that title; a part of a view keeps marks of its own only. Views an
-    arrangement names but a project has no use for do not count.
+    What a view draws before its first title belongs to that title. Parts without marks or labels are no views: a project does not
+    need all that its arrangement names.
     """
     firsts = [p.first for p in sheet.parts]
-    lettered = {g.part for g in sheet.groups}
+    labelled = {g.part for g in sheet.groups}
     found: list[tuple[str, str, Box]] = []
     of_part: list[int] = []
     untitled = False
@@ -183,39 +178,41 @@ def _views(sheet: Composed) -> tuple[tuple[View, ...], list[int]]:
         before = len(found)
         if title and untitled and found[-1][1] == part.draw:
             found[-1] = (title, part.draw, found[-1][2])
-        elif end > part.first or n in lettered or not found:
+        elif end > part.first or n in labelled or not found:
             found.append((title or NAMES.get(part.draw, part.draw), part.draw, part.box))
         of_part.append(len(found) - 1)
         untitled = not title and len(found) > before
+    return tuple(_numbered(found)), of_part
+
+
+def _numbered(found: Sequence[tuple[str, str, Box]]) -> Iterator[ElementView]:
     count: Counter[str] = Counter()
-    named = []
     for n, (name, draw, box) in enumerate(found):
         count[name] += 1
-        named.append(View(n, name if count[name] == 1 else f"{name}, {count[name]}", draw, box))
-    return tuple(named), of_part
+        yield ElementView(n, name if count[name] == 1 else f"{name}, {count[name]}", draw, box)
 
 
 def _groups(marks: Sequence[Mark], groups: Sequence[Group]) -> Iterator[tuple[int, int, Group | None]]:
-    """Ranges of marks that are one thing, in order: the groups, hatch lines in a row, single marks."""
+    """Ranges of marks that are one thing, in order: groups, consecutive hatch lines, single marks."""
     begin = {g.first: g for g in groups}
     i = 0
     while i < len(marks):
         group, end = begin.get(i), i + 1
         if group is not None:
             end = group.end
-        elif (mark := marks[i]) and isinstance(mark, Line) and mark.style == "hatch":
-            while end < len(marks) and end not in begin and _continues(mark, marks[end]):
+        elif _hatch_line(marks[i]):
+            while end < len(marks) and end not in begin and _hatch_line(marks[end]) and marks[end].of == marks[i].of:
                 end += 1
         yield i, end, group
         i = end
 
 
-def _continues(hatch: Line, mark: Mark) -> bool:
-    return isinstance(mark, Line) and (mark.style, mark.of) == ("hatch", hatch.of)
+def _hatch_line(mark: Mark) -> bool:
+    return isinstance(mark, Line) and mark.style == "hatch"
 
 
 def _line(mark: Mark) -> Points:
-    """Centre line of a mark."""
+    """Centre line of a mark, outline of a filled one, corners of a text's box."""
     if isinstance(mark, Line):
         return np.array([mark.a, mark.b])
     if isinstance(mark, Arc):
@@ -228,40 +225,47 @@ def _line(mark: Mark) -> Points:
     return np.append(points, points[:1]) if isinstance(mark, Fill) or mark.closed else points
 
 
-def _element(number: int, view: View, marks: list[Mark], group: Group | None) -> Iterator[Element]:
-    kind = group.kind if group is not None else ""
-    mark, of, all_ = marks[0], marks[0].of, tuple(marks)
+def _element(number: int, view: ElementView, marks: Sequence[Mark], group: Group | None) -> Element:
+    """The element that consists of some marks."""
+    grouped = group.kind if group is not None else ""
+    whole, of = tuple(marks), marks[0].of
     fills = tuple(np.asarray(m.points) for m in marks if isinstance(m, Fill))
     lines = [m for m in marks if not isinstance(m, Fill | Text)]
-    texts = [m for m in marks if isinstance(m, Text)]
-    if kind == "lettering" and texts:
-        words = "".join(t.text for t in texts)
-        base = texts[0]
-        yield Element(number, view, words, "text", _around(texts), "text", of, text=words, height=max(t.height for t in texts),
-                      angle=base.angle, pieces=tuple(map(_line, lines)), marks=all_)
-    elif kind == "dot":
-        z = fills[0]
-        centre = complex(z.mean())
-        yield Element(number, view, "", "circle", np.append(z, z[:1]), str(getattr(mark, "style", "")), of, centre,
-                      float(abs(z[0] - centre)), 0.0, 2 * pi, fills=fills, marks=all_)
-    elif kind == "hatch" or (isinstance(mark, Line) and mark.style == "hatch"):
+    if any(isinstance(m, Text) for m in marks):
+        return _lettering(number, view, whole)
+    if grouped == "dot":
+        outline = _line(marks[0])
+        centre = complex(fills[0].mean())
+        return Element(number, view, "", "circle", outline, _style(marks[0]), of, centre, float(abs(outline[0] - centre)), 0.0,
+                       2 * pi, fills=fills, marks=whole)
+    if grouped == "hatch" or _hatch_line(marks[0]):
         pieces = tuple(map(_line, lines))
-        yield Element(number, view, "", "hatch", _rectangle(np.concatenate(pieces)), "hatch", of, pieces=pieces, marks=all_)
-    elif not lines and fills:
-        yield Element(number, view, "", "fill", np.append(fills[0], fills[0][:1]), str(getattr(mark, "style", "")), of, fills=fills,
-                      marks=all_)
-    else:
-        yield _drawn(number, view, lines, fills, all_)
+        return Element(number, view, "", "hatch", _rectangle(np.concatenate(pieces)), "hatch", of, pieces=pieces, marks=whole)
+    if not lines:
+        return Element(number, view, "", "fill", _line(marks[0]), _style(marks[0]), of, fills=fills, marks=whole)
+    return _drawn(number, view, lines, fills, whole)
+
+
+def _style(mark: Mark) -> str:
+    return "" if isinstance(mark, Text) else mark.style
+
+
+def _lettering(number: int, view: ElementView, marks: tuple[Mark, ...]) -> Element:
+    texts = [m for m in marks if isinstance(m, Text)]
+    words = "".join(t.text for t in texts)
+    strokes = tuple(_line(m) for m in marks if not isinstance(m, Fill | Text))
+    return Element(number, view, words, "text", _around(texts), "text", marks[0].of, text=words,
+                   height=max(t.height for t in texts), angle=texts[0].angle, pieces=strokes, marks=marks)
 
 
 def _drawn(
-    number: int, view: View, lines: list[Line | Arc | Polyline], fills: tuple[Points, ...], marks: tuple[Mark, ...],
+    number: int, view: ElementView, lines: list[Line | Arc | Polyline], fills: tuple[Points, ...], marks: tuple[Mark, ...],
 ) -> Element:
-    """A line with the heads that belong to it. Of several strokes (a dimension's outer arrows) all lie on one line."""
+    """A line, arc or curve with its heads. Of several strokes (the arrows outside a short dimension) all lie on one line."""
     mark = lines[0]
     if isinstance(mark, Arc):
-        whole = mark.end - mark.start > 2 * pi - 1e-9
-        return Element(number, view, "", "circle" if whole else "arc", _line(mark), mark.style, mark.of, mark.centre, mark.radius,
+        full = mark.end - mark.start > 2 * pi - 1e-9
+        return Element(number, view, "", "circle" if full else "arc", _line(mark), mark.style, mark.of, mark.centre, mark.radius,
                        mark.start, mark.end, fills=fills, marks=marks)
     points = np.concatenate([_line(m) for m in lines])
     u = points[np.abs(points - points[0]).argmax()] - points[0]
@@ -277,7 +281,7 @@ def _drawn(
 
 
 def _around(texts: list[Text]) -> Points:
-    """Corners of the rectangle round runs of one angle, the lower left one on top of the lowest baseline's ground."""
+    """Corners of the rectangle round texts of one direction, counter-clockwise from the lower left."""
     u = complex(np.cos(texts[0].angle), np.sin(texts[0].angle))
     z = np.concatenate([text_box(t) for t in texts]) / u
     x0, x1, y0, y1 = z.real.min(), z.real.max(), z.imag.min(), z.imag.max()
@@ -289,9 +293,9 @@ def _rectangle(z: Points) -> Points:
     return np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1), complex(x0, y0)])
 
 
-def _named(found: list[Element], groups: Sequence[Group], view_of_part: tuple[View, ...]) -> Iterator[Element]:
-    """The elements with the names the sheet's labels give them: each label knows the point it was asked for."""
-    anchors: dict[View, tuple[list[complex], list[str]]] = {}
+def _named(found: list[Element], groups: Sequence[Group], view_of_part: tuple[ElementView, ...]) -> Iterator[Element]:
+    """The elements, named by the labels of the sheet: a label knows the point it was asked for."""
+    anchors: dict[ElementView, tuple[list[complex], list[str]]] = {}
     for g in groups:
         if g.anchor is not None:
             places, words = anchors.setdefault(view_of_part[g.part], ([], []))
@@ -307,7 +311,7 @@ def _named(found: list[Element], groups: Sequence[Group], view_of_part: tuple[Vi
 
 
 def _name(e: Element, places: Points, words: list[str]) -> str:
-    """Letters at both ends, at the centre, or on the line."""
+    """The labels at both ends of a line or on it, or at the centre of a circle."""
 
     def at(z: complex, reach: float) -> str:
         off = np.abs(places - z)

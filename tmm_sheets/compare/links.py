@@ -1,6 +1,6 @@
-"""Lines that lead from one view to another, as rays by which a diagram is built from the one above it.
+"""Lines that lead from one view to another, such as the rays that carry points of a diagram to the one below it.
 
-In a layout of one's own they lead elsewhere, or are not drawn at all.
+A student with another layout draws them elsewhere, or not at all.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.elements import Element, View
+from tmm_sheets.compare.elements import Element, ElementView
 
 BEYOND = 15.0
-"""How far such a line reaches out of what else its view has, mm."""
+"""How far such a line must reach beyond everything else in its view, mm."""
 STYLES = {"construction", "thin", "centre"}
 
 
 def links(elements: Sequence[Element]) -> frozenset[int]:
-    """Numbers of the elements of a sheet that lead out of their views."""
-    places: dict[View, list[Element]] = {}
+    """Numbers of the elements that lead out of their views."""
+    places: dict[ElementView, list[Element]] = {}
     for e in elements:
         if e.view.n and e.style not in STYLES:
             places.setdefault(e.view, []).append(e)

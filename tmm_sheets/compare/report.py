@@ -1,4 +1,4 @@
-"""What every comparison ends with."""
+"""The report every comparison ends with."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 Verdict = Literal["green", "amber", "red"]
-"""Within the error of a pencil; within twice that; beyond."""
+"""Within the tolerance of a pencil; within twice that; beyond."""
 
 
 def verdict(deviation: float, tolerance: float) -> Verdict:
-    """Judge a deviation by the error a careful pencil may make there."""
+    """Judge a deviation against the error a careful draughtsman may make there, in the same unit."""
     share = abs(deviation) / tolerance
     return "green" if share <= 1 else "amber" if share <= 2 else "red"
 
@@ -21,8 +21,12 @@ def verdict(deviation: float, tolerance: float) -> Verdict:
 class Report:
     """The outcome of a comparison.
 
-    ``text`` is the table for the terminal, ``tree`` the same for JSON (None where there is no number), ``files`` what is to be
-    written beside it by file name (overlays), ``notes`` what was mended or is worth a warning, a line each.
+    Attributes
+    ----------
+    text : the table for the terminal
+    tree : the same for JSON, None where there is no number
+    files : what to write beside it (overlays), by file name
+    notes : what was mended or deserves a warning, one line each
     """
 
     text: str
@@ -31,5 +35,5 @@ class Report:
     notes: tuple[str, ...] = ()
 
     def as_json(self) -> str:
-        """The outcome for other programs."""
+        """The outcome as JSON."""
         return json.dumps(self.tree, ensure_ascii=False, indent=1, allow_nan=False)

@@ -1,6 +1,6 @@
-"""The file of --views: where views of a sheet stand in a photograph or a CAD drawing that has a layout of its own.
+"""The file of --views: where the views of a sheet are in a photograph or CAD drawing with another layout.
 
-A TOML file with a table for each view that is not in its place::
+It is a TOML file with a table for each view that is not in its place::
 
     [[view]]
     name = "План ускорений (положение 2)"     # its title on our sheet, or the arrangement's name for it (kinematics.structure)
@@ -9,13 +9,14 @@ A TOML file with a table for each view that is not in its place::
                                               # its units
     mu = 0.02                                 # may be left out: the scale factor the student took for it, in the unit of ours
 
-With ``mu`` one point is enough; of two the second then only says how the view is turned.
+With ``mu`` one point is enough; a second one then only tells how the view is turned.
 """
 
 from __future__ import annotations
 
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -24,27 +25,27 @@ from pathlib import Path
 from typing import Any
 
 from tmm_sheets import texts
-from tmm_sheets.compare.elements import Element, View
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.errors import BadInput, Problem
 
 
 @dataclass(frozen=True)
 class ViewPlace:
-    """One view's place: points of our sheet, mm, and the same in the image or drawing; ``mu`` is None when left out."""
+    """The place of one view: points of our sheet, mm, and the same points in the image, pixels, or in the drawing, its units."""
 
-    view: View
+    view: ElementView
     ours: tuple[complex, ...]
     theirs: tuple[complex, ...]
     mu: float | None = None
 
 
-def read(path: Path, views: Sequence[View]) -> tuple[ViewPlace, ...]:
+def read(path: Path, views: Sequence[ElementView]) -> tuple[ViewPlace, ...]:
     """Read a file of places.
 
     Raises
     ------
     BadInput
-        When it cannot be read, names a view the sheet does not have, or lacks points; every problem is told.
+        If it cannot be read, names a view the sheet does not have, or lacks points; it tells every problem.
     """
     try:
         data = tomllib.loads(texts.cleaned(texts.decoded(path.read_bytes()).text))
@@ -57,79 +58,101 @@ def read(path: Path, views: Sequence[View]) -> tuple[ViewPlace, ...]:
         raise BadInput(Problem("has no [[view]] table", str(path), field="view",
                                hint="each view needs name, ours = [[x, y], [x, y]], theirs = [[x, y], [x, y]]"))
     problems: list[Problem] = []
-    found = [_place(t, f"view[{k}]", str(path), views, problems) for k, t in enumerate(tables, 1)]
-    named = [p.view.name for p in found if p is not None]
-    problems += [Problem(f'view "{name}" is given twice', str(path)) for name in sorted({n for n in named if named.count(n) > 1})]
+    found = [_Table(t, f"view[{k}]", str(path), problems).place(views) for k, t in enumerate(tables, 1)]
+    places = tuple(p for p in found if p is not None)
+    count = Counter(p.view.name for p in places)
+    problems += [Problem(f'view "{name}" is given twice', str(path)) for name in sorted(count) if count[name] > 1]
     if problems:
         raise BadInput(problems)
-    return tuple(p for p in found if p is not None)
+    return places
 
 
-def _place(table: dict[str, Any], field: str, path: str, views: Sequence[View], problems: list[Problem]) -> ViewPlace | None:
-    before = len(problems)
+@dataclass(frozen=True)
+class _Table:
+    """One ``[[view]]`` table, called ``field`` in messages; what is wrong with it goes to ``problems``."""
 
-    def wrong(key: str, message: str, hint: str = "") -> None:
-        problems.append(Problem(message, path, field=f"{field}.{key}" if key else field, hint=hint))
+    values: dict[str, Any]
+    field: str
+    path: str
+    problems: list[Problem]
 
-    for key in sorted(set(table) - {"name", "ours", "theirs", "mu"}):
-        wrong(key, "is not known here", "a view has name, ours, theirs and mu")
-    view = _view(table.get("name"), views)
-    if view is None:
-        names = [v.name for v in views]
-        near = get_close_matches(str(table.get("name")), names, n=3, cutoff=0.4)
-        wrong("name", f'the sheet has no view "{table.get("name")}"', "it has " + ", ".join(f'"{n}"' for n in near or names))
-    ours, theirs = (_points(table.get(key)) for key in ("ours", "theirs"))
-    for key, points in (("ours", ours), ("theirs", theirs)):
-        if points is None:
-            wrong(key, "expected points [[x, y], [x, y]]")
-    mu = table.get("mu")
-    if mu is not None and (not isinstance(mu, int | float) or isinstance(mu, bool) or not 0 < mu < inf):
-        wrong("mu", f"expected a positive number, not {mu!r}")
-        mu = None
-    if ours is not None and theirs is not None:
+    def place(self, views: Sequence[ElementView]) -> ViewPlace | None:
+        """The place it gives, None where something is wrong."""
+        before = len(self.problems)
+        for key in sorted(self.values.keys() - {"name", "ours", "theirs", "mu"}):
+            self._wrong(key, "is not known here", "a view has name, ours, theirs and mu")
+        view = self._view(views)
+        ours, theirs = _points(self.values.get("ours")), _points(self.values.get("theirs"))
+        for key, points in (("ours", ours), ("theirs", theirs)):
+            if points is None:
+                self._wrong(key, "expected points [[x, y], [x, y]]")
+        mu = self._mu()
+        if ours is not None and theirs is not None:
+            self._check_points(ours, theirs, mu)
+        if view is None or ours is None or theirs is None or len(self.problems) > before:
+            return None
+        return ViewPlace(view, ours, theirs, mu)
+
+    def _wrong(self, key: str, message: str, hint: str = "") -> None:
+        self.problems.append(Problem(message, self.path, field=f"{self.field}.{key}", hint=hint))
+
+    def _view(self, views: Sequence[ElementView]) -> ElementView | None:
+        view = _named(self.values.get("name"), views)
+        if view is None:
+            names = [v.name for v in views]
+            near = get_close_matches(str(self.values.get("name")), names, n=3, cutoff=0.4)
+            self._wrong("name", f'the sheet has no view "{self.values.get("name")}"',
+                        "it has " + ", ".join(f'"{n}"' for n in near or names))
+        return view
+
+    def _mu(self) -> float | None:
+        mu = self.values.get("mu")
+        if mu is None:
+            return None
+        if not isinstance(mu, int | float) or isinstance(mu, bool) or not 0 < mu < inf:
+            self._wrong("mu", f"expected a positive number, not {mu!r}")
+            return None
+        return float(mu)
+
+    def _check_points(self, ours: Sequence[complex], theirs: Sequence[complex], mu: float | None) -> None:
         if len(ours) != len(theirs):
-            wrong("theirs", f"{len(theirs)} points, ours has {len(ours)}")
+            self._wrong("theirs", f"{len(theirs)} points, ours has {len(ours)}")
         elif len(ours) != 2 and not (len(ours) == 1 and mu is not None):
-            wrong("ours", f"{len(ours)} points given, expected two (or one with mu)")
+            self._wrong("ours", f"{len(ours)} points given, expected two (or one with mu)")
         elif len(ours) == 2 and (abs(ours[1] - ours[0]) < 1 or theirs[0] == theirs[1]):
-            wrong("ours", "the two points are one", "take points far apart")
-    if len(problems) > before or view is None or ours is None or theirs is None:
-        return None
-    return ViewPlace(view, ours, theirs, None if mu is None else float(mu))
+            self._wrong("ours", "the two points are one", "take points far apart")
 
 
-def _view(name: Any, views: Sequence[View]) -> View | None:
-    """The view of that name; spaces and case do not matter, the beginning of one name only is enough."""
-    def plain(text: str) -> str:
-        return "".join(text.split()).casefold()
-
+def _named(name: Any, views: Sequence[ElementView]) -> ElementView | None:
+    """The view of that name, or the only one whose title begins so; spaces and case do not matter."""
     if not isinstance(name, str) or not name.strip():
         return None
-    for key in ("name", "draw"):
-        for v in views:
-            if plain(getattr(v, key)) == plain(name):
-                return v
-    begin = [v for v in views if plain(v.name).startswith(plain(name))]
+    wanted = _plain(name)
+    for known in ({_plain(v.name): v for v in reversed(views)}, {_plain(v.draw): v for v in reversed(views)}):
+        if wanted in known:
+            return known[wanted]
+    begin = [v for v in views if _plain(v.name).startswith(wanted)]
     return begin[0] if len(begin) == 1 else None
 
 
+def _plain(text: str) -> str:
+    return "".join(text.split()).casefold()
+
+
 def _points(value: Any) -> tuple[complex, ...] | None:
+    """Points given as [[x, y], ...], None where it is anything else."""
     if not isinstance(value, list) or not value:
         return None
-    found = []
-    for p in value:
-        if not isinstance(p, list) or len(p) != 2 or not all(map(_number, p)):
-            return None
-        found.append(complex(p[0], p[1]))
-    return tuple(found)
+    pairs = [p for p in value if isinstance(p, list) and len(p) == 2 and all(map(_number, p))]
+    return tuple(complex(x, y) for x, y in pairs) if len(pairs) == len(value) else None
 
 
 def _number(x: Any) -> bool:
     return isinstance(x, int | float) and not isinstance(x, bool) and isfinite(x)
 
 
-def mu_of(view: View, elements: Sequence[Element]) -> float | None:
-    """The scale factor that stands under the title of a view: of "μ_l = 0,0025 м/мм" 0.0025; None when there is none or several."""
+def mu_of(view: ElementView, elements: Sequence[Element]) -> float | None:
+    """The scale factor under the title of a view, 0.0025 for "μ_l = 0,0025 м/мм"; None when there is none or several."""
     found = set()
     for e in elements:
         if e.view == view and e.kind == "text" and "μ" in e.text:

@@ -1,63 +1,83 @@
-"""Both sides of a comparison and what is known of them so far; each step reads and writes here.
+"""The state of a comparison: both sides, what was found so far, which ink is claimed.
 
-Elements with ink all along claim it; the next steps look only among what is left.
+Elements that have ink everywhere along them claim it; later steps look among the rest only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.cad import cad_text
-from tmm_sheets.compare.cad.cad_findings import Finding
-from tmm_sheets.compare.cad.cad_ink import Space
-from tmm_sheets.compare.cad.overlaps import Left, Numbers, Overlaps, together
-from tmm_sheets.compare.cad.placing import Lines, Placing, lines
-from tmm_sheets.compare.elements import Element, View
-from tmm_sheets.compare.report import Verdict, verdict
+from tmm_sheets.compare.cad.cad_findings import CadFinding
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace
+from tmm_sheets.compare.cad.overlaps import Interval, Left, Numbers, Overlaps, together
+from tmm_sheets.compare.cad.placing import KnownLines, Placing, lines
+from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Fill, Line, Points, Text
 from tmm_sheets.drawing.styles import line_type
 
 JOINT = 0.3
-"""A gap this short in a line is none, mm."""
+"""Greatest gap between pieces of one line, mm."""
 SYMBOL = 2.6
-"""Circles up to this radius are symbols (hinges, dots): their place counts, their size hardly, mm."""
+"""Greatest radius of a symbol (hinge, dot), mm: its place counts, its size hardly."""
 SIZE_OF_SYMBOL = 1.0
-"""What a symbol's radius may differ by, mm."""
+"""How much the radius of a symbol may differ, mm."""
 LOOSE_STYLES = {"construction", "centre", "hatch", "axis"}
-"""Helper lines may end anywhere within :data:`BEYOND` past their ends, mm."""
+"""Auxiliary lines: they may end up to :data:`BEYOND` mm beyond their ends."""
 BEYOND = 10.0
 CURVE_REACH = 6.0
 """How far from its place a curve is looked for, mm."""
 
 
 class Comparison:
-    """The state of one comparison: both sides, what is found, what is still free of their ink."""
+    """The state of one comparison. Elements, strokes, areas and writings go by their numbers in their sequences, from 0.
 
-    def __init__(self, elements: Sequence[Element], space: Space, moves: Mapping[View, Placing], tolerance: float) -> None:
+    Attributes
+    ----------
+    elements, space, tolerance : what is compared, mm, and how far a point may be off, mm
+    moves, paths, heads : by element: the move of its view, the lines it must have ink along, its arrow heads, both moved
+    theirs, entity : pieces of their lines, and the entity of each
+    found : findings by element
+    claims : their ink that belongs to elements
+    in_place, in_place_of, along : what lies along elements in their places, along which, and from where to where along their paths
+    inked : for elements that are not right, where along their paths there is ink in place, mm
+    owned : for elements found elsewhere, the pieces of theirs they claim, from where to where
+    areas : middles of their areas
+    used_areas, used_writings : areas and writings that belong to elements
+    zones, lettered : outlines within which any ink, or short strokes only, may lie
+    drawn_letters : elements whose letters are drawn as lines
+    """
+
+    in_place: Overlaps
+    in_place_of: npt.NDArray[np.int64]
+    along: tuple[Numbers, Numbers]
+
+    def __init__(self, elements: Sequence[Element], space: DrawingSpace, moves: Mapping[ElementView, Placing],
+                 tolerance: float) -> None:
         self.elements, self.space, self.tolerance = elements, space, tolerance
         self.moves = [moves.get(e.view, Placing()) for e in elements]
-        self.theirs = lines(s.points for s in space.strokes)
+        self.theirs = space.lines
         self.entity = np.array([s.entity for s in space.strokes], dtype=np.int64)[self.theirs.owner]
         self.paths = [self._paths(e, m) for e, m in zip(elements, self.moves, strict=True)]
         self.heads = [tuple(m(f) for f in e.fills) for e, m in zip(elements, self.moves, strict=True)]
-        self.found: dict[int, Finding] = {}
+        self.found: dict[int, CadFinding] = {}
         self.claims: list[Overlaps] = []
-        self.pass_one: tuple[Overlaps, npt.NDArray[np.int64]]  # what lies along the elements in their places, and along which
-        self.along: tuple[Numbers, Numbers]  # where along the elements' paths that begins and ends, mm
+        self.inked: dict[int, list[Interval]] = {}
         self.owned: dict[int, list[tuple[int, float, float]]] = {}
         self.areas = np.array([complex(a.points.mean()) for a in space.areas], dtype=complex)
         self.used_areas: set[int] = set()
         self.used_writings: set[int] = set()
-        self.zones: list[Points] = []  # where any ink may lie
-        self.lettered: list[Points] = []  # where short strokes may
-        self.drawn_letters: list[tuple[int, cad_text.Wanted]] = []
+        self.zones: list[Points] = []
+        self.lettered: list[Points] = []
+        self.drawn_letters: list[tuple[int, cad_text.WantedText]] = []
 
     def _paths(self, e: Element, move: Placing) -> list[Points]:
-        """The lines an element has to have ink along, moved to its view's place."""
+        """The lines an element must have ink along, where its view is."""
         if e.kind in ("text", "fill"):
             return []
         if e.kind == "hatch":
@@ -69,8 +89,8 @@ class Comparison:
             return [move(np.array([ink[0].a, ink[0].b]))]  # the shaft of an arrow, without its head
         return [move(e.points)] if ink else []
 
-    def ours(self, numbers: Sequence[int]) -> tuple[Lines, npt.NDArray[np.int64], Numbers]:
-        """Straight pieces of some elements' paths, the element of each, and where along its path each begins."""
+    def ours(self, numbers: Sequence[int]) -> tuple[KnownLines, npt.NDArray[np.int64], Numbers]:
+        """Straight pieces of the paths of some elements, the element of each piece, and how far along its path it begins, mm."""
         strokes, owners = [], []
         for n in numbers:
             strokes += self.paths[n]
@@ -83,26 +103,26 @@ class Comparison:
         return made, of, along - start[of]
 
     @cached_property
-    def everything(self) -> tuple[Lines, npt.NDArray[np.int64]]:
-        """Straight pieces of all elements' paths and the element of each."""
+    def everything(self) -> tuple[KnownLines, npt.NDArray[np.int64]]:
+        """Straight pieces of the paths of all elements, and the element of each piece."""
         made, of, _ = self.ours([n for n in range(len(self.elements)) if self.paths[n]])
         return made, of
 
     def whole(self, n: int) -> float:
-        """Length of an element's path, mm."""
+        """Length of the path of an element, mm."""
         return float(sum(np.abs(np.diff(p)).sum() for p in self.paths[n]))
 
     def gap(self, e: Element) -> float:
-        """The longest gap that is none."""
+        """The longest gap in an element's ink that counts as none, mm."""
         pattern = line_type(e.style).pattern
         return 2 * max((-x for x in pattern if x < 0), default=0.0) + JOINT if pattern else JOINT
 
     def claimed(self) -> Overlaps:
-        """All of their ink that belongs to some element."""
+        """Their ink that belongs to elements."""
         return together(self.claims)
 
     def claim(self, parts: Sequence[tuple[int, float, float]], n: int) -> None:
-        """Pieces of theirs (piece, from, to) that belong to element ``n``."""
+        """Claim pieces of theirs (piece, from, to) for element ``n``."""
         self.owned[n] = self.owned.get(n, []) + list(parts)
         if parts:
             j, a, b = (np.array(x) for x in zip(*parts, strict=True))
@@ -110,22 +130,17 @@ class Comparison:
             self.claims.append(Overlaps(np.full(len(parts), -1), z, z, j.astype(np.int64), a.astype(float), b.astype(float), z, z))
 
     def finding(self, n: int, deviation: float, what: str, *, shift: complex | None = None, turn: float | None = None,
-                 size: float | None = None, missing: bool = False, entities: tuple[int, ...] = (), at: complex | None = None,
-                 cap: Verdict | None = None) -> Finding:
-        """A finding for element ``n``, judged by its deviation in mm."""
+                 size: float | None = None, missing: bool = False, entities: tuple[int, ...] = (),
+                 at: complex | None = None) -> CadFinding:
+        """A finding for element ``n``, judged by its deviation, mm."""
         e, m = self.elements[n], self.moves[n]
         z = m(e.points)
-        middle = complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
+        middle, reach = (middle_of(z), reach_of(z)) if at is None else (at, min(reach_of(z), 5.0))
         judged = verdict(deviation, self.tolerance)
-        if cap == "amber" and judged == "red":
-            judged = "amber"
-        reach = min(max(float(np.abs(z - middle).max()), 3.0), 20.0)
-        if at is not None:
-            middle, reach = at, min(reach, 5.0)
-        return Finding(e, judged, deviation, what, middle, reach, shift, turn, size, missing, entities)
+        return CadFinding(e, judged, deviation, what, middle, reach, shift, turn, size, missing, entities)
 
     def units(self, n: int, t: npt.NDArray[np.float64]) -> Points:
-        """Directions along an element's path at distances from its beginning."""
+        """Directions of the path of an element at distances from its beginning, mm."""
         z = np.concatenate(self.paths[n])
         d = np.diff(z)
         size = np.abs(d)
@@ -134,38 +149,42 @@ class Comparison:
         return np.asarray(d[k] / size[k])
 
     def at(self, n: int, t: float) -> complex:
-        """Place at a distance along an element's path."""
+        """The point at a distance along the path of an element, mm."""
         z = np.concatenate(self.paths[n])
         along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
         return complex(np.interp(t, along, z.real), np.interp(t, along, z.imag))
 
     def of_strokes(self, strokes: tuple[int, ...]) -> list[int]:
-        """Numbers of the pieces of some of their lines."""
+        """Numbers of the pieces of some strokes."""
         return [int(j) for k in strokes for j in np.flatnonzero(self.theirs.owner == k)]
 
     def entities_of_strokes(self, strokes: tuple[int, ...]) -> tuple[int, ...]:
-        """Numbers of the entities some of their lines come from."""
+        """Numbers of the entities of some strokes, each once."""
         return tuple(dict.fromkeys(self.space.strokes[k].entity for k in strokes))
 
+    def entities_of(self, pieces: Iterable[int]) -> tuple[int, ...]:
+        """Numbers of the entities of some pieces, each once."""
+        return tuple(dict.fromkeys(int(self.entity[j]) for j in pieces))
+
     def ends(self, r: Left) -> Points:
-        """Both ends of a stretch that is left."""
+        """Both ends of an unclaimed stretch."""
         d = self.theirs.b[r.piece] - self.theirs.a[r.piece]
         u = d / abs(d)
         return np.array([self.theirs.a[r.piece] + r.a * u, self.theirs.a[r.piece] + r.b * u])
 
 
 def middle_of(z: Points) -> complex:
-    """Middle of the rectangle round points."""
+    """Middle of the bounding rectangle of points."""
     return complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
 
 
 def reach_of(z: Points) -> float:
-    """Radius of a circle round points that shows where to look, mm."""
+    """Radius of the circle that marks points on an overlay, mm."""
     return min(max(float(np.abs(z - middle_of(z)).max()), 3.0), 20.0)
 
 
 def grown(corners: Points, by: float) -> Points:
-    """A rectangle larger on all sides."""
+    """A rectangle extended by some millimetres on all sides."""
     a, b, _, _ = corners
     u = (b - a) / max(abs(b - a), 1e-9)
     v = 1j * u

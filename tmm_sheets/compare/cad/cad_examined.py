@@ -4,31 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tmm_sheets.compare.cad.cad_findings import Outcome
-from tmm_sheets.compare.cad.cad_ink import Space
+from tmm_sheets.compare.cad.cad_findings import CadOutcome
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace
+from tmm_sheets.compare.cad.laying import Laid
 from tmm_sheets.compare.cad.layout import Layout
-from tmm_sheets.compare.cad.placing import Placing
-from tmm_sheets.compare.elements import Element
-from tmm_sheets.sheets.sheet import Composed
-
-
-@dataclass(frozen=True)
-class Laid:
-    """A drawing laid over a sheet."""
-
-    n: int
-    sheet: Composed
-    elements: tuple[Element, ...]
-    space: Space
-    placing: Placing
-    share: float
 
 
 @dataclass(frozen=True)
 class Examined:
-    """A drawing compared with a sheet: how it was laid over it, where its views stand, what was found; ``notes`` in words."""
+    """A drawing compared with a sheet.
+
+    Attributes
+    ----------
+    laid : the drawing laid over the sheet, in its own units
+    space : the same in mm of the sheet
+    places : where its views are
+    outcome : what was found
+    notes : what was done to the drawing and what deserves a warning, one line each
+    """
 
     laid: Laid
+    space: DrawingSpace
     places: Layout
-    outcome: Outcome
+    outcome: CadOutcome
     notes: tuple[str, ...]

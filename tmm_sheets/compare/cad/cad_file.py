@@ -1,7 +1,7 @@
-"""Reading DXF files of any program, whole or damaged, text or binary; and writing the overlay a student opens in that program.
+"""Reading DXF files of any program, whole or damaged, text or binary; writing the overlay a student opens in that program.
 
-Blocks, dimensions, leaders are taken apart as often as need be. Layers that are off or frozen, invisible entities and the layer
-Defpoints do not count. Points are complex, drawing units; what has a height is seen from above.
+Blocks, dimensions and leaders are exploded down to primitives. Layers that are off or frozen, invisible entities and the layer
+Defpoints are left out. Points are complex, in drawing units, seen from above.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import logging
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from io import BytesIO, StringIO
 from itertools import chain, pairwise
 from math import isfinite, radians
@@ -18,8 +19,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.cad.cad_ink import Area, CadInk, Entity, Space, Stroke, Writing, resized
+from tmm_sheets.compare.cad.cad_ink import Area, CadInk, DrawingSpace, DrawnStroke, Entity, Writing
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes
+from tmm_sheets.compare.cad.overlaps import Interval
+from tmm_sheets.compare.cad.placing import Placing
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 
@@ -30,7 +33,7 @@ if TYPE_CHECKING:
 UNITS = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 13: 1e-3, 14: 100.0}
 """Millimetres of $INSUNITS."""
 FINE = 5e-6
-"""Sagitta of flattened curves, in diagonals of the drawing (0.005 mm on a sheet A1)."""
+"""Sagitta of flattened curves as a share of the drawing's diagonal (0.005 mm on an A1 sheet)."""
 COARSEST = 1e-7
 """Least sagitta of a flattened curve in its own sizes: a circle that is vast beside the drawing still has 7000 chords at most."""
 LARGEST = 64_000_000
@@ -42,10 +45,12 @@ DEEPEST = 20
 MOST_HATCH = 20_000
 """Lines of one hatching that are drawn."""
 NARROW = 0.62
-"""Average width of a letter in heights, where the font is not known."""
+"""Average width of a letter in letter heights; the font is not known."""
 UNREAD = {"3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "IMAGE", "OLE2FRAME", "ACAD_PROXY_ENTITY", "PDFUNDERLAY", "WIPEOUT"}
 BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
 """Codes of line weights."""
+CURVES = {"ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
+"""Entities flattened by themselves: as paths they would become Bezier curves, off by 0.03 % of the radius."""
 PRIMITIVE = {"LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"}
 SMALLER = "save only the sheet itself: without other drawings, unused blocks purged, arrays and dense hatchings removed"
 SILENT = {"POINT", "VIEWPORT", "ATTDEF", "RAY", "XLINE", "LIGHT", "SUN"}
@@ -57,13 +62,13 @@ def read(path: Path) -> CadInk:
     Raises
     ------
     BadInput
-        When there is no such file, it is empty, is a DWG or no DXF at all, or has nothing drawn in it.
+        If there is no such file, or it is empty, a DWG or no DXF at all, or nothing is drawn in it.
     CannotBuild
-        When the file, or what its blocks and curves come to, is too large.
+        If the file, or what its blocks and curves come to, is too large.
     """
     document, notes = _open(path)
     unit = UNITS.get(int(document.header.get("$INSUNITS", 0)))
-    reader = _Reader(document, path)
+    reader = _DxfReader(document, path)
     model = reader.space("model space", document.modelspace())
     spaces = [model]
     for layout in document.layouts:
@@ -156,16 +161,24 @@ def words(text: str, encoding: str) -> str:
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
-class _Look(NamedTuple):
-    """Layer, name of the line type in small letters, line weight in hundredths of a millimetre or one of the codes below 0."""
+class _EntityLook(NamedTuple):
+    """Layer, name of the line type in lower case, line weight in hundredths of a millimetre or one of the negative codes."""
 
     layer: str
     linetype: str
     weight: int
 
 
-class _Reader:
-    """Takes entities apart, counting what it cannot read."""
+class _Contents(NamedTuple):
+    """What is drawn in a layout, as far as it was read."""
+
+    strokes: list[DrawnStroke]
+    areas: list[Area]
+    writings: list[Writing]
+
+
+class _DxfReader:
+    """Takes entities apart and counts those it cannot read."""
 
     def __init__(self, document: Document, file: Path) -> None:
         self.document = document
@@ -177,10 +190,10 @@ class _Reader:
         self.patterns = {line.dxf.name.lower(): _pattern(line) for line in document.linetypes}
         scale = float(document.header.get("$LTSCALE", 1.0))
         self.dashes = {line.dxf.name.lower(): scale * max(_dashes(line), default=0.0) for line in document.linetypes}
-        self.layers: dict[str, _Look] = {}
+        self.layers: dict[str, _EntityLook] = {}
         for layer in document.layers:
             name = layer.dxf.name
-            self.layers[name.lower()] = _Look(name, layer.dxf.get("linetype", "Continuous").lower(),
+            self.layers[name.lower()] = _EntityLook(name, layer.dxf.get("linetype", "Continuous").lower(),
                                               int(layer.dxf.get("lineweight", DEFAULT)))
             if layer.is_off() or layer.is_frozen():
                 self.hidden.add(layer.dxf.name.lower())
@@ -189,7 +202,7 @@ class _Reader:
         self.unread: Counter[str] = Counter()
         self.nowhere = 0
         self.skipped = 0
-        self.heights: list[float] = []
+        self.raised = False
 
     def notes(self) -> list[str]:
         """What was left out."""
@@ -201,7 +214,7 @@ class _Reader:
             found.append(f"left out, with coordinates that are no numbers: {self.nowhere} entities")
         if self.skipped:
             found.append(f"left out, on layers that are off or frozen: {self.skipped} entities")
-        if self.heights:
+        if self.raised:
             found.append("some of the drawing has heights (z): it is seen from above")
         return found
 
@@ -213,12 +226,10 @@ class _Reader:
             what = f"{MOST_PARTS} entities" if self.parts > MOST_PARTS else f"{MOST_POINTS} points"
             raise CannotBuild(f"{self.file}: with its blocks, arrays and curves taken apart it has more than {what}", SMALLER)
 
-    def space(self, name: str, layout: Any) -> Space:
+    def space(self, name: str, layout: Any) -> DrawingSpace:
         """Everything drawn in a layout."""
         entities: list[Entity] = []
-        strokes: list[Stroke] = []
-        areas: list[Area] = []
-        writings: list[Writing] = []
+        found = _Contents([], [], [])
         try:
             self.count(parts=self._weight(layout))
         except RecursionError:
@@ -235,37 +246,45 @@ class _Reader:
                                    self.patterns.get(look.linetype, "continuous"),
                                    look.weight / 100 if look.weight >= 0 else None, _breadth(e, kind),
                                    self.dashes.get(look.linetype, 0.0) * float(e.dxf.get("ltscale", 1.0))))
-            n = len(entities) - 1
             try:
-                if kind in ("TEXT", "ATTRIB"):
-                    writings.extend(_text(e, n))
-                elif kind == "MTEXT":
-                    writings.extend(_mtext(e, n))
-                elif kind in ("SOLID", "TRACE"):
-                    areas.append(Area(_xy(e.wcs_vertices()), n))  # type: ignore[attr-defined]
-                elif kind in ("HATCH", "MPOLYGON"):
-                    lines, outlines = _hatch(e, fine)
-                    areas.extend(Area(p, n, not lines) for p in outlines)
-                    strokes.extend(Stroke(p, n) for p in lines)
-                    self.count(len(lines), sum(map(len, outlines)))
-                else:
-                    for p in self._lines(e, kind, fine):
-                        strokes.append(Stroke(p, n))
-                        self.count(points=len(p))
-                    areas.extend(Area(p, n) for p in _wide(e, kind))
+                self._take(e, kind, len(entities) - 1, fine, found)
             except (ValueError, TypeError, AttributeError, ZeroDivisionError, KeyError, IndexError, ArithmeticError):
                 self.unread[kind] += 1  # a broken entity must not hide the others
+        return self._sound(name, entities, found)
+
+    def _sound(self, name: str, entities: list[Entity], found: _Contents) -> DrawingSpace:
+        """A space without what has no size or whose coordinates are no numbers."""
+        strokes, areas, writings = found
         self.nowhere += len({s.entity for s in strokes if not np.isfinite(s.points).all()})
         strokes = [s for s in strokes if len(s.points) > 1 and np.isfinite(s.points).all()]
         areas = [Area(_open_ended(a.points), a.entity, a.solid) for a in areas if np.isfinite(a.points).all()]
         areas = [a for a in areas if len(a.points) > 2]
         writings = [w._replace(text=words(w.text, self.document.encoding)) for w in writings]
         writings = [w for w in writings if isfinite(w.at.real + w.at.imag + w.height) and w.text.strip()]
-        return Space(name, tuple(strokes), tuple(areas), tuple(writings), tuple(entities))
+        return DrawingSpace(name, tuple(strokes), tuple(areas), tuple(writings), tuple(entities))
 
-    def paper(self, layout: Any, model: Space) -> Space:
+    def _take(self, e: Any, kind: str, n: int, fine: float, found: _Contents) -> None:
+        """Read one primitive, entity number ``n``; what was read before an error stays."""
+        if kind in ("TEXT", "ATTRIB"):
+            found.writings.extend(_text(e, n))
+        elif kind == "MTEXT":
+            found.writings.extend(_mtext(e, n))
+        elif kind in ("SOLID", "TRACE"):
+            found.areas.append(Area(_xy(e.wcs_vertices()), n))
+        elif kind in ("HATCH", "MPOLYGON"):
+            lines, outlines = _hatch(e, fine)
+            found.areas.extend(Area(p, n, not lines) for p in outlines)
+            found.strokes.extend(DrawnStroke(p, n) for p in lines)
+            self.count(len(lines), sum(map(len, outlines)))
+        else:
+            for p in self._lines(e, kind, fine):
+                found.strokes.append(DrawnStroke(p, n))
+                self.count(points=len(p))
+            found.areas.extend(Area(p, n) for p in _wide(e, kind))
+
+    def paper(self, layout: Any, model: DrawingSpace) -> DrawingSpace:
         """A sheet of paper space together with what its viewports show of the model."""
-        space = self.space(f'layout "{words(layout.name, self.document.encoding)}"', layout)
+        space = replace(self.space(f'layout "{words(layout.name, self.document.encoding)}"', layout), paper=True)
         for port in layout.query("VIEWPORT"):
             if port.dxf.get("id", 1) == 1 or not port.dxf.get("status", 1) or port.dxf.layer.lower() in self.hidden:
                 continue
@@ -278,11 +297,11 @@ class _Reader:
             shift = complex(at.x, at.y) - turn * complex(seen.x, seen.y)
             half = complex(float(port.dxf.width) / 2, float(port.dxf.height) / 2)
             low, high = complex(at.x, at.y) - half, complex(at.x, at.y) + half
-            space = _shown(space, model, turn, shift, low, high)
+            space = _with_viewport(space, model, Placing(turn, shift), low, high)
         return space
 
-    def _parts(self, layout: Any) -> Iterator[tuple[DXFEntity, DXFEntity, _Look]]:
-        """(entity of the layout, primitive it consists of, how that looks)."""
+    def _parts(self, layout: Any) -> Iterator[tuple[DXFEntity, DXFEntity, _EntityLook]]:
+        """Entity of the layout, primitive it consists of, look of that primitive."""
         for e in layout:
             try:
                 yield from ((e, part, look) for part, look in self._apart(e, None))
@@ -302,7 +321,7 @@ class _Reader:
                 total += (max(e.mcount, 1) if e.dxftype() == "INSERT" else 1) * self.weights[name]
         return total
 
-    def _apart(self, e: Any, of: _Look | None, within: tuple[str, ...] = ()) -> Iterator[tuple[DXFEntity, _Look]]:
+    def _apart(self, e: Any, of: _EntityLook | None, within: tuple[str, ...] = ()) -> Iterator[tuple[DXFEntity, _EntityLook]]:
         """Primitives of an entity; ``of`` is the look of the block reference or dimension it is part of."""
         from ezdxf.protocols import SupportsVirtualEntities, virtual_entities
 
@@ -325,20 +344,20 @@ class _Reader:
         for part in inner:
             yield from self._apart(part, look, within)
 
-    def _look(self, e: Any, of: _Look | None) -> _Look:
-        """What an entity does not say itself is told by its layer or, when it says so, by what it is part of."""
+    def _look(self, e: Any, of: _EntityLook | None) -> _EntityLook:
+        """Layer, line type and weight of an entity, as its layer or what it is part of determines them."""
         layer = e.dxf.get("layer", "0")
         if layer == "0" and of is not None:
             layer = of.layer
         line, weight = e.dxf.get("linetype", "BYLAYER").lower(), int(e.dxf.get("lineweight", BYLAYER))
-        of_layer = self.layers.get(layer.lower(), _Look(layer, "continuous", DEFAULT))
-        by_block = of if of is not None else _Look(layer, "continuous", DEFAULT)
+        of_layer = self.layers.get(layer.lower(), _EntityLook(layer, "continuous", DEFAULT))
+        by_block = of if of is not None else _EntityLook(layer, "continuous", DEFAULT)
         line = of_layer.linetype if line == "bylayer" else by_block.linetype if line == "byblock" else line
         weight = of_layer.weight if weight == BYLAYER else by_block.weight if weight == BYBLOCK else weight
-        return _Look(layer, line, weight)
+        return _EntityLook(layer, line, weight)
 
     def _fine(self, parts: Iterator[DXFEntity]) -> float:
-        """Sagitta for flattening, from a rough size of the drawing."""
+        """Sagitta for flattening, from the approximate size of the drawing."""
         z = []
         keys = {"LINE": ("start", "end"), "CIRCLE": ("center",), "ARC": ("center",), "TEXT": ("insert",), "MTEXT": ("insert",)}
         for e in parts:
@@ -349,56 +368,58 @@ class _Reader:
                 z.extend(complex(x, y) for x, y, *_ in e[:2])  # type: ignore[index]
         if len(z) < 2:
             return 0.005
-        # Leave a few strays far off out of account.
+        # A few strays far off must not count.
         p = np.array(z)
         low, high = (complex(np.quantile(p.real, q), np.quantile(p.imag, q)) for q in (0.02, 0.98))
         return max(abs(high - low) * FINE, 1e-9)
 
     def _lines(self, e: Any, kind: str, fine: float) -> Iterator[Points]:
         """Centre lines of a primitive, curves in chords."""
-        from ezdxf import path
-
         if kind in SILENT:
             return
-        if kind == "LINE":
-            a, b = e.dxf.start, e.dxf.end
-            self._high(a.z, b.z)
-            yield np.array([complex(a.x, a.y), complex(b.x, b.y)])
-            return
-        if kind == "LWPOLYLINE" and e.dxf.get("extrusion", (0, 0, 1))[2] == 1 and not e.has_arc:
+        if kind in UNREAD or _faceted(e, kind):
+            self.unread[kind] += 1
+        elif kind == "LINE":
+            yield self._seen([e.dxf.start, e.dxf.end])
+        elif kind == "LWPOLYLINE" and e.dxf.get("extrusion", (0, 0, 1))[2] == 1 and not e.has_arc:
             points = np.array([complex(x, y) for x, y in e.get_points("xy")])
             yield np.append(points, points[:1]) if e.closed and len(points) else points
-            return
-        if kind in UNREAD:
-            self.unread[kind] += 1
-            return
-        if kind in ("POLYFACE", "MESH") or (kind == "POLYLINE" and not (e.is_2d_polyline or e.is_3d_polyline)):
-            self.unread[kind] += 1
-            return
-        if kind in ("ARC", "CIRCLE", "ELLIPSE", "SPLINE"):  # as paths they would be Bezier curves, 0.03 % of the radius off
-            vertices = list(e.flattening(max(fine, COARSEST * _extent(e, kind))))
-            self._high(*(v.z for v in vertices))
-            yield _xy(vertices)
-            return
-        if kind == "LWPOLYLINE" or (kind == "POLYLINE" and e.is_2d_polyline):
-            parts = list(e.virtual_entities())
-            if any(part.dxftype() == "ARC" for part in parts):
-                for part in parts:
-                    yield from self._lines(part, part.dxftype(), fine)
-                return
+        elif kind in CURVES:
+            yield self._seen(list(e.flattening(max(fine, COARSEST * _extent(e, kind)))))
+        elif parts := _with_arcs(e, kind):
+            for part in parts:
+                yield from self._lines(part, part.dxftype(), fine)
+        else:
+            yield from self._paths(e, kind, fine)
+
+    def _paths(self, e: Any, kind: str, fine: float) -> Iterator[Points]:
+        from ezdxf import path
+
         try:
             made = path.make_path(e)
         except TypeError:
             self.unread[kind] += 1
             return
         for part in made.sub_paths():
-            vertices = list(part.flattening(fine, segments=4))
-            self._high(*(v.z for v in vertices))
-            yield _xy(vertices)
+            yield self._seen(list(part.flattening(fine, segments=4)))
 
-    def _high(self, *z: float) -> None:
-        if not self.heights and max(map(abs, z), default=0.0) > 1e-6:
-            self.heights.append(max(map(abs, z)))
+    def _seen(self, vertices: list[Any]) -> Points:
+        """The vertices from above; that some have a height is noted."""
+        self.raised = self.raised or any(abs(v.z) > 1e-6 for v in vertices)
+        return _xy(vertices)
+
+
+def _faceted(e: Any, kind: str) -> bool:
+    """Whether an entity is a surface of facets rather than a line."""
+    return kind == "POLYFACE" or (kind == "POLYLINE" and not (e.is_2d_polyline or e.is_3d_polyline))
+
+
+def _with_arcs(e: Any, kind: str) -> list[Any]:
+    """The lines and arcs of a plane polyline; nothing where it has no arcs."""
+    if kind != "LWPOLYLINE" and not (kind == "POLYLINE" and e.is_2d_polyline):
+        return []
+    parts = list(e.virtual_entities())
+    return parts if any(part.dxftype() == "ARC" for part in parts) else []
 
 
 def _geometry(e: Any) -> str:
@@ -419,7 +440,7 @@ def _xy(vertices: Any) -> Points:
 
 
 def _open_ended(z: Points) -> Points:
-    """An outline without the points that repeat their neighbour or, at the end, the first."""
+    """An outline without repeated points, not closed."""
     keep = np.abs(z - np.roll(z, 1)) > 1e-9 * (1 + np.abs(z).max(initial=0.0))
     return np.asarray(z[keep])
 
@@ -458,7 +479,7 @@ def _mtext(e: Any, n: int) -> Iterator[Writing]:
 
 
 def _hatch(e: Any, fine: float) -> tuple[list[Points], list[Points]]:
-    """Pattern lines (none when solid) and outlines."""
+    """Pattern lines (none of a solid one) and outlines."""
     from ezdxf import path
     from ezdxf.render import hatching
 
@@ -477,7 +498,7 @@ def _hatch(e: Any, fine: float) -> tuple[list[Points], list[Points]]:
 
 
 def _wide(e: Any, kind: str) -> Iterator[Points]:
-    """Outlines of tapering stretches of a polyline: so arrow heads are drawn by hand."""
+    """Outlines of tapering segments of a polyline, by which arrow heads are drawn."""
     if kind != "LWPOLYLINE":
         return
     rows = e.get_points("xyse")
@@ -489,7 +510,7 @@ def _wide(e: Any, kind: str) -> Iterator[Points]:
 
 
 def _breadth(e: Any, kind: str) -> float:
-    """Width of a polyline that is equally broad all along, drawing units; 0 for a line."""
+    """Width of a polyline that is equally broad everywhere, drawing units, else 0."""
     if kind == "LWPOLYLINE":
         if e.dxf.hasattr("const_width") and e.dxf.const_width > 0:
             return float(e.dxf.const_width)
@@ -503,7 +524,7 @@ def _breadth(e: Any, kind: str) -> float:
 
 
 def _pattern(line: Any) -> Pattern:
-    """Class of a line type of the file."""
+    """Class of a line type."""
     if line.pattern_tags.is_complex_type():
         return "other"
     return of_dashes(_dashes(line))
@@ -514,66 +535,70 @@ def _dashes(line: Any) -> list[float]:
     return [float(tag.value) for tag in line.pattern_tags.tags if tag.code == 49]
 
 
-def _shown(paper: Space, model: Space, turn: complex, shift: complex, low: complex, high: complex) -> Space:
-    """Paper space with one viewport's contents: the model turned, scaled and shifted, what lies outside its edges cut off."""
+def _with_viewport(paper: DrawingSpace, model: DrawingSpace, placing: Placing, low: complex, high: complex) -> DrawingSpace:
+    """Paper space with the contents of one viewport: the model where the viewport shows it, clipped at its edges."""
     first = len(paper.entities)
-    strokes = [Stroke(part, s.entity + first) for s in model.strokes for part in _clipped(turn * s.points + shift, low, high)]
-    size, angle = abs(turn), float(np.angle(turn))
+    seen = model.placed(placing)
 
     def inside(z: complex) -> bool:
         return low.real <= z.real <= high.real and low.imag <= z.imag <= high.imag
 
-    areas = [Area(turn * a.points + shift, a.entity + first, a.solid) for a in model.areas
-             if inside(complex((turn * a.points + shift).mean()))]
-    writings = [Writing(w.text, complex(turn * w.at + shift), w.height * size, w.width * size, w.angle + angle, w.entity + first)
-                for w in model.writings if inside(complex(turn * w.at + shift))]
-    return Space(paper.name, paper.strokes + tuple(strokes), paper.areas + tuple(areas), paper.writings + tuple(writings),
-                 paper.entities + resized(model.entities, size))
+    strokes = [DrawnStroke(part, s.entity + first) for s in seen.strokes for part in _clipped(s.points, low, high)]
+    areas = [a._replace(entity=a.entity + first) for a in seen.areas if inside(complex(a.points.mean()))]
+    writings = [w._replace(entity=w.entity + first) for w in seen.writings if inside(w.at)]
+    return replace(paper, strokes=paper.strokes + tuple(strokes), areas=paper.areas + tuple(areas),
+                   writings=paper.writings + tuple(writings), entities=paper.entities + seen.entities)
 
 
 def _clipped(z: Points, low: complex, high: complex) -> Iterator[Points]:
-    """The parts of a line inside a rectangle."""
+    """The parts of a polyline inside a rectangle."""
     if (z.real >= low.real).all() and (z.real <= high.real).all() and (z.imag >= low.imag).all() and (z.imag <= high.imag).all():
         yield z
         return
     run: list[complex] = []
     for a, b in pairwise(z):
         d = b - a
-        t0, t1 = 0.0, 1.0
-        for p, q in ((-d.real, a.real - low.real), (d.real, high.real - a.real), (-d.imag, a.imag - low.imag),
-                     (d.imag, high.imag - a.imag)):
-            if p == 0:
-                if q < 0:
-                    t1 = -1.0
-            elif p < 0:
-                t0 = max(t0, q / p)
-            else:
-                t1 = min(t1, q / p)
-        if t0 >= t1:
+        t0, t1 = _within(a, d, low, high)
+        if t0 >= t1 or not run or abs(run[-1] - (a + t0 * d)) > 1e-9 * (abs(d) + 1):
             if len(run) > 1:
                 yield np.array(run)
-            run = []
-            continue
-        if not run or abs(run[-1] - (a + t0 * d)) > 1e-9 * (abs(d) + 1):
-            if len(run) > 1:
-                yield np.array(run)
-            run = [a + t0 * d]
-        run.append(a + t1 * d)
+            run = [a + t0 * d] if t0 < t1 else []
+        if t0 < t1:
+            run.append(a + t1 * d)
     if len(run) > 1:
         yield np.array(run)
 
 
+def _within(a: complex, d: complex, low: complex, high: complex) -> Interval:
+    """The part of ``a + t d``, t from 0 to 1, inside a rectangle (Liang and Barsky); empty where the ends are in reverse."""
+    t0, t1 = 0.0, 1.0
+    for p, q in ((-d.real, a.real - low.real), (d.real, high.real - a.real), (-d.imag, a.imag - low.imag),
+                 (d.imag, high.imag - a.imag)):
+        if p == 0:
+            if q < 0:
+                t1 = -1.0
+        elif p < 0:
+            t0 = max(t0, q / p)
+        else:
+            t1 = min(t1, q / p)
+    return t0, t1
+
+
 COLOURS = {"SHEET": 3, "DRAWN": 8, "FOUND": 1, "LOOKS": 30}
-"""Layers of the overlay with their AutoCAD colours: the exact sheet green, what was compared grey, findings red, lines of another
-type or width orange.
+"""Layers of the overlay and their AutoCAD colours: the exact sheet green, the student's drawing grey, findings red, lines of a
+wrong type or width orange.
 """
 
 
 def overlay(exact: Sequence[Points], drawn: Sequence[Points], found: Sequence[tuple[complex, float, str]],
             looks: Sequence[tuple[Points, str]] = ()) -> bytes:
-    """A DXF file (R12: every program reads it) with the exact sheet over the drawing, findings circled and numbered; in mm.
+    """A DXF file (R12, which every program reads) of the exact sheet over the drawing, with findings circled and numbered.
 
-    ``found`` has centre, radius and number of each, ``looks`` lines of another type or width with a number or an empty text.
+    Parameters
+    ----------
+    exact, drawn : lines of the sheet and of the drawing, mm
+    found : centre and radius, mm, and number of each finding
+    looks : lines of a wrong type or width, mm, with a number or an empty text
     """
     from ezdxf.addons.r12writer import r12writer
 

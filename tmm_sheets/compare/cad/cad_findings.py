@@ -1,4 +1,4 @@
-"""What a comparison with a CAD drawing finds: of every element of the sheet, and what is extra."""
+"""Findings of a comparison with a CAD drawing: of every element of the sheet, of extra ink, of line types and widths."""
 
 from __future__ import annotations
 
@@ -6,19 +6,26 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from tmm_sheets.compare.cad.cad_ink import Entity
-from tmm_sheets.compare.elements import Element, View
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal
 
 
 @dataclass(frozen=True, eq=False)
-class Finding:
+class CadFinding:
     """The outcome for one element.
 
-    ``verdict`` is None when the element was not compared; ``deviation`` mm; ``shift`` mm (right, up), ``turn`` degrees
-    counter-clockwise, ``size`` mm (length of lines, radius of circles) where they can be told apart; ``missing`` when it is not
-    there at all. ``entities`` are numbers of entities of the drawing, ``at`` and ``reach`` where to look on the sheet.
+    Attributes
+    ----------
+    verdict : None if the element was not compared
+    deviation : how far it is off, mm
+    what : the same in words
+    at, reach : centre and radius of a circle round the place on the sheet, mm
+    shift, turn, size : shift (right, up), mm, turn, degrees counter-clockwise, and excess of length or radius, mm, where these can
+        be told apart
+    missing : whether it is not there at all
+    entities : numbers of the entities of the drawing it is made of
     """
 
     element: Element
@@ -35,8 +42,8 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Extra:
-    """Ink or text of the drawing that belongs to no element: ``length`` mm of it, about ``at``; ``count`` entities in a heap."""
+class ExtraStroke:
+    """Ink or text that belongs to no element: ``length`` mm within ``reach`` of ``at``, from ``count`` entities."""
 
     entity: Entity
     length: float
@@ -47,19 +54,24 @@ class Extra:
 
     @property
     def verdict(self) -> Verdict:
-        """A short piece may be a slip of the pen."""
+        """Amber for a short piece, which may be a slip of the pen."""
         return "red" if self.length > 5.0 else "amber"
 
 
 @dataclass(frozen=True)
-class Look:
-    """Elements of one view (of several: None) drawn with a wrong type or width of line.
+class LookFinding:
+    """Elements drawn with a wrong type or width of line.
 
-    ``lines`` is what they are on the sheet, ``what`` how they are drawn; ``elements`` are their numbers, ``entities`` those of the
-    drawing; ``places`` their lines, the longest first.
+    Attributes
+    ----------
+    view : their view, None if they are in several
+    lines : the kinds of lines they are on the sheet
+    what : how they are drawn
+    elements, entities : their numbers and those of the entities of the drawing
+    places : their lines, mm, the longest first
     """
 
-    view: View | None
+    view: ElementView | None
     lines: str
     what: str
     elements: tuple[int, ...]
@@ -70,22 +82,22 @@ class Look:
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """Findings for every element in its order, extras longest first; wrong types and widths of lines; ``notes`` on these."""
+class CadOutcome:
+    """Findings of every element in its order, extra ink, longest first, wrong line types and widths with ``notes`` on them."""
 
-    findings: tuple[Finding, ...]
-    extras: tuple[Extra, ...]
-    looks: tuple[Look, ...] = ()
+    findings: tuple[CadFinding, ...]
+    extras: tuple[ExtraStroke, ...]
+    looks: tuple[LookFinding, ...] = ()
     notes: tuple[str, ...] = ()
 
 
 def moved(shift: complex, tolerance: float, how: str = "") -> list[str]:
-    """A shift in words, when it is more than the tolerance."""
+    """A shift in words, nothing for one within the tolerance."""
     if abs(shift) <= tolerance:
         return []
     return [f"shifted {how}by {abs(shift):.2f} mm ({decimal(shift.real, sign=True)}, {decimal(shift.imag, sign=True)})"]
 
 
 def more(size: float) -> str:
-    """A difference of size in words."""
+    """A difference of size, mm, in words."""
     return f"{abs(size):.2f} mm too {'large' if size > 0 else 'small'}"

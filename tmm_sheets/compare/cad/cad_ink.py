@@ -1,24 +1,32 @@
-"""What a CAD drawing has on its sheet, whatever entities it was made of: strokes, filled areas, writing; in drawing units."""
+"""The contents of a CAD drawing, whatever entities it was made of: strokes, filled areas and writing, in drawing units."""
 
 from __future__ import annotations
 
 import unicodedata
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_patterns import Pattern
+from tmm_sheets.compare.cad.placing import KnownLines, Placing, lines
 from tmm_sheets.drawing.marks import Points
 
 
 class Entity(NamedTuple):
-    """Where something comes from, in words by which it is found again in the CAD program: the outermost entity (a block, a
-    dimension) and its handle; the layer is that of the innermost.
+    """Where something comes from, in the terms by which it is found again in the CAD program.
 
-    ``pattern`` is the class of its line type, ``weight`` its line weight, mm, None when it is the program's default; ``broad``
-    the width of a broad polyline and ``dash`` the length of the long strokes of its line type, drawing units. Those of layers and
-    blocks are resolved.
+    Attributes
+    ----------
+    kind, handle : those of the outermost entity (a block reference, a dimension)
+    layer : that of the innermost
+    pattern : class of its line type
+    weight : line weight, mm, None for the program's default
+    broad : width of a broad polyline, drawing units
+    dash : length of the long strokes of its line type, drawing units
+
+    What layers and blocks determine is resolved.
     """
 
     kind: str
@@ -31,14 +39,14 @@ class Entity(NamedTuple):
 
     @property
     def width(self) -> float | None:
-        """How wide its lines are, mm, when the drawing units are; None when nothing says so."""
+        """Width of its lines, mm, provided that drawing units are; None if nothing determines it."""
         return max(self.weight or 0.0, self.broad) if self.broad else self.weight
 
     def __str__(self) -> str:
         return f'{self.kind} {self.handle} on layer "{self.layer}"'
 
 
-class Stroke(NamedTuple):
+class DrawnStroke(NamedTuple):
     """A line through ``points``; ``entity`` is the number of the entity it belongs to."""
 
     points: Points
@@ -46,7 +54,7 @@ class Stroke(NamedTuple):
 
 
 class Area(NamedTuple):
-    """A filled or hatched area by its outline, not closed; ``solid`` where nothing of it is left white."""
+    """A filled or hatched area by its outline, not closed; a hatched one is not ``solid``."""
 
     points: Points
     entity: int
@@ -54,7 +62,7 @@ class Area(NamedTuple):
 
 
 class Writing(NamedTuple):
-    """Text as text: ``at`` is about its middle, ``width`` estimated."""
+    """A text: ``at`` is roughly its middle, ``width`` is estimated; ``angle`` rad."""
 
     text: str
     at: complex
@@ -65,32 +73,52 @@ class Writing(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Space:
-    """Model space or a sheet of paper space (with what its viewports show).
-
-    ``size`` is what the outline of the paper measures, None in model space.
-    """
+class DrawingSpace:
+    """Model space, or a sheet of ``paper`` space together with what its viewports show."""
 
     name: str
-    strokes: tuple[Stroke, ...]
+    strokes: tuple[DrawnStroke, ...]
     areas: tuple[Area, ...]
     writings: tuple[Writing, ...]
     entities: tuple[Entity, ...]
+    paper: bool = False
 
     @property
     def empty(self) -> bool:
         """Whether there is nothing to compare."""
         return not self.strokes
 
+    @cached_property
+    def lines(self) -> KnownLines:
+        """Straight pieces of the strokes, each with the number of its stroke."""
+        return lines(s.points for s in self.strokes)
+
+    def placed(self, placing: Placing) -> DrawingSpace:
+        """The space turned, scaled and shifted; broad polylines and dashes grow with the scale, line weights do not."""
+        size, angle = placing.scale, float(np.angle(placing.turn))
+        sign = -1.0 if placing.mirrored else 1.0
+        return replace(
+            self,
+            strokes=tuple(s._replace(points=placing(s.points)) for s in self.strokes),
+            areas=tuple(a._replace(points=placing(a.points)) for a in self.areas),
+            writings=tuple(w._replace(at=complex(placing(w.at)), height=w.height * size, width=w.width * size,
+                                      angle=sign * w.angle + angle) for w in self.writings),
+            entities=tuple(e._replace(broad=size * e.broad, dash=size * e.dash) if e.broad or e.dash else e for e in self.entities),
+        )
+
 
 @dataclass(frozen=True)
 class CadInk:
-    """A CAD drawing as read: its spaces that are not empty, model space first; ``unit`` is what the file declares, mm, or None.
+    """The contents of a CAD file.
 
-    ``notes`` tell what was mended, left out or looks odd.
+    Attributes
+    ----------
+    spaces : those that are not empty, model space first
+    unit : the unit the file declares, mm, or None
+    notes : what was mended, left out or looks odd
     """
 
-    spaces: tuple[Space, ...]
+    spaces: tuple[DrawingSpace, ...]
     unit: float | None
     notes: tuple[str, ...]
 
@@ -102,18 +130,7 @@ _PLAIN = str.maketrans({
 })  # fmt: skip
 
 
-def resized(entities: tuple[Entity, ...], by: float) -> tuple[Entity, ...]:
-    """The entities of a drawing that is scaled: broad polylines and dashes grow with it, line weights do not."""
-    return tuple(e._replace(broad=by * e.broad, dash=by * e.dash) if e.broad or e.dash else e for e in entities)
-
-
 def normal(text: str) -> str:
-    """Text without what two draughtsmen write in two ways: spaces, marks of indices, look-alike letters, dashes."""
+    """Text without what each draughtsman writes in his own way: spaces, marks of indices, look-alike letters, dashes."""
     text = unicodedata.normalize("NFKC", text.translate(_PLAIN)).translate(_PLAIN).translate(_LATIN)
     return "".join(text.split())
-
-
-def extent(space: Space) -> tuple[complex, complex]:
-    """Lower left and upper right corner of the strokes, drawing units."""
-    z = np.concatenate([s.points for s in space.strokes])
-    return complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())

@@ -1,29 +1,28 @@
-"""Lettering: text by what it says, drawn letters stroke by stroke."""
+"""Lettering: texts by what they say, drawn letters stroke by stroke."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.cad import cad_text
 from tmm_sheets.compare.cad.cad_comparison import Comparison, grown
-from tmm_sheets.compare.cad.cad_findings import Finding
+from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
-from tmm_sheets.compare.cad.placing import Lines, lines
+from tmm_sheets.compare.cad.placing import KnownLines, lines
 from tmm_sheets.drawing.ink import letters
-from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Points, Text
 
 
 def lettering(state: Comparison) -> None:
-    """What the lettering says; what text does not tell is looked for as drawn letters."""
+    """Check what texts say; lettering that no text is found for is sought as drawn letters."""
     numbers = [n for n, e in enumerate(state.elements) if e.kind == "text"]
     wanted = []
     for n in numbers:
-        e, m = state.elements[n], state.moves[n]
-        middle = m(complex(e.points.mean()))
-        wanted.append(cad_text.Wanted(e.text, middle + (e.points - complex(e.points.mean())), e.height))
+        e, middle = state.elements[n], complex(state.elements[n].points.mean())
+        wanted.append(cad_text.WantedText(e.text, state.moves[n](middle) + (e.points - middle), e.height))
     got = cad_text.read(wanted, state.space.writings)
     rest = [(n, w) for k, (n, w) in enumerate(zip(numbers, wanted, strict=True)) if k not in got]
     for k, answer in got.items():
@@ -42,28 +41,20 @@ def lettering(state: Comparison) -> None:
 
 
 def _bars(state: Comparison, n: int) -> None:
-    """Overbars and leader lines of lettering are the draughtsman's: they are looked for only to be no extras."""
+    """Claim overbars and leader lines: they are the draughtsman's choice, but no extra ink."""
     state.claims += [overlaps(lines([state.moves[n](p)]), state.theirs, 1.0) for p in state.elements[n].pieces]
 
 
-def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.Wanted]]) -> None:
-    """Lettering that is drawn with lines, letter by letter."""
+def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.WantedText]]) -> None:
+    """Find lettering that is drawn with lines, letter by letter."""
     strokes, owner = [], []
-    glyphs: list[tuple[int, int]] = []  # element, first stroke
     for n, _ in rest:
-        move = state.moves[n]
-        for mark in state.elements[n].marks:
-            if isinstance(mark, Text):
-                shift = complex(move(complex(state.elements[n].points.mean()))) - complex(state.elements[n].points.mean())
-                for stroke in letters(mark):
-                    strokes.append(stroke + shift)
-                    owner.append(n)
-        glyphs.append((n, len(strokes)))
+        for stroke in _letters(state, n):
+            strokes.append(stroke)
+            owner.append(n)
     ours = lines(strokes)
-    near = overlaps(ours, state.theirs, max(state.tolerance, 0.25)) if len(ours.a) and len(state.theirs.a) else None
-    covered = np.zeros(len(strokes))
-    if near is not None:
-        _add_unions(covered, near, ours)
+    near = overlaps(ours, state.theirs, max(state.tolerance, 0.25))
+    covered = _covered(near, ours, len(strokes))
     size = np.array([float(np.abs(np.diff(s)).sum()) for s in strokes])
     of = np.array(owner, dtype=np.int64)
     for n, want in rest:
@@ -71,8 +62,7 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.Wa
         whole, share = size[mine].sum(), covered[mine].sum()
         # A single stroke of a letter may be short, but it is not mostly absent.
         lost = (size[mine] - covered[mine])[size[mine] > 0.3 * want.height]
-        if whole > 0 and share > 0.85 * whole and (not len(lost) or lost.max() < 0.25 * want.height):
-            assert near is not None
+        if whole > 0 and share > 0.85 * whole and lost.max(initial=0.0) < 0.25 * want.height:
             state.claims.append(near.only(of[ours.owner[near.ours]] == n))
             _bars(state, n)
             state.drawn_letters.append((n, want))
@@ -84,8 +74,18 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.Wa
             state.found[n] = state.finding(n, 2 * state.tolerance, f'text "{state.elements[n].text}" missing', missing=True)
 
 
+def _letters(state: Comparison, n: int) -> Iterator[Points]:
+    """The strokes of a text's letters; a view of another scale has letters of the same size."""
+    e = state.elements[n]
+    middle = complex(e.points.mean())
+    shift = complex(state.moves[n](middle)) - middle
+    for mark in e.marks:
+        if isinstance(mark, Text):
+            yield from (stroke + shift for stroke in letters(mark))
+
+
 def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:
-    """Letters with short strokes inside their rectangle that belong to nothing: they are other letters."""
+    """Accuse drawn letters with short unclaimed strokes among them: they are other letters."""
     import shapely
 
     free = np.zeros(len(state.theirs.a))
@@ -100,17 +100,17 @@ def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:
             state.found[n] = _other_letters(state, n)
 
 
-def _other_letters(state: Comparison, n: int) -> Finding:
+def _other_letters(state: Comparison, n: int) -> CadFinding:
     return state.finding(n, 4 * state.tolerance, f'the letters are not those of "{state.elements[n].text}"')
 
 
-def _add_unions(covered: npt.NDArray[np.float64], near: Overlaps, ours: Lines) -> None:
-    """Adds to each of our lines how much of it the overlaps cover, every place once."""
+def _covered(near: Overlaps, ours: KnownLines, count: int) -> npt.NDArray[np.float64]:
+    """How much of each of our strokes the overlaps cover, mm, each place counted once."""
+    covered = np.zeros(count)
     order = np.argsort(near.ours, kind="stable")
     i = near.ours[order]
-    if not len(i):
-        return
-    first = np.flatnonzero(np.concatenate(([True], i[1:] != i[:-1])))
+    first = np.flatnonzero(np.concatenate(([True], i[1:] != i[:-1]))) if len(i) else i
     s0, s1 = near.s0[order].tolist(), near.s1[order].tolist()
-    for p, q in zip(first.tolist(), [*first[1:].tolist(), len(i)], strict=True):
+    for p, q in zip(first.tolist(), [*first[1:].tolist(), len(i)], strict=False):
         covered[ours.owner[i[p]]] += sum(b - a for a, b in union(zip(s0[p:q], s1[p:q], strict=True), 0.02))
+    return covered

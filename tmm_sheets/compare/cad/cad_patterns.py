@@ -1,4 +1,4 @@
-"""Classes of line patterns: by the dashes a line type is made of, or by the strokes a line was drawn with."""
+"""Classes of line patterns, from the dashes of a line type or from the strokes a line was drawn with."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Literal
 from tmm_sheets.compare.cad.overlaps import Interval
 
 Pattern = Literal["continuous", "dashed", "dash-dot", "dash-two-dots", "other"]
-"""``other`` is none of those of the sheets: dotted, with three dots, with text or zigzags in it."""
+"""``other`` is none of the patterns of the sheets: dotted, with three dots, with text or zigzags."""
 
 DOT = 0.45
-"""Strokes up to this share of the longest are dots."""
+"""Share of the longest stroke up to which strokes count as dots."""
 WHOLE = 0.95
-"""Share of a line that has ink from which on it is continuous."""
+"""Share of a line that must have ink for it to be continuous."""
 
 
 def of_dashes(dashes: Sequence[float]) -> Pattern:
-    """The class of a line type from its strokes (positive, 0 for a point) and gaps (negative), one period, in any unit."""
+    """The class of a line type, from one period of its strokes (positive, 0 for a point) and gaps (negative) in any unit."""
     strokes = [x for x in dashes if x >= 0]
     if len(strokes) == len(dashes):
         return "continuous"
@@ -26,15 +26,15 @@ def of_dashes(dashes: Sequence[float]) -> Pattern:
     if not longest > 0:
         return "other"
     long = [k for k, x in enumerate(strokes) if x > DOT * longest]
-    # Dots between one long stroke and the next, round the end of the period too.
+    # Dots between each long stroke and the next, across the end of the period too.
     between = [(b - a - 1) % len(strokes) for a, b in zip(long, [*long[1:], long[0] + len(strokes)], strict=True)]
     return _of_dots(max(between))
 
 
 def of_strokes(strokes: Sequence[Interval], whole: float) -> Pattern | None:
-    """The class of a line drawn stroke by stroke, from where it has ink; None when there are too few strokes to tell.
+    """The class of a line of length ``whole`` from the stretches that have ink; None if there are too few to tell.
 
-    The first and the last stroke may be cut, and others' ink may fill a gap.
+    The first and the last stroke may be cut, and ink of other lines may fill a gap.
     """
     sizes = [b - a for a, b in strokes]
     if sum(sizes) > WHOLE * whole:

@@ -1,4 +1,4 @@
-"""What is told of a comparison with a CAD drawing: a table for the terminal, a tree for other programs."""
+"""The report on a comparison with a CAD drawing: a table for the terminal, a tree for JSON."""
 
 from __future__ import annotations
 
@@ -8,27 +8,29 @@ from pathlib import Path
 from typing import Any
 
 from tmm_sheets.compare.cad.cad_examined import Examined
-from tmm_sheets.compare.cad.cad_findings import Finding, Outcome
+from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import Entity
-from tmm_sheets.compare.elements import Element, View
+from tmm_sheets.compare.elements import Element, ElementView
 
 SHOWN = 60
-"""Rows of a table in the terminal; all of them are in the JSON."""
+"""Most rows of a table in the terminal; the JSON has all."""
+WIDE = 74
+"""Most characters of a cell."""
 MANY = 4
-"""Numbers of elements that a row of wrong types and widths of lines has."""
+"""Most numbers of elements in a row on line types and widths."""
 VIEW_GONE = 0.15
-"""A view of which less than this is right, and most missing, is told as missing in one row."""
+"""A view with most of it missing is told as missing if less than this share of it is right."""
 
 
-def worst(findings: Sequence[Finding]) -> list[Finding]:
-    """What is not right, red first, the largest deviation first."""
+def worst(findings: Sequence[CadFinding]) -> list[CadFinding]:
+    """The findings that are not green, red first, the largest deviation first."""
     rank = {"red": 0, "amber": 1}
     return sorted((f for f in findings if f.verdict in rank), key=lambda f: (rank[str(f.verdict)], -f.deviation, f.element.number))
 
 
-def gone(outcome: Outcome) -> set[View]:
-    """Views that are not in the drawing at all."""
-    by_view: dict[View, list[Finding]] = {}
+def gone(outcome: CadOutcome) -> set[ElementView]:
+    """Views that are missing from the drawing."""
+    by_view: dict[ElementView, list[CadFinding]] = {}
     for f in outcome.findings:
         by_view.setdefault(f.element.view, []).append(f)
     return {v for v, found in by_view.items() if len(found) > 5 and sum(f.missing for f in found) > 0.6 * len(found)
@@ -56,45 +58,55 @@ def _found_by(entities: Sequence[Entity]) -> str:
 
 
 def text(name: str, path: Path, found: Examined, pencil: float) -> str:
-    """The outcome for the terminal."""
+    """The report for the terminal on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     laid, outcome = found.laid, found.outcome
     lost = gone(outcome)
-    there = [f for f in outcome.findings if f.element.view not in lost]
-    colours = Counter(f.verdict for f in there)
-    out = [f"{name}, sheet {laid.n}: {path.name} ({laid.space.name}), {len(outcome.findings)} elements, tolerance {pencil:g} mm",
-           ""]
-    rows = []
-    for f in worst(there):
-        where = _found_by([laid.space.entities[k] for k in f.entities])
-        rows.append((str(f.element.number), f.element.view.name, _called(f.element), f.what, str(f.verdict), where))
+    which = f"{name}, sheet {laid.n}: {path.name} ({laid.space.name})"
+    out = [f"{which}, {len(outcome.findings)} elements, tolerance {pencil:g} mm", ""]
+    rows = _deviations(found, lost)
     if rows:
-        out += _table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows)
-        out.append("")
+        out += [*_table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows), ""]
     out += [f'missing altogether: view "{v.name}", {sum(f.element.view == v for f in outcome.findings)} elements'
             for v in sorted(lost, key=lambda v: v.n)]
-    extra = []
-    for k, x in enumerate(outcome.extras, 1):
-        what = f'text "{x.text}"' if x.text else f"{x.length:.1f} mm of line" + (f" in {x.count} entities" if x.count > 1 else "")
-        extra.append((f"+{k}", what, f"({x.at.real:.0f}, {x.at.imag:.0f})", str(x.verdict), str(x.entity)))
-    if extra:
-        out += ["extra, on no element of the sheet:", *_table(("no.", "what", "about, mm", "verdict", "in the drawing"), extra), ""]
-    looks = _looks(found)
-    if looks:
-        head = ("no.", "view", "lines", "what", "verdict", "in the drawing")
-        out += ["of another type or width of line:", *_table(head, looks), ""]
-    skipped = colours[None]
-    also = f", {skipped} not compared" if skipped else ""
+    for title, head, rows in (
+        ("extra, on no element of the sheet:", ("no.", "what", "about, mm", "verdict", "in the drawing"), _extras(outcome)),
+        ("of another type or width of line:", ("no.", "view", "lines", "what", "verdict", "in the drawing"), _looks(found)),
+    ):
+        if rows:
+            out += [title, *_table(head, rows), ""]
+    return "\n".join([*out, _summary(outcome, lost)])
+
+
+def _summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
+    there = [f for f in outcome.findings if f.element.view not in lost]
+    colours = Counter(f.verdict for f in there)
     most = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
+    skipped = f", {colours[None]} not compared" if colours[None] else ""
     views = f"; {len(lost)} of {len({f.element.view for f in outcome.findings})} views missing" if lost else ""
     unlike = len({n for look in outcome.looks for n in look.elements})
-    out.append(f"{colours['green']} green (up to {most:.2f} mm), {colours['amber']} amber, {colours['red']} red{also}; "
-               f"{len(outcome.extras)} extra{views}"
-               + (f"; {unlike} of another type or width of line" if looks else ""))
-    return "\n".join(out)
+    looks = f"; {unlike} of another type or width of line" if outcome.looks else ""
+    return (f"{colours['green']} green (up to {most:.2f} mm), {colours['amber']} amber, {colours['red']} red{skipped}; "
+            f"{len(outcome.extras)} extra{views}{looks}")
+
+
+def _deviations(found: Examined, lost: set[ElementView]) -> list[tuple[str, ...]]:
+    """A row for every element that is not green, except those of missing views."""
+    entities = found.laid.space.entities
+    return [(str(f.element.number), f.element.view.name, _called(f.element), f.what, str(f.verdict),
+             _found_by([entities[k] for k in f.entities])) for f in worst(found.outcome.findings) if f.element.view not in lost]
+
+
+def _extras(outcome: CadOutcome) -> list[tuple[str, ...]]:
+    """A row for everything extra."""
+    rows: list[tuple[str, ...]] = []
+    for k, x in enumerate(outcome.extras, 1):
+        what = f'text "{x.text}"' if x.text else f"{x.length:.1f} mm of line" + (f" in {x.count} entities" if x.count > 1 else "")
+        rows.append((f"+{k}", what, f"({x.at.real:.0f}, {x.at.imag:.0f})", str(x.verdict), str(x.entity)))
+    return rows
 
 
 def _looks(found: Examined) -> list[tuple[str, ...]]:
-    """A row for every group of lines of another type or width."""
+    """A row for every group of lines of a wrong type or width."""
     rows: list[tuple[str, ...]] = []
     for k, look in enumerate(found.outcome.looks, 1):
         size, first = len(look.elements), ", ".join(map(str, look.elements[:MANY]))
@@ -105,7 +117,7 @@ def _looks(found: Examined) -> list[tuple[str, ...]]:
 
 
 def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
-    shown = [tuple(c if len(c) <= 74 else c[:73] + "…" for c in row) for row in rows[:SHOWN]]
+    shown = [tuple(c if len(c) <= WIDE else c[: WIDE - 1] + "…" for c in row) for row in rows[:SHOWN]]
     widths = [max(len(row[k]) for row in (head, *shown)) for k in range(len(head))]
     out = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (head, *shown)]
     if len(rows) > SHOWN:
@@ -122,7 +134,7 @@ def _rounded(x: float | None) -> float | None:
 
 
 def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any]:
-    """The outcome for other programs."""
+    """The report for JSON on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     laid, places, outcome = found.laid, found.places, found.outcome
     colours = Counter(f.verdict for f in outcome.findings)
     p = laid.placing

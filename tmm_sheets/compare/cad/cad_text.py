@@ -1,9 +1,9 @@
-"""Lettering of a sheet against the text of a CAD drawing, by what it says; places only have to be near."""
+"""Lettering of a sheet against the texts of a CAD drawing, by what they say; they need only be near their places."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,12 +13,12 @@ from tmm_sheets.compare.cad.cad_ink import Writing, normal
 from tmm_sheets.drawing.marks import Points
 
 FAR = 12.0
-"""How far from its place, mm, a text may stand: where a letter goes is the draughtsman's choice."""
+"""How far from its place a text may be, mm: where a letter goes is the draughtsman's choice."""
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """Lettering of ours: what it says and the corners round it, from the lower left counter-clockwise, mm."""
+class WantedText:
+    """Lettering of ours: what it says, the corners of its box, counter-clockwise from the lower left, and its height, mm."""
 
     text: str
     corners: Points
@@ -26,87 +26,105 @@ class Wanted:
 
     @cached_property
     def middle(self) -> complex:
-        """Middle of the rectangle."""
+        """Middle of the box."""
         return complex(self.corners.mean())
 
 
 @dataclass(frozen=True)
-class Read:
-    """``writings`` are the numbers of the texts found for a wanted one; ``says`` what they say when it is something else."""
+class FoundText:
+    """``writings`` are the numbers of the texts found for a wanted one, ``says`` what they say if that is something else."""
 
     writings: tuple[int, ...]
     says: str | None = None
 
 
-def read(wanted: Sequence[Wanted], writings: Sequence[Writing]) -> dict[int, Read]:
-    """What stands where lettering is wanted; nothing for those where no text stands.
+def read(wanted: Sequence[WantedText], writings: Sequence[Writing]) -> dict[int, FoundText]:
+    """The texts found for wanted ones, by the number of the wanted one.
 
-    First the same text near by; then several texts that make one (a letter and its index), or one that has several of ours
-    (a line of values); then what stands in its place and says something else.
+    The same text near by comes first, then several texts that make one (a letter and its index), then a text that contains ours
+    among others (a line of values), last what is in its place and says something else.
     """
-    found: dict[int, Read] = {}
-    free = set(range(len(writings)))
-    at = np.array([w.at for w in writings], dtype=complex)
-    words = [meant(w.text) for w in writings]
-    by_word: dict[str, list[int]] = {}
-    for k, word in enumerate(words):
-        by_word.setdefault(word, []).append(k)
-    pairs = []
-    for n, want in enumerate(wanted):
-        pairs += [(abs(_beyond(want, writings[k])), n, k) for k in by_word.get(meant(want.text), ())]
-    for far, n, k in sorted(pairs):
-        if far <= FAR and n not in found and k in free:
-            found[n] = Read((k,))
-            free.discard(k)
-    if not len(at):
-        return found
+    reading = _Reading(wanted, writings)
+    reading.alike()
+    if writings:
+        reading.joined()
+        reading.contained()
+        reading.others()
+    return reading.found
 
-    def about(want: Wanted, reach: float = 5.0) -> list[int]:
+
+class _Reading:
+    """Wanted texts, texts of the drawing, and which of them belong together so far."""
+
+    def __init__(self, wanted: Sequence[WantedText], writings: Sequence[Writing]) -> None:
+        self.wanted, self.writings = wanted, writings
+        self.at = np.array([w.at for w in writings], dtype=complex)
+        self.found: dict[int, FoundText] = {}
+        self.free = set(range(len(writings)))
+
+    def alike(self) -> None:
+        """The same text near by, the nearest pairs first."""
+        by_meaning: dict[str, list[int]] = {}
+        for k, w in enumerate(self.writings):
+            by_meaning.setdefault(meant(w.text), []).append(k)
+        pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in enumerate(self.wanted)
+                 for k in by_meaning.get(meant(want.text), ())]
+        for far, n, k in sorted(pairs):
+            if far <= FAR and n not in self.found and k in self.free:
+                self._take(n, k)
+
+    def joined(self) -> None:
+        """Several texts that make one."""
+        for n, want in self._missing():
+            near = [k for k in self._about(want) if k in self.free and _inside(want, self.writings[k].at, 0.5 * want.height + 0.5)]
+            u = (want.corners[1] - want.corners[0]) / max(abs(want.corners[1] - want.corners[0]), 1e-9)
+            near.sort(key=lambda k: ((self.writings[k].at - want.middle) * np.conj(u)).real)
+            if near and _same(meant("".join(self.writings[k].text for k in near)), meant(want.text), len(near) > 1):
+                self._take(n, *near)
+
+    def contained(self) -> None:
+        """A text with ours among its words."""
+        for n, want in self._missing():
+            for k in self._about(want, 150.0):
+                w = self.writings[k]
+                away = (want.middle - w.at) * np.exp(-1j * w.angle)
+                if abs(away.real) < w.width and abs(away.imag) < 1.5 * w.height and _has(w.text, want.text):
+                    self._take(n, k)
+                    break
+
+    def others(self) -> None:
+        """What is in its place and says something else."""
+        pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in self._missing() for k in self._about(want)
+                 if k in self.free and _inside(want, self.writings[k].at, 3.0)]
+        for _, n, k in sorted(pairs):
+            if n not in self.found and k in self.free:
+                self._take(n, k, says=self.writings[k].text.strip())
+
+    def _missing(self) -> Iterator[tuple[int, WantedText]]:
+        return ((n, want) for n, want in enumerate(self.wanted) if n not in self.found)
+
+    def _take(self, n: int, *texts: int, says: str | None = None) -> None:
+        self.found[n] = FoundText(texts, says)
+        self.free.difference_update(texts)
+
+    def _about(self, want: WantedText, reach: float = 5.0) -> list[int]:
         """Texts whose middle is not far from the rectangle."""
         size = abs(complex(want.corners[2] - want.corners[0])) / 2
-        return np.flatnonzero(np.abs(at - want.middle) < size + reach).tolist()
+        return np.flatnonzero(np.abs(self.at - want.middle) < size + reach).tolist()
 
-    for n, want in enumerate(wanted):
-        if n in found:
-            continue
-        near = [k for k in about(want) if k in free and _inside(want, writings[k].at, 0.5 * want.height + 0.5)]
-        if near:
-            u = (want.corners[1] - want.corners[0]) / max(abs(want.corners[1] - want.corners[0]), 1e-9)
-            near.sort(key=lambda k: ((writings[k].at - want.middle) * np.conj(u)).real)
-            joined = meant("".join(writings[k].text for k in near))
-            # Indices may have been written in another order than ours, but numbers keep their digits.
-            jumbled = len(near) > 1 and sorted(joined) == sorted(meant(want.text)) and _digits(joined) == _digits(meant(want.text))
-            if joined == meant(want.text) or jumbled:
-                found[n] = Read(tuple(near))
-                free.difference_update(near)
-    for n, want in enumerate(wanted):
-        if n in found:
-            continue
-        for k in about(want, 150.0):
-            w = writings[k]
-            away = (want.middle - w.at) * np.exp(-1j * w.angle)
-            if abs(away.real) < w.width and abs(away.imag) < 1.5 * w.height and _has(w.text, want.text):
-                found[n] = Read((k,))
-                free.discard(k)
-                break
-    pairs = []
-    for n, want in enumerate(wanted):
-        if n not in found:
-            pairs += [(_beyond(want, writings[k]), n, k) for k in about(want) if k in free and _inside(want, writings[k].at, 3.0)]
-    for _, n, k in sorted(pairs):
-        if n not in found and k in free:
-            found[n] = Read((k,), writings[k].text.strip())
-            free.discard(k)
-    return found
+
+def _same(joined: str, wanted: str, several: bool) -> bool:
+    """Whether texts put together are the wanted one; indices may come in another order, but numbers keep their digits."""
+    return joined == wanted or (several and sorted(joined) == sorted(wanted) and _digits(joined) == _digits(wanted))
 
 
 def meant(text: str) -> str:
-    """Text as compared: normal, and numbers without idle zeros (0,50 is 0,5)."""
+    """Text as it is compared: normal, with numbers without trailing zeros (0,50 is 0,5)."""
     return re.sub(r"\d+\.\d+", lambda m: m.group().rstrip("0").rstrip("."), normal(text))
 
 
 def _has(text: str, part: str) -> bool:
-    """Whether some words of a text, one after another, are those of a part."""
+    """Whether the words of a part follow one another in a text."""
     words, wanted = [meant(w) for w in text.split()], [meant(w) for w in part.split()]
     return any(words[k : k + len(wanted)] == wanted for k in range(len(words) - len(wanted) + 1))
 
@@ -115,15 +133,15 @@ def _digits(text: str) -> str:
     return "".join(c for c in text if c.isdigit())
 
 
-def _inside(want: Wanted, z: complex, margin: float) -> bool:
-    """Whether a place is in the rectangle, or so near to it."""
+def _inside(want: WantedText, z: complex, margin: float) -> bool:
+    """Whether a point is in the box or within a margin of it."""
     a, b, _, d = want.corners
     u = (b - a) / max(abs(b - a), 1e-9)
     p = (z - a) * np.conj(u)
     return bool(-margin <= p.real <= abs(b - a) + margin and -margin <= p.imag <= abs(d - a) + margin)
 
 
-def _beyond(want: Wanted, w: Writing) -> float:
-    """Distance of the middles, less what an estimated width may be wrong by."""
+def _beyond(want: WantedText, w: Writing) -> float:
+    """Distance of the middles, less the error that an estimated width may have."""
     along = (w.at - want.middle) * np.exp(-1j * w.angle)
     return float(np.hypot(max(abs(along.real) - 0.25 * w.width, 0.0), along.imag))

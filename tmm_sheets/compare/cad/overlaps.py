@@ -1,4 +1,4 @@
-"""Which parts of two sets of lines lie on one another: intervals along both, with the distance between them."""
+"""Stretches of two sets of lines that lie on one another, with the distance between them; arithmetic of such stretches."""
 
 from __future__ import annotations
 
@@ -8,23 +8,27 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.cad.placing import Lines, shapes
+from tmm_sheets.compare.cad.placing import KnownLines, shapes
 from tmm_sheets.drawing.marks import Points
 
 Numbers = npt.NDArray[np.float64]
 Interval = tuple[float, float]
 
 STEEP = 0.4
-"""Largest slope between short pieces that may still be the same line (chords of one circle, cut at other places)."""
+"""Greatest slope between short pieces of what may be one line (chords of a circle, divided in two ways)."""
 FLAT = 0.03
 """The same between long ones."""
 
 
 class Overlaps(NamedTuple):
-    """Stretches that lie on one another, one row each.
+    """Stretches that lie on one another, one row each; arrays of one length.
 
-    ``ours`` is the number of our piece, ``s0`` .. ``s1`` along it, mm; ``theirs`` and ``w0`` .. ``w1`` (ascending) the same of
-    theirs; ``off0`` and ``off1`` the distance to the left of our line at ``s0`` and ``s1``.
+    Attributes
+    ----------
+    ours, theirs : numbers of the two pieces
+    s0, s1 : where the stretch begins and ends along our piece, mm
+    w0, w1 : the same along theirs, ascending
+    off0, off1 : how far to the left of our piece theirs is at ``s0`` and ``s1``, mm
     """
 
     ours: npt.NDArray[np.int64]
@@ -37,19 +41,19 @@ class Overlaps(NamedTuple):
     off1: Numbers
 
     def only(self, keep: npt.NDArray[np.bool_]) -> Overlaps:
-        """Some of the rows."""
+        """The rows to keep."""
         ours, s0, s1, theirs, w0, w1, off0, off1 = self
         return Overlaps(ours[keep], s0[keep], s1[keep], theirs[keep], w0[keep], w1[keep], off0[keep], off1[keep])
 
 
 def together(parts: Sequence[Overlaps]) -> Overlaps:
-    """All rows of several."""
+    """The rows of all."""
     ours, theirs = np.concatenate([p.ours for p in parts]), np.concatenate([p.theirs for p in parts])
     s0, s1, w0, w1, off0, off1 = (np.concatenate([p[k] for p in parts]).astype(float) for k in (1, 2, 4, 5, 6, 7))
     return Overlaps(ours, s0, s1, theirs, w0, w1, off0, off1)
 
 
-def overlaps(ours: Lines, theirs: Lines, reach: float, steep: float = STEEP, flat: float = FLAT) -> Overlaps:
+def overlaps(ours: KnownLines, theirs: KnownLines, reach: float, steep: float = STEEP, flat: float = FLAT) -> Overlaps:
     """Stretches of two sets of straight pieces that run within ``reach`` mm of each other in nearly the same direction."""
     i, j = theirs.tree.query(shapes(ours.a, ours.b), predicate="dwithin", distance=reach)
     size = ours.length[i]
@@ -78,7 +82,7 @@ def overlaps(ours: Lines, theirs: Lines, reach: float, steep: float = STEEP, fla
 
 
 def union(parts: Iterable[Interval], gap: float = 0.0) -> list[Interval]:
-    """Intervals put together where they touch or leave no more than ``gap`` between them."""
+    """The union of intervals, across gaps up to ``gap``."""
     merged: list[Interval] = []
     for a, b in sorted(parts):
         if merged and a <= merged[-1][1] + gap:
@@ -90,21 +94,21 @@ def union(parts: Iterable[Interval], gap: float = 0.0) -> list[Interval]:
 
 
 def gaps(parts: Sequence[Interval], whole: float) -> list[Interval]:
-    """What the united intervals leave of 0 .. ``whole``."""
+    """What disjoint ascending intervals leave of 0 .. ``whole``."""
     edges = [0.0, *(x for part in parts for x in part), whole]
     return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b > a]
 
 
 class Left(NamedTuple):
-    """What is left of a piece of theirs: the piece and the interval along it."""
+    """An unclaimed stretch of their lines: the number of the piece and the interval along it, mm."""
 
     piece: int
     a: float
     b: float
 
 
-def left(theirs: Lines, claimed: Overlaps, least: float = 0.05) -> list[Left]:
-    """The stretches of their pieces that no overlap claims."""
+def left(theirs: KnownLines, claimed: Overlaps, least: float = 0.05) -> list[Left]:
+    """The stretches of their pieces, longer than ``least``, that no overlap claims."""
     found: list[Left] = []
     order = np.argsort(claimed.theirs, kind="stable")
     j, w0, w1 = claimed.theirs[order], claimed.w0[order].tolist(), claimed.w1[order].tolist()
@@ -119,24 +123,24 @@ def left(theirs: Lines, claimed: Overlaps, least: float = 0.05) -> list[Left]:
     return found
 
 
-def pieces(theirs: Lines, rest: Sequence[Left]) -> Lines:
-    """The rest as lines; their owner is the number of the piece they were left of."""
+def pieces(theirs: KnownLines, rest: Sequence[Left]) -> KnownLines:
+    """Unclaimed stretches as lines; each has the number of its piece as owner."""
     n = np.array([r.piece for r in rest], dtype=np.int64)
     a, b = np.array([r.a for r in rest], dtype=float), np.array([r.b for r in rest], dtype=float)
     unit = (theirs.b - theirs.a)[n] / np.maximum(theirs.length[n], 1e-12)
-    return Lines(theirs.a[n] + a * unit, theirs.a[n] + b * unit, n)
+    return KnownLines(theirs.a[n] + a * unit, theirs.a[n] + b * unit, n)
 
 
-class Run(NamedTuple):
-    """A straight line put together from collinear pieces; ``parts`` are their numbers."""
+class OverlapRun(NamedTuple):
+    """A straight line made of collinear pieces; ``parts`` are their numbers."""
 
     a: complex
     b: complex
     parts: tuple[int, ...]
 
 
-def runs(rest: Lines, gap: float, most: int = 3000) -> list[Run]:
-    """Straight lines made of pieces in line that leave at most ``gap`` mm between them; of the longest ``most`` pieces only."""
+def runs(rest: KnownLines, gap: float, most: int = 3000) -> list[OverlapRun]:
+    """Straight lines made of collinear pieces with gaps up to ``gap`` mm, of the longest ``most`` pieces only."""
     n = np.flatnonzero(rest.length > 0.3)
     if len(n) > most:
         n = np.sort(n[np.argsort(-rest.length[n])[:most]])
@@ -172,12 +176,12 @@ def runs(rest: Lines, gap: float, most: int = 3000) -> list[Run]:
         longest = max(members, key=lambda k: abs(b[k] - a[k]))
         ends = np.concatenate((a[members], b[members]))
         t = ((ends - a[longest]) * np.conj(u[longest])).real
-        found.append(Run(complex(ends[t.argmin()]), complex(ends[t.argmax()]), tuple(int(n[k]) for k in members)))
+        found.append(OverlapRun(complex(ends[t.argmin()]), complex(ends[t.argmax()]), tuple(int(n[k]) for k in members)))
     return found
 
 
 class Circle(NamedTuple):
-    """A circle fitted to lines: ``part`` of a full turn there is, ``strokes`` the numbers of the lines."""
+    """A circle fitted to lines: ``part`` is the share of its circumference that is drawn, ``strokes`` the numbers of the lines."""
 
     centre: complex
     radius: float
@@ -186,7 +190,7 @@ class Circle(NamedTuple):
 
 
 def circle(z: Points) -> tuple[complex, float, float] | None:
-    """Centre, radius and largest distance of the points from the circle through them; None when they are on a line."""
+    """Centre and radius of the circle fitted to points, and the greatest distance from it; None for collinear points."""
     middle = complex(z.mean())
     size = float(np.abs(z - middle).max())
     if len(z) < 4 or not size > 0:

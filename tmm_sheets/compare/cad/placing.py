@@ -1,7 +1,7 @@
-"""Where a drawing lies on the sheet: scale, turn and shift that bring its lines onto the known ones.
+"""Placing a drawing on the sheet: the scale, turn and shift that bring its lines onto the known ones.
 
-Found by correlating pictures of both (fast Fourier transform) for every scale and quarter turn that comes into question, then
-refined on the lines themselves, robustly: what is drawn wrongly hardly counts. Points are complex.
+A placing is found by correlating pictures of both (fast Fourier transform) for each plausible scale and quarter turn, then refined
+on the lines themselves by a robust fit, in which wrong lines hardly count. Points are complex.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ import numpy.typing as npt
 from tmm_sheets.drawing.marks import Points
 
 CELL = 3.0
-"""Cell of the pictures that are correlated, mm."""
+"""Cell size of the pictures that are correlated, mm."""
 CELLS = 540
-"""Cells of such a picture along each side: what is larger than 1.6 m does not come into question."""
+"""Cells along each side of such a picture: drawings larger than 1.6 m are out of the question."""
 HIT = 1.0
-"""A point of ours is found when a line of theirs passes within this, mm, in :meth:`Lines.share`."""
+"""Distance, mm, within which a line must pass a point for :meth:`KnownLines.share` to count it."""
 
 
 class Placing(NamedTuple):
-    """``turn * z + shift`` for a point ``z`` of the drawing, of its mirror image when ``mirrored``."""
+    """Takes a point ``z`` of the drawing, first reflected in the x axis if ``mirrored``, to ``turn * z + shift`` on the sheet."""
 
     turn: complex = 1 + 0j
     shift: complex = 0j
     mirrored: bool = False
 
     def __call__(self, z: Any) -> Any:
-        """The place on the sheet, mm."""
+        """The point on the sheet, mm, of a point of the drawing."""
         return self.turn * (np.conj(z) if self.mirrored else z) + self.shift
 
     def back(self, z: Any) -> Any:
-        """The place in the drawing of a place on the sheet."""
+        """The point of the drawing of a point on the sheet."""
         z = (z - self.shift) / self.turn
         return np.conj(z) if self.mirrored else z
 
@@ -64,8 +64,8 @@ class Placing(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
-    """Straight pieces ``a`` .. ``b`` of many lines; ``owner`` is the number of the line each belongs to."""
+class KnownLines:
+    """Straight pieces from ``a`` to ``b`` of many lines; ``owner`` is the number of the line each belongs to."""
 
     a: Points
     b: Points
@@ -78,35 +78,35 @@ class Lines:
 
     @cached_property
     def tree(self) -> Any:
-        """The pieces in a tree by place (shapely)."""
+        """The pieces in a spatial index (shapely)."""
         import shapely
 
         return shapely.STRtree(shapes(self.a, self.b))
 
     def points(self, step: float) -> Points:
-        """Places along the lines about ``step`` apart, at least one on each piece longer than a tenth of that."""
+        """Points along the lines about ``step`` apart, at least one on each piece longer than a tenth of that."""
         n = np.ceil(self.length / step).astype(int)
         n[self.length < 0.1 * step] = 0
         k = np.repeat(np.arange(len(n)), n)
         t = (np.arange(len(k)) - np.repeat(np.cumsum(n) - n, n) + 0.5) / n[k]
         return np.asarray(self.a[k] + t * (self.b - self.a)[k])
 
-    def moved(self, placing: Placing) -> Lines:
-        """The lines elsewhere."""
-        return Lines(placing(self.a), placing(self.b), self.owner)
+    def moved(self, placing: Placing) -> KnownLines:
+        """The lines moved by a placing."""
+        return KnownLines(placing(self.a), placing(self.b), self.owner)
 
-    def only(self, keep: npt.NDArray[np.bool_]) -> Lines:
-        """Some of the pieces."""
-        return Lines(self.a[keep], self.b[keep], self.owner[keep])
+    def only(self, keep: npt.NDArray[np.bool_]) -> KnownLines:
+        """The pieces to keep."""
+        return KnownLines(self.a[keep], self.b[keep], self.owner[keep])
 
     def share(self, points: Points, within: float = HIT) -> float:
-        """Share of the points that a line passes within some millimetres."""
+        """Share of the points, 0 .. 1, that a line passes within a distance."""
         if not len(points) or not len(self.a):
             return 0.0
         return float(self.nearest(points, within)[2].mean())
 
     def nearest(self, points: Points, within: float) -> tuple[Points, Points, npt.NDArray[np.bool_]]:
-        """For each point the nearest place on a line, the direction of that line (unit), and whether there is one at all."""
+        """For each point the nearest point on a line, the direction of that line (unit), and whether there is one near enough."""
         import shapely
 
         foot, unit, found = points.copy(), np.ones(len(points), complex), np.zeros(len(points), bool)
@@ -128,41 +128,35 @@ def shapes(a: Points, b: Points) -> Any:
     return shapely.linestrings(np.stack((np.column_stack((a.real, a.imag)), np.column_stack((b.real, b.imag))), axis=1))
 
 
-def lines(strokes: Iterable[Points]) -> Lines:
-    """Straight pieces of lines through points; pieces without length are left out."""
+def lines(strokes: Iterable[Points]) -> KnownLines:
+    """Straight pieces of polylines, without those of zero length."""
     parts = list(strokes)
     if not parts:
-        return Lines(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, np.int64))
+        return KnownLines(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, np.int64))
     a, b = np.concatenate([p[:-1] for p in parts]), np.concatenate([p[1:] for p in parts])
     owner = np.repeat(np.arange(len(parts)), [len(p) - 1 for p in parts])
     keep = a != b
-    return Lines(a[keep], b[keep], owner[keep])
+    return KnownLines(a[keep], b[keep], owner[keep])
 
 
-def candidates(theirs: Lines, unit: float | None, width: float, sides: Sequence[float]) -> list[float]:
-    """Scales, mm per unit of the drawing, that come into question, the likely ones first.
+def candidates(theirs: KnownLines, unit: float | None, width: float, sides: Sequence[float]) -> list[float]:
+    """Plausible scales, mm per unit of the drawing, the likely ones first.
 
     Parameters
     ----------
     theirs : the drawing, in its units
-    unit : mm of the declared unit, None when there is none
+    unit : the declared unit, mm, None if there is none
     width : width of the known lines, mm
-    sides : lengths of lines that stand out by their length (frame, edge of the paper), mm
+    sides : lengths of the longest known lines (frame, edge of the paper), mm
     """
-    longest = np.sort(theirs.length)[::-1]
-    stand_out: list[float] = []
-    for x in longest[:40]:
-        if all(abs(x - y) > 1e-3 * x for y in stand_out):
-            stand_out.append(float(x))
-    found = [s / x for x in stand_out[:4] for s in sides]
+    found = [s / x for x in _longest(theirs) for s in sides]
     base = unit or 1.0
     found += [base * k for k in RATIOS]
     found += [k for k in (1.0, 25.4, 1000.0, 10.0, 0.1, 0.001) if k != base]
     z = np.concatenate((theirs.a, theirs.b))
     for span in (np.ptp(z.real), np.ptp(z.imag)):
         found += [width / float(span)] if span > 0 else []
-    q = [np.quantile(part, (0.02, 0.98)) for part in (z.real, z.imag)]
-    size = max(float(q[0][1] - q[0][0]), float(q[1][1] - q[1][0]))
+    size = max(float(high - low) for low, high in (np.quantile(part, (0.02, 0.98)) for part in (z.real, z.imag)))
     good: list[float] = []
     for s in found:
         if 0.15 * width < s * size < 1.7 * width and all(abs(s - g) > 2e-4 * g for g in good):
@@ -170,37 +164,46 @@ def candidates(theirs: Lines, unit: float | None, width: float, sides: Sequence[
     return good
 
 
+def _longest(theirs: KnownLines, most: int = 4) -> list[float]:
+    """The greatest lengths, each once."""
+    found: list[float] = []
+    for x in np.sort(theirs.length)[::-1][:40].tolist():
+        if all(abs(x - y) > 1e-3 * x for y in found):
+            found.append(x)
+    return found[:most]
+
+
 RATIOS = (1.0, 2.0, 0.5, 2.5, 0.4, 4.0, 0.25, 5.0, 0.2, 10.0, 0.1, 20.0, 50.0, 100.0)
-"""Scales of GOST 2.302 and their inverses: mm of the sheet per mm drawn."""
+"""Scales of GOST 2.302 and their reciprocals: mm of the sheet per mm drawn."""
 
 
-class Found(NamedTuple):
-    """A placing with the share of our lines it brings lines of theirs to."""
+class FoundPlacing(NamedTuple):
+    """A placing with the share of our lines on which it puts lines of theirs."""
 
     placing: Placing
     share: float
 
 
-def search(ours: Points, theirs: Lines, scales: Sequence[float], turns: Sequence[int] = (0, 1, 3, 2), mirrored: bool = False,
-           enough: float = 0.8, tries: int = 8) -> Found:
-    """The scale, the quarter turns and the shift with which most of our lines lie on theirs.
+def search(ours: Points, theirs: KnownLines, scales: Sequence[float], turns: Sequence[int] = (0, 1, 3, 2), mirrored: bool = False,
+           enough: float = 0.8, tries: int = 8) -> FoundPlacing:
+    """The placing, among scales and quarter turns, with which most of our lines lie on theirs.
 
     Parameters
     ----------
-    ours : places along our lines, mm of the sheet
+    ours : points along our lines, mm of the sheet
     theirs : their lines, drawing units
     scales, turns : what to try, mm per unit and quarter turns counter-clockwise
     mirrored : whether the drawing is a mirror image
-    enough : stop at this share
-    tries : how many of the placings that look best in the pictures are looked at more closely
+    enough : share at which to stop
+    tries : how many of the placings that look best in the pictures to refine
     """
     if not len(ours):
-        return Found(Placing(mirrored=mirrored), 0.0)
+        return FoundPlacing(Placing(mirrored=mirrored), 0.0)
     low = complex(ours.real.min(), ours.imag.min())
     mine = np.fft.rfft2(_grown(_picture(ours, low)))
     picked = ours[:: max(len(ours) // 1500, 1)]
     good: list[tuple[float, Placing]] = []
-    best = Found(Placing(mirrored=mirrored), 0.0)
+    best = FoundPlacing(Placing(mirrored=mirrored), 0.0)
     for scale in scales:
         here: list[tuple[float, Placing]] = []
         for quarter in turns:
@@ -225,11 +228,11 @@ def search(ours: Points, theirs: Lines, scales: Sequence[float], turns: Sequence
 
 def _peaks(mine: npt.NDArray[np.complex128], z: Points, low: complex, placing: Placing,
            most: int = 2) -> list[tuple[float, Placing]]:
-    """The best shifts of one scale and turn with the cells that meet, less those that would by chance."""
+    """The best shifts at one scale and turn, each with the number of cells that meet beyond chance."""
     corner = complex(np.quantile(z.real, 0.001), np.quantile(z.imag, 0.001))
     picture = _picture(z, corner)
     product = np.fft.irfft2(mine * np.conj(np.fft.rfft2(picture)), s=(CELLS, CELLS))
-    # Our cells over their ground: so many meet anyhow.
+    # As many of our cells meet theirs by chance as theirs fill of the ground.
     rows, columns = (max(int(np.ptp(part) / CELL), 1) for part in (z.imag, z.real))
     chance = min(float(picture.sum()) / (rows * columns), 1.0) * float(mine[0, 0].real)
     found = []
@@ -245,12 +248,12 @@ def _peaks(mine: npt.NDArray[np.complex128], z: Points, low: complex, placing: P
 
 
 def _cells(z: Points) -> npt.NDArray[np.int64]:
-    """Cells the points fall into, each once."""
+    """The cells with points in them, each once."""
     return np.unique((z.imag // CELL).astype(np.int64) * 100_000 + (z.real // CELL).astype(np.int64))
 
 
 def _picture(z: Points, corner: complex) -> npt.NDArray[np.float64]:
-    """Inked cells, the corner in the first one."""
+    """1 in the cells with points, 0 elsewhere; the first cell begins at the corner."""
     i, j = ((z.imag - corner.imag) / CELL).astype(int), ((z.real - corner.real) / CELL).astype(int)
     inside = (i >= 0) & (i < CELLS) & (j >= 0) & (j < CELLS)
     cells = np.zeros((CELLS, CELLS))
@@ -259,7 +262,7 @@ def _picture(z: Points, corner: complex) -> npt.NDArray[np.float64]:
 
 
 def _grown(cells: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Half a hit in the neighbours of inked cells."""
+    """A picture with at least 0.5 in the neighbours of filled cells."""
     wide = cells.copy()
     for axis in (0, 1):
         for way in (1, -1):
@@ -267,32 +270,33 @@ def _grown(cells: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     return wide
 
 
-def refine(ours: Points, theirs: Lines, start: Placing, reaches: Sequence[float] = (3.0, 1.5, 0.8, 0.4, 0.25), free: bool = True,
-           rounds: int = 2) -> Found:
-    """A placing made better: our points are to lie on the nearest lines of theirs, wrong ones counting little.
+def refine(ours: Points, theirs: KnownLines, start: Placing, reaches: Sequence[float] = (3.0, 1.5, 0.8, 0.4, 0.25),
+           free: bool = True, rounds: int = 2) -> FoundPlacing:
+    """Fit a placing so that our points lie on the nearest lines of theirs; wrong lines hardly count.
 
     Parameters
     ----------
-    ours : places along our lines, mm of the sheet
+    ours : points along our lines, mm of the sheet
     theirs : their lines, drawing units
-    start : a placing that is good to the first of ``reaches``
-    reaches : how far lines are looked for in turn, mm
+    start : a placing good to the first of ``reaches``
+    reaches : how far from a point to look for a line, in turn, mm
     free : whether scale and angle are fitted as well as the shift
+    rounds : fits at each reach
     """
     placing = start
     scale = placing.scale
     for reach in reaches:
         for _ in range(rounds):
-            # Their lines stay where they are, our points go back to them: the tree is made once.
+            # Our points are taken to their lines rather than the reverse, so that the spatial index is built once.
             z = placing.back(ours)
             foot, unit, found = theirs.nearest(z, reach / scale)
             if found.sum() < 8:
-                return Found(placing, 0.0)
+                return FoundPlacing(placing, 0.0)
             at, foot_mm = ours[found], placing(foot[found])
             direction = placing.turn / scale * (np.conj(unit[found]) if placing.mirrored else unit[found])
             n = 1j * direction
             off = ((foot_mm - at) * np.conj(n)).real
-            # Least absolute deviations: where most lines are exact the rest has no say at all.
+            # Least absolute deviations: if most lines are exact, the others have no influence.
             weight = 1 / np.maximum(np.abs(off), 0.01 * reach + 1e-4)
             middle = complex(at.mean())
             r = foot_mm - middle
@@ -308,31 +312,23 @@ def refine(ours: Points, theirs: Lines, start: Placing, reaches: Sequence[float]
             placing = Placing(turn, middle - turn * middle + shift).after(placing)
             scale = placing.scale
     _, _, found = theirs.nearest(placing.back(ours), HIT / scale)
-    return Found(placing, float(found.mean()))
+    return FoundPlacing(placing, float(found.mean()))
 
 
-def snapped(ours: Points, theirs: Lines, fitted: Placing, unit: float | None) -> Placing:
-    """The placing with its scale and angle set to the round ones they nearly are, the shift fitted again."""
-    scale, angle = fitted.scale, float(np.angle(fitted.turn))
+def snapped(ours: Points, theirs: KnownLines, fitted: Placing, unit: float | None) -> Placing:
+    """A fitted placing with the round scale and angle it nearly has, and the shift fitted again."""
+    angle = float(np.angle(fitted.turn))
     quarter = round(angle / (np.pi / 2))
-    if abs(angle - quarter * np.pi / 2) < NEARLY:
-        angle = quarter * np.pi / 2
-        turn = 1j**quarter
-    else:
-        turn = complex(np.exp(1j * angle))
-    for base in dict.fromkeys((unit or 1.0, 1.0, 1000.0, 10.0, 25.4, 0.1, 0.001)):
-        for ratio in RATIOS:
-            if abs(scale / (base * ratio) - 1) < NEARLY:
-                middle = complex(ours.mean())
-                new = base * ratio * turn
-                z = fitted.back(middle)
-                shift = middle - new * (np.conj(z) if fitted.mirrored else z)
-                return refine(ours, theirs, Placing(new, shift, fitted.mirrored), (0.5, 0.25, 0.1), False, 3).placing
+    turn = 1j**quarter if abs(angle - quarter * np.pi / 2) < NEARLY else complex(np.exp(1j * angle))
+    bases = dict.fromkeys((unit or 1.0, 1.0, 1000.0, 10.0, 25.4, 0.1, 0.001))
+    near = (base * ratio for base in bases for ratio in RATIOS if abs(fitted.scale / (base * ratio) - 1) < NEARLY)
+    scale = next(near, None)
+    new = (scale or fitted.scale) * turn
     middle = complex(ours.mean())
     z = fitted.back(middle)
-    new = scale * turn
-    return Placing(new, middle - new * (np.conj(z) if fitted.mirrored else z), fitted.mirrored)
+    snap = Placing(new, middle - new * (np.conj(z) if fitted.mirrored else z), fitted.mirrored)
+    return snap if scale is None else refine(ours, theirs, snap, (0.5, 0.25, 0.1), False, 3).placing
 
 
 NEARLY = 4e-4
-"""Relative error of a scale, or error of an angle in rad, that is taken for rounding (0.3 mm over the sheet)."""
+"""Relative error of a scale, or error of an angle, rad, that is taken for rounding (0.3 mm over the sheet)."""

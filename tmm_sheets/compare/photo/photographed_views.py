@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.elements import Element, View
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.links import links
 from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.profiles import peaks, profiles
@@ -64,7 +64,7 @@ class Placed:
     elements: tuple[Element, ...]
     left_out: tuple[str, ...]
     notes: tuple[str, ...]
-    similarities: Mapping[View, Similarity]
+    similarities: Mapping[ElementView, Similarity]
 
     def strange(self, extra: Extra) -> bool:
         """Whether ink that belongs to no element is too much: not that of a view left out, nor of a symbol in another scale."""
@@ -104,7 +104,7 @@ def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: An
     level = line_level(ink)
     out: list[Element] = []
     lost, notes = [], []
-    similarities: dict[View, Similarity] = {}
+    similarities: dict[ElementView, Similarity] = {}
     leading, leads = links(known), 0
     for view in dict.fromkeys(e.view for e in known):
         mine = [e for e in known if e.view == view]
@@ -149,7 +149,7 @@ def _start(p: ViewPlace, known: Sequence[Element], m: Map) -> Similarity:
     return Similarity(turn, complex(at[0]) - turn * p.ours[0])
 
 
-def _mu(view: View, known: Sequence[Element]) -> float | None:
+def _mu(view: ElementView, known: Sequence[Element]) -> float | None:
     """Our scale factor of a view: under its own title, or under the title it shares with others (plans of several positions)."""
     alike = dict.fromkeys(e.view for e in known if e.view.draw == view.draw and e.view != view)
     return next((mu for v in (view, *alike) if (mu := mu_of(v, known)) is not None), None)
@@ -209,7 +209,7 @@ def _inked(e: Element, ink: Any, level: float) -> bool:
     return float((strength > level).mean()) > INKED
 
 
-def _told(view: View, where: Similarity, given: ViewPlace, known: Sequence[Element]) -> str:
+def _told(view: ElementView, where: Similarity, given: ViewPlace, known: Sequence[Element]) -> str:
     """How large a view was drawn, against ours or against the scale factor it was given."""
     size, degrees = abs(where.turn), float(np.degrees(np.angle(where.turn)))
     text = f'view "{view.name}" was fitted: {size:.4f} times as large as on our sheet, turned by {decimal(degrees)}°'

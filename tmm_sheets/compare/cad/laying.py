@@ -1,0 +1,160 @@
+"""Laying a drawing over the sheet it shows: which sheet, which space of the file, and how it is placed as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tmm_sheets.compare.cad import layout
+from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
+from tmm_sheets.compare.cad.cad_text import meant
+from tmm_sheets.compare.cad.placing import HIT, RATIOS, KnownLines, Placing, candidates, lines, refine, search, snapped
+from tmm_sheets.compare.elements import Element, elements
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.sheets.sheet import Composed
+
+SIDES = (816.0, 841.0, 584.0, 594.0)
+"""Lengths of the sides of the frame and of the paper, mm."""
+SURE = 0.5
+"""Share of our lines found above which a placing is beyond doubt."""
+PART = 100.0
+"""Width plus height of the smallest part of a sheet that is looked for, mm."""
+
+
+@dataclass(frozen=True)
+class Laid:
+    """A drawing laid over a sheet: ``space`` by ``placing``, with ``share`` of the sheet's lines found in it."""
+
+    n: int
+    sheet: Composed
+    elements: tuple[Element, ...]
+    space: DrawingSpace
+    placing: Placing
+    share: float
+
+
+def lay(sheets: Mapping[int, Composed], ink: CadInk) -> Laid:
+    """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines, even mirrored or of one view only."""
+    known = _known(sheets)
+    # With a frame the rest may have another layout: then the lettering tells the sheet.
+    tried = _by_frame(known, ink)
+    if not tried:
+        tried += _by_lines(known, ink, mirrored=False)
+        if _best(tried).share < SURE:
+            tried += _by_lines(known, ink, mirrored=True)
+        if _best(tried).share < SURE:
+            tried += _by_parts(known, ink)
+    return _refined(_best(tried), ink.unit)
+
+
+def fitting(sheets: Mapping[int, Composed], ink: CadInk) -> tuple[int, float]:
+    """The sheet a drawing seems to be of, and the share of its lines found at a quick look."""
+    known = _known(sheets)
+    best = _best(_by_frame(known, ink) or list(_by_lines(known, ink, mirrored=False)))
+    return best.n, best.share
+
+
+@dataclass(frozen=True)
+class _KnownSheet:
+    """A sheet with its elements and points along their lines, mm."""
+
+    n: int
+    sheet: Composed
+    elements: tuple[Element, ...]
+    points: Points
+
+    def laid(self, space: DrawingSpace, placing: Placing, share: float) -> Laid:
+        return Laid(self.n, self.sheet, self.elements, space, placing, share)
+
+
+def _known(sheets: Mapping[int, Composed]) -> list[_KnownSheet]:
+    return [_KnownSheet(n, sheet, found, layout.ink(found)) for n, sheet in sheets.items() for found in [elements(sheet)]]
+
+
+def _by_frame(known: Sequence[_KnownSheet], ink: CadInk) -> list[Laid]:
+    """Placings by the frame alone, of one space after another until one is beyond doubt."""
+    frame = _frame(known[0].elements)
+    tried: list[Laid] = []
+    for space in ink.spaces:
+        for placing in _of_frame(frame, space.lines, ink.unit):
+            for sheet in known:
+                picked = sheet.points[:: max(len(sheet.points) // 3000, 1)]
+                share = space.lines.share(placing.back(picked), HIT / placing.scale)
+                tried.append(sheet.laid(space, placing, share))
+        if tried and _best(tried).share >= SURE:
+            break
+    return tried
+
+
+def _of_frame(frame: Points, theirs: KnownLines, unit: float | None) -> list[Placing]:
+    """The four placings that put a frame of theirs on ours, none if there is no frame."""
+    scales = candidates(theirs, unit, float(np.ptp(frame.real)), SIDES)[:8]
+    long = theirs.only(theirs.length > 0.02 * theirs.length.max())
+    trial = search(frame, long, scales, (0, 1), enough=0.97)
+    if trial.share < 0.95:
+        return []
+    x, y = frame.real.min() + frame.real.max(), frame.imag.min() + frame.imag.max()
+    ways = (Placing(), Placing(-1 + 0j, complex(x, y)), Placing(-1 + 0j, complex(x, 0), True), Placing(1 + 0j, complex(0, y), True))
+    return [way.after(trial.placing) for way in ways]
+
+
+def _by_lines(known: Sequence[_KnownSheet], ink: CadInk, *, mirrored: bool) -> Iterator[Laid]:
+    """The best placing of each space on each sheet by all of its lines."""
+    for space in ink.spaces:
+        for sheet in known:
+            scales = candidates(space.lines, ink.unit, float(np.ptp(sheet.points.real)), SIDES)
+            found = search(sheet.points, space.lines, scales, mirrored=mirrored)
+            yield sheet.laid(space, found.placing, found.share)
+            if found.share > 0.8:
+                break
+
+
+def _by_parts(known: Iterable[_KnownSheet], ink: CadInk) -> Iterator[Laid]:
+    """Placings of a drawing of a few views only: those that put most of its own lines on ours."""
+    for sheet in known:
+        ours = lines([e.points for e in sheet.elements if e.view.n and e.kind not in ("text", "hatch", "fill")])
+        for space in ink.spaces:
+            for ratio in RATIOS:
+                scale = Placing(complex((ink.unit or 1.0) * ratio))
+                z = space.lines.moved(scale).points(1.0)
+                if not 30 < len(z) < 60_000 or np.ptp(z.real) + np.ptp(z.imag) < PART:
+                    continue
+                trial = search(z, ours, [1.0], tries=4)
+                if trial.share >= SURE:
+                    yield sheet.laid(space, trial.placing.inverse().after(scale), trial.share)
+
+
+def _best(tried: Sequence[Laid]) -> Laid:
+    """The first among equals (model space, not mirrored); where little fits, the sheet with more of the words counts."""
+    if max(laid.share for laid in tried) >= SURE:
+        return max(tried, key=lambda laid: round(laid.share, 2))
+    return max(tried, key=lambda laid: round(laid.share + _words(laid), 2))
+
+
+def _words(laid: Laid) -> float:
+    """Share of the words of a sheet that are somewhere in the drawing."""
+    there = {meant(w.text) for w in laid.space.writings}
+    ours = {meant(e.text) for e in laid.elements if e.kind == "text" and len(e.text) > 3}
+    return len(ours & there) / max(len(ours), 1)
+
+
+def _refined(laid: Laid, unit: float | None) -> Laid:
+    """The placing refined: on all lines if most are in their places, else on the frame if there is one."""
+    theirs, z, free = laid.space.lines, layout.ink(laid.elements), True
+    if laid.share < SURE:
+        frame = _frame(laid.elements)
+        if theirs.share(laid.placing.back(frame), HIT / laid.placing.scale) > 0.9:
+            z = frame
+        else:
+            free = False  # too few lines for a fit of scale and angle
+    z = z[:: max(len(z) // 1500, 1)]
+    placing = snapped(z, theirs, refine(z, theirs, laid.placing, free=free).placing, unit)
+    return replace(laid, placing=placing)
+
+
+def _frame(found: Sequence[Element]) -> Points:
+    """Points along the frame, the largest rectangle of main lines."""
+    rectangles = [e for e in found if e.view.n == 0 and e.kind == "curve" and e.style == "main"]
+    return lines([max(rectangles, key=lambda e: e.length).points]).points(2.0)
