@@ -12,7 +12,7 @@ from tmm_sheets.compare.elements import elements, views
 from tmm_sheets.compare.photo import photographed_views as placing
 from tmm_sheets.compare.photo import tracing
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.traces import Extra
+from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Text
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
@@ -146,8 +146,8 @@ def test_strange_ink_where_a_view_was_left_out():
     ink, _ = drawn()
     placed = placing.place(known(), (), Flat(), ink)
     middle = next(v for v in placed.similarities if v.draw == "kinematics.position_plans").box.centre
-    assert placed.strange(Extra(middle, 20.0, 20.0, 28.0))
-    assert not placed.strange(Extra(ABOUT[WHEEL], 20.0, 20.0, 28.0))
+    assert placed.strange(ExtraInk(middle, 20.0, 20.0, 28.0))
+    assert not placed.strange(ExtraInk(ABOUT[WHEEL], 20.0, 20.0, 28.0))
 
 
 def test_scale_factor_of_a_view_without_one(tmp_path):

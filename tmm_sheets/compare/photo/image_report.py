@@ -12,9 +12,9 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element, dashed
 from tmm_sheets.compare.photo import overlay
-from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, Finding, judge
+from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding, judge
 from tmm_sheets.compare.photo.rectification import Rectified
-from tmm_sheets.compare.photo.traces import Extra, Trace
+from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.report import Report
 
 
@@ -23,7 +23,7 @@ def _called(e: Element) -> str:
 
 
 def image_report(
-    name: str, n: int, path: Path, found: Rectified, traces: Sequence[Trace], extra: Sequence[Extra], pencil: float,
+    name: str, n: int, path: Path, found: Rectified, traces: Sequence[Trace], extra: Sequence[ExtraInk], pencil: float,
     notes: tuple[str, ...],
 ) -> Report:
     """The table, the tree and the overlays of sheet ``n`` of the project ``name`` compared with the picture at ``path``."""
@@ -82,7 +82,7 @@ def _shown(t: Trace) -> Any:
     return t.at if t.at is not None else t.element.points
 
 
-def _row(f: Finding) -> dict[str, Any]:
+def _row(f: PhotoFinding) -> dict[str, Any]:
     t = f.trace
     ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
     measured = t.status in ("measured", "shared")

@@ -17,7 +17,7 @@ SOFT_TOLERANCE = 0.15  # mm more in a picture that is not sharp
 
 
 @dataclass(frozen=True)
-class Finding:
+class PhotoFinding:
     """A trace judged: what is off by how much, and whether that is within a pencil's reach."""
 
     trace: Trace
@@ -45,7 +45,7 @@ class Finding:
         return sum(map(isnan, t.ends)) if exact else 0
 
 
-def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Finding:
+def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> PhotoFinding:
     """What a trace tells, in words, and how bad it is.
 
     Parameters
@@ -61,14 +61,14 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Fi
     e, tolerance = t.element, pencil + uncertainty + (SOFT_TOLERANCE if soft else 0.0)
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "missing":
-        return Finding(t, "red", "missing", e.length, tolerance, middle)
+        return PhotoFinding(t, "red", "missing", e.length, tolerance, middle)
     if t.status == "absent lettering":
-        return Finding(t, "amber", "no lettering here", 0.0, tolerance, complex(e.points.mean()))
+        return PhotoFinding(t, "amber", "no lettering here", 0.0, tolerance, complex(e.points.mean()))
     if t.status == "shared" and t.deviation <= tolerance:
-        return Finding(t, "green", "within a pencil's reach, with others in one stroke", t.deviation, tolerance, middle)
+        return PhotoFinding(t, "green", "within a pencil's reach, with others in one stroke", t.deviation, tolerance, middle)
     if t.status != "measured":
         word = "not measurable: too near to others" if t.status in ("dense", "shared") else "there"
-        return Finding(t, "green", word, 0.0, tolerance, middle)
+        return PhotoFinding(t, "green", word, 0.0, tolerance, middle)
     said, worst, off, limit, place = [], 0.0, t.deviation, tolerance, middle
     if t.at is not None and len(t.at) == len(e.points):
         place = complex(e.points[int(np.abs(t.at - e.points).argmax())])
@@ -85,7 +85,7 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Fi
         much = min(abs(end), 2 * LOOSE) if loose else abs(end)  # a thin line drawn over is never more than a remark
         if much / allowed > worst:
             worst, off, limit, place = much / allowed, much, allowed, complex(at)
-    return Finding(t, verdict(off, limit), "; ".join(said) or "within a pencil's reach", off, limit, place)
+    return PhotoFinding(t, verdict(off, limit), "; ".join(said) or "within a pencil's reach", off, limit, place)
 
 
 def _displaced(t: Trace, tolerance: float) -> str:

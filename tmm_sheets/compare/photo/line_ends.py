@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.image_shifts import FAR
+from tmm_sheets.compare.photo.displacement import FAR
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats

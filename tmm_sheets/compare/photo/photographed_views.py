@@ -22,7 +22,7 @@ from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.profiles import peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, Map
 from tmm_sheets.compare.photo.stations import as_lines
-from tmm_sheets.compare.photo.traces import Extra
+from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.view_places import ViewPlace, mu_of
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
 from tmm_sheets.errors import BadInput
@@ -65,7 +65,7 @@ class Placed:
     notes: tuple[str, ...]
     similarities: Mapping[View, Similarity]
 
-    def strange(self, extra: Extra) -> bool:
+    def strange(self, extra: ExtraInk) -> bool:
         """Whether ink that belongs to no element is too much: not that of a view left out, nor of a symbol in another scale."""
         inside = not self.left_out or any(box.contains(extra.middle) for box in self._boxes)
         return inside and not (extra.length < 2 * SYMBOL and any(box.contains(extra.middle, BESIDE) for box in self._symbols))

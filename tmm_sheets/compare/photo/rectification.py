@@ -20,9 +20,9 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo import frame_fit, frame_search
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
-from tmm_sheets.compare.photo.map_fit import Seen, bent, waved
+from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
-from tmm_sheets.compare.photo.profiles import SCALE, Lines, darkness, peaks, profiles
+from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Map
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.errors import CannotBuild
@@ -65,7 +65,7 @@ class Rectified:
     soft: bool = False
 
 
-def frame_lines(known: Sequence[Element]) -> Lines:
+def frame_lines(known: Sequence[Element]) -> ProfileLines:
     """Lines of the title block and of the box for the turned designation, by which a frame is known."""
     return as_lines([e for e in known if e.of == "title block" and e.length < 800], 4.0)
 
@@ -136,7 +136,7 @@ def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
 
 
 def refine(
-    m: Map, sides: Seen, ink: Any, lines: Lines, level: float, scale: float = SCALE, highest: int = RELIEF,
+    m: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float = SCALE, highest: int = RELIEF,
 ) -> tuple[Map, float, float]:
     """The map corrected by lines seen in the picture ``ink`` straightened by ``m``, with heights up to degree ``highest``.
 
@@ -159,5 +159,5 @@ def refine(
         scatter = 1.4826 * float(np.median(np.abs(o[use])))
         seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
         fine = highest == RELIEF < degree
-        better = waved(better, seen, loose) if fine else bent(better, sides, seen, min(degree, highest), loose)[0]
+        better = fit_waves(better, seen, loose) if fine else fit_map(better, sides, seen, min(degree, highest), loose)[0]
     return better, scatter, hit
