@@ -26,7 +26,7 @@ class Stations(NamedTuple):
     points: Points
     normals: Points
     raw: Floats
-    """Displacement along the normals by unit shifts in x and y, turn and growth (both at half the extent), (n, 4)."""
+    """See :func:`similarity_base`, (n, 4)."""
     half: float
     """Half the extent of the element, mm."""
 
@@ -69,6 +69,12 @@ def smoothed(profile: Any) -> Any:
     return cv2.blur(profile, (1, 5)) if len(profile) >= 5 else profile
 
 
+def similarity_base(p: Points, n: Points, middle: complex, half: float) -> Floats:
+    """Displacement of points along their normals by unit shifts in x and y and by turn and growth at ``half`` mm, (n, 4)."""
+    d = (p - middle) / half
+    return np.stack((n.real, n.imag, (np.conj(n) * 1j * d).real, (np.conj(n) * d).real), -1)
+
+
 def stations(e: Element, grows: bool) -> Stations:
     """Some 120 stations along an element at most; without ``grows`` its size is taken for right."""
     step = max(e.length / 120, 0.6)
@@ -77,8 +83,7 @@ def stations(e: Element, grows: bool) -> Stations:
         p, n = p[1:-1], n[1:-1]
     middle = e.centre if e.kind == "circle" else p.mean()
     half = max(float(np.abs(p - middle).max()), 1.0)
-    d = (p - middle) / half
-    raw = np.stack((n.real, n.imag, (np.conj(n) * 1j * d).real, (np.conj(n) * d).real), -1)
+    raw = similarity_base(p, n, middle, half)
     if not grows:
         raw[:, 3] = 0.0
     return Stations(p, n, raw, half)
