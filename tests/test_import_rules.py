@@ -26,6 +26,7 @@ RULES = {
     "task": ("", ""),
     "task.assembly": ("mechanism methods.linkage task", ""),
     "task.variant": ("methods.linkage.synthesis task", ""),
+    "task.names": ("construction.indices task", ""),
     "task.letters": ("drawing.lettering task", ""),
     "task.families": ("task", ""),
     "project": (f"task {METHODS}", "mechanism"),

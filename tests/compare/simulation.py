@@ -1,9 +1,8 @@
 """Photographs of sheets drawn by hand, made up: what stood where is known exactly.
 
 A drawing is traced with a pencil (ends that miss, lines that waver, pressure that varies, dashes set by eye), errors are planted,
-the paper curls, a camera with a wrong lens looks at it from aside in bad light, and the picture is stored as a JPEG. Nothing here
-is shared with
-the program that reads the picture but the display list.
+the paper curls, a camera with a distorting lens looks at it from aside in bad light, and the picture is stored as a JPEG. Nothing
+but the display list is shared with the program that reads the picture.
 """
 
 from __future__ import annotations
@@ -21,6 +20,7 @@ from tmm_sheets.drawing.styles import line_type
 RASTER = 10.0  # pixels per millimetre of the paper before it is photographed
 FIXED = 16  # fractional steps cv2 draws with
 KINDS = ("moved", "turned", "size", "missing", "extra")
+PLANT_SCALE = 4.0  # pixels per millimetre in which it is seen whether marks cover one another
 
 
 @dataclass(frozen=True)
@@ -81,8 +81,7 @@ def random_camera(rng: Any) -> Camera:
     )  # fmt: skip
 
 
-# --- the pencil
-# ---------------------------------------------------------------------------------------------------------------------
+# --- the pencil --------------------------------------------------------------------------------------------------------
 
 
 def _waver(rng: Any, n: int, step: float, size: float) -> Any:
@@ -140,8 +139,7 @@ def _dashed(points: Any, pattern: tuple[float, ...], rng: Any) -> list[Any]:
     return out
 
 
-# --- planted errors
-# -----------------------------------------------------------------------------------------------------------------
+# --- planted errors ----------------------------------------------------------------------------------------------------
 
 
 def _raster(lines: list[Any], drawing: Drawing, scale: float, thick: int) -> Any:
@@ -173,82 +171,99 @@ def plant(
     marks = drawing.marks
     able = [i for i, m in enumerate(marks) if isinstance(m, Line | Arc | Polyline) and m.of != "title block"
             and m.style not in ("text", "hatch") and np.abs(np.diff(flat(m))).sum() > 10]  # fmt: skip
-    scale = 4.0
-    everything = [flat(m) for m in marks if not isinstance(m, Text)]
-    lettering = [p for m in marks if isinstance(m, Text) for p in letters(m)]
-    tries = 0
-    while len(planted) < count and tries < 200:
-        tries += 1
+    for _ in range(200):
+        if len(planted) >= count:
+            break
         kind = str(rng.choice(kinds))
         size = float(rng.uniform(1, 5))
         if kind == "extra":
-            length, turn = rng.uniform(15, 60), rng.uniform(0, 2 * np.pi)
-            a = complex(rng.uniform(30, 826), rng.uniform(70, 580))
-            b = a + length * np.exp(1j * turn)
-            if not (25 < b.real < 831 and 65 < b.imag < 584):
-                continue
-            line = Line(a, b, str(rng.choice(["thin", "main", "vector"])), "extra")
-            near = _raster(everything + lettering, drawing, scale, 24)
-            if _covered(flat(line), near, drawing, scale) > 0.3:
-                continue
-            extra.append(line)
-            planted.append(Planted(kind, None, float(length), None, flat(line)))
+            if (line := _extra_line(drawing, rng)) is not None:
+                extra.append(line)
+                planted.append(Planted(kind, None, abs(line.b - line.a), None, flat(line)))
             continue
         i = int(rng.choice(able))
         mark = marks[i]
         if i in changed:
             continue
         turn = rng.uniform(0, 2 * np.pi)
-        new: Mark | None
-        if kind == "missing":
-            new = None
-        elif isinstance(mark, Line):
-            u = (mark.b - mark.a) / abs(mark.b - mark.a)
-            sign = rng.choice([-1, 1])
-            if kind == "moved":
-                new = mark._replace(a=mark.a + sign * 1j * u * size, b=mark.b + sign * 1j * u * size)
-            elif kind == "turned":
-                new = mark._replace(b=mark.a + (mark.b - mark.a) * np.exp(1j * sign * size / abs(mark.b - mark.a)))
-            else:
-                new = mark._replace(b=mark.b + sign * u * size)
-        elif isinstance(mark, Arc):
-            if kind == "moved" and mark.end - mark.start > 2:
-                new = mark._replace(centre=mark.centre + size * np.exp(1j * turn))
-            elif kind == "size" and mark.radius > 3 * size:
-                new = mark._replace(radius=mark.radius + size * rng.choice([-1, 1]))
-            else:
-                continue
-        else:
-            assert isinstance(mark, Polyline)
-            p = np.asarray(mark.points)
-            span = np.abs(p - p.mean()).max()
-            if kind == "moved":
-                new = mark._replace(points=p + size * np.exp(1j * turn))
-            elif kind == "turned" and np.ptp(p.imag) > 15:
-                new = mark._replace(points=p.mean() + (p - p.mean()) * np.exp(1j * size / span * rng.choice([-1, 1])))
-            elif kind == "size":
-                new = mark._replace(points=p.mean() + (p - p.mean()) * (1 + size / span * rng.choice([-1, 1])))
-            else:
-                continue
-        others = _raster([flat(m) for j, m in enumerate(marks) if j != i and not isinstance(m, Text | Fill)], drawing, scale, 5)
-        if _covered(flat(mark), others, drawing, scale) > 0.35 or (new and _covered(flat(new), others, drawing, scale) > 0.35):
+        new = None if kind == "missing" else _wrong(mark, kind, size, turn, rng)
+        if new is mark or not _visible(drawing, i, new):
             continue
         changed[i] = new
-        head = marks[i + 1] if i + 1 < len(marks) else None
-        if isinstance(mark, Line) and isinstance(head, Fill) and np.abs(head.points - mark.b).min() < 2:
-            # An arrow's head goes with its shaft.
-            changed[i + 1] = None
-            if isinstance(new, Line):
-                spin = (new.b - new.a) / (mark.b - mark.a)
-                changed[i + 1] = head._replace(points=new.b + (np.asarray(head.points) - mark.b) * spin / abs(spin))
+        changed |= _head_of(drawing, i, new)
         if kind == "missing":
             size = float(np.abs(np.diff(flat(mark))).sum())
         planted.append(Planted(kind, i, size, flat(mark), flat(new) if new else None))
     return changed, planted, extra
 
 
-# --- paper and camera
-# ---------------------------------------------------------------------------------------------------------------
+def _extra_line(drawing: Drawing, rng: Any) -> Line | None:
+    """A line somewhere on the sheet, None when it is too near to the frame or to what is drawn."""
+    length, turn = rng.uniform(15, 60), rng.uniform(0, 2 * np.pi)
+    a = complex(rng.uniform(30, 826), rng.uniform(70, 580))
+    b = a + length * np.exp(1j * turn)
+    if not (25 < b.real < 831 and 65 < b.imag < 584):
+        return None
+    line = Line(a, b, str(rng.choice(["thin", "main", "vector"])), "extra")
+    drawn = [flat(m) for m in drawing.marks if not isinstance(m, Text)]
+    drawn += [p for m in drawing.marks if isinstance(m, Text) for p in letters(m)]
+    near = _raster(drawn, drawing, PLANT_SCALE, 24)
+    return None if _covered(flat(line), near, drawing, PLANT_SCALE) > 0.3 else line
+
+
+def _wrong(mark: Mark, kind: str, size: float, turn: float, rng: Any) -> Mark:
+    """A mark moved, turned or of another size by ``size`` mm; the mark itself when that would not show."""
+    if isinstance(mark, Line):
+        return _wrong_line(mark, kind, size, rng)
+    if isinstance(mark, Arc):
+        if kind == "moved" and mark.end - mark.start > 2:
+            return mark._replace(centre=mark.centre + size * np.exp(1j * turn))
+        if kind == "size" and mark.radius > 3 * size:
+            return mark._replace(radius=mark.radius + size * rng.choice([-1, 1]))
+        return mark
+    assert isinstance(mark, Polyline)
+    p = np.asarray(mark.points)
+    span = np.abs(p - p.mean()).max()
+    if kind == "moved":
+        return mark._replace(points=p + size * np.exp(1j * turn))
+    if kind == "turned" and np.ptp(p.imag) > 15:
+        return mark._replace(points=p.mean() + (p - p.mean()) * np.exp(1j * size / span * rng.choice([-1, 1])))
+    if kind == "size":
+        return mark._replace(points=p.mean() + (p - p.mean()) * (1 + size / span * rng.choice([-1, 1])))
+    return mark
+
+
+def _wrong_line(mark: Line, kind: str, size: float, rng: Any) -> Line:
+    u = (mark.b - mark.a) / abs(mark.b - mark.a)
+    sign = rng.choice([-1, 1])
+    if kind == "moved":
+        return mark._replace(a=mark.a + sign * 1j * u * size, b=mark.b + sign * 1j * u * size)
+    if kind == "turned":
+        return mark._replace(b=mark.a + (mark.b - mark.a) * np.exp(1j * sign * size / abs(mark.b - mark.a)))
+    return mark._replace(b=mark.b + sign * u * size)
+
+
+def _visible(drawing: Drawing, i: int, new: Mark | None) -> bool:
+    """Whether mark ``i``, and what is drawn for it, lie mostly free of other marks."""
+    marks = drawing.marks
+    drawn = [flat(m) for j, m in enumerate(marks) if j != i and not isinstance(m, Text | Fill)]
+    others = _raster(drawn, drawing, PLANT_SCALE, 5)
+    return all(_covered(flat(m), others, drawing, PLANT_SCALE) <= 0.35 for m in (marks[i], new) if m is not None)
+
+
+def _head_of(drawing: Drawing, i: int, new: Mark | None) -> dict[int, Mark | None]:
+    """The head of an arrow goes with its shaft, mark ``i``."""
+    mark = drawing.marks[i]
+    head = drawing.marks[i + 1] if i + 1 < len(drawing.marks) else None
+    if not (isinstance(mark, Line) and isinstance(head, Fill) and np.abs(head.points - mark.b).min() < 2):
+        return {}
+    if not isinstance(new, Line):
+        return {i + 1: None}
+    spin = (new.b - new.a) / (mark.b - mark.a)
+    return {i + 1: head._replace(points=new.b + (np.asarray(head.points) - mark.b) * spin / abs(spin))}
+
+
+# --- paper and camera --------------------------------------------------------------------------------------------------
 
 
 def paper(

@@ -9,10 +9,11 @@ from tests.compare.simulation import paper
 from tmm_sheets import catalogue
 from tmm_sheets.compare import view_places
 from tmm_sheets.compare.elements import elements, views
-from tmm_sheets.compare.photo import photographed_views as placing
+from tmm_sheets.compare.photo import placed_views as placing
 from tmm_sheets.compare.photo import tracing
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.traces import Extra
+from tmm_sheets.compare.photo.similarity import Similarity, moved
+from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Text
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
@@ -134,9 +135,9 @@ def test_lines_side_by_side_are_not_taken_for_one_another():
 
 
 def test_symbols_and_lettering_keep_their_size_in_another_scale():
-    where = placing.Similarity(1.5 * np.exp(0.1j), 20 - 10j)
+    where = Similarity(1.5 * np.exp(0.1j), 20 - 10j)
     ours = {kind: next(e for e in known() if e.view.name == PLAN and e.kind == kind) for kind in ("text", "circle", "line")}
-    text, circle, line = (placing.moved(e, where) for e in ours.values())
+    text, circle, line = (moved(e, where) for e in ours.values())
     assert (text.height, circle.radius, line.length) == pytest.approx(
         (ours["text"].height, ours["circle"].radius, 1.5 * ours["line"].length))
     assert complex(text.points.mean()) == pytest.approx(where(complex(ours["text"].points.mean())))
@@ -144,7 +145,7 @@ def test_symbols_and_lettering_keep_their_size_in_another_scale():
     assert np.ptp(np.abs(circle.points - circle.centre)) < 1e-9
     assert [abs(f - f[0]).max() for f in line.fills] == pytest.approx([abs(f - f[0]).max() for f in ours["line"].fills])
     rims = [e for e in known() if e.view.name == WHEEL and e.kind == "hatch"]
-    assert {placing.moved(e, where).kind for e in rims} == {"hatch"}
+    assert {moved(e, where).kind for e in rims} == {"hatch"}
 
 
 def test_strange_ink_where_a_view_was_left_out():
@@ -152,8 +153,8 @@ def test_strange_ink_where_a_view_was_left_out():
     ink, _ = drawn()
     placed = placing.place(known(), (), Flat(), ink)
     middle = next(v for v in placed.similarities if v.draw == "kinematics.position_plans").box.centre
-    assert placed.strange(Extra(middle, 20.0, 20.0, 28.0))
-    assert not placed.strange(Extra(ABOUT[WHEEL], 20.0, 20.0, 28.0))
+    assert placed.strange(ExtraInk(middle, 20.0, 20.0, 28.0))
+    assert not placed.strange(ExtraInk(ABOUT[WHEEL], 20.0, 20.0, 28.0))
 
 
 def test_scale_factor_of_a_view_without_one(tmp_path):

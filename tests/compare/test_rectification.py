@@ -11,8 +11,9 @@ from tmm_sheets import catalogue
 from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.photo import frame_search, rectification
-from tmm_sheets.compare.photo.frame_fit import rough
-from tmm_sheets.compare.photo.map_fit import Seen, bent, waved
+from tmm_sheets.compare.photo.frame_fit import initial_map
+from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
+from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, heights
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -50,10 +51,10 @@ def lines(place, rng, n=150):
 def test_map_follows_lens_and_curled_paper(camera, worst):
     place, (columns, rows) = projection(camera, 841.0, 594.0)
     frame = sides(place)
-    m = rough(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    m = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
     seen = lines(place, np.random.default_rng(1))
     for degree in (2, 4, 6):
-        m, scatter = bent(m, frame, seen, degree, 0.5)
+        m, scatter = fit_map(m, frame, seen, degree, 0.5)
     error = np.abs(m.to_sheet(place(GRID)) - GRID)
     assert error.max() < worst
     assert np.median(error) < 0.4 * worst
@@ -64,11 +65,11 @@ def test_map_follows_lens_and_curled_paper(camera, worst):
 def test_one_wrong_line_does_not_draw_the_map():
     place, (columns, rows) = projection(Camera(curl=3.0), 841.0, 594.0)
     frame, seen = sides(place), lines(place, np.random.default_rng(2))
-    m = rough(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
-    true = bent(m, frame, seen, 6, 0.25)[0]
+    m = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    true = fit_map(m, frame, seen, 6, 0.25)[0]
     off = seen.sheet.copy()
     off[:20] += 3 * seen.normals[:20]
-    wrong = bent(m, frame, seen._replace(sheet=off), 6, 0.25)[0]
+    wrong = fit_map(m, frame, seen._replace(sheet=off), 6, 0.25)[0]
     assert np.abs(true.to_picture(GRID) - wrong.to_picture(GRID)).max() < 0.1  # pixels, of which a millimetre has four
 
 
@@ -88,12 +89,12 @@ def test_side_without_ink_is_sought_nearby():
         cv2.line(ink, (round(a.real), round(a.imag)), (round(b.real), round(b.imag)), 90, 2)
     corners = true.copy()
     corners[[0, 3]] -= (30, 22)  # the left side runs where nothing is
-    guess = frame_search.Guess(corners, np.zeros((4, 240)), 5.0)
-    assert frame_search._inked(ink, frame_search._sides(ink, guess)[0][3], 20) < 0.1
-    found = frame_search._sought(ink, guess, 3)
+    guess = FrameGuess(corners, np.zeros((4, 240)), 5.0)
+    assert inked(ink, follow_sides(ink, guess)[0][3], 20) < 0.1
+    found = side_moved_to_ink(ink, guess, 3)
     assert np.abs(found - true).max() < 3
-    sides_, met = frame_search._sides(ink, guess._replace(corners=found))
-    assert min(frame_search._inked(ink, side, 20) for side in sides_) > 0.95
+    sides_, met = follow_sides(ink, guess._replace(corners=found))
+    assert min(inked(ink, side, 20) for side in sides_) > 0.95
     assert np.abs(met - true).max() < 1.5
 
 
@@ -115,16 +116,16 @@ def test_corner_on_the_papers_edge_is_put_back(quarters):
 def test_waves_take_up_what_is_left_but_no_single_line():
     place, (columns, rows) = projection(Camera(curl=6.0, fold=1.2, waves=(1.0, -0.4, 0.1), tilt=0.25, azimuth=4.0), 841.0, 594.0)
     frame, seen = sides(place), lines(place, np.random.default_rng(3), 400)
-    m = rough(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    m = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
     for degree in (2, 4, 6):
-        m = bent(m, frame, seen, degree, 0.5)[0]
+        m = fit_map(m, frame, seen, degree, 0.5)[0]
     before = np.abs(m.to_sheet(place(GRID)) - GRID)
-    finer = waved(m, seen, 0.2)
+    finer = fit_waves(m, seen, 0.2)
     after = np.abs(finer.to_sheet(place(GRID)) - GRID)
     assert np.median(after) < 0.7 * np.median(before)
     off = seen.sheet.copy()
     off[:20] += 0.5 * seen.normals[:20]
-    wrong = waved(m, seen._replace(sheet=off), 0.2)
+    wrong = fit_waves(m, seen._replace(sheet=off), 0.2)
     assert np.abs(finer.correction(GRID) - wrong.correction(GRID)).max() < 0.05
     edge = np.array([20 + 300j, 836 + 100j])
     assert finer.waved(edge).real == pytest.approx(0, abs=1e-12)

@@ -94,39 +94,45 @@ class Tally:
         self.examples = []
 
     def add(self, label, sheet, shot, found, findings, extra):
-        marks = sheet.drawing.marks
+        """Count what became of the planted errors, and what was made up."""
+        self.errors.append(position_errors(found.map, shot))
         of_mark = {id(m): f for f in findings for m in f.trace.element.marks}
         touched = set()
         for p in shot.planted:
             if p.kind == "extra":
                 hit = near(resample(p.drawn), extra) > 0.5
                 self.found["extra", "15-60 mm"]["red" if hit else "missed"] += 1
-                continue
-            f = of_mark[id(marks[p.mark])]
-            touched.add(id(f))
-            size = "" if p.kind == "missing" else next((f"{a}-{b} mm" for a, b in BINS if p.size <= b), "")
-            kind = p.kind
-            if p.kind == "size" and f.trace.element.kind == "line":
-                kind = "size, thin line" if f.trace.element.style in LOOSE_STYLES else "size, line"
-            outcome = "dense" if unseen(f, p) else f.verdict if f.verdict != "green" else "missed"
-            self.found[kind, size][outcome] += 1
-            if outcome == "missed" and "thin" not in kind:
-                self.examples.append(f"missed {label}: {p.kind} {p.size:.1f} element {f.trace.element.number} {f.said} {f.off:.2f}")
+            else:
+                f = of_mark[id(sheet.drawing.marks[p.mark])]
+                touched.add(id(f))
+                self.add_planted(label, p, f)
         for f in findings:
-            status = f.trace.status
-            if id(f) in touched or status in ("small", "lettering"):
-                continue
-            self.elements["dense" if f.unknown else "judged"] += 1
-            if f.verdict != "green":
-                self.false[f.verdict] += 1
-                e = f.trace.element
-                self.examples.append(f"false {label}: {f.verdict} element {e.number} {e.kind} {e.style} {f.said}")
+            if id(f) not in touched and f.trace.status not in ("small", "lettering"):
+                self.add_untouched(label, f)
         for x in extra:
             if not any(p.drawn is not None and near(resample(p.drawn), [x]) > 0 for p in shot.planted):
                 self.false["extra ink"] += 1
                 self.examples.append(f"false {label}: extra {x.width:.0f} x {x.height:.0f} at {x.middle:.0f}")
-        e = position_errors(found.map, shot)
-        self.errors.append(e)
+
+    def add_planted(self, label, p, f):
+        """An error in an element, and what was found of it."""
+        e = f.trace.element
+        size = "" if p.kind == "missing" else next((f"{a}-{b} mm" for a, b in BINS if p.size <= b), "")
+        kind = p.kind
+        if p.kind == "size" and e.kind == "line":
+            kind = "size, thin line" if e.style in LOOSE_STYLES else "size, line"
+        outcome = "dense" if unseen(f, p) else f.verdict if f.verdict != "green" else "missed"
+        self.found[kind, size][outcome] += 1
+        if outcome == "missed" and "thin" not in kind:
+            self.examples.append(f"missed {label}: {p.kind} {p.size:.1f} element {e.number} {f.said} {f.off:.2f}")
+
+    def add_untouched(self, label, f):
+        """An element without a planted error."""
+        e = f.trace.element
+        self.elements["dense" if f.unknown else "judged"] += 1
+        if f.verdict != "green":
+            self.false[f.verdict] += 1
+            self.examples.append(f"false {label}: {f.verdict} element {e.number} {e.kind} {e.style} {f.said}")
 
     def merge(self, other):
         for key, c in other.found.items():

@@ -89,6 +89,65 @@ def two_points(view, known):
     return complex(z[i]), complex(z[j])
 
 
+def rearranged(sheet, known, places):
+    """The marks of a sheet in another layout, without the lines between views, which nobody draws there, and the same in ours."""
+    of_mark = {id(m): e for e in known for m in e.marks}
+    leading = links(known)
+    exact = [m for m in sheet.drawing.marks if not (of_mark[id(m)].view in places and of_mark[id(m)].number in leading)]
+    marks = tuple(moved(m, of_mark[id(m)], *places[of_mark[id(m)].view]) if of_mark[id(m)].view in places else m for m in exact)
+    return marks, [of_mark[id(m)] for m in exact]
+
+
+def file_of_views(views, known, places, place, rng):
+    """A file for --views with two clicked points of each view; ``place`` takes the sheet to the picture."""
+    text = ""
+    for v in views:
+        size, shift = places[v]
+        ours = two_points(v, known)
+        theirs = [place(np.array([size * z + shift + CLICK * complex(*rng.normal(0, 1, 2))]))[0] for z in ours]
+        text += (f'[[view]]\nname = "{v.name}"\nours = {[[z.real, z.imag] for z in ours]}\n'
+                 f"theirs = {[[float(z.real), float(z.imag)] for z in theirs]}\n")
+    return text
+
+
+def meets(extra, planted):
+    """Whether extra ink of a report is where an error was drawn."""
+    return planted.drawn is not None and any(
+        abs(extra["x"] - z.real) < extra["width"] / 2 + 4 and abs(extra["y"] - z.imag) < extra["height"] / 2 + 4
+        for z in np.atleast_1d(planted.drawn))
+
+
+def outcomes(label, tree, planted, element_of, known):
+    """What became of the planted errors, and what was made up; told line by line."""
+    bad = {e["number"]: e for e in tree["elements"] if e["verdict"] != "green"}
+    dense = {e["number"] for e in tree["elements"] if e["status"] == "dense"}
+    spoiled = set()
+    counted = Counter()
+    for p in planted:
+        if p.mark is None:
+            hit = any(meets(x, p) for x in tree["extra"])
+            counted["found" if hit else "missed"] += 1
+            if not hit:
+                print(f"  missed: {label} extra line {p.size:.0f} mm about {p.drawn.mean():.0f}")
+            continue
+        e = element_of[p.mark]
+        spoiled.add(e.number)
+        outcome = "found" if e.number in bad else "not measurable" if e.number in dense else "missed"
+        counted[outcome] += 1
+        if outcome == "missed":
+            print(f"  missed: {label} {p.kind} {p.size:.1f} element {e.number} {e.kind} {e.style} of view {e.view.name!r}")
+    for number in bad.keys() - spoiled:
+        e = known[number - 1]
+        counted[f"false {bad[number]['verdict']}"] += 1
+        print(f"  false: {label} {bad[number]['verdict']} element {number} {e.kind} {e.style} {e.length:.0f} mm of "
+              f"{e.view.name!r}: {bad[number]['said']}")
+    for x in tree["extra"]:
+        if not any(meets(x, p) for p in planted):
+            counted["false extra"] += 1
+            print(f"  false extra: {label} {x}")
+    return counted
+
+
 def trial(key, n, seed, errors, leave_out, keep, told):
     project = Project(catalogue.read(key))
     sheet = composed(project, n)
@@ -96,20 +155,10 @@ def trial(key, n, seed, errors, leave_out, keep, told):
     rng = np.random.default_rng([seed, n])
     views = movable(known)
     places = new_places(views, rng)
-    of_mark = {id(m): e for e in known for m in e.marks}
-    leading = links(known)  # lines between views: in another layout nobody draws them
-    exact = [m for m in sheet.drawing.marks if not (of_mark[id(m)].view in places and of_mark[id(m)].number in leading)]
-    marks = tuple(moved(m, of_mark[id(m)], *places[of_mark[id(m)].view]) if of_mark[id(m)].view in places else m for m in exact)
+    marks, element_of = rearranged(sheet, known, places)
     shot = shoot(replace(sheet.drawing, marks=marks), seed, errors)
-    text = ""
-    for v in views[leave_out:]:
-        size, shift = places[v]
-        ours = two_points(v, known)
-        theirs = [shot.place(np.array([size * z + shift + CLICK * complex(*rng.normal(0, 1, 2))]))[0] for z in ours]
-        text += (f'[[view]]\nname = "{v.name}"\nours = {[[z.real, z.imag] for z in ours]}\n'
-                 f"theirs = {[[float(z.real), float(z.imag)] for z in theirs]}\n")
     (keep / "photo.jpg").write_bytes(shot.data)
-    (keep / "views.toml").write_text(text, encoding="utf-8")
+    (keep / "views.toml").write_text(file_of_views(views[leave_out:], known, places, shot.place, rng), encoding="utf-8")
     start = perf_counter()
     try:
         report = image.compare(project, n, keep / "photo.jpg", keep / "views.toml")
@@ -121,39 +170,11 @@ def trial(key, n, seed, errors, leave_out, keep, told):
     for name, data in report.files.items():
         (keep / name).write_bytes(data)
     (keep / "report.txt").write_text("\n".join((*report.notes, report.text)), encoding="utf-8")
-    bad = {e["number"]: e for e in report.tree["elements"] if e["verdict"] != "green"}
-    dense = {e["number"] for e in report.tree["elements"] if e["status"] == "dense"}
-    extra = report.tree["extra"]
-    spoiled = set()
-    line = Counter()
-    for p in shot.planted:
-        if p.mark is None:
-            hit = any(abs(x["x"] - z.real) < x["width"] / 2 + 4 and abs(x["y"] - z.imag) < x["height"] / 2 + 4
-                      for x in extra for z in p.drawn)
-            line["found" if hit else "missed"] += 1
-            if not hit:
-                print(f"  missed: {key} {n} extra line {p.size:.0f} mm about {p.drawn.mean():.0f}")
-            continue
-        e = of_mark[id(exact[p.mark])]
-        spoiled.add(e.number)
-        outcome = "found" if e.number in bad else "not measurable" if e.number in dense else "missed"
-        line[outcome] += 1
-        if outcome == "missed":
-            print(f"  missed: {key} {n} {p.kind} {p.size:.1f} element {e.number} {e.kind} {e.style} of view {e.view.name!r}")
     judged = sum(report.tree["count"][c] for c in ("green", "amber", "red"))
-    for number in bad.keys() - spoiled:
-        e = known[number - 1]
-        line[f"false {bad[number]['verdict']}"] += 1
-        print(f"  false: {key} {n} {bad[number]['verdict']} element {number} {e.kind} {e.style} {e.length:.0f} mm of "
-              f"{e.view.name!r}: {bad[number]['said']}")
-    for x in extra:
-        if not any(p.drawn is not None and abs(x["x"] - z.real) < x["width"] / 2 + 4 and abs(x["y"] - z.imag) < x["height"] / 2 + 4
-                   for p in shot.planted for z in np.atleast_1d(p.drawn)):
-            line["false extra"] += 1
-            print(f"  false extra: {key} {n} {x}")
-    print(f"{key} {n} seed {seed}: {len(views)} views moved, {judged} judged, tolerance {report.tree['tolerance']}, {dict(line)}, "
-          f"{seconds:.1f} s; {[note for note in report.notes if 'fitted' not in note]}", flush=True)
-    told.update(line)
+    counted = outcomes(f"{key} {n}", report.tree, shot.planted, element_of, known)
+    print(f"{key} {n} seed {seed}: {len(views)} views moved, {judged} judged, tolerance {report.tree['tolerance']}, "
+          f"{dict(counted)}, {seconds:.1f} s; {[note for note in report.notes if 'fitted' not in note]}", flush=True)
+    told.update(counted)
     told["judged"] += judged
 
 

@@ -1,5 +1,5 @@
-"""Work-precision benchmarks: every method's error against a truth of 30 digits or more, and the time it takes.
+"""Work-precision benchmarks: the error of every method against a truth of 30 digits or more, and its time.
 
-``truth`` shares nothing with the methods: loops closed by trigonometry in 100 digits, derivatives by differences of them, reactions
-from one linear system of all links. The other modules have the rows of one field each, ``run`` collects them.
+``truth`` shares nothing with the methods: it closes loops by trigonometry in 100 digits, differentiates by differences, and gets
+reactions from one linear system of all links. The other modules measure one field each; ``run`` collects their rows.
 """

@@ -1,21 +1,19 @@
-"""What one sheet, one format or one number costs against the whole: time, modules, steps and marks.
+"""What one sheet, one format or one number costs compared with the whole: time, modules, steps and marks.
 
-Every row is a command in a fresh process; time is the processor's (that of the wall depends on who else works on the machine), the
-least of some runs, the process's start included. A second kind of process counts steps and marks, which would disturb the first.
+Every row is a command in a fresh process. Times are the least of several runs, of the processor (wall time depends on who else uses
+the machine), the start of the process included. Steps and marks are counted in another process, since that takes time too.
 """
 
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from tmm_sheets.bench.processes import timed
 from tmm_sheets.errors import BadInput
 from tmm_sheets.explain import HEAVY
 
@@ -53,7 +51,7 @@ with open(sys.argv[1], "w") as f:
 
 @dataclass(frozen=True)
 class Cost:
-    """Cost of one command: processor time, s; steps recorded and evaluated, marks made, modules of ours and large ones."""
+    """Cost of one command: processor time, s; steps recorded and evaluated; marks made; own modules and large libraries."""
 
     command: str
     seconds: float
@@ -65,11 +63,9 @@ class Cost:
 
 
 def _child(program: str, arguments: list[str], folder: Path) -> tuple[dict[str, Any], float]:
+    """What a program reports of a command, and the processor time, s."""
     report = folder / "report.json"
-    start = os.times()
-    done = subprocess.run([sys.executable, "-c", program, str(report), *arguments], capture_output=True, text=True, check=False)
-    end = os.times()
-    took = end.children_user - start.children_user + end.children_system - start.children_system
+    done, _, took = timed(program, [str(report), *arguments])
     if not report.exists():
         raise BadInput(f"{' '.join(arguments)}: ended without a report", hint=done.stderr.strip()[-300:])
     found = json.loads(report.read_text())
@@ -80,7 +76,22 @@ def _child(program: str, arguments: list[str], folder: Path) -> tuple[dict[str, 
 
 
 def measure(arguments: list[str], runs: int = RUNS, forced: bool = True) -> Cost:
-    """Cost of a command; ``{out}`` in an argument is a folder, empty at each run unless ``forced`` is off."""
+    """Cost of a command.
+
+    Parameters
+    ----------
+    arguments
+        Of the program; ``{out}`` stands for a folder.
+    runs
+        How many are timed.
+    forced
+        Whether the folder is empty at each run, or has what a run before has left.
+
+    Raises
+    ------
+    BadInput
+        When the command fails.
+    """
     with TemporaryDirectory() as name:
         folder, seconds = Path(name), []
         plain: dict[str, Any] = {}
@@ -99,7 +110,7 @@ def measure(arguments: list[str], runs: int = RUNS, forced: bool = True) -> Cost
 
 
 def commands(project: str) -> list[tuple[list[str], bool]]:
-    """The commands compared, the whole first, and whether each begins in an empty folder."""
+    """The commands to compare, the whole first, and whether each begins in an empty folder."""
     from tmm_sheets import catalogue
     from tmm_sheets.project import Project
 
@@ -114,7 +125,13 @@ def commands(project: str) -> list[tuple[list[str], bool]]:
 
 
 def table(project: str, say: Callable[[str], None]) -> str:
-    """The table in Markdown, as it stands in docs/accuracy.md."""
+    """The costs of a project's commands as a Markdown table, that of docs/accuracy.md.
+
+    Raises
+    ------
+    BadInput
+        When there is no such project, or a command fails.
+    """
     rows = []
     for arguments, forced in commands(project):
         say(" ".join(arguments))

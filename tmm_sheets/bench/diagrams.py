@@ -20,7 +20,6 @@ from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.methods.integration import Floats, Quadrature, integrate, ordinates, smooth
 from tmm_sheets.project import Project
-from tmm_sheets.task import variant
 
 CHORDS = (6, 12, 24, 48, 96, 192, 384)
 POSITIONS = (10, 20, 40, 80, 160, 320)
@@ -33,7 +32,7 @@ TURN = 2 * pi
 
 @dataclass(frozen=True)
 class Integrand:
-    """A graph over one turn: ``f`` in doubles, its integral from 0 in mpmath, where it jumps or has a peak."""
+    """A function over one turn: ``f`` in doubles, its integral from 0 in mpmath, where it jumps or peaks."""
 
     name: str
     f: Callable[[Floats], Floats]
@@ -42,7 +41,7 @@ class Integrand:
 
     @cached_property
     def size(self) -> float:
-        """Largest value of the integral."""
+        """Largest absolute value of the integral."""
         with mp.workdps(DIGITS):
             return max(float(abs(self.integral(mp.mpf(x)))) for x in (*np.linspace(0, TURN, 721).tolist(), *self.borders))
 
@@ -71,7 +70,7 @@ def _edges(n: int, borders: tuple[float, ...] = ()) -> Floats:
 
 
 def _chords(f: Callable[[Floats], Floats], edges: Floats) -> Floats:
-    """Ends of the chords over the borders, by the recorded construction."""
+    """Ordinates at the ends of the chords, by the recorded construction."""
     heights = f((edges[:-1] + edges[1:]) / 2)
     names = [str(k) for k in range(len(edges))]
     return ordinates(integrate(Plan("bench", "", "mm"), "", edges, heights, 1.0, borders=names))
@@ -132,19 +131,19 @@ def _excess(bench: Bench) -> None:
 
 @dataclass(frozen=True)
 class _Shaper:
-    """The shaper's energy over the turned angle in mpmath, from the numbers of its project file."""
+    """The energy of the shaper over the angle turned, in mpmath, from the numbers of its project file."""
 
     project: Project
 
     def swing(self, beta: Any) -> tuple[Any, Any]:
-        """Rocker's angle from the vertical and its derivative; ``beta`` is the crank's angle from the vertical, clockwise."""
+        """Angle of the rocker from the vertical and its derivative by ``beta``, that of the crank, clockwise."""
         v = self.project.variant
         r, d = mp.mpf(v.crank.length), abs(mp.mpf(self.project.mechanism.fixed["C"].imag))  # type: ignore[union-attr]
         x, y = r * mp.sin(beta), d + r * mp.cos(beta)
         return mp.atan2(x, y), r * (r + d * mp.cos(beta)) / (x * x + y * y)
 
     def inertia(self, beta: Any) -> Any:
-        """Reduced moment of inertia of links 2 to 5; the balanced crank has none."""
+        """Reduced moment of inertia of links 2 to 5, kg m2; the crank is balanced and has none."""
         m = self.project.mechanism
         cd, cs = (mp.mpf(p.distance) for p in m.points)
         angle, rate = self.swing(beta)
@@ -153,7 +152,10 @@ class _Shaper:
         return links["2"].mass * mp.mpf(m.crank.length) ** 2 + (turning + links["5"].mass * (cd * mp.cos(angle)) ** 2) * rate**2
 
     def first(self, mertsalov: bool) -> Any:
-        """Moment of inertia of all that turns with the crank, kg m2, in :data:`DIGITS` digits."""
+        """Moment of inertia of all that turns with the crank, kg m2, in :data:`DIGITS` digits.
+
+        Mertsalov takes the speed for constant in the kinetic energy of the links, Wittenbauer takes its extremes.
+        """
         p = self.project
         with mp.workdps(DIGITS):
             cd = mp.mpf(p.mechanism.points[0].distance)
@@ -184,25 +186,24 @@ _FORCE = 2800.0
 
 
 def _of(n: int) -> Project:
-    """The shaper with that many positions, a multiple of five, more of them on the working stroke."""
-    text = catalogue.read("lugansk/shaper").text
-    for old, new in (("working = 6 ", f"working = {n * 3 // 5} "), ("idle = 4 ", f"idle = {n * 2 // 5} ")):
-        if text.count(old) != 1:
-            raise ValueError(f"the shaper's project file has no {old!r}")
-        text = text.replace(old, new)
-    return Project(variant.parse(text, "shaper"))
+    """The shaper with that many positions, a multiple of five, three fifths of them on the working stroke."""
+    shipped = catalogue.read("lugansk/shaper")
+    assert shipped.cycle is not None
+    cycle = shipped.cycle.model_copy(update={"working": n * 3 // 5, "idle": n * 2 // 5})
+    return Project(shipped.model_copy(update={"cycle": cycle}))
+
+
+def _wheel(method: type[Flywheel], p: Project) -> Flywheel:
+    assert p.variant.flywheel is not None
+    return method(p.reduced, p.variant.flywheel)
 
 
 def _drawn(method: type[Flywheel], p: Project) -> float:
-    return method(p.reduced, _data(p)).J_first
+    return _wheel(method, p).J_first
 
 
 def _converged(method: type[Flywheel], p: Project) -> float:
-    return method(p.reduced, _data(p)).J_first_converged
-
-
-def _data(p: Project) -> Any:
-    return p.variant.flywheel
+    return _wheel(method, p).J_first_converged
 
 
 def _flywheel(bench: Bench) -> None:

@@ -24,7 +24,7 @@ def _size(data: bytes) -> str:
 
 
 def rows(bench: Bench) -> None:
-    """Every format with the smallest and the largest sheet of the shaper; there is no truth to compare with."""
+    """Every format with the smallest and the largest sheet of the shaper, without errors: there is no truth for them."""
     project = Project(catalogue.read("lugansk/cam_flat" if bench.quick else "lugansk/shaper"))
     drawings: list[Drawing] = []
     for n in range(1, len(project.sheets) + 1):

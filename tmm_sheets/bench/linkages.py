@@ -20,32 +20,35 @@ from tmm_sheets.project import Project
 
 COUNTS = (12, 24, 120, 360, 1000, 10_000, 100_000, 1_000_000)
 BLOCK = 8192
-"""Positions worked at a time: the arrays of a block stay in the processor's cache, and the memory bounded."""
+"""Positions solved at a time: the arrays of a block fit into the processor's cache, and memory stays bounded."""
 CHECKED = 8
 """Positions compared with the truth, spread over the turn."""
 GRAVITY = 9.81
 
+CRANK = Crank("1", "A", "B", 0.1, 10.0, 1)
+ROCKER_DYAD = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), 1)
+SLIDER_DYAD = StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",), 1)
+SLIDER_GUIDE = Guide("x", "0", -0.02j, 0.0)
+
 
 def four_bar() -> Mechanism:
-    """Crank 0.1, coupler 0.35, rocker 0.25, frame 0.4 m; masses in the middles of the links."""
+    """Crank 0.1, coupler 0.35, rocker 0.25, frame 0.4 m; centres of mass in the middles of the links."""
     return Mechanism(
-        Crank("1", "A", "B", 0.1, 10.0, 1), {"A": 0j, "D": 0.4 + 0j}, {},
-        (StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), 1),),
+        CRANK, {"A": 0j, "D": 0.4 + 0j}, {}, (ROCKER_DYAD,),
         (LinkPoint("S2", "2", "B", "C", 0.175), LinkPoint("S3", "3", "D", "C", 0.125)),
         {"1": Link("1"), "2": Link("2", "", 3.5, "S2", 0.036), "3": Link("3", "", 2.5, "S3", 0.013)})
 
 
 def slider_crank() -> Mechanism:
-    """Crank 0.1, rod 0.35 m, guide 0.02 m below the axis; centre of mass of the rod at a third."""
+    """Crank 0.1, rod 0.35 m, guide 0.02 m below the axis; centre of mass of the rod at a third of its length."""
     return Mechanism(
-        Crank("1", "A", "B", 0.1, 10.0, 1), {"A": 0j}, {"x": Guide("x", "0", -0.02j, 0.0)},
-        (StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",), 1),),
+        CRANK, {"A": 0j}, {"x": SLIDER_GUIDE}, (SLIDER_DYAD,),
         (LinkPoint("S2", "2", "B", "C", 0.35 / 3),),
         {"1": Link("1"), "2": Link("2", "", 3.5, "S2", 0.036), "3": Link("3", "", 5.0, "C")})
 
 
 def shaper() -> Mechanism:
-    """The six-bar shaper of manual 000: turning rocker with a stone, ram."""
+    """The six-bar shaper of manual 000: a slotted rocker that drives the ram."""
     return Project(catalogue.read("lugansk/shaper")).mechanism
 
 
@@ -58,7 +61,7 @@ Values = dict[str, Any]
 
 
 def _values(study: Study, plan: str) -> dict[str, Values]:
-    """What a plan gives, by kinds whose sizes compare."""
+    """What a plan gives, by kinds of comparable size."""
     if plan == "positions":
         return {"points": {k: s.value for k, s in study.positions.points.items()}}
     if plan == "velocities":
@@ -73,7 +76,7 @@ def _values(study: Study, plan: str) -> dict[str, Values]:
 
 
 def study_of(m: Mechanism, turned: npt.NDArray[np.float64]) -> Study:
-    """All plans for angles turned from 0, rad, under weights and inertia, a moment balancing the crank."""
+    """All plans for crank angles, rad, under weights and inertia, with a balancing moment on the crank."""
     return Study(m, even_cycle(m, 0.0, 1), turned, ("",), GRAVITY, tuple, None)
 
 
@@ -83,7 +86,7 @@ def _blocks(n: int) -> Iterator[tuple[int, npt.NDArray[np.float64]]]:
 
 
 def _run(m: Mechanism, n: int, plan: str, keep: npt.NDArray[np.int64]) -> dict[tuple[str, str], npt.NDArray[Any]]:
-    """A plan for ``n`` positions; what it gives at the positions to be checked is kept."""
+    """A plan for ``n`` positions; the results at the positions in ``keep`` are returned, by kind and name."""
     found: dict[tuple[str, str], list[Any]] = {}
     for start, turned in _blocks(n):
         here = keep[(keep >= start) & (keep < start + len(turned))] - start
@@ -94,7 +97,7 @@ def _run(m: Mechanism, n: int, plan: str, keep: npt.NDArray[np.int64]) -> dict[t
 
 
 class _Truth:
-    """Truth at some of ``n`` positions, for all plans."""
+    """The truth of all plans at ``most`` of ``n`` positions."""
 
     def __init__(self, m: Mechanism, n: int, most: int) -> None:
         checked = min(n, most)
@@ -103,10 +106,10 @@ class _Truth:
         self.step = 2 * pi / n
 
     @cached_property
-    def _moved(self) -> list[truth.Motion]:
+    def _moved(self) -> list[truth.TrueMotion]:
         return [truth.motion(self.mechanism, self.mechanism.crank.sense * (self.step * k)) for k in self.keep.tolist()]
 
-    def _at(self, moved: truth.Motion, plan: str) -> dict[str, Values]:
+    def _at(self, moved: truth.TrueMotion, plan: str) -> dict[str, Values]:
         if plan == "forces":
             forces, moment = truth.reactions(self.mechanism, moved, GRAVITY)
             return {"reactions": forces, "balancing": {"": moment}}
@@ -117,7 +120,7 @@ class _Truth:
         return {"points": moved.a, "links": moved.epsilon}
 
     def error(self, plan: str, found: dict[tuple[str, str], Any]) -> float:
-        """Largest error of a kind of quantity, relative to the largest of that kind."""
+        """Largest error of any kind, relative to the largest value of that kind."""
         off: dict[str, float] = {}
         size: dict[str, float] = {}
         goals = [self._at(moved, plan) for moved in self._moved]
@@ -130,7 +133,7 @@ class _Truth:
 
 
 def rows(bench: Bench) -> None:
-    """Every plan of the four-bar, the slider-crank and the six-bar; each with the plans before it."""
+    """Every plan of the four-bar, the slider-crank and the six-bar; its time includes the plans before it."""
     for name, build in MECHANISMS:
         m = build()
         truths = {n: _Truth(m, n, 4 if bench.quick else CHECKED) for n in bench.upto(COUNTS, 24)}

@@ -1,7 +1,7 @@
-"""The mechanisms of the comparison in the terms of pylinkage, kinepy and mechanism, through their documented interfaces.
+"""The mechanisms of the comparison in terms of pylinkage, kinepy and mechanism, through their documented interfaces.
 
-Positions of turning pairs are compared, and what the programs make of their velocities and accelerations. Lengths stand here a
-second time, as a user of those programs would write them; the truth the results are judged by knows the mechanism itself.
+Positions of turning pairs are compared, and the velocities and accelerations the programs give for them. Lengths stand here a
+second time, as users of those programs would write them; the truth that judges the results takes them from the mechanism itself.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from tmm_sheets.bench import truth
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 
-Points = dict[str, Any]
-"""Complex arrays by point: positions, velocities or accelerations, one entry for each crank angle."""
-Runs = dict[str, Callable[[], Points]]
+PointArrays = dict[str, Any]
+"""Complex arrays by the name of a point: positions, velocities or accelerations, one for each crank angle."""
+Runs = dict[str, Callable[[], PointArrays]]
 """A run for each quantity."""
 
 
@@ -43,13 +43,25 @@ class Turn:
 
 
 class Program(ABC):
-    """A program that moves linkages; making one raises CannotBuild when it is not installed."""
+    """A program that moves linkages.
+
+    Raises
+    ------
+    CannotBuild
+        On construction, when it is not installed.
+    """
 
     name = ""
 
     @abstractmethod
     def prepare(self, mechanism: str, m: Mechanism, turn: Turn) -> Runs:
-        """A run for each quantity it gives; raises CannotBuild with the reason when it has no way to say the mechanism."""
+        """Set a mechanism up for one turn of the crank; a run for each quantity the program gives.
+
+        Raises
+        ------
+        CannotBuild
+            With the reason, when the program cannot express the mechanism.
+        """
 
 
 def _library(name: str) -> Any:
@@ -72,7 +84,7 @@ def _version(name: str) -> str:
 
 
 class Pylinkage(Program):
-    """pylinkage steps from position to position: compiled where numba is there, by its plain steps else."""
+    """pylinkage steps from position to position, compiled if numba is installed."""
 
     name = _version("pylinkage")
 
@@ -91,7 +103,7 @@ class Pylinkage(Program):
         linkage.set_input_velocity(components[m.crank.pin], m.crank.omega)
         start = [(at[k].real, at[k].imag) for k in components]
 
-        def run(which: int) -> Points:
+        def run(which: int) -> PointArrays:
             linkage.set_coords(start)
             if self.compiled:
                 found = linkage.step_fast_with_kinematics(turn.n)[which] if which else linkage.step_fast(turn.n)
@@ -104,8 +116,8 @@ class Pylinkage(Program):
         return {quantity: partial(run, k) for k, quantity in enumerate(("positions", "velocities", "accelerations"))}
 
     @staticmethod
-    def _components(mechanism: str, m: Mechanism, turn: Turn, at: dict[str, complex]) -> Points:
-        """Components by the names of their points; ``at`` has where they stand, and gets what the guides pass through."""
+    def _components(mechanism: str, m: Mechanism, turn: Turn, at: dict[str, complex]) -> PointArrays:
+        """Components by the names of their points; ``at`` has their places, to which those the guides pass through are added."""
         ground, dyads = import_module("pylinkage.components").Ground, import_module("pylinkage.dyads")
         c, found = m.crank, {k: ground(z.real, z.imag, name=k) for k, z in m.fixed.items()}
         found[c.pin] = import_module("pylinkage.actuators").Crank(
@@ -137,7 +149,7 @@ class Pylinkage(Program):
 
 
 class Kinepy(Program):
-    """kinepy solves all positions at once; velocities and accelerations are differences of them, taken by its own tool."""
+    """kinepy solves all positions at once; its own tool takes differences of them for velocities and accelerations."""
 
     name = _version("kinepy")
 
@@ -153,16 +165,16 @@ class Kinepy(Program):
         system.pilot(motor)
         system.compile()
         self._choose_signs(system, m, points)
-        # Differences forwards have none at the last position, those of differences at the last two.
+        # Forward differences lack the last position, second differences the last two.
         angles = m.crank.sense * turn.step * np.arange(turn.n + 2)
         time = (turn.n + 1) * turn.step / m.crank.speed
 
-        def run(order: int) -> Points:
+        def run(order: int) -> PointArrays:
             system.solve_kinematics(angles if order else angles[:turn.n])
             found = {}
             for k, point in points.items():
                 value = point()
-                # Its second_derivative takes one difference and the square of a wrong step: the first is taken twice instead.
+                # Its second_derivative squares a wrong step; the first derivative is taken twice instead.
                 for quantity in (self.units.LENGTH, self.units.SPEED)[:order]:
                     value = self.tools.derivative(value, time, phy=quantity)
                 found[k] = value[0, :turn.n] + 1j * value[1, :turn.n]
@@ -172,7 +184,7 @@ class Kinepy(Program):
 
     @staticmethod
     def _choose_signs(system: Any, m: Mechanism, points: dict[str, Callable[[], Any]]) -> None:
-        """The signs that assemble the mechanism as it is given: which sign means which side is not the same in every run."""
+        """Choose the signs that assemble the mechanism as it is given; which sign means which side varies from run to run."""
         with mp.workdps(30):
             goal = {k: complex(z) for k, z in truth.state(m, mp.mpf(0)).points.items()}
         off: dict[tuple[int, ...], float] = {}
@@ -186,7 +198,7 @@ class Kinepy(Program):
 
     @staticmethod
     def _solids(mechanism: str, m: Mechanism, s: Any) -> tuple[Any, dict[str, Callable[[], Any]]]:
-        """The driven joint, and what gives each point."""
+        """The driven joint, and for each point a function that gives its coordinates."""
         crank, two, three = s.add_solid("1"), s.add_solid("2"), s.add_solid("3")
         motor = s.add_revolute(s.ground, crank)
         joints = {"B": s.add_revolute(crank, two, (m.crank.length, 0.0))}
@@ -221,7 +233,7 @@ class Kinepy(Program):
 
 
 class Loops(Program):
-    """mechanism closes vector loops by iteration, position by position: scipy's fsolve as it stands."""
+    """mechanism closes vector loops by iteration, position by position, with scipy's fsolve."""
 
     name = _version("mechanism")
 
@@ -233,7 +245,7 @@ class Loops(Program):
         angles = m.crank.sense * turn.angles
         speeds, zeros = np.full(turn.n, m.crank.omega), np.zeros(turn.n)
 
-        def run(quantity: str, motion: Any, joints: dict[str, Any]) -> Points:
+        def run(quantity: str, motion: Any, joints: dict[str, Any]) -> PointArrays:
             motion.iterate()
             return {k: getattr(joint, f"x_{quantity}") + 1j * getattr(joint, f"y_{quantity}") for k, joint in joints.items()}
 
@@ -247,7 +259,7 @@ class Loops(Program):
         return runs
 
     def _model(self, mechanism: str, m: Mechanism) -> tuple[list[Any], dict[str, Any], Callable[..., Any], Any]:
-        """Vectors, joints, loops and a guess of the unknowns at the first position."""
+        """Vectors, joints, loop equations and a guess of the unknowns at the first position."""
         joints = {k: self.library.Joint(k) for k in "ABCDEFGO"}
         vectors: list[Any] = []
 

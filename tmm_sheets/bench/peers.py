@@ -1,8 +1,8 @@
 """Other programs from PyPI on the same mechanisms, at the same positions, judged by the same truth.
 
-Every program has its mechanisms ready before the clock starts and gives, for all positions of a turn, the points of all hinges as
-arrays: positions alone; velocities with the positions they need; accelerations with both. Run by its own fastest way, warmed up.
-What a program has no way to say is null with the reason, and so is what fails.
+Every program has its mechanisms set up before the clock starts and gives the points of all hinges at all positions of a turn, as
+arrays: positions alone; velocities with the positions they need; accelerations with both. Each runs in its own fastest way, warmed
+up. What a program cannot express is null with the reason, and so is what fails.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import contextlib
 import io
 import warnings
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import partial
 from math import pi
 from typing import Any
@@ -19,21 +20,27 @@ import numpy as np
 
 from tmm_sheets import __version__
 from tmm_sheets.bench import peer_programs, truth
-from tmm_sheets.bench.linkages import BLOCK, shaper, study_of
-from tmm_sheets.bench.peer_programs import Points, Program, Turn
-from tmm_sheets.bench.records import Bench, Record, told
+from tmm_sheets.bench.linkages import BLOCK, CRANK, ROCKER_DYAD, SLIDER_DYAD, SLIDER_GUIDE, shaper, study_of
+from tmm_sheets.bench.peer_programs import PointArrays, Program, Turn
+from tmm_sheets.bench.records import Bench, BenchRecord, told
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
+from tmm_sheets.mechanism.model import Guide, Link, LinkPoint, Mechanism, StructuralGroup
 
 COUNTS = (12, 360, 10_000)
 QUANTITIES = ("positions", "velocities", "accelerations")
 CHECKED = 12
 """Positions compared with the truth, spread over the turn from its first to its last."""
 LONGEST = 5.0
-"""Seconds of one run, by the program's time for fewer positions, above which it is left out."""
+"""Seconds beyond which a run is left out, extrapolated from the time for fewer positions."""
 
-_CRANK = Crank("1", "A", "B", 0.1, 10.0, 1)
-_FOUR_BAR = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), 1)
+
+@dataclass(frozen=True, kw_only=True)
+class PeerRecord(BenchRecord):
+    """A record of the comparison, with what its labels are made of."""
+
+    mechanism: str
+    quantity: str
+    program: str
 
 
 def _links(n: int) -> dict[str, Link]:
@@ -42,26 +49,25 @@ def _links(n: int) -> dict[str, Link]:
 
 def four_bar() -> Mechanism:
     """Crank 0.1, coupler 0.35, rocker 0.25, frame 0.4 m."""
-    return Mechanism(_CRANK, {"A": 0j, "D": 0.4 + 0j}, {}, (_FOUR_BAR,), (), _links(3))
+    return Mechanism(CRANK, {"A": 0j, "D": 0.4 + 0j}, {}, (ROCKER_DYAD,), (), _links(3))
 
 
 def slider_crank() -> Mechanism:
     """Crank 0.1, rod 0.35 m, guide 0.02 m below the crank's axis."""
-    return Mechanism(_CRANK, {"A": 0j}, {"x": Guide("x", "0", -0.02j, 0.0)},
-                     (StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",), 1),), (), _links(3))
+    return Mechanism(CRANK, {"A": 0j}, {"x": SLIDER_GUIDE}, (SLIDER_DYAD,), (), _links(3))
 
 
 def six_bar() -> Mechanism:
     """The four-bar, its rocker lengthened to 0.4 m, with a rod of 0.5 m that drives a slider on a fixed guide."""
-    return Mechanism(_CRANK, {"A": 0j, "D": 0.4 + 0j}, {"x": Guide("x", "0", 0.3j, 0.0)},
-                     (_FOUR_BAR, StructuralGroup(2, ("4", "5"), ("E",), "F", (0.5,), ("x",), 1)),
+    return Mechanism(CRANK, {"A": 0j, "D": 0.4 + 0j}, {"x": Guide("x", "0", 0.3j, 0.0)},
+                     (ROCKER_DYAD, StructuralGroup(2, ("4", "5"), ("E",), "F", (0.5,), ("x",), 1)),
                      (LinkPoint("E", "3", "D", "C", 0.4),), _links(5))
 
 
 def turning_guide() -> Mechanism:
     """The four-bar with a slider along its rocker, held by a rod of 0.25 m from the frame: Coriolis on a turning guide."""
-    return Mechanism(_CRANK, {"A": 0j, "D": 0.4 + 0j, "E": 0.55 + 0j}, {"r": Guide("r", "3", "D", 0.0, "C")},
-                     (_FOUR_BAR, StructuralGroup(2, ("4", "5"), ("E",), "F", (0.25,), ("r",), 1)), (), _links(5))
+    return Mechanism(CRANK, {"A": 0j, "D": 0.4 + 0j, "E": 0.55 + 0j}, {"r": Guide("r", "3", "D", 0.0, "C")},
+                     (ROCKER_DYAD, StructuralGroup(2, ("4", "5"), ("E",), "F", (0.25,), ("r",), 1)), (), _links(5))
 
 
 MECHANISMS: tuple[tuple[str, Callable[[], Mechanism]], ...] = (
@@ -71,22 +77,22 @@ MECHANISMS: tuple[tuple[str, Callable[[], Mechanism]], ...] = (
 
 
 def _moving(m: Mechanism, points: Iterable[str]) -> list[str]:
-    """Hinges compared: what moves, without the centres of mass that other programs need not know."""
+    """The points compared: those that move, less the centres of mass, which other programs need not know."""
     centres = {link.centre for link in m.links.values()} - {g.inner for g in m.groups} - {m.crank.pin}
     return [name for name in points if name not in m.fixed and name not in centres]
 
 
 class Ours(Program):
-    """The program itself, its plans recorded anew at every run."""
+    """tmm-sheets, its plans recorded anew at every run."""
 
     name = f"tmm-sheets {__version__}"
 
-    def prepare(self, mechanism: str, m: Mechanism, turn: Turn) -> dict[str, Callable[[], Points]]:
+    def prepare(self, mechanism: str, m: Mechanism, turn: Turn) -> dict[str, Callable[[], PointArrays]]:
         """A run for each quantity."""
         return {quantity: partial(self._run, m, turn, quantity) for quantity in QUANTITIES}
 
     @staticmethod
-    def _run(m: Mechanism, turn: Turn, quantity: str) -> Points:
+    def _run(m: Mechanism, turn: Turn, quantity: str) -> PointArrays:
         found: dict[str, list[Any]] = {}
         for start in range(0, turn.n, BLOCK):
             study = study_of(m, turn.angles[start:start + BLOCK])
@@ -100,7 +106,7 @@ PROGRAMS: tuple[type[Program], ...] = (Ours, *peer_programs.PROGRAMS)
 
 
 class _Judge:
-    """Truth at some positions of a turn; error of what a program gives there."""
+    """The truth at some positions of a turn, and the error of a program there."""
 
     def __init__(self, m: Mechanism, turn: Turn) -> None:
         self.keep = np.unique(np.linspace(0, turn.n - 1, CHECKED).round().astype(int))
@@ -109,8 +115,14 @@ class _Judge:
         self.goals = {quantity: [{k: complex(getattr(at, letter)[k]) for k in names} for at in moved]
                       for quantity, letter in zip(QUANTITIES, "zva", strict=True)}
 
-    def error(self, quantity: str, found: Points) -> float:
-        """Largest error of any hinge, relative to the largest value of any hinge; every hinge must be there."""
+    def error(self, quantity: str, found: PointArrays) -> float:
+        """Largest error of any hinge, relative to the largest value of any hinge.
+
+        Raises
+        ------
+        CannotBuild
+            When a hinge is missing.
+        """
         goals = self.goals[quantity]
         missing = [k for k in goals[0] if k not in found]
         if missing:
@@ -132,7 +144,8 @@ def rows(bench: Bench, programs: Iterable[type[Program]] = PROGRAMS) -> None:
 
 
 def _rows_of(bench: Bench, program: type[Program], mechanism: str, m: Mechanism, turn: Turn, judge: _Judge) -> None:
-    # They print, and warn of what their libraries no longer like: neither is ours to show.
+    """Every quantity of one program on one mechanism."""
+    # They print, and warn of what their libraries deprecate: neither is ours to show.
     with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         runs, reason, name = {}, "", program.name
@@ -144,16 +157,22 @@ def _rows_of(bench: Bench, program: type[Program], mechanism: str, m: Mechanism,
             reason = _said(e)
         for quantity in QUANTITIES:
             what = (f"peers: {mechanism}", f"{quantity}, {name}", "positions")
-            before = next((r.each for r in reversed(bench.records) if (r.field, r.method) == what[:2]), None)
-            if before is not None and before * turn.n > LONGEST:
-                bench.records.append(Record(*what, turn.n, None, None, f"left out at {turn.n:g} positions: it would take too long"))
+            if _too_long(bench, what, turn.n):
+                found = BenchRecord(*what, turn.n, None, None, f"left out at {turn.n:g} positions: it would take too long")
             elif quantity in runs:
-                bench.row(what, turn.n, partial(_guarded, runs[quantity]), partial(judge.error, quantity))
+                found = bench.record(what, turn.n, partial(_guarded, runs[quantity]), partial(judge.error, quantity))
             else:
-                bench.records.append(Record(*what, turn.n, None, None, reason or "it does not give them"))
+                found = BenchRecord(*what, turn.n, None, None, reason or "it does not give them")
+            bench.records.append(PeerRecord(**vars(found), mechanism=mechanism, quantity=quantity, program=name))
 
 
-def _guarded(run: Callable[[], Points]) -> Points:
+def _too_long(bench: Bench, what: tuple[str, str, str], n: int) -> bool:
+    """Whether ``n`` positions would take too long, by the last record of the same field and method."""
+    each = next((r.each for r in reversed(bench.records) if (r.field, r.method) == what[:2]), None)
+    return each is not None and each * n > LONGEST
+
+
+def _guarded(run: Callable[[], PointArrays]) -> PointArrays:
     try:
         return run()
     except Exception as e:
@@ -165,35 +184,35 @@ def _said(e: Exception) -> str:
     return text if isinstance(e, CannotBuild) else f"{type(e).__name__}: {text}"
 
 
-def _side_by_side(records: Iterable[Record]) -> tuple[list[str], dict[tuple[str, str, float], dict[str, Record]]]:
-    """Programs in order, and the records of each mechanism, quantity and count by program."""
+def _side_by_side(records: Iterable[PeerRecord]) -> tuple[list[str], dict[tuple[str, str, float], dict[str, PeerRecord]]]:
+    """The programs in order, and by mechanism, quantity and count of positions the record of each program."""
     programs: dict[str, None] = {}
-    found: dict[tuple[str, str, float], dict[str, Record]] = {}
+    found: dict[tuple[str, str, float], dict[str, PeerRecord]] = {}
     for r in records:
-        quantity, program = r.method.split(", ", 1)
-        programs[program] = None
-        found.setdefault((r.field.removeprefix("peers: "), quantity, r.value), {})[program] = r
+        programs[r.program] = None
+        found.setdefault((r.mechanism, r.quantity, r.value), {})[r.program] = r
     return list(programs), found
 
 
-def _cells(r: Record | None) -> tuple[str, str]:
+def _cells(r: PeerRecord | None) -> tuple[str, str]:
     if r is None or r.seconds is None:
         return "-", "-"
     return told(r.each), f"{r.error:.0e}"
 
 
-def _reasons(records: Iterable[Record]) -> list[str]:
+def _reasons(records: Iterable[PeerRecord]) -> list[str]:
+    """Why runs failed, a line for each program and reason."""
     reasons: dict[tuple[str, str], list[str]] = {}
     for r in records:
         if r.note:
-            reasons.setdefault((r.method.split(", ", 1)[1], r.note), []).append(r.field.removeprefix("peers: "))
-    return [f"{program}, {', '.join(dict.fromkeys(fields))}: {note}" for (program, note), fields in reasons.items()]
+            reasons.setdefault((r.program, r.note), []).append(r.mechanism)
+    return [f"{program}, {', '.join(dict.fromkeys(mechanisms))}: {note}" for (program, note), mechanisms in reasons.items()]
 
 
-def table(records: Iterable[Record]) -> str:
-    """Time for each position and error, the programs side by side, as plain text."""
-    records = list(records)
-    programs, found = _side_by_side(records)
+def table(records: Iterable[BenchRecord]) -> str:
+    """Time for each position and error as plain text, the programs side by side."""
+    of_peers = [r for r in records if isinstance(r, PeerRecord)]
+    programs, found = _side_by_side(of_peers)
     lines: list[str] = []
     shown = ""
     for (mechanism, quantity, n), by_program in found.items():
@@ -202,14 +221,15 @@ def table(records: Iterable[Record]) -> str:
             lines += ["", f"{mechanism:30}" + "".join(f"{p:>24}" for p in programs)]
         cells = ["{:>14}{:>10}".format(*_cells(by_program.get(p))) for p in programs]
         lines.append(f"  {quantity:16}{n:>10g}  {''.join(cells)}")
-    return "\n".join([*lines[1:], *(["", *_reasons(records)] if _reasons(records) else [])])
+    reasons = _reasons(of_peers)
+    return "\n".join([*lines[1:], *(["", *reasons] if reasons else [])])
 
 
-def summary(records: Iterable[Record]) -> str:
-    """Microseconds for each position at every count, and the errors from the first to the last, side by side, in Markdown."""
-    records = list(records)
-    programs, found = _side_by_side(records)
-    rows: dict[tuple[str, str], list[dict[str, Record]]] = {}
+def summary(records: Iterable[BenchRecord]) -> str:
+    """Microseconds for each position at every count and the first and last error as a Markdown table, the programs side by side."""
+    of_peers = [r for r in records if isinstance(r, PeerRecord)]
+    programs, found = _side_by_side(of_peers)
+    rows: dict[tuple[str, str], list[dict[str, PeerRecord]]] = {}
     counts: dict[str, None] = {}
     for (mechanism, quantity, n), by_program in found.items():
         rows.setdefault((mechanism, quantity), []).append(by_program)
@@ -219,10 +239,10 @@ def summary(records: Iterable[Record]) -> str:
     for (mechanism, quantity), several in rows.items():
         cells = [_summed_up([by_program.get(p) for by_program in several]) for p in programs]
         lines.append(f"| {mechanism} | {quantity} | {' | '.join(cells)} |")
-    return "\n".join([*lines, "", *(f"- {reason}" for reason in _reasons(records))])
+    return "\n".join([*lines, "", *(f"- {reason}" for reason in _reasons(of_peers))])
 
 
-def _summed_up(several: list[Record | None]) -> str:
+def _summed_up(several: list[PeerRecord | None]) -> str:
     done = [r for r in several if r is not None and r.error is not None]
     if not done:
         return "-"

@@ -1,4 +1,4 @@
-"""Cam by tangents and as an envelope, involute by unrolling, tooth cut by a rack."""
+"""Cams by tangents and as envelopes, involutes by unrolling, teeth cut by a rack."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mpmath import mp
 from tmm_sheets import catalogue
 from tmm_sheets.bench.records import Bench
 from tmm_sheets.methods.cams.cam_profile import RollerCam, cam
-from tmm_sheets.methods.gears.gear_engagement import involute_plan
+from tmm_sheets.methods.gears.gear_engagement import divisions, involute_plan
 from tmm_sheets.methods.gears.gear_geometry import Wheel
 from tmm_sheets.methods.gears.gear_pair import GearPair
 from tmm_sheets.methods.gears.rack import Rack, flank
@@ -34,12 +34,12 @@ def _away(points: Any, goals: list[Any]) -> float:
 
 
 def _from_chord(goal: complex, a: complex, b: complex) -> float:
-    """Distance of a true point from the chord that stands for it."""
+    """Distance of a true point from the chord that approximates the curve there."""
     return abs(((goal - a) * (b - a).conjugate()).imag) / abs(b - a)
 
 
 def _edge_of(shape: Any, points: Any) -> float:
-    """Largest distance of points from the border of a shapely polygon."""
+    """Largest distance of points from the outline of a shapely polygon."""
     import shapely
 
     at = shapely.points(np.column_stack((points.real, points.imag)))
@@ -57,12 +57,12 @@ def _polygon(points: Any) -> Any:
 
 @dataclass(frozen=True)
 class SineCam:
-    """The translating roller cam with the sine law in mpmath; e, s0 and the roller as the doubles of the construction."""
+    """The sine-law cam with a translating roller follower, in mpmath; e, s0 and the roller are doubles of the construction."""
 
     cam: RollerCam
 
     def motion(self, phi: Any) -> tuple[Any, Any]:
-        """Displacement and its derivative, m, at a cam angle within the turn."""
+        """Displacement and its analogue of velocity, m, at a cam angle within the turn."""
         d = self.cam.data
         rise, dwell, fall, h = (mp.mpf(x or 0) for x in (d.rise, d.upper_dwell, d.fall, d.stroke))
         for start, angle, first, sign in ((mp.mpf(0), rise, 0, 1), (rise + dwell, fall, h, -1)):
@@ -72,7 +72,7 @@ class SineCam:
         return (h if phi < rise + dwell else mp.mpf(0)), mp.mpf(0)
 
     def r0(self) -> Any:
-        """Smallest radius of the centre profile from the tangents to S(S') of the rise, m."""
+        """Smallest radius of the centre profile, m, from the tangents to the S(S') diagram of the rise."""
         d = self.cam.data
         with mp.workdps(DIGITS):
             h, rise, slope = mp.mpf(d.stroke or 0), mp.mpf(d.rise), mp.tan(mp.mpf(d.pressure_angle or 0))
@@ -107,7 +107,7 @@ def _least_radius(parts: int) -> float:
 
 
 def _at_points(c: RollerCam, n: int) -> float:
-    """r0 when the ruler is put through numbered points of the curve instead of touching it between them."""
+    """r0 with the ruler put through numbered points of the curve instead of touching it between them."""
     x = np.linspace(0, 1, n + 1)
     slope = tan(c.alpha)
     s, ds = np.asarray(c.law.rise.s(x)), np.asarray(c.law.rise.ds(x))
@@ -166,7 +166,7 @@ def _cams(bench: Bench) -> None:
 
 
 def _involute_at(wheel: Wheel, share: Any) -> Any:
-    """Point of the involute where the tangent is that share of the pole's, seen from the centre, the pole at 1."""
+    """Point of the involute where the tangent has that share of its length at the pole; centre at 0, pole at 1."""
     rb, whole = mp.mpf(wheel.rb), mp.mpf(wheel.t_pole)
 
     def polar(t: Any) -> tuple[Any, Any]:
@@ -177,7 +177,7 @@ def _involute_at(wheel: Wheel, share: Any) -> Any:
 
 
 def _seen(pair: GearPair, wheel: Wheel, points: Any) -> Complex:
-    """The same frame for constructed points: mirrored where the involute winds the other way."""
+    """Constructed points in the same frame, mirrored where the involute winds the other way."""
     centre, pole = (complex(pair.engagement[name].value) for name in (f"O{wheel.number}", "Pw"))
     z = (np.asarray(points) - centre) / (pole - centre)
     return np.asarray(z if z[-1].imag > 0 else np.conj(z))
@@ -190,10 +190,10 @@ def _involutes(bench: Bench) -> None:
 
     def unrolled(parts: int) -> Complex:
         plan = involute_plan(wheel, pair.engagement, parts)
-        return _seen(pair, wheel, [plan[name].value for name in plan.steps if name.startswith("E")])
+        return _seen(pair, wheel, [plan[f"E{k}"].value for k in divisions(wheel, parts)])
 
     def stepped(parts: int) -> Complex:
-        """Arcs of the base circle stepped off with the dividers: as many chords as divisions."""
+        """With arcs of the base circle stepped off with dividers, that is, as chords, one for each division."""
         part = wheel.t_pole / parts
         k = np.arange(parts + 3)
         turn = 2 * asin(part / 2 / wheel.rb) * (k - parts)
@@ -225,7 +225,7 @@ TIP = RACK.r + RACK.module
 
 
 def _flank_at(radius: Any) -> Any:
-    """Point of the involute of :data:`RACK`'s wheel on a circle, m, from the tooth's axis."""
+    """Point of the involute of :data:`RACK`'s wheel at a radius, m; the real axis is that of the tooth."""
     alpha, z = mp.mpf(RACK.alpha), RACK.teeth
     rb = mp.mpf(RACK.module) * z / 2 * mp.cos(alpha)
     half = mp.pi / (2 * z) + mp.tan(alpha) - alpha

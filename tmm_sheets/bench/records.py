@@ -1,4 +1,4 @@
-"""Rows of a work-precision table, how they are measured, and how they are told."""
+"""Rows of a work-precision table: measuring, printing and storing them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 import platform
 from collections.abc import Callable, Iterable
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field, fields
 from math import isfinite
 from time import perf_counter
 from typing import Any, TypeVar
@@ -20,10 +20,16 @@ SCHEMA = 1
 
 
 @dataclass(frozen=True)
-class Record:
-    """One run: what was varied (``parameter``) and its ``value``, error against truth, seconds of the fastest repetition.
+class BenchRecord:
+    """One run.
 
-    ``error`` and ``seconds`` are None for a run that failed, ``error`` also where there is none to be had; ``note`` says why.
+    Attributes
+    ----------
+    field, method : what was measured
+    parameter, value : what is varied from run to run, and its value
+    error : against the truth; None when the run failed or there is no truth
+    seconds : of the fastest repetition; None when the run failed
+    note : why it failed, or what else is worth telling
     """
 
     field: str
@@ -36,21 +42,21 @@ class Record:
 
     @property
     def each(self) -> float | None:
-        """Seconds for one of what is counted, position or chord."""
+        """Seconds for one of what ``parameter`` counts, a position or a chord."""
         return None if self.seconds is None else self.seconds / self.value
 
 
 @dataclass
 class Bench:
-    """Collects the rows. ``quick`` leaves the long ones out and repeats less; ``say`` hears what is measured next."""
+    """Measures and collects rows; ``quick`` leaves the long ones out and repeats less, ``say`` is told what comes next."""
 
     quick: bool = False
     say: Callable[[str], None] = lambda what: None
-    records: list[Record] = field(default_factory=list)
+    records: list[BenchRecord] = field(default_factory=list)
 
     @property
     def patience(self) -> float:
-        """Seconds of repetitions after which no further one begins."""
+        """Seconds after which no further repetition begins."""
         return 0.0 if self.quick else 0.15
 
     def upto(self, values: Iterable[int], most: int) -> list[int]:
@@ -59,19 +65,34 @@ class Bench:
 
     def row(self, what: tuple[str, str, str], value: float, run: Callable[[], Found], error: Callable[[Found], float] | None,
             note: str | Callable[[Found], str] = "") -> None:
-        """Measure ``run`` and judge what it gives; ``what`` is field, method and parameter, ``note`` may tell of what it gave."""
+        """Measure a run and keep its record; see :meth:`record`."""
+        self.records.append(self.record(what, value, run, error, note))
+
+    def record(self, what: tuple[str, str, str], value: float, run: Callable[[], Found], error: Callable[[Found], float] | None,
+               note: str | Callable[[Found], str] = "") -> BenchRecord:
+        """Measure a run.
+
+        Parameters
+        ----------
+        what, value
+            Field, method and parameter of the record, and the value of the parameter.
+        run
+            What is timed.
+        error
+            Judges what ``run`` returns; None without a truth.
+        note
+            Goes into the record; a function gets what ``run`` returns.
+        """
         self.say(f"{what[0]}: {what[1]}, {value:g} {what[2]}")
         try:
             seconds, found = fastest(run, self.patience)
             off = None if error is None else float(error(found))
         except (CannotBuild, ArithmeticError, ValueError, MemoryError) as e:
             reason = str(e).splitlines()[0] if str(e) else type(e).__name__
-            self.records.append(Record(*what, value, None, None, reason))
-            return
+            return BenchRecord(*what, value, None, None, reason)
         if off is not None and not isfinite(off):
-            self.records.append(Record(*what, value, None, None, "not a number"))
-        else:
-            self.records.append(Record(*what, value, off, seconds, note if isinstance(note, str) else note(found)))
+            return BenchRecord(*what, value, None, None, "not a number")
+        return BenchRecord(*what, value, off, seconds, note if isinstance(note, str) else note(found))
 
 
 @contextmanager
@@ -86,10 +107,10 @@ def _no_collection() -> Any:
 
 
 def fastest(run: Callable[[], Found], patience: float) -> tuple[float, Found]:
-    """Seconds of the fastest of repeated runs after a warm-up, and what the last one gave.
+    """Seconds of the fastest of repeated runs after a warm-up, and what the last one returned.
 
-    Three runs at least, more until ``patience`` seconds are spent. One that takes a quarter of a second is not slower for being
-    the first: it is run twice in all, and so is any run without patience.
+    At least three runs are timed, more until ``patience`` seconds are spent. A run of a quarter of a second or more needs no
+    warm-up: it is run twice in all, and so is any run without patience.
     """
     best, spent, count = float("inf"), 0.0, 0
     with _no_collection():
@@ -104,8 +125,8 @@ def fastest(run: Callable[[], Found], patience: float) -> tuple[float, Found]:
     return best, found
 
 
-def table(records: Iterable[Record]) -> str:
-    """The rows as plain text, a heading for each field, the runs of a method one under another."""
+def table(records: Iterable[BenchRecord]) -> str:
+    """The rows as plain text, a heading for each field, the runs of a method one below another."""
     records = list(records)
     order = {key: k for k, key in reversed(list(enumerate((r.field, r.method) for r in records)))}
     records.sort(key=lambda r: order[r.field, r.method])
@@ -122,10 +143,10 @@ def table(records: Iterable[Record]) -> str:
     return "\n".join(lines[1:])
 
 
-def summary(records: Iterable[Record]) -> str:
+def summary(records: Iterable[BenchRecord]) -> str:
     """The first and the last run of every method, in Markdown."""
     lines = ["| field | method | from .. to | error | time |", "|---|---|---|---|---|"]
-    methods: dict[tuple[str, str], list[Record]] = {}
+    methods: dict[tuple[str, str], list[BenchRecord]] = {}
     for r in records:
         methods.setdefault((r.field, r.method), []).append(r)
     for (name, method), rows in methods.items():
@@ -147,13 +168,13 @@ def told(seconds: float | None) -> str:
     return f"{seconds / 1e-9:.3g} ns"
 
 
-def as_json(records: Iterable[Record]) -> str:
-    """The rows as JSON; what failed is null."""
+def as_json(records: Iterable[BenchRecord]) -> str:
+    """The rows as JSON, null for what failed."""
     import numpy as np
 
     tree = {
         "schema": SCHEMA,
         "program": __version__, "python": platform.python_version(), "numpy": np.__version__, "machine": platform.machine(),
-        "records": [asdict(r) for r in records],
+        "records": [{f.name: getattr(r, f.name) for f in fields(BenchRecord)} for r in records],
     }  # fmt: skip
     return json.dumps(tree, ensure_ascii=False, indent=1, allow_nan=False)

@@ -1,4 +1,4 @@
-"""Search of tooth numbers of a reducer, against trying everything in whole numbers."""
+"""The search for tooth numbers of a reducer, against exhaustive search in whole numbers."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from tmm_sheets.methods.gears.tooth_search import TIERS, ToothSet, search
 
 LIMITS = (30, 40, 60, 90, 120)
 TRIED = 60
-"""Largest tooth number up to which everything is tried one by one."""
+"""Largest tooth number of the exhaustive search."""
 
 
 def _data(most: int) -> Any:
-    """Single-row stage after a pair of wheels, 1250 to 300 rpm, with wheels of at most so many teeth."""
+    """A single-row planetary stage after a simple pair, 1250 to 300 rpm, with at most so many teeth a wheel."""
     found = catalogue.read("transport/diesel@01-T-27").reducer
     assert found is not None
     speeds = {"input_speed": 1250 * pi / 30, "output_speed": 300 * pi / 30}
@@ -54,7 +54,7 @@ def _search(most: int) -> list[ToothSet]:
 
 
 def rows(bench: Bench) -> None:
-    """The chosen set: its height against the least one of its tier."""
+    """The height of the chosen set against the least of its tier of deviation."""
     for most in bench.upto(LIMITS, 40):
         goal = _best(min(most, TRIED))
 

@@ -5,17 +5,32 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 
-from tmm_sheets.bench.records import Bench, Record
+from tmm_sheets.bench.records import Bench, BenchRecord
 from tmm_sheets.errors import BadInput
 
 FIELDS = ("linkages", "diagrams", "profiles", "reducers", "emission")
-"""Modules with the rows, in the order of the table."""
+"""Modules that measure, in the order of the table."""
 PEERS = ("peers",)
-"""The module that compares other programs, instead."""
+"""The module that measures other programs."""
 
 
-def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELDS) -> list[Record]:
-    """All rows of the fields; needs mpmath for the truth they are judged by."""
+def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELDS) -> list[BenchRecord]:
+    """Measure fields.
+
+    Parameters
+    ----------
+    quick
+        Only a few small runs.
+    say
+        Told what is measured next.
+    fields
+        Modules that measure.
+
+    Raises
+    ------
+    BadInput
+        Without mpmath, which the truth needs.
+    """
     try:
         import mpmath  # noqa: F401
     except ImportError:
@@ -27,6 +42,6 @@ def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELD
     return bench.records
 
 
-def compare(quick: bool, say: Callable[[str], None]) -> list[Record]:
-    """The rows of other programs beside this one."""
+def compare(quick: bool, say: Callable[[str], None]) -> list[BenchRecord]:
+    """Measure this program and others on the same mechanisms; see :func:`run`."""
     return run(quick, say, PEERS)

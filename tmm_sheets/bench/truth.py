@@ -1,8 +1,8 @@
 """Motion and reactions of mechanisms in 100 digits, sharing nothing with the methods.
 
-Loops are closed by trigonometry, velocities and accelerations are central differences of the positions: with 100 digits and
-a step of 1e-33 the first keep 60 digits, the second 30. Reactions come from the three equations of equilibrium of every
-moving link, one linear system. Numbers are those of ``mpmath``; the given lengths are taken as the doubles they are.
+Loops are closed by trigonometry; velocities and accelerations are central differences of positions: with 100 digits and a step of
+1e-33 the former keep 60 digits, the latter 30. Reactions come from one linear system, the three equations of equilibrium of every
+moving link. Numbers are those of ``mpmath``; given lengths are the doubles they are.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ STEP_DIGITS = 33
 
 
 @dataclass
-class State:
-    """Points, and for every link a unit vector fixed on it."""
+class TrueState:
+    """Points, m, and a unit vector fixed on every link."""
 
     points: dict[str, Any] = field(default_factory=dict)
     links: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass
-class Motion:
-    """Positions, velocities and accelerations of points, angular velocities and accelerations of links, at one angle."""
+class TrueMotion:
+    """Positions, velocities and accelerations of points, angular velocities and accelerations of links, at one crank angle; SI."""
 
     z: dict[str, Any]
     v: dict[str, Any]
     a: dict[str, Any]
     omega: dict[str, Any]
     epsilon: dict[str, Any]
-    state: State
+    state: TrueState
 
 
 def _unit(z: Any) -> Any:
@@ -49,9 +49,9 @@ def _meet(p: Any, u: Any, q: Any, v: Any) -> Any:
     return p + u * (w.imag * v.real - w.real * v.imag) / det
 
 
-def state(m: Mechanism, phi: Any) -> State:
-    """Points and directions at a crank angle (rad, world frame)."""
-    s = State({name: mp.mpmathify(z) for name, z in m.fixed.items()}, {m.frame: mp.mpc(1)})
+def state(m: Mechanism, phi: Any) -> TrueState:
+    """Points and directions at a crank angle, rad in the world frame."""
+    s = TrueState({name: mp.mpmathify(z) for name, z in m.fixed.items()}, {m.frame: mp.mpc(1)})
     c = m.crank
     s.links[c.link] = mp.expj(phi)
     s.points[c.pin] = s.points[c.pivot] + c.length * s.links[c.link]
@@ -63,28 +63,28 @@ def state(m: Mechanism, phi: Any) -> State:
     return s
 
 
-def _base(m: Mechanism, s: State, link: str, start: str, towards: str) -> Any:
-    """Direction on a link; towards the pin of a stone it is the slot's, also with an offset."""
+def _base(m: Mechanism, s: TrueState, link: str, start: str, towards: str) -> Any:
+    """Direction from one point of a link to another; towards the pin of a sliding block it is the slot, even if offset."""
     for g in m.groups:
         if g.kind == 3 and link in g.links and towards == g.outer[0]:
             return s.links[link]
     return _unit(s.points[towards] - s.points[start])
 
 
-def _further(m: Mechanism, s: State, link: str) -> None:
+def _further(m: Mechanism, s: TrueState, link: str) -> None:
     for p in m.points:
         if p.link == link:
             s.points[p.name] = s.points[p.start] + p.distance * _base(m, s, link, p.start, p.towards) * mp.expj(p.angle)
 
 
-def _guide(m: Mechanism, s: State, guide: Guide) -> tuple[Any, Any]:
+def _guide(m: Mechanism, s: TrueState, guide: Guide) -> tuple[Any, Any]:
     if isinstance(guide.through, str):
         u = _base(m, s, guide.link, guide.through, guide.towards or "")
         return s.points[guide.through], u * mp.expj(guide.direction)
     return mp.mpmathify(guide.through), mp.expj(guide.direction)
 
 
-def _place(m: Mechanism, s: State, g: StructuralGroup) -> None:
+def _place(m: Mechanism, s: TrueState, g: StructuralGroup) -> None:
     i, j = g.links
     outer = [s.points[name] for name in g.outer]
     guides = [_guide(m, s, m.guides[name]) for name in g.guides]
@@ -111,8 +111,8 @@ def _place(m: Mechanism, s: State, g: StructuralGroup) -> None:
         s.links[i] = s.links[j] = u
 
 
-def motion(m: Mechanism, phi: float) -> Motion:
-    """Motion at one crank angle, the crank turning evenly; values in the precision of :data:`DIGITS`."""
+def motion(m: Mechanism, phi: float) -> TrueMotion:
+    """Motion at a crank angle, rad, of a uniformly turning crank, in :data:`DIGITS` digits."""
     with mp.workdps(DIGITS):
         w, h = mp.mpf(m.crank.omega), mp.mpf(10) ** -STEP_DIGITS
         low, here, high = (state(m, mp.mpf(float(phi)) + k * h) for k in (-1, 0, 1))
@@ -124,14 +124,14 @@ def motion(m: Mechanism, phi: float) -> Motion:
             return {k: (b[k] - 2 * o[k] + a[k]) / h**2 * w * w for k in a}
 
         turning, bending = first(low.links, high.links), second(low.links, here.links, high.links)
-        return Motion(
+        return TrueMotion(
             here.points, first(low.points, high.points), second(low.points, here.points, high.points),
             {k: (mp.conj(u) * turning[k]).imag for k, u in here.links.items()},
             {k: (mp.conj(u) * bending[k]).imag for k, u in here.links.items()}, here)
 
 
-def _axes(m: Mechanism, s: State) -> dict[tuple[str, str], Any]:
-    """Direction of each sliding pair, by its two links."""
+def _axes(m: Mechanism, s: TrueState) -> dict[tuple[str, str], Any]:
+    """Direction of each sliding pair by its two links."""
     found: dict[tuple[str, str], Any] = {}
     for g in m.groups:
         i, j = g.links
@@ -152,7 +152,7 @@ def _cross(u: Any, v: Any) -> Any:
     return (mp.conj(u) * v).imag
 
 
-def reactions(m: Mechanism, moved: Motion, gravity: float) -> tuple[dict[str, Any], Any]:
+def reactions(m: Mechanism, moved: TrueMotion, gravity: float) -> tuple[dict[str, Any], Any]:
     """Reactions by name (F54: on 5 from 4), N, and the balancing moment on the crank, N m, under weights and inertia."""
     with mp.workdps(40):
         axes = _axes(m, moved.state)

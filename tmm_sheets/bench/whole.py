@@ -1,23 +1,21 @@
-"""Cold build of all sheets against the same display lists written with plain library calls (:mod:`tmm_sheets.bench.plain`).
+"""A cold build of all sheets against the same display lists written with plain library calls (:mod:`tmm_sheets.bench.plain`).
 
-The two take turns, each in a fresh process: ``build`` reads the project, solves, composes and writes; the plain writer gets the
-finished display lists and only writes. Told are the least wall and processor times of some rounds, starting Python included. The
-ratio carries over to other machines, the times do not.
+The two take turns, each in a fresh process: ``build`` reads the project, solves, composes and writes; the plain writer gets
+finished display lists and only writes. The least wall and processor times of several rounds count, the start of Python included.
+Their ratio carries over to other machines, the times do not.
 """
 
 from __future__ import annotations
 
 import os
 import pickle
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import perf_counter
 from typing import Any
 
+from tmm_sheets.bench.processes import timed
 from tmm_sheets.errors import BadInput
 
 ROUNDS = 7
@@ -29,12 +27,12 @@ try:
 except OSError:
     print("nan", file=sys.stderr)
 """
-"""The largest memory of a process itself, kB (Linux); ``getrusage`` begins with that of the process it was forked from."""
+"""Tells the peak memory of the process, kB (Linux); that of ``getrusage`` starts at its parent's."""
 
 
 @dataclass(frozen=True)
-class Run:
-    """Least times of some runs of a command, s, and its largest memory, MB (its own: not that of the process it began in)."""
+class TimedRun:
+    """Times of a command, s, and its peak memory, MB; of one run, or the least of several."""
 
     wall: float
     processor: float
@@ -43,17 +41,23 @@ class Run:
 
 @dataclass(frozen=True)
 class Whole:
-    """A build, the plain writer and the import of the libraries alone; how many entities each writes in DXF."""
+    """A build, the plain writer and the mere import of the libraries; how many entities each writes in DXF."""
 
     project: str
     entities: int
-    build: Run
-    plain: Run
-    imports: Run
+    build: TimedRun
+    plain: TimedRun
+    imports: TimedRun
 
 
 def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> Whole:
-    """Time rounds of both."""
+    """Time rounds of both.
+
+    Raises
+    ------
+    BadInput
+        When there is no such project, or one of the processes fails.
+    """
     with TemporaryDirectory() as name:
         folder = Path(name)
         say(f"sheets of {project}")
@@ -65,32 +69,29 @@ def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> W
             "plain": ("import runpy; runpy.run_path(sys.argv[0], run_name='__main__')", [str(lists), str(folder)]),
             "imports": ("import ezdxf, reportlab.pdfgen.canvas, reportlab.pdfbase.ttfonts", []),
         }
-        runs: dict[str, list[Run]] = {key: [] for key in programs}
+        runs: dict[str, list[TimedRun]] = {key: [] for key in programs}
         for k in range(-1, rounds):
             say(f"round {k + 1} of {rounds}")
             for key, (program, arguments) in programs.items():
-                found = _timed(program, arguments)
+                found = _run(program, arguments)
                 if k >= 0:  # the round before the first compiles the modules and fills the caches
                     runs[key].append(found)
-    best = {key: Run(*(min(values) for values in zip(*map(astuple, of), strict=True))) for key, of in runs.items()}
+    best = {key: TimedRun(*(min(values) for values in zip(*map(astuple, of), strict=True))) for key, of in runs.items()}
     return Whole(project, entities, best["build"], best["plain"], best["imports"])
 
 
-def _timed(program: str, arguments: list[str]) -> Run:
-    # Installed programs are compiled; a machine set not to keep compiled files would time the compiler.
+def _run(program: str, arguments: list[str]) -> TimedRun:
+    # An installed program is compiled; where compiled files are not kept, the compiler would be timed.
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
     watched = f"import sys; sys.argv[0] = {PLAIN!r}\n{program}\n{PEAK}"
-    start, before = perf_counter(), os.times()
-    done = subprocess.run([sys.executable, "-c", watched, *arguments], capture_output=True, text=True, env=environment, check=False)
-    wall, after = perf_counter() - start, os.times()
+    done, wall, processor = timed(watched, arguments, environment)
     if done.returncode:
         raise BadInput(f"{' '.join(arguments)}: {done.stderr.strip()[-300:]}")
-    used = after.children_user - before.children_user + after.children_system - before.children_system
-    return Run(wall, used, float(done.stderr.split()[-1]) / 1000)
+    return TimedRun(wall, processor, float(done.stderr.split()[-1]) / 1000)
 
 
 def prepare(project: str, path: Path) -> int:
-    """Write the display lists of all sheets as plain tuples to a file; returns the number of entities."""
+    """Write the display lists of all sheets to a file, as plain tuples; returns the number of entities."""
     from tmm_sheets import catalogue
     from tmm_sheets.drawing.styles import line_types
     from tmm_sheets.project import Project
@@ -108,7 +109,7 @@ def prepare(project: str, path: Path) -> int:
 
 
 def _plain(drawing: Any) -> dict[str, Any]:
-    """A display list in tuples and lists: the strokes our own DXF has, letters too, and the runs of lettering for PDF."""
+    """A display list in tuples and lists: the strokes of our own DXF, those of letters too, and the lettering for PDF."""
     from cmath import rect
     from math import pi
 
@@ -144,7 +145,7 @@ def _plain(drawing: Any) -> dict[str, Any]:
 
 
 def table(found: Whole) -> str:
-    """The comparison in Markdown, as it stands in docs/accuracy.md."""
+    """The comparison as a Markdown table, that of docs/accuracy.md."""
     plain = f"the same {found.entities} entities by plain library calls"
     rows = [(f"`build {found.project}`, cold", found.build), (plain, found.plain),
             ("`import ezdxf, reportlab` alone", found.imports)]  # fmt: skip

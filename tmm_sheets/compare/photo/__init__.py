@@ -1,1 +1,1 @@
-"""A photograph or scan of a drawing against a sheet."""
+"""Comparing a photograph or scan of a hand drawing with the exact sheet."""

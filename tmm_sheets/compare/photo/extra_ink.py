@@ -1,4 +1,4 @@
-"""Ink that belongs to nothing."""
+"""Ink that belongs to no known element."""
 
 from __future__ import annotations
 
@@ -9,17 +9,25 @@ import numpy as np
 
 from tmm_sheets.compare.photo.profiles import SCALE, pixels
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER
-from tmm_sheets.compare.photo.traces import Extra
+from tmm_sheets.compare.photo.traces import ExtraInk
 
-EXTRA = 8.0  # mm of ink that belongs to nothing, from which on it is told
-LEAST_WIDTH = 0.15  # mm, of a line as long as that with as much ink
-INSET = 2.0  # mm inside the frame
-COARSE = 3  # pixels that are taken together
-JOIN = 3  # of those; smaller gaps within a region are closed
+EXTRA = 8.0  # mm, least extent of ink that is reported
+LEAST_WIDTH = 0.15  # mm: a line of that extent and width is the least amount of ink that is reported
+INSET = 2.0  # mm inside the frame within which ink counts
+COARSE = 3  # pixels to one of the coarse picture
+JOIN = 3  # coarse pixels; smaller gaps within a region are closed
 
 
-def extra_ink(left: Any, level: float) -> list[Extra]:
-    """Regions of ink that belong to nothing, inside the frame."""
+def extra_ink(left: Any, level: float) -> list[ExtraInk]:
+    """Regions of leftover ink inside the frame, the longest first.
+
+    Parameters
+    ----------
+    left
+        The rectified picture with all that was found wiped out.
+    level
+        Darkness of ink.
+    """
     import cv2
 
     dark = (left > level).astype(np.uint8)
@@ -28,10 +36,10 @@ def extra_ink(left: Any, level: float) -> list[Extra]:
     inside = np.zeros_like(dark)
     rows, columns = slice(round(low.imag), round(high.imag)), slice(round(low.real), round(high.real))
     inside[rows, columns] = dark[rows, columns]
-    # A third of the resolution is enough for regions; how much ink is in each place of that is kept.
+    # A third of the resolution is enough for regions, if it keeps count of the ink.
     amount = cv2.resize(inside * np.uint8(COARSE**2), None, fx=1 / COARSE, fy=1 / COARSE, interpolation=cv2.INTER_AREA)
     scale = SCALE / COARSE
-    # Pieces of one line, cut by what was wiped, come together again.
+    # Rejoin pieces of a line that was cut by wiping.
     joined = cv2.morphologyEx((amount > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((JOIN, JOIN), np.uint8))
     _, labels, stats, middles = cv2.connectedComponentsWithStats(joined, connectivity=8)
     area = np.bincount(labels[amount > 0], weights=amount[amount > 0], minlength=len(stats))
@@ -41,5 +49,5 @@ def extra_ink(left: Any, level: float) -> list[Extra]:
         if hypot(w, h) < EXTRA or area[i] < LEAST_WIDTH * EXTRA * SCALE**2:
             continue
         x, y = middles[i]
-        out.append(Extra(complex((x + 0.5) / scale, PAPER.y1 - (y + 0.5) / scale), w, h, hypot(w, h)))
+        out.append(ExtraInk(complex((x + 0.5) / scale, PAPER.y1 - (y + 0.5) / scale), w, h, hypot(w, h)))
     return sorted(out, key=lambda q: -q.length)

@@ -1,22 +1,21 @@
 """The map of a sheet from the four sides of its frame, at full resolution.
 
-The sides are followed, first near where the search has left them, then nearer and nearer to where the map says they are.
+The sides are followed first near where the search left them, then ever closer to where the map predicts them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.photo.map_fit import Seen, bent
+from tmm_sheets.compare.photo.map_fit import Seen, fit_map
 from tmm_sheets.compare.photo.photograph import Grey
 from tmm_sheets.compare.photo.profiles import follow, peaks, sample
-from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, Floats, Map, homography
+from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, Floats, Map, chords, homography
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 
@@ -28,18 +27,18 @@ WANTED = (
 
 
 def _side_points() -> tuple[Points, Points, npt.NDArray[np.int64]]:
-    """Stations on the four sides of the frame with normals to the left of the way round, and the number of the side."""
+    """Stations on the four sides of the frame, their normals (y for bottom and top, x for the others), the number of the side."""
     p, n, side = [], [], []
-    for k, (a, b) in enumerate(pairwise([*CORNERS.tolist(), CORNERS[0]])):
+    for k, (a, b) in enumerate(chords(CORNERS)):
         t = np.linspace(0.006, 0.994, STATIONS)
         p.append(a + t * (b - a))
-        n.append(np.full(STATIONS, (1j if k % 2 == 0 else 1) + 0j))  # y for bottom and top, x for the others
+        n.append(np.full(STATIONS, (1j if k % 2 == 0 else 1) + 0j))
         side.append(np.full(STATIONS, k))
     return np.concatenate(p), np.concatenate(n), np.concatenate(side)
 
 
-class Frame(NamedTuple):
-    """The map by the frame, its sides' points, and as standard deviations in mm their scatter about it and the picture's smear."""
+class FrameFit(NamedTuple):
+    """The map fitted to the frame, the points of the sides, and standard deviations, mm: their scatter, the picture's blur."""
 
     map: Map
     sides: Seen
@@ -47,8 +46,8 @@ class Frame(NamedTuple):
     smear: float
 
 
-def rough(corners: Points, sides: Sequence[Points], shape: tuple[int, ...]) -> Map:
-    """Map from the corners and points of the four sides."""
+def initial_map(corners: Points, sides: Sequence[Points], shape: tuple[int, ...]) -> Map:
+    """Map from the corners and points of the four sides, pixels, in a picture of that shape (rows, columns)."""
     middle, reach = complex(shape[1] / 2, shape[0] / 2), 0.5 * abs(complex(shape[1], shape[0]))
     m = Map(middle, reach, homography((corners - middle) / reach, CORNERS))
     some = [s[::4] for s in sides]
@@ -58,18 +57,18 @@ def rough(corners: Points, sides: Sequence[Points], shape: tuple[int, ...]) -> M
     upright = side % 2 == 1
     level = np.array([FRAME.y0, FRAME.x1, FRAME.y1, FRAME.x0])[side]
     p = np.where(upright, level + 1j * on.imag, on.real + 1j * level)
-    return bent(m, Seen(q, p, np.where(upright, 1.0 + 0j, 1j), np.ones(len(q))))[0]
+    return fit_map(m, Seen(q, p, np.where(upright, 1.0 + 0j, 1j), np.ones(len(q))))[0]
 
 
-def fit_frame(grey: Grey, corners: Points, around: Sequence[Points]) -> Frame:
-    """Homography, lens and bending of the sides from the frame.
+def fit_frame(grey: Grey, corners: Points, around: Sequence[Points]) -> FrameFit:
+    """Fit homography, lens and bending of the sides to the frame.
 
     Raises
     ------
     CannotBuild
         When a side has no line.
     """
-    m = rough(corners, around, grey.shape)
+    m = initial_map(corners, around, grey.shape)
     p, n, side = _side_points()
     step = 0.1
     for width in (2.5, 1.5, 2.0):
@@ -82,18 +81,18 @@ def fit_frame(grey: Grey, corners: Points, around: Sequence[Points]) -> Frame:
         if min(np.bincount(side[use], minlength=4)) < STATIONS / 4:
             raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
         seen = Seen(m.to_picture(p + n * o), p, n, use.astype(float))
-        m, scatter = bent(m, seen)
+        m, scatter = fit_map(m, seen)
         smear = _smear(profile[use], offsets, o[use])
         if not smear < 2:  # mm: there is no line at all
             raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
-    return Frame(m, seen, scatter, smear)
+    return FrameFit(m, seen, scatter, smear)
 
 
 def _smear(profile: Any, offsets: Floats, at: Floats) -> float:
-    """Standard deviation of the blur of lines crossed by profiles, from the steepest of their sides, mm: however wide they are."""
+    """Standard deviation of the blur of the lines profiles cross, mm, from their steepest flanks: the width does not matter."""
     reach = np.arange(-1.2, 1.25, 0.1)
     rows = np.stack([np.interp(reach + a, offsets, row) for row, a in zip(profile, at, strict=True)])
-    size = 8  # neighbours together, against noise
+    size = 8  # neighbours averaged, against noise
     mean = rows[: len(rows) // size * size].reshape(-1, size, len(reach)).mean(1)
     steepest = np.abs(np.diff(mean, axis=1)).max(1) / 0.1
     return float(np.median(mean.max(1) / np.maximum(steepest, 1e-6)) / np.sqrt(2 * pi))

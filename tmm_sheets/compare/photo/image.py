@@ -1,4 +1,4 @@
-"""A hand drawing photographed or scanned, compared with the exact sheet element by element."""
+"""Comparing a photographed or scanned hand drawing with the exact sheet, element by element."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets.compare import view_places
 from tmm_sheets.compare.elements import Element, elements
 from tmm_sheets.compare.elements import views as views_of
-from tmm_sheets.compare.photo import photographed_views, rectification, tracing
+from tmm_sheets.compare.photo import placed_views, rectification, tracing
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.photograph import Picture, read
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 PLACED = 0.25
-"""Error of a place after the rectification by lines of views that were placed, mm."""
-HIGHEST = 4  # degree of the paper's height that views placed by hand can tell
+"""Error of a place after rectification by the lines of placed views, mm."""
+HIGHEST = 4  # degree of the relief that views placed by hand can determine
 CERTAIN = 0.12
-"""By how much another sheet must do better for a picture to be called a picture of it."""
+"""By how much more of its lines another sheet must match for a picture to be called a picture of it."""
 
 
 def compare(
@@ -40,10 +40,12 @@ def compare(
 
     Parameters
     ----------
+    project, n
+        The sheet, numbered from 1.
     path
         JPG, PNG or PDF.
     views
-        File that tells where the views of a sheet with a layout of its own stand (see ``view_places``).
+        File with the places of the views of a sheet with a layout of its own (see ``view_places``).
     pencil
         Error of a point drawn by hand, mm.
     say
@@ -52,9 +54,9 @@ def compare(
     Raises
     ------
     BadInput
-        When a file is missing or of no use, or there is no such sheet.
+        When a file is missing or useless, or there is no such sheet.
     CannotBuild
-        When the picture has no frame, shows another sheet, or is too blurred or too small.
+        When the picture has no frame, shows another sheet, or is too blurred or too small, or no view of ``views`` is in it.
     """
     count = len(project.variant.sheets)
     if not 1 <= n <= count:
@@ -66,19 +68,19 @@ def compare(
         sheet = composed(project, n)
         known = elements(sheet)
         picture = reading.result()
-    # The file first: it is quickly read, and what is wrong with it is quickly told.
+    # Before the rectification, so that what is wrong with the file is told at once.
     places = view_places.read(views, views_of(sheet)) if views is not None else ()
     found = rectify(picture, known, path, say, not places)
     notes = (*picture.notes, *found.notes)
     placed = None
     if places:
         say("placing the views")
-        placed = photographed_views.place(known, places, found.map, found.ink)
+        placed = placed_views.place(known, places, found.map, found.ink)
         if not placed.similarities:
             raise CannotBuild(f"{path}: none of the views of sheet {n} was found", hint="; ".join(placed.notes))
         say("correcting by the lines of the views")
         found = _corrected(picture, found, placed.elements)
-        placed = photographed_views.place(known, places, found.map, found.ink)
+        placed = placed_views.place(known, places, found.map, found.ink)
         known, notes = placed.elements, (*notes, *placed.notes)
     elif found.match < MATCH:
         _wrong_sheet(project, n, found, path, say)
@@ -89,7 +91,7 @@ def compare(
 
 
 def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> Rectified:
-    """The sheet corrected by its lines once more, when it is known where they stand."""
+    """The map corrected once more, by the lines of views that were placed; as it was when too few of them match."""
     lines = as_lines([e for e in known if e.length < LONGEST])
     better, _, match = rectification.refine(found.map, found.sides, found.ink, lines, line_level(found.ink), highest=HIGHEST)
     if match < MATCH:
@@ -99,7 +101,7 @@ def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> 
 
 
 def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Callable[[str], None]) -> None:
-    """Say which sheet of the project it is rather.
+    """Refuse a picture that does not match, naming the sheet it shows if that is another one of the project.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Whose ink belongs at each place of the rectified sheet."""
+"""Which element is drawn at each place of the rectified sheet."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
 THIN = 0.2  # mm, width of strokes of hatchings, bars and leaders
-PIECE = 25.0  # mm of a line that are painted at once
+PIECE = 25.0  # mm of a line painted at once
 
 
 class Owners:
-    """A picture with the number of the element that is drawn at each place; negative where several are.
+    """A picture with the number of the element drawn at each place, negative where there are several.
 
-    Of lettering only its leaders and bars: letters are written where there is room.
+    Of lettering it has only leaders and bars: letters are written where there is room.
     """
 
     def __init__(self, rows: int, columns: int) -> None:
         self.picture = np.zeros((rows, columns), np.int16)
 
     def add(self, e: Element, points: Points) -> None:
-        """Enter an element whose line runs along ``points``, with its heads; also where it is already."""
+        """Enter an element, heads included, whose line runs along ``points``; it may be in other places already."""
         import cv2
 
         strokes = e.kind in ("hatch", "text")
-        # No thinner than two pixels, or it is stepped over at a slant.
+        # At least two pixels wide, or a slanting profile could step over it.
         wide = max(round((THIN if strokes else line_type(e.style).width) * SCALE), 1)
         lines = e.pieces if strokes else () if e.kind == "fill" or (e.kind == "circle" and e.fills) else (points,)
         for line in lines:
             for piece in _pieces(line):
                 at, corner, mask = _patch(piece, wide)
-                cv2.polylines(mask, [at - corner], False, 1, wide, cv2.LINE_4, 4)  # no way through, as between LINE_8's corners
+                cv2.polylines(mask, [at - corner], False, 1, wide, cv2.LINE_4, 4)  # LINE_8 leaves gaps at corners
                 self._enter(e.number, corner, mask)
         for f in e.fills:
             at, corner, mask = _patch(f, 1)
@@ -56,13 +56,13 @@ class Owners:
         here[on] = np.where(before == 0, number, np.where(np.abs(before) == number, before, -np.abs(before)))
 
     def others(self, numbers: Any, places: Any) -> Any:
-        """Whether any element but that of the number (an array of one for each place, or one number) is at places, mm."""
+        """Whether an element of another number is at places, mm; ``numbers`` is one number or an array that broadcasts."""
         found = sample(self.picture, pixels(places), nearest=True)
         return (found != 0) & (found != numbers)
 
 
 def _pieces(points: Points) -> Iterator[Points]:
-    """A line in pieces whose boxes are small: most of the box of a long slanting line is not on it."""
+    """A line cut into pieces with small bounding boxes: the box of a long slanting line is mostly empty."""
     start = 0
     while start < len(points) - 1:
         far = np.abs(points[start + 1 :] - points[start])
@@ -80,7 +80,7 @@ def _pieces(points: Points) -> Iterator[Points]:
 
 
 def _patch(points: Points, wide: int) -> tuple[Any, Any, Any]:
-    """Points in sixteenths of pixels, the corner of a patch round them and the empty patch."""
+    """Points in sixteenths of pixels, the corner of a patch around them likewise, and the empty patch."""
     at = fixed(points)
     margin = wide // 2 + 2
     low = (at.min(0) >> 4) - margin

@@ -1,9 +1,11 @@
-"""What was found of an element judged: what is off by how much, in words, and whether a pencil may be off so far."""
+"""Judging what was found of an element: by how much it is off, in words, and whether a pencil may be off so far."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import degrees, isnan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,14 +13,18 @@ from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import Verdict, verdict
 
 LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
-"""Lines whose ends mean nothing exact: by hand they are drawn over."""
+"""Lines whose ends mean nothing exact: by hand they are overdrawn."""
 LOOSE = 2.5  # mm by which those may be too long or too short
-SOFT_TOLERANCE = 0.15  # mm more in a picture that is not sharp
+SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
+IN_REACH = "within a pencil's reach"
 
 
 @dataclass(frozen=True)
-class Finding:
-    """A trace judged: what is off by how much, and whether that is within a pencil's reach."""
+class PhotoFinding:
+    """A trace judged: by how much it is off, in words, and whether that is within a pencil's reach.
+
+    ``off`` is the deviation that counts most, ``tolerance`` what is allowed for it, mm; ``place`` is where it is.
+    """
 
     trace: Trace
     verdict: Verdict
@@ -34,19 +40,32 @@ class Finding:
 
     @property
     def unknown(self) -> bool:
-        """Whether the ink tells nothing: it cannot be told from others', or all in one stroke are off and any of them may be."""
+        """Whether nothing can be told: its ink is lost among others', or a stroke of several is off and any of them may be."""
         return self.trace.status == "dense" or (self.trace.status == "shared" and self.trace.deviation > self.tolerance)
 
     @property
     def hidden_ends(self) -> int:
-        """How many of its ends are hidden by others, of a line whose ends mean something."""
+        """How many of its ends are hidden by others, if they mean anything exact."""
         t = self.trace
         exact = t.status == "measured" and t.element.style not in LOOSE_STYLES and open_line(t.element)
         return sum(map(isnan, t.ends)) if exact else 0
 
 
-def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Finding:
-    """What a trace tells, in words, and how bad it is.
+class _Deviation(NamedTuple):
+    """One way in which a line is off: by how much, what is allowed, where, and in words what is beyond that."""
+
+    off: float
+    allowed: float
+    place: complex
+    said: str = ""
+
+    @property
+    def share(self) -> float:
+        return self.off / self.allowed
+
+
+def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> PhotoFinding:
+    """Judge a trace.
 
     Parameters
     ----------
@@ -55,58 +74,65 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Fi
     pencil, uncertainty
         Error of a point drawn by hand and of a place of the picture, mm.
     soft
-        Whether the picture is not sharp: the tolerance is wider, and nothing is said of ends of thin lines, which fade in it where
-        others are near.
+        Whether the picture is not sharp: the tolerance is wider, and the ends of thin lines, which fade near others, are not
+        judged.
     """
     e, tolerance = t.element, pencil + uncertainty + (SOFT_TOLERANCE if soft else 0.0)
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
+    if t.status == "measured":
+        deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
+        worst = max(deviations, key=lambda d: d.share)
+        said = "; ".join(d.said for d in deviations if d.said)
+        return PhotoFinding(t, verdict(worst.off, worst.allowed), said or IN_REACH, worst.off, worst.allowed, worst.place)
     if t.status == "missing":
-        return Finding(t, "red", "missing", e.length, tolerance, middle)
+        return PhotoFinding(t, "red", "missing", e.length, tolerance, middle)
     if t.status == "absent lettering":
-        return Finding(t, "amber", "no lettering here", 0.0, tolerance, complex(e.points.mean()))
+        return PhotoFinding(t, "amber", "no lettering here", 0.0, tolerance, complex(e.points.mean()))
     if t.status == "shared" and t.deviation <= tolerance:
-        return Finding(t, "green", "within a pencil's reach, with others in one stroke", t.deviation, tolerance, middle)
-    if t.status != "measured":
-        word = "not measurable: too near to others" if t.status in ("dense", "shared") else "there"
-        return Finding(t, "green", word, 0.0, tolerance, middle)
-    said, worst, off, limit, place = [], 0.0, t.deviation, tolerance, middle
-    if t.at is not None and len(t.at) == len(e.points):
-        place = complex(e.points[int(np.abs(t.at - e.points).argmax())])
-    if t.deviation > tolerance:
-        said.append(_displaced(t, tolerance))
-    worst = t.deviation / tolerance
-    loose = e.style in LOOSE_STYLES
+        return PhotoFinding(t, "green", f"{IN_REACH}, with others in one stroke", t.deviation, tolerance, middle)
+    word = "not measurable: too near to others" if t.status in ("dense", "shared") else "there"
+    return PhotoFinding(t, "green", word, 0.0, tolerance, middle)
+
+
+def _displacement(t: Trace, tolerance: float, middle: complex) -> _Deviation:
+    """How far the line as a whole is off, at the place where it is farthest off."""
+    z = t.element.points
+    place = complex(z[int(np.abs(t.at - z).argmax())]) if t.at is not None and len(t.at) == len(z) else middle
+    return _Deviation(t.deviation, tolerance, place, _similarity_in_words(t, tolerance) if t.deviation > tolerance else "")
+
+
+def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
+    """How far the ends that could be seen are off."""
+    e, loose = t.element, t.element.style in LOOSE_STYLES
+    allowed = LOOSE if loose else tolerance + pencil + 0.2  # 0.2 mm: the steps in which ends are seen
     for end, which, at in ((t.ends[0], "beginning", e.points[0]), (t.ends[1], "end", e.points[-1])):
         if not np.isfinite(end) or (loose and soft):
             continue
-        allowed = LOOSE if loose else tolerance + pencil + 0.2  # 0.2 mm: the steps in which ends are seen
-        if abs(end) > allowed:
-            said.append(f"{abs(end):.1f} mm too {'long' if end > 0 else 'short'} at its {which}")
-        much = min(abs(end), 2 * LOOSE) if loose else abs(end)  # a thin line drawn over is never more than a remark
-        if much / allowed > worst:
-            worst, off, limit, place = much / allowed, much, allowed, complex(at)
-    return Finding(t, verdict(off, limit), "; ".join(said) or "within a pencil's reach", off, limit, place)
+        said = f"{abs(end):.1f} mm too {'long' if end > 0 else 'short'} at its {which}" if abs(end) > allowed else ""
+        off = min(abs(end), 2 * LOOSE) if loose else abs(end)  # a thin line drawn over is never more than a remark
+        yield _Deviation(off, allowed, complex(at), said)
 
 
-def _displaced(t: Trace, tolerance: float) -> str:
+def _similarity_in_words(t: Trace, tolerance: float) -> str:
+    """Growth, shift and turn of a line, as far as each matters."""
     e = t.element
+    half = 0.5 * e.length if e.kind == "line" else float(np.abs(e.points - e.points.mean()).max())
     said = []
-    if e.kind in ("circle", "arc") and abs(t.growth) > 0.5 * tolerance:
+    if abs(t.growth) > 0.5 * tolerance:
         word = "large" if t.growth > 0 else "small"
-        said.append(f"radius {abs(t.growth):.1f} mm too {word} ({e.radius + t.growth:.1f} for {e.radius:.1f})")
-    elif e.kind == "curve" and abs(t.growth) > 0.5 * tolerance:
-        half = float(np.abs(e.points - e.points.mean()).max())
-        said.append(f"{100 * abs(t.growth) / half:.1f} % too {'large' if t.growth > 0 else 'small'}")
+        if e.kind in ("circle", "arc"):
+            said.append(f"radius {abs(t.growth):.1f} mm too {word} ({e.radius + t.growth:.1f} for {e.radius:.1f})")
+        elif e.kind == "curve":
+            said.append(f"{100 * abs(t.growth) / half:.1f} % too {word}")
     if abs(t.shift) > 0.5 * tolerance:
         said.append(f"{abs(t.shift):.1f} mm too far {_direction(t.shift)}")
-    half = 0.5 * e.length if e.kind == "line" else float(np.abs(e.points - e.points.mean()).max())
     if e.kind != "circle" and abs(t.turn) * half > 0.5 * tolerance:
         said.append(f"turned by {abs(degrees(t.turn)):.2f}° {'counter-clockwise' if t.turn > 0 else 'clockwise'}")
     return ", ".join(said) or f"off by up to {t.deviation:.1f} mm"
 
 
 def _direction(shift: complex) -> str:
-    """Where to: right and up, to a fraction that matters."""
+    """Direction of a shift in words, a component of less than a quarter left out."""
     parts = []
     if abs(shift.imag) > 0.25 * abs(shift):
         parts.append("up" if shift.imag > 0 else "down")

@@ -1,9 +1,9 @@
 """Where a line begins and ends.
 
-Along the line and on beyond its end every place is bare, or has ink that is the line's own for sure, or ink that may be another's
-(one that crosses there, a letter). So a line reaches at least to the last ink that is surely its own and at most to the first bare
-place after that. It is too long or too short by what both say; when its right end lies between the two, nothing is wrong, and
-when they are far apart, nothing is known.
+Along a line and beyond its end a place is bare, or its ink is surely the line's own, or it may be another's (a line that crosses
+there, a letter). So the line reaches at least to the last ink that is surely its own and at most to the first bare place after
+that. It is too long or too short by what both bounds agree on; if its proper end lies between them, nothing is wrong, and if they
+are far apart, nothing is known.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.image_shifts import FAR
+from tmm_sheets.compare.photo.displacement import FAR
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
@@ -23,46 +23,50 @@ from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
-STEP = 0.2  # mm along the line
+STEP = 0.2  # mm between places along the line
 ASIDE = np.linspace(-0.3, 0.3, 5)  # mm to either side where its ink may be
 BESIDE = np.linspace(-0.7, 0.7, 13)  # mm to either side where another's ink may come from; less than a pixel apart
 GAP, PATTERN_GAP, BEYOND_GAP = 1.6, 3.5, 0.3
-"""Bare stretches a line may have where it ought to be: a solid one, a dashed one; and beyond its end: letters stand near."""
+"""mm of bare paper a solid and a dashed line may have along their way, and any line beyond its end, where letters stand near."""
 CLEAR, CLEARER = 0.5, 0.6
-"""mm beyond its pen at either side at which ink must be paler than this share of the middle's for the ink to be a line's own."""
-TORN = 0.4  # mm of bare paper after which ink that may be another's is another's
-VAGUE = 1.2  # mm between least and most from which on the end counts as unknown
-SEEN, SHARE = 0.6, 0.4  # mm of its own ink beyond its end that make it too long, and how much of all that must be its own
-BLUR = 0.25  # mm beyond its end where ink may be its blur
+"""Ink is a line's own if so many mm outside the line (first number) it is paler than this share of the middle's (second)."""
+TORN = 0.4  # mm of bare paper beyond which ink that may be another's is another's
+VAGUE = 1.2  # mm between the bounds from which on the end is unknown
+SEEN, SHARE = 0.6, 0.4  # least mm, and least share, of its own ink beyond the end of a line that is too long
+BLUR = 0.25  # mm beyond its end within which ink may be blur
 ROUND, TIP = 0.75, 0.55  # share of the pen's half width by which a line looks longer; mm by which an arrow looks shorter
 
 
 class _Way(NamedTuple):
-    """The way from inside a line out over its end: ``t`` mm, negative inside."""
+    """Places from inside a line out over its end, ``t`` mm beyond it."""
 
     element: Element
     tip: float | None
-    """How far beyond its end an arrow's tip lies, mm; None when there is none."""
+    """How far beyond the end of the line the tip of an arrow lies, mm; None without one."""
     t: Floats
     places: Points
     normals: Points
 
 
 def with_ends(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, level: float) -> list[Trace]:
-    """Traces with their ends.
+    """Find the ends of lines.
 
     Parameters
     ----------
     traces
-        Of open lines, with ``at``.
+        Those of open lines; the others are left as they are.
     ink
         The rectified picture.
     owners
-        Who is where, the displaced where they were found too.
+        Who is drawn where; displaced elements also where they were found.
     words
-        Picture of the places of lettering.
+        A picture of the places of lettering, 255 there.
     level
         Darkness of ink.
+
+    Returns
+    -------
+    The traces in the same order, with ``ends``.
     """
     chosen = [k for k, t in enumerate(traces) if t.at is not None and open_line(t.element)]
     ways = [w for k in chosen for w in _ways(traces[k])]
@@ -82,6 +86,7 @@ def with_ends(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, lev
 
 
 def _ways(t: Trace) -> tuple[_Way, _Way]:
+    """The ways over the beginning and over the end of a line that was found."""
     assert t.at is not None
     reach = min(FAR, 0.4 * t.element.length)
     begin, end = t.element.points[[0, -1]]
@@ -89,11 +94,12 @@ def _ways(t: Trace) -> tuple[_Way, _Way]:
 
 
 def _tip(e: Element, end: complex) -> float | None:
-    """The line of a curved arrow stops within its head."""
+    """Distance from an end to the tip of the arrow there, mm: the line of a curved arrow stops within the head."""
     return min((d for f in e.fills if (d := float(abs(f[0] - end))) < FAR), default=None) if e.arrow else None
 
 
 def _way(e: Element, z: Points, reach: float, tip: float | None) -> _Way:
+    """The way over the beginning of a line ``z``, straight on beyond it."""
     run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
     u = z[0] - z[min(int(np.searchsorted(run, 1.0)) + 1, len(z) - 1)]
     u /= max(abs(u), 1e-9)
@@ -104,20 +110,44 @@ def _way(e: Element, z: Points, reach: float, tip: float | None) -> _Way:
 
 
 def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
-    """How far the line runs beyond its end, negative when it stops short, nan when others hide it, mm."""
+    """How far the line runs beyond its end, mm; negative when it stops short, nan when others hide it."""
+    t, tip = way.t, way.tip
+    pen = 0.5 * line_type(way.element.style).width if tip is None else tip
+    dark, own = _ink_along(way, across, hidden, level)
+    if (extent := _extent(way, dark, own)) is None:
+        return float("nan")
+    least, most = (float(t[k]) for k in extent)
+    # Ink goes on round a blunt end, and a tip is too thin to be seen to its point.
+    shown = ROUND * pen if tip is None else tip - TIP
+    if most < min(shown, 0.0):
+        weak = own[(np.arange(len(t)) > extent[1] + 1) & (t < 0)]
+        return float("nan") if len(weak) and weak.mean() > 0.3 else most - shown
+    beyond = least - shown
+    seen = own[(t > pen + BLUR) & (t <= least)]
+    if beyond > 0 and len(seen) and seen.sum() * STEP >= min(SEEN, beyond) and seen.mean() > SHARE:
+        return beyond
+    return float("nan") if most - min(least, 0.0) > VAGUE else 0.0
+
+
+def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, Any]:
+    """Where along the way there is ink, and where it is the line's own for sure."""
     import cv2
 
-    kind = line_type(way.element.style)
-    t, pen = way.t, 0.5 * kind.width if way.tip is None else way.tip
-    gap, torn = (PATTERN_GAP, PATTERN_GAP) if kind.pattern else (GAP, TORN)
     across = cv2.blur(across, (1, 3))
     depth, beside = across[:, : len(ASIDE)].max(1), across[:, len(ASIDE) :].max(1)
     hidden = cv2.morphologyEx(hidden.astype(np.uint8)[:, None], cv2.MORPH_CLOSE, np.ones((5, 1), np.uint8))[:, 0] > 0
-    plain = (t < 0) & ~hidden
-    usual = np.median(depth[plain]) if plain.sum() > 4 else np.percentile(depth[t < 0], 20)  # others make it darker, if anything
+    plain = (way.t < 0) & ~hidden
+    # Other lines make it darker, if anything.
+    usual = np.median(depth[plain]) if plain.sum() > 4 else np.percentile(depth[way.t < 0], 20)
     dark = depth > max(level, 0.5 * float(usual))
-    own = dark & ~hidden & (beside < CLEARER * depth)
-    low, last, inside = -1, 0, int((t <= 0.3).sum())
+    return dark, dark & ~hidden & (beside < CLEARER * depth)
+
+
+def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:
+    """Indices of the last ink that is surely the line's own, and of the last ink before bare paper; None without ink of its own."""
+    patterned = bool(line_type(way.element.style).pattern)
+    gap, torn = (PATTERN_GAP, PATTERN_GAP) if patterned else (GAP, TORN)
+    low, last, inside = -1, 0, int((way.t <= 0.3).sum())
     for i in np.flatnonzero(dark).tolist():
         if (i - last) * STEP > (gap if i < inside else BEYOND_GAP) + 1e-9:
             break
@@ -125,19 +155,10 @@ def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
         if own[i]:
             low = i
     if low < 0:
-        return float("nan")
+        return None
     high = low
     for i in (np.flatnonzero(dark[low:]) + low).tolist():
         if (i - high) * STEP > torn + 1e-9:
             break
         high = i
-    # Ink goes on round a blunt end, and a tip is too thin to be seen to its point.
-    shown = ROUND * pen if way.tip is None else way.tip - TIP
-    if t[high] < min(shown, 0.0):
-        weak = own[(np.arange(len(t)) > high + 1) & (t < 0)]
-        return float("nan") if len(weak) and weak.mean() > 0.3 else float(t[high]) - shown
-    least = float(t[low]) - shown
-    seen = own[(t > pen + BLUR) & (t <= t[low])]
-    if least > 0 and len(seen) and seen.sum() * STEP >= min(SEEN, least) and seen.mean() > SHARE:
-        return least
-    return float("nan") if t[high] - min(t[low], 0.0) > VAGUE else 0.0
+    return low, high

@@ -1,26 +1,32 @@
-"""Least squares of a map: where points of lines were seen in the picture, and where they are on the sheet."""
+"""Fitting the map of a sheet to lines seen in the picture, by least squares of the distances across the lines."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tmm_sheets.compare.photo.sheet_map import AWAY, DEGREE, FRAME, WAVES, Floats, Map, heights, waves
 from tmm_sheets.drawing.marks import Points
 
-USUAL = 0.005  # mm by which all points may be off rather than something be as unusual as this:
-LENS = np.array([0.05, 0.03])  # coefficients of distortion,
-HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4}  # mm of the paper's height in a term of so high a degree,
+USUAL = 0.005
+"""Weight of the priors below: as many mm off at every point cost as much as one parameter off by its usual size."""
+LENS = np.array([0.05, 0.03])
+"""Usual distortion coefficients."""
+HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4}
+"""Usual height of the paper in a term of each degree, mm."""
+FOOT = 400.0
+"""Usual distance from the middle of the sheet to the camera's foot, mm."""
 STEPS = 12
-SIDE = 3.0  # mm beyond which points of the frame count little: they are seldom wrong
-RIDGE = 0.01  # of a wave over the whole sheet, by what it does to all points
-FOOT = 400.0  # mm from the middle of the sheet to the camera's foot
+SIDE = 3.0
+"""Points of the frame count little beyond this distance, mm; they are seldom wrong."""
+RIDGE = 0.01
+"""Damping of a wave over the whole sheet, relative to its effect on all points."""
 
 
 class Seen(NamedTuple):
-    """Where points of lines were seen, pixels, where they are on the sheet, mm, the lines' unit normals, and what each counts."""
+    """Points of lines: where they were seen, pixels, and where they lie on the sheet, mm; unit normals of the lines; weights."""
 
     picture: Points
     sheet: Points
@@ -28,36 +34,57 @@ class Seen(NamedTuple):
     weight: Floats
 
 
-def bent(m: Map, sides: Seen, other: Seen | None = None, degree: int = 0, loose: float | None = None) -> tuple[Map, float]:
-    """A map fitted to the frame's sides (in order, bottom first) and other lines, and the scatter about the sides, mm.
+def fit_map(m: Map, sides: Seen, other: Seen | None = None, degree: int = 0, loose: float | None = None) -> tuple[Map, float]:
+    """Fit a map to the sides of the frame and to other lines.
 
-    Homography, lens, and the paper's height up to ``degree`` by least squares of the distances across the lines, those farther
-    than ``loose`` mm off (None: three deviations) counting little; then polynomials of what is left of each side.
+    Homography, lens and relief are fitted together; what is left of each side becomes a polynomial of its own.
+
+    Parameters
+    ----------
+    m
+        Where to start.
+    sides
+        Points of the frame, bottom side first.
+    other
+        Points of lines inside.
+    degree
+        Highest degree of the relief; below 2 the paper is taken for flat.
+    loose
+        Distance from which on other lines count little, mm; None: three robust standard deviations.
+
+    Returns
+    -------
+    The map and the scatter of the frame's points about it, mm, of the worst side.
     """
     seen = sides if other is None else Seen(*(np.concatenate(pair) for pair in zip(sides, other, strict=True)))
     of_sides = np.arange(len(seen.weight)) < len(sides.weight)
-    m = _fitted(m, seen, degree, None if loose is None else np.where(of_sides, SIDE, loose))
+    m = _fit_base(m, seen, degree, None if loose is None else np.where(of_sides, SIDE, loose))
     r = np.real(np.conj(sides.normals) * (m.to_base(sides.picture) - sides.sheet - m.risen(sides.sheet)))
     p, use = sides.sheet, sides.weight > 0
-    polynomials, left = np.zeros_like(m.sides), []
+    polynomials, scatter = np.zeros_like(m.sides), []
     for k, (mine, along) in enumerate((
         (p.imag == FRAME.y0, p.real), (p.real == FRAME.x1, p.imag), (p.imag == FRAME.y1, p.real), (p.real == FRAME.x0, p.imag),
     )):  # fmt: skip
         t = (along[mine] - FRAME.x0) / FRAME.width if k % 2 == 0 else (along[mine] - FRAME.y0) / FRAME.height
-        base = np.polynomial.chebyshev.chebvander(2 * t - 1, m.sides.shape[1] - 1)
-        w = use[mine].astype(float)
-        for _ in range(8):
-            c = np.linalg.lstsq(base * w[:, None], r[mine] * w, rcond=None)[0]
-            d = r[mine] - base @ c
-            sigma = max(1.4826 * float(np.median(np.abs(d[use[mine]]))), 0.03)
-            w = use[mine] / (1 + (d / (2 * sigma)) ** 2)
-        polynomials[k] = c
-        left.append(sigma)
-    return replace(m, sides=polynomials), float(max(left))
+        polynomials[k], sigma = _fit_side(t, r[mine], use[mine], m.sides.shape[1] - 1)
+        scatter.append(sigma)
+    return replace(m, sides=polynomials), float(max(scatter))
 
 
-def waved(m: Map, seen: Seen, loose: float) -> Map:
-    """A map with what it leaves of lines inside the frame taken up by waves, the less the shorter they are."""
+def _fit_side(t: Floats, r: Floats, use: Any, degree: int) -> tuple[Floats, float]:
+    """Chebyshev coefficients of the residuals ``r`` along a side (t from 0 to 1), and their robust scatter, mm."""
+    base = np.polynomial.chebyshev.chebvander(2 * t - 1, degree)
+    w = use.astype(float)
+    for _ in range(8):
+        c = np.linalg.lstsq(base * w[:, None], r * w, rcond=None)[0]
+        d = r - base @ c
+        sigma = max(1.4826 * float(np.median(np.abs(d[use]))), 0.03)
+        w = use / (1 + (d / (2 * sigma)) ** 2)
+    return np.asarray(c), sigma
+
+
+def fit_waves(m: Map, seen: Seen, loose: float) -> Map:
+    """A map whose waves follow the residual of lines inside the frame; the shorter a wave, the more it is damped."""
     x, y = waves(seen.sheet)
     base = np.concatenate((x * seen.normals.real[:, None], y * seen.normals.imag[:, None]), 1)
     plain = replace(m, waves=np.zeros_like(m.waves))
@@ -73,13 +100,13 @@ def waved(m: Map, seen: Seen, loose: float) -> Map:
     return replace(m, waves=c)
 
 
-def _fitted(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
-    """Homography, lens and height by Levenberg and Marquardt's steps with Geman and McClure's weights."""
+def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
+    """Homography, lens and relief by Levenberg-Marquardt steps with Geman-McClure weights."""
     z, active = heights(seen.sheet), degree >= DEGREE
     first = np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend))
     size = np.append(np.maximum(np.abs(first[:8]), 1e-2), (0.05, 0.05)) * 1e-4
     x = np.concatenate((first, m.relief[active], (m.foot.real, m.foot.imag)))
-    # Paper bends, and not as a lens does: weak priors keep all modest.
+    # Paper does not bend the way a lens does: weak priors keep either from imitating the other.
     usual = np.concatenate((np.full(8, np.inf), LENS, [HEIGHT[int(d)] for d in DEGREE[active]], (FOOT, FOOT)))
     middle = np.concatenate((np.zeros(10 + active.sum()), (FRAME.centre.real, FRAME.centre.imag)))
     prior = USUAL / usual * np.sqrt((seen.weight**2).sum())

@@ -1,7 +1,7 @@
-"""Our drawing over the hand's: ink in blue, the exact lines thin and orange, what is off in red, circled, with its number.
+"""The exact drawing over the hand's: ink in blue, the exact lines thin and orange, what is off in red, circled and numbered.
 
-As PNG (drawn by OpenCV) and as a one-page PDF of the sheet's size in which the ink is an image and everything else lines, so that
-it can be looked at closely; the PDF is written here, it has nothing but that image and strokes.
+As PNG, drawn by OpenCV, and as a one-page PDF of the sheet's size in which the ink is an image and all else are strokes, to be
+looked at closely. The PDF is written here: it has nothing but that image and those strokes.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from tmm_sheets.compare.photo.wiping import fixed
 from tmm_sheets.drawing.marks import Points
 
 INK = (40, 70, 160)
-OURS = (245, 140, 0)
+EXACT = (245, 140, 0)
 BAD = {"red": (220, 0, 0), "amber": (190, 0, 190)}
-"""Colours, red, green, blue; of what is off by verdict."""
+"""Colours (red, green, blue): of ink, of the exact lines, of what is off by verdict."""
 PNG_SCALE = 4.0  # pixels per mm
-CIRCLE = 7.0  # mm
+CIRCLE = 7.0  # mm, radius around what is off
 
 
 class Flag(NamedTuple):
-    """A place that is circled: its number, verdict and the element's line, mm."""
+    """A place to be circled, its number and verdict, and the line of the element, mm."""
 
     number: int
     verdict: str
@@ -33,15 +33,15 @@ class Flag(NamedTuple):
     line: Points
 
 
-def png(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag]) -> bytes:
+def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag]) -> bytes:
     """The overlay as PNG, :data:`PNG_SCALE` pixels per mm."""
     import cv2
 
     size = (round(PAPER.width * PNG_SCALE), round(PAPER.height * PNG_SCALE))
     grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
     picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
-    for points in ours:
-        cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, OURS[::-1], 1, cv2.LINE_AA, 4)
+    for points in exact:
+        cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, EXACT[::-1], 1, cv2.LINE_AA, 4)
     for f in flags:
         colour = BAD[f.verdict][::-1]
         if len(f.line) > 1:
@@ -56,7 +56,7 @@ def png(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag]) -
 
 
 def _palette() -> Any:
-    """Red, green, blue of every darkness, (256, 3)."""
+    """Colour of every darkness, (256, 3)."""
     strength = np.minimum(1.6 * np.arange(256) / 255, 1)[:, None]
     return np.round(255 + (np.array(INK) - 255) * strength).astype(np.uint8)
 
@@ -68,14 +68,14 @@ def _clean(ink: Any, level: float) -> Any:
     return cv2.threshold(ink, 0.6 * level, 255, cv2.THRESH_TOZERO)[1]
 
 
-def pdf(ink: Any, level: float, ours: Sequence[Points], flags: Sequence[Flag], title: str) -> bytes:
+def pdf(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], title: str) -> bytes:
     """The overlay as a PDF of the sheet's size."""
     mm = 72 / 25.4
     rows, columns = ink.shape
     palette = _palette().tobytes()
     out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm", "1 J 1 j 0.12 w",
-           _colour(OURS)]  # fmt: skip
-    out += [_path(points) for points in ours]
+           _colour(EXACT)]  # fmt: skip
+    out += [_path(points) for points in exact]
     for f in flags:
         out += [_colour(BAD[f.verdict]), "0.35 w"]
         if len(f.line) > 1:

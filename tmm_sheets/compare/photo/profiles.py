@@ -1,4 +1,4 @@
-"""Darkness of a picture, along lines and across them.
+"""Darkness of a picture, sampled along lines and across them.
 
 Pictures are arrays with row 0 at the top; their points are complex numbers, pixels.
 """
@@ -17,8 +17,8 @@ SCALE = 6.0
 """Pixels per millimetre of the rectified sheet."""
 
 
-class Lines(NamedTuple):
-    """Points along known lines with their unit normals, mm; ``line`` numbers the line each belongs to."""
+class ProfileLines(NamedTuple):
+    """Points along known lines, mm, with unit normals, and the number of the line each belongs to."""
 
     points: Points
     normals: Points
@@ -26,35 +26,34 @@ class Lines(NamedTuple):
 
 
 def darkness(grey: Any, size: float) -> Any:
-    """Ink of a grey picture, 0 for bare paper to 255 for black: what is darker than the paper round it.
+    """Ink of a grey picture: 0 for bare paper to 255 for black, relative to the paper around it.
 
-    ``size`` is the width in pixels of the widest line. Light and shade do not matter, nor the edge of a dark desk.
+    Independent of light and shade and of the edge of a dark desk. ``size`` is the width of the widest line in pixels.
     """
     import cv2
 
-    # The paper's grey varies slowly: a quarter of the resolution is enough.
+    # The grey of the paper varies slowly: a fraction of the resolution is enough.
     step = 2 if size < 20 else 4
     small = cv2.resize(grey, None, fx=1 / step, fy=1 / step, interpolation=cv2.INTER_AREA)
     reach = max(round(size / step), 2) * 2 + 1
     paper = cv2.morphologyEx(cv2.medianBlur(small, 3), cv2.MORPH_CLOSE, cv2.getStructuringElement(cv2.MORPH_RECT, (reach, reach)))
-    # The least nearby too: a smooth paper would reach beyond its edge and darken the desk.
+    # Also the minimum nearby: smoothed paper would extend beyond its edge and make ink of the desk.
     paper = cv2.min(cv2.blur(paper, (reach // 2 | 1, reach // 2 | 1)), cv2.erode(paper, np.ones((5, 5), np.uint8)))
     paper = cv2.resize(paper, (grey.shape[1], grey.shape[0]), interpolation=cv2.INTER_LINEAR)
     return 255 - cv2.divide(grey, paper, scale=255)
 
 
 def sample(picture: Any, p: Points, nearest: bool = False) -> Any:
-    """Values of a picture at complex pixel coordinates of any shape, bilinear (or of the nearest pixel); 0 outside."""
+    """Values of a picture at points of any shape, interpolated bilinearly or taken from the nearest pixel; 0 outside."""
     import cv2
 
     if not np.size(p):
         return np.zeros(np.shape(p), picture.dtype)
     how = cv2.INTER_NEAREST if nearest else cv2.INTER_LINEAR
+    flat = np.atleast_2d(p)
     if np.ndim(p) <= 2 and max(np.shape(p)) < 32767:
-        flat = np.atleast_2d(p)
         return cv2.remap(picture, flat.real.astype(np.float32), flat.imag.astype(np.float32), how,
                          borderMode=cv2.BORDER_CONSTANT, borderValue=0).reshape(np.shape(p))  # fmt: skip
-    flat = np.atleast_2d(p)
     wide = 8192  # cv2 takes at most 32767 rows and columns
     x, y = flat.real.astype(np.float32).ravel(), flat.imag.astype(np.float32).ravel()
     rows = -(-len(x) // wide)
@@ -65,22 +64,33 @@ def sample(picture: Any, p: Points, nearest: bool = False) -> Any:
 
 
 def pixels(p: Points, scale: float = SCALE) -> Points:
-    """Sheet millimetres to pixels of :func:`straighten`'s picture."""
+    """Points of the sheet, mm, in the rectified picture, pixels."""
     return np.asarray(p.real * scale - 0.5 + 1j * ((PAPER.y1 - p.imag) * scale - 0.5))
 
 
-def profiles(ink: Any, lines: Lines, offsets: Floats, shift: Points | None = None, scale: float = SCALE) -> Any:
-    """Darkness across lines, a row for each of their points; ``shift`` moves the points first."""
+def profiles(ink: Any, lines: ProfileLines, offsets: Floats, shift: Points | None = None, scale: float = SCALE) -> Any:
+    """Darkness across lines, (points, offsets); ``shift`` moves the points first, mm."""
     p = lines.points if shift is None else lines.points + shift
     return sample(ink, pixels(p[:, None] + lines.normals[:, None] * offsets[None, :], scale))
 
 
 def peaks(profile: Any, offsets: Floats, centre: Any, reach: float, half: float) -> tuple[Floats, Floats]:
-    """Darkest place of each row of a table (rows x offsets) within ``reach`` of ``centre``, to a fraction of the step.
+    """Locate the line in each profile to a fraction of the step.
+
+    Parameters
+    ----------
+    profile
+        Darkness, (rows, offsets).
+    offsets
+        Distances across the line, mm.
+    centre, reach
+        The darkest place is sought at most ``reach`` mm from ``centre``, one number or one for each row.
+    half
+        Ink this near to the darkest place counts towards its centroid, mm.
 
     Returns
     -------
-    Offsets of the weighted middle of the ink within ``half`` mm of the darkest place, and the darkness there.
+    Offset of the centroid, mm, and largest darkness of each row; both 0 where there is no ink.
     """
     profile = np.asarray(profile, dtype=np.float64)
     allowed = np.abs(offsets[None, :] - np.reshape(centre, (-1, 1))) <= reach
@@ -94,9 +104,22 @@ def peaks(profile: Any, offsets: Floats, centre: Any, reach: float, half: float)
 
 
 def follow(profile: Any, steps: int = 2, stiffness: float = 0.5) -> npt.NDArray[np.int64]:
-    """The darkest smooth ways through tables (tables x stations x offsets), by dynamic programming; a column for each row.
+    """The darkest smooth path through each table of profiles, by dynamic programming.
 
-    Half as dark as the line is dark enough: a blacker line beside it shall not draw the way over.
+    Darkness is capped at half the line's, lest a blacker line nearby attract the path.
+
+    Parameters
+    ----------
+    profile
+        Darkness, (tables, stations, offsets).
+    steps
+        Largest change of column between stations.
+    stiffness
+        Cost of a change by one column, relative to the largest darkness.
+
+    Returns
+    -------
+    The column of each station, (tables, stations).
     """
     tables, n, m = profile.shape
     profile = np.minimum(profile, 0.5 * np.median(profile.max(2), 1)[:, None, None]).astype(np.float64)

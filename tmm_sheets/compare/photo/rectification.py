@@ -1,10 +1,10 @@
-"""A photographed sheet brought back to its millimetres.
+"""Rectifying a photographed sheet: the picture seen from straight above, to scale.
 
-The frame is found (``frame_search``), its sides give the map of the sheet (``frame_fit``), and the lines of the drawing and of the
-title block correct it all at once (``map_fit``): homography, lens and a field of heights of the paper, a polynomial of degree
-:data:`~tmm_sheets.compare.photo.sheet_map.RELIEF`; at last a few waves take up some tenths of a millimetre. None of them can follow
-a single view, least of all a single line: with several hundred lines and some seventy numbers one wrong line moves them by
-hundredths of a millimetre (Geman and McClure's weights leave it out altogether).
+The frame is found (``frame_search``), its sides give a first map of the sheet (``frame_fit``), and the lines of the drawing and of
+the title block correct it (``map_fit``): homography, lens and the height of the paper, a polynomial of degree
+:data:`~tmm_sheets.compare.photo.sheet_map.RELIEF`, are fitted together; finally a few waves take up some tenths of a millimetre.
+None of these can follow a single view, least of all a single line: among several hundred lines that determine some seventy
+parameters a wrong one moves them by hundredths of a millimetre (Geman-McClure weights all but ignore it).
 """
 
 from __future__ import annotations
@@ -20,37 +20,46 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo import frame_fit, frame_search
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
-from tmm_sheets.compare.photo.map_fit import Seen, bent, waved
+from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
-from tmm_sheets.compare.photo.profiles import SCALE, Lines, darkness, peaks, profiles
+from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Map
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.errors import CannotBuild
 
 LEAST_SCALE, FAIR_SCALE = 2.0, 3.0
-"""Pixels per mm of the sheet below which a photograph is refused, or warned of."""
+"""Pixels per mm of the sheet below which a photograph is refused, or draws a warning."""
 BLURRED, SOFT = 0.36, 0.31
-"""Standard deviation of the smear, mm, above which a picture is refused, or warned of; a fair photograph has 0.2 to 0.3."""
+"""Standard deviation of the blur, mm, above which a picture is refused, or draws a warning; 0.2 to 0.3 is fair."""
 LONGEST = 2500.0
-"""Lines longer than this, mm, do not correct the sheet: they are curves back and forth."""
+"""Longer lines, mm, do not correct the map: they are curves back and forth."""
 MATCH = 0.5
-"""Share of a sheet's lines that must be in the picture where they belong."""
+"""Least share of a sheet's lines that must be where they belong."""
 RECTIFIED = 0.15
-"""Error of a place after rectification, mm: some 95 % of the places of simulated photographs are within it."""
+"""Error of a place after rectification, mm, not exceeded at 95 % of the places of simulated photographs."""
 TURNS = {1: "a quarter turn clockwise", 2: "a half turn", 3: "a quarter turn counter-clockwise"}
-COARSE = 4.0  # pixels per mm, enough to correct by
+COARSE = 4.0  # pixels per mm, enough for the correction
 COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2), (0.7, RELIEF + 1, 0.2))
-"""Reach to either side of a line, degree of the paper's height (beyond the highest: waves), and what counts as far off, mm."""
-NODE = 6.0  # mm between the points at which the map is calculated; cells of an even number of pixels
+"""Reach to either side of a line, mm; degree of the relief (above the highest: waves); distance that counts as far off, mm."""
+NODE = 6.0  # mm between the nodes at which the map is evaluated; an even number of pixels at every scale
 
 
 @dataclass(frozen=True)
 class Rectified:
-    """The sheet seen from straight above: ``ink`` as :func:`straighten` makes it, ``map`` the way there,
-    ``sides`` the frame's points.
+    """A rectified picture.
 
-    ``match`` is the share of the known lines that were found in place, ``scatter`` that of the frame's
-    points and ``uncertainty`` the error of a place, mm, ``scale`` pixels of the picture per mm, ``soft`` that it is not sharp.
+    Attributes
+    ----------
+    ink : darkness of the sheet seen from straight above, see :func:`straighten`
+    map : from the sheet to the picture and back
+    sides : points of the frame in the picture
+    level : darkness of ink
+    match : share of the known lines that were found in place
+    scatter : robust standard deviation of the frame's points about the map, mm
+    uncertainty : error of a place, mm
+    scale : pixels of the picture per mm of the sheet
+    notes : what is worth telling, a line each
+    soft : whether the picture is not sharp
     """
 
     ink: Any
@@ -65,16 +74,29 @@ class Rectified:
     soft: bool = False
 
 
-def frame_lines(known: Sequence[Element]) -> Lines:
-    """Lines of the title block and of the box for the turned designation, by which a frame is known."""
+def frame_lines(known: Sequence[Element]) -> ProfileLines:
+    """Lines of the title block and of the box for the turned designation, by which a frame is recognized."""
     return as_lines([e for e in known if e.of == "title block" and e.length < 800], 4.0)
 
 
 def rectify(
     picture: Picture, known: Sequence[Element], path: Path, say: Callable[[str], None] = lambda _: None, by_lines: bool = True,
 ) -> Rectified:
-    """Bring a photographed sheet to millimetres; ``by_lines``: all lines of the drawing are where they belong and
-    correct what the frame has left, not the title block's alone.
+    """Rectify a photographed sheet.
+
+    Parameters
+    ----------
+    picture
+        As read.
+    known
+        Elements of the sheet.
+    path
+        The file, for messages.
+    say
+        Told what is being done.
+    by_lines
+        Whether the lines of the drawing are where they belong, so that they may correct the map; otherwise only the title block's
+        do.
 
     Raises
     ------
@@ -88,19 +110,7 @@ def rectify(
     except CannotBuild as e:
         raise CannotBuild(f"{path}: {e.args[0]}", hint=e.hint) from None
     scale = float(np.abs(np.diff(found.corners)).min() / FRAME.height)
-    if scale < LEAST_SCALE:
-        raise CannotBuild(f"{path}: the sheet is {scale:.1f} pixels per millimetre: too few to measure lines 0.2 mm wide",
-                          hint="go nearer, or use more pixels: an A1 sheet that fills 12 million pixels has 4.5")  # fmt: skip
-    if smear > BLURRED:
-        raise CannotBuild(f"{path}: the picture is blurred: edges of lines are smeared over {2 * smear:.1f} mm",
-                          hint=frame_search.SHARP)  # fmt: skip
-    notes = []
-    if found.turned:
-        notes.append(f"{path.name} was turned by {TURNS[found.turned]} (the title block is known)")
-    if scale < FAIR_SCALE:
-        notes.append(f"{path.name} has {scale:.1f} pixels per millimetre only: thin lines may be missed")
-    if smear > SOFT:
-        notes.append(f"{path.name} is not sharp (edges of lines are smeared over {2 * smear:.1f} mm): thin lines may be missed")
+    notes = _remarks(path, scale, smear, found.turned)
     say("correcting by the drawing's lines")
     lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.of == "title block")])
     ink = straighten(picture.grey, m, COARSE)
@@ -109,15 +119,39 @@ def rectify(
         m = better
     ink = straighten(picture.grey, m)
     uncertainty = hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter)
-    return Rectified(ink, m, sides, noise_level(ink), match, scatter, uncertainty, scale, tuple(notes), smear > SOFT)
+    return Rectified(ink, m, sides, noise_level(ink), match, scatter, uncertainty, scale, notes, smear > SOFT)
+
+
+def _remarks(path: Path, scale: float, smear: float, turned: int) -> tuple[str, ...]:
+    """What is worth telling of a picture with so many pixels per mm and lines smeared by so many mm.
+
+    Raises
+    ------
+    CannotBuild
+        When it is too small or too blurred.
+    """
+    if scale < LEAST_SCALE:
+        raise CannotBuild(f"{path}: the sheet is {scale:.1f} pixels per millimetre: too few to measure lines 0.2 mm wide",
+                          hint="go nearer, or use more pixels: an A1 sheet that fills 12 million pixels has 4.5")  # fmt: skip
+    if smear > BLURRED:
+        raise CannotBuild(f"{path}: the picture is blurred: edges of lines are smeared over {2 * smear:.1f} mm",
+                          hint=frame_search.SHARP)  # fmt: skip
+    notes = []
+    if turned:
+        notes.append(f"{path.name} was turned by {TURNS[turned]} (the title block is known)")
+    if scale < FAIR_SCALE:
+        notes.append(f"{path.name} has {scale:.1f} pixels per millimetre only: thin lines may be missed")
+    if smear > SOFT:
+        notes.append(f"{path.name} is not sharp (edges of lines are smeared over {2 * smear:.1f} mm): thin lines may be missed")
+    return tuple(notes)
 
 
 def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
-    """The sheet seen from straight above, ``scale`` pixels per mm, as darkness 0 .. 255."""
+    """The sheet seen from straight above, ``scale`` pixels per mm, as darkness from 0 to 255, the upper edge first."""
     import cv2
 
     width, height = round(PAPER.width * scale), round(PAPER.height * scale)
-    # From a node to the left of the paper and one above it on.
+    # Nodes from one to the left of the paper and one above it.
     x, y = np.arange(-NODE, PAPER.x1 + 2 * NODE, NODE), np.arange(PAPER.y1 + NODE, -2 * NODE, -NODE)
     nodes = m.to_picture(x[None, :] + 1j * y[:, None])
     finest = abs(complex(nodes[len(y) // 2, len(x) // 2 + 1] - nodes[len(y) // 2, len(x) // 2])) / NODE
@@ -125,7 +159,7 @@ def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
         f = scale / finest
         grey = cv2.resize(grey, None, fx=f, fy=f, interpolation=cv2.INTER_AREA)
         nodes = (nodes + 0.5 + 0.5j) * f - (0.5 + 0.5j)
-    # Linear between the nodes; the first of them is the middle of a cell, and so half a cell more is cut off.
+    # Linear between the nodes. The first is the middle of a cell: one cell and a half is cut off.
     cell = round(NODE * scale)
     first = cell * 3 // 2
     across, down = (
@@ -136,15 +170,28 @@ def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
 
 
 def refine(
-    m: Map, sides: Seen, ink: Any, lines: Lines, level: float, scale: float = SCALE, highest: int = RELIEF,
+    m: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float = SCALE, highest: int = RELIEF,
 ) -> tuple[Map, float, float]:
-    """The map corrected by lines seen in the picture ``ink`` straightened by ``m``, with heights up to degree ``highest``.
+    """Correct a map by lines seen in the picture that it straightened.
+
+    Parameters
+    ----------
+    m, ink, scale
+        The map, and the picture it straightened to ``scale`` pixels per mm.
+    sides
+        Points of the frame.
+    lines
+        Where lines are on the sheet.
+    level
+        Darkness of a line.
+    highest
+        Degree of the relief; waves follow only with the full :data:`RELIEF`.
 
     Returns
     -------
     The map, the robust scatter of the lines about it, mm, and the share of their points with ink within half a millimetre.
     """
-    # A line counts by its length up to 30 mm or so.
+    # A line counts by its length up to some 30 mm.
     weight = 1 / np.sqrt(np.maximum(np.bincount(lines.line), 8) / 8.0)[lines.line]
     sides = sides._replace(weight=0.5 * sides.weight)
     offsets = np.arange(-4.0, 4.05, 0.1)
@@ -159,5 +206,5 @@ def refine(
         scatter = 1.4826 * float(np.median(np.abs(o[use])))
         seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
         fine = highest == RELIEF < degree
-        better = waved(better, seen, loose) if fine else bent(better, sides, seen, min(degree, highest), loose)[0]
+        better = fit_waves(better, seen, loose) if fine else fit_map(better, sides, seen, min(degree, highest), loose)[0]
     return better, scatter, hit

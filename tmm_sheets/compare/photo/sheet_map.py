@@ -1,11 +1,12 @@
-"""Where the points of a sheet are in a photograph of it, and the way back.
+"""The map between a sheet and a photograph of it, both ways.
 
-Points of pictures and of the sheet are complex numbers, pixels (rows count downwards) and millimetres (y upwards).
+Points are complex numbers: pixels in the picture (imaginary part downwards), millimetres on the sheet (imaginary part upwards).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import pi
 from typing import Any
 
@@ -20,23 +21,29 @@ Floats = npt.NDArray[np.floating[Any]]
 PAPER = Box(0.0, 0.0, 841.0, 594.0)
 FRAME = Box(20.0, 5.0, 836.0, 589.0)
 CORNERS = np.array([20 + 5j, 836 + 5j, 836 + 589j, 20 + 589j])
-"""Of the frame, from the lower left one counter-clockwise."""
-SIDE_TERMS = 7  # of the polynomial of a side's bending
-RELIEF = 6  # degree of the polynomial of the paper's height
+"""Corners of the frame, counter-clockwise from the lower left one."""
+SIDE_TERMS = 7  # coefficients of the polynomial a side is bent by
+RELIEF = 6  # degree of the polynomial for the height of the paper
 TERMS = tuple((i, n - i) for n in range(2, RELIEF + 1) for i in range(n, -1, -1))
 DEGREE = np.array([i + j for i, j in TERMS])
-WAVES = 4  # half waves of what is left, over the sheet
-AWAY = 1000.0  # mm from the paper to the camera; what is wrong in this shows in the heights alone
+WAVES = 4  # half waves over the sheet, in each direction, for the residual
+AWAY = 1000.0  # mm from the paper to the camera, nominal: an error in it only rescales the heights
 
 
 @dataclass
 class Map:
-    """Where the points of the sheet are in the picture.
+    """Homography, lens distortion, relief of the paper and residual corrections, from the picture to the sheet.
 
-    ``matrix`` takes undistorted picture coordinates (centre 0, half diagonal 1) to the sheet, ``bend`` are the coefficients of
-    radius**2 and radius**4 that undistort; ``relief`` those of the paper's height (see :func:`heights`), mm, seen from above the
-    point ``foot`` of the sheet; ``sides`` the polynomials of what is left of the sides' bending, carried inside between opposite
-    sides (a Coons patch); ``waves`` what is left inside (see :func:`waves`).
+    Attributes
+    ----------
+    middle, reach : centre of the picture and half its diagonal, pixels; picture coordinates are normalized with them
+    matrix : homography from undistorted normalized picture coordinates to the sheet, (3, 3)
+    bend : coefficients of radius**2 and radius**4 of the radial distortion that is undone
+    sides : Chebyshev coefficients of how far the sides of the frame still bend, mm, (4, SIDE_TERMS), bottom first;
+        interpolated between opposite sides (a Coons patch)
+    relief : coefficients of the height of the paper, mm (see :func:`heights`)
+    foot : the point of the sheet below the camera
+    waves : coefficients of the residual inside the frame, mm (see :func:`waves`)
     """
 
     middle: complex
@@ -49,7 +56,7 @@ class Map:
     waves: Floats = field(default_factory=lambda: np.zeros(2 * WAVES**2))
 
     def to_base(self, q: Points) -> Points:
-        """Picture to sheet by homography and lens alone."""
+        """Picture to sheet by lens and homography alone."""
         z = (q - self.middle) / self.reach
         r2 = np.abs(z) ** 2
         return projected(self.matrix, z * (1 + self.bend[0] * r2 + self.bend[1] * r2**2))
@@ -73,7 +80,7 @@ class Map:
         return p
 
     def correction(self, p: Points) -> Points:
-        """What is added to a point of the sheet before homography and lens are inverted, mm."""
+        """Offset of points of the sheet from where :meth:`to_base` has them, mm: bent sides, relief and waves."""
         u, v = (p.real - FRAME.x0) / FRAME.width, (p.imag - FRAME.y0) / FRAME.height
         bottom, right, top, left = (
             np.polynomial.chebyshev.chebval(2 * np.clip(t, 0, 1) - 1, c)
@@ -83,7 +90,7 @@ class Map:
         return np.asarray(dx + 1j * dy) + self.risen(p) + self.waved(p)
 
     def waved(self, p: Points) -> Points:
-        """What the waves add."""
+        """Contribution of the waves to :meth:`correction`, mm."""
         if not self.waves.any():
             return np.zeros(np.shape(p), np.complex128)
         x, y = waves(p)
@@ -91,12 +98,12 @@ class Map:
         return np.asarray(np.einsum("...k,k->...", x, self.waves[:half]) + 1j * np.einsum("...k,k->...", y, self.waves[half:]))
 
     def risen(self, p: Points) -> Points:
-        """What the paper's height adds: a point is seen height / :data:`AWAY` of its way from the foot farther from it."""
+        """Contribution of the relief: a point at height h appears farther from the foot by h / :data:`AWAY` of its distance."""
         return np.asarray(np.einsum("...k,k->...", heights(p), self.relief) * (p - self.foot) / AWAY)
 
 
 def heights(p: Points) -> Floats:
-    """Terms of the paper's height at points of the sheet: those of degree 0 and 1 are planes, which the homography knows."""
+    """Terms of the height of the paper at points of the sheet, (..., n); no planes (degree below 2): the homography has those."""
     u = np.clip((np.real(p) - FRAME.x0) / FRAME.width, 0, 1)
     v = np.clip((np.imag(p) - FRAME.y0) / FRAME.height, 0, 1)
     x, y = (np.polynomial.chebyshev.chebvander(2 * t - 1, RELIEF) for t in (u, v))
@@ -105,7 +112,7 @@ def heights(p: Points) -> Floats:
 
 
 def waves(p: Points) -> tuple[Floats, Floats]:
-    """Products of sines and cosines, in x and in y, at points of the sheet: none crosses the side it is zero at."""
+    """Terms of the residual in x and in y at points of the sheet, (..., n): 0 across the sides of the frame."""
     u = pi * np.clip((np.real(p) - FRAME.x0) / FRAME.width, 0, 1)
     v = pi * np.clip((np.imag(p) - FRAME.y0) / FRAME.height, 0, 1)
     k = range(WAVES)
@@ -115,7 +122,7 @@ def waves(p: Points) -> tuple[Floats, Floats]:
 
 
 def projected(matrix: Floats, p: Points) -> Points:
-    """Points under a projective map."""
+    """Points mapped by a homography, a (3, 3) matrix."""
     x, y = p.real, p.imag
     w = matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2]
     return np.asarray((matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2]) / w
@@ -123,11 +130,15 @@ def projected(matrix: Floats, p: Points) -> Points:
 
 
 def homography(a: Points, b: Points) -> Floats:
-    """The projective map that takes four or more points ``a`` to ``b``."""
+    """The (3, 3) homography that takes four or more points ``a`` to ``b`` (direct linear transformation)."""
     rows = []
     for p, q in zip(a.tolist(), b.tolist(), strict=True):
         x, y, u, v = p.real, p.imag, q.real, q.imag
         rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y, -u], [0, 0, 0, x, y, 1, -v * x, -v * y, -v]]
-    scale = np.array([1, 1, 1, 1, 1, 1, 1, 1, 1.0])
-    h = np.linalg.svd(np.array(rows) * scale)[2][-1]
+    h = np.linalg.svd(np.array(rows, dtype=np.float64))[2][-1]
     return np.asarray((h / h[8]).reshape(3, 3))
+
+
+def chords(corners: Points) -> list[tuple[complex, complex]]:
+    """The straight sides of a polygon as pairs of consecutive corners."""
+    return list(pairwise([*corners.tolist(), corners[0]]))

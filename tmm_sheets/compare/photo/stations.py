@@ -1,4 +1,4 @@
-"""Places along an element with normals, what a similarity does to them, and the ink across them."""
+"""Stations along an element, what a similarity does to them, and fitting one to the offsets of its line."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, sampled
-from tmm_sheets.compare.photo.profiles import Lines
+from tmm_sheets.compare.photo.profiles import ProfileLines
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.drawing.marks import Points
@@ -16,37 +16,38 @@ from tmm_sheets.drawing.styles import line_type
 
 STEP = 0.1  # mm between offsets of a profile
 LEAST = 6.0  # mm of line that can be measured
-SETTLED = 1e-3  # mm of change with which a fit is done
-ENOUGH = 0.6  # share of an element's ink that must lie on one displaced line
+SETTLED = 1e-3  # mm of change below which a fit has converged
+ENOUGH = 0.6  # least share of an element's ink on the line it is fitted by
 
 
 class Stations(NamedTuple):
-    """Places along an element with normals."""
+    """Points along an element with normals."""
 
     points: Points
     normals: Points
     raw: Floats
-    """Normal displacement by shift in x and y, by turn and growth (both at the element's half extent), (n, 4)."""
+    """See :func:`similarity_base`, (n, 4)."""
     half: float
+    """Half the extent of the element, mm."""
 
     def base(self, use: Any = slice(None)) -> Floats:
-        """The same by those combinations of the four that some of the places determine, (n, k).
+        """The combinations of ``raw`` that the stations in use determine, (n, k).
 
-        What moves them along their normals by less than a fifth of itself is not determined.
+        A displacement that moves them along their normals by less than a fifth of itself is not determined.
         """
         _, values, rows = np.linalg.svd(self.raw[use] / np.sqrt(len(self.raw[use])), full_matrices=False)
         return np.asarray(self.raw @ rows[values > 0.2].T)
 
 
 def measurable(e: Element) -> bool:
-    """Whether an element is a line long enough to be measured. The paper's outline is none: paper ends where it is cut."""
+    """Whether an element is a line long enough to be measured, other than the outline of the paper, which is cut anywhere."""
     if e.kind not in ("line", "arc", "circle", "curve") or e.length < LEAST or (e.kind == "circle" and e.fills):
         return False
     return bool(e.points.real.min() > PAPER.x0 + 1 or e.points.real.max() < PAPER.x1 - 1)
 
 
-def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 4000) -> Lines:
-    """Stations along the elements that are lines, for the rectification: at most some ``most`` of them."""
+def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 4000) -> ProfileLines:
+    """Stations along the lines of at least ``least`` mm among elements, ``most`` of them or so, as the rectification needs them."""
     chosen = [e for e in elements if measurable(e) and e.length >= least and e.style != "text"]
     step = max(sum(e.length for e in chosen) / most, 2.0)
     p, n, line = [], [], []
@@ -57,27 +58,32 @@ def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 4000) 
         n.append(normals)
         line.append(np.full(len(points), k))
     if not p:
-        return Lines(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, np.int64))
-    return Lines(np.concatenate(p), np.concatenate(n), np.concatenate(line))
+        return ProfileLines(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, np.int64))
+    return ProfileLines(np.concatenate(p), np.concatenate(n), np.concatenate(line))
 
 
 def smoothed(profile: Any) -> Any:
-    """Profiles averaged with their neighbours along the line."""
+    """Profiles averaged over five neighbours along the line."""
     import cv2
 
     return cv2.blur(profile, (1, 5)) if len(profile) >= 5 else profile
 
 
+def similarity_base(p: Points, n: Points, middle: complex, half: float) -> Floats:
+    """Displacement of points along their normals by unit shifts in x and y and by turn and growth at ``half`` mm, (n, 4)."""
+    d = (p - middle) / half
+    return np.stack((n.real, n.imag, (np.conj(n) * 1j * d).real, (np.conj(n) * d).real), -1)
+
+
 def stations(e: Element, grows: bool) -> Stations:
-    """Places along an element, at most some 120, and what a similarity (without growth if not ``grows``) does to them."""
+    """Some 120 stations along an element at most; without ``grows`` its size is taken for right."""
     step = max(e.length / 120, 0.6)
     p, n = sampled(e.points, step)
     if e.kind != "circle" and len(p) > 6:
         p, n = p[1:-1], n[1:-1]
     middle = e.centre if e.kind == "circle" else p.mean()
     half = max(float(np.abs(p - middle).max()), 1.0)
-    d = (p - middle) / half
-    raw = np.stack((n.real, n.imag, (np.conj(n) * 1j * d).real, (np.conj(n) * d).real), -1)
+    raw = similarity_base(p, n, middle, half)
     if not grows:
         raw[:, 3] = 0.0
     return Stations(p, n, raw, half)
@@ -90,7 +96,21 @@ def expected_ink(e: Element) -> float:
 
 
 def fit(base: Floats, o: Floats, use: Any, loose: float) -> Floats:
-    """Robust least squares of offsets, a little drawn to zero."""
+    """Robust least squares with Geman-McClure weights and a weak prior for no displacement.
+
+    Parameters
+    ----------
+    base
+        Displacement along the normals by each parameter, (n, k).
+    o, use
+        Offsets of the line, mm, and which of them count, (n,).
+    loose
+        Residual from which on an offset counts little, mm.
+
+    Returns
+    -------
+    The parameters, (k,).
+    """
     x = np.zeros(base.shape[1])
     for k in range(8):
         r = o - base @ x
@@ -103,7 +123,7 @@ def fit(base: Floats, o: Floats, use: Any, loose: float) -> Floats:
 
 
 def measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> Trace:
-    """The trace of an element whose line is off by ``o`` along its normals, seen where ``use``."""
+    """The trace of an element whose line is ``o`` mm off along its normals, at the stations in ``use``."""
     full = np.linalg.lstsq(s.raw[use], o[use], rcond=0.1)[0]
     o = (s.raw @ full)[use]
     z = e.points

@@ -1,4 +1,4 @@
-"""What is found of an element in a picture, and ink that belongs to none."""
+"""What was found of an element in a picture, and ink that belongs to none."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.drawing.marks import Points
 
-SHORTEST = 8.0  # mm of line from which on its ends are looked for
+SHORTEST = 8.0  # mm of line whose ends are looked for
 Status = Literal["measured", "shared", "missing", "dense", "lettering", "absent lettering", "small"]
 
 
 def open_line(e: Element) -> bool:
-    """Whether an element has ends that are looked for."""
+    """Whether an element has ends to look for."""
     return e.kind in ("line", "arc", "curve") and e.length >= SHORTEST and abs(e.points[0] - e.points[-1]) > 1e-6
 
 
@@ -23,11 +23,17 @@ def open_line(e: Element) -> bool:
 class Trace:
     """What was found of an element.
 
-    ``status`` is "measured" by itself, "shared": with others in one stroke, "missing", "dense": ink that cannot be told from
-    others', "lettering" or "absent lettering", "small": not looked at.
-    ``shift`` is that of its middle, mm; ``turn`` rad; ``growth`` mm at the radius or half length; ``deviation`` the largest
-    distance between where its line is and ought to be, mm; ``ends`` how far the line runs beyond its beginning and end (negative:
-    it stops short; nan: cannot be told), mm; ``covered`` the share of it that has ink; ``at`` its line as it was found.
+    Attributes
+    ----------
+    status : "measured" by itself; "shared": in one stroke with others; "missing"; "dense": its ink cannot be told from others';
+        "lettering" or "absent lettering"; "small": not looked at
+    shift : of its middle, mm
+    turn : rad, counter-clockwise
+    growth : of the radius or half length, mm
+    deviation : largest distance between its line and where it ought to be, mm
+    ends : how far the line runs beyond its beginning and its end, mm; negative when it stops short, nan when unknown
+    covered : share of it that has ink
+    at : its line as it was found, mm
     """
 
     element: Element
@@ -41,8 +47,8 @@ class Trace:
     at: Points | None = None
 
 
-class Extra(NamedTuple):
-    """Ink where nothing is known: its box on the sheet's middle, its extent and how much line there is, mm."""
+class ExtraInk(NamedTuple):
+    """Ink where no element is known: middle, extent and diagonal of its bounding box, mm."""
 
     middle: complex
     width: float

@@ -1,13 +1,12 @@
-"""Every known element of a sheet measured in the rectified picture, along its normals.
+"""Measuring every element of a sheet in the rectified picture, along its normals.
 
-First each element is looked for at its own place, no farther than half way to the next line that is known to be there. What is
-found is wiped out of the picture, with a pencil's width to spare, lettering and heads of arrows too. Whatever has not been found
-is sought in the ink that is left, some millimetres away, turned or of another size (``displaced``). Ink that is left after that
-belongs to nothing (``extra_ink``). Lines that lie in one stroke are measured together: what cannot be told apart by the eye is not
-told apart here.
+Each element is first looked for in its own place, no farther than half way to the next line known to be there (``own_place``). What
+is found is wiped out of the picture with a pencil's width to spare, and so are lettering and arrow heads. Elements not found are
+sought in the ink that is left, some millimetres away, turned or of another size (``displacement``). Ink left after that belongs to
+nothing (``extra_ink``). Lines that coincide in one stroke are measured together: what the eye cannot tell apart is not told apart.
 
-An element's displacement is a similarity: two shifts, a turn and a growth, of which only what shows along its normals is
-determined (a straight line has no shift along itself and no growth; its length is measured at its ends).
+The displacement of an element is a similarity, two shifts, a turn and a growth, of which only what shows along its normals is
+determined: a straight line has no shift along itself and no growth; its length is measured at its ends (``line_ends``).
 """
 
 from __future__ import annotations
@@ -18,35 +17,40 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.displacement import displaced
 from tmm_sheets.compare.photo.extra_ink import extra_ink
-from tmm_sheets.compare.photo.image_alignment import in_place, strips
-from tmm_sheets.compare.photo.image_shifts import displaced
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.line_ends import with_ends
+from tmm_sheets.compare.photo.own_place import in_place, strips
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.stations import measurable, stations
-from tmm_sheets.compare.photo.traces import Extra, Trace
+from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.photo.wiping import fill, grown, wipe_found, wipe_small
 
-WRITTEN = 0.02  # share of its place with ink, from which on lettering is there
+WRITTEN = 0.02  # share of its place with ink from which on lettering counts as there
 
 
-def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extra]]:
-    """Measure all elements in a rectified picture (see ``rectification.straighten``); also the ink that belongs to none."""
+def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[ExtraInk]]:
+    """Measure elements in a rectified picture, and find the ink that belongs to none.
+
+    Parameters
+    ----------
+    elements
+        All that is on the sheet.
+    ink
+        Darkness, see :func:`~tmm_sheets.compare.photo.rectification.straighten`.
+
+    Returns
+    -------
+    A trace of each element in their order, and extra ink, the longest first.
+    """
     level, pale = ink_levels(ink)
     owners = Owners(*ink.shape)
     for e in elements:
         owners.add(e, e.points)
-    lines, small = [e for e in elements if measurable(e)], [e for e in elements if not measurable(e)]
-    found: list[Trace] = []
-    absent: list[Element] = []
-    for strip in strips(lines, ink, owners):
-        near = in_place(strip, pale)
-        if near is None:
-            absent.append(strip.element)
-        else:
-            found.append(near)
+    small = [e for e in elements if not measurable(e)]
+    found, absent = _in_their_places([e for e in elements if measurable(e)], ink, owners, pale)
     wiped = np.zeros_like(ink)
     for e in small:
         wipe_small(wiped, e)
@@ -54,15 +58,9 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
         wipe_found(wiped, t)
     left = ink.copy()
     left[wiped > 0] = 0
-    for e in sorted(absent, key=lambda e: -e.length):
-        t = displaced(e, stations(e, e.kind != "line"), left, wiped, ink, pale)
-        found.append(t)
-        if t.at is not None:
-            owners.add(e, t.at)
-            wipe_found(wiped, t)
-            wipe_found(left, t, 0)
+    found += _displaced(absent, ink, left, wiped, owners, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
-    ended = with_ends(open_lines, ink, owners, _words(elements, ink), pale)
+    ended = with_ends(open_lines, ink, owners, _places_of_lettering(elements, ink), pale)
     out = {t.element.number: t for t in (*found, *ended)} | _presence(small, ink, level)
     for e in elements:  # a hand may have written here
         if e.kind == "text":
@@ -70,8 +68,34 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
     return [out[e.number] for e in elements], extra_ink(left, level)
 
 
-def _words(elements: Sequence[Element], ink: Any) -> Any:
-    """Picture of the places of lettering."""
+def _in_their_places(lines: Sequence[Element], ink: Any, owners: Owners, level: float) -> tuple[list[Trace], list[Element]]:
+    """Traces of the lines that are where they belong, and the lines that are not."""
+    found: list[Trace] = []
+    absent: list[Element] = []
+    for strip in strips(lines, ink, owners):
+        t = in_place(strip, level)
+        if t is None:
+            absent.append(strip.element)
+        else:
+            found.append(t)
+    return found, absent
+
+
+def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
+    """Traces of lines that are not in their places, the longest first; each is wiped out where it is found."""
+    found = []
+    for e in sorted(absent, key=lambda e: -e.length):
+        t = displaced(e, stations(e, e.kind != "line"), left, wiped, ink, level)
+        found.append(t)
+        if t.at is not None:
+            owners.add(e, t.at)
+            wipe_found(wiped, t)
+            wipe_found(left, t, 0)
+    return found
+
+
+def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
+    """A picture of where lettering belongs, 255 there."""
     out = np.zeros_like(ink)
     for e in elements:
         if e.kind == "text":
@@ -80,7 +104,7 @@ def _words(elements: Sequence[Element], ink: Any) -> Any:
 
 
 def _presence(small: Sequence[Element], ink: Any, level: float) -> dict[int, Trace]:
-    """Lettering: is there any ink? Of hatching and what is too small to be measured nothing is asked. By number."""
+    """Traces by number of what is not measured: whether there is any ink in the place of lettering; the rest is not looked at."""
     out = {e.number: Trace(e, "small", covered=1.0) for e in small}
     words = [e for e in small if e.kind == "text"]
     if not words:

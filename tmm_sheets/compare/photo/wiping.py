@@ -1,4 +1,4 @@
-"""Known elements painted in a picture: to mark their places, or to wipe them out."""
+"""Painting known elements into a picture, to mark their places or to wipe them out."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
-ROOM, DENSE_ROOM = 1.4, 2.0  # mm by which more than a line's width is wiped out
+ROOM, DENSE_ROOM = 1.4, 2.0
+"""Margin around a line that is wiped out, mm; more for one among others, whose ink cannot be told from theirs."""
 
 
 def fixed(p: Points, scale: float = SCALE) -> Any:
-    """Places in sixteenths of pixels, as cv2 draws them with a shift of 4."""
+    """Points of the sheet in sixteenths of pixels, as cv2 draws them with a shift of 4."""
     q = np.ascontiguousarray(16 * pixels(p, scale))
     return np.rint(q.view(np.float64).reshape(-1, 2)).astype(np.int32)
 
 
 def paint(picture: Any, e: Element, points: Points, margin: float, value: int = 255) -> None:
-    """Draw an element (along ``points``) with ``margin`` mm to spare, its heads too."""
+    """Draw an element along ``points``, heads included, ``margin`` mm wider."""
     import cv2
 
     if e.kind == "hatch":
@@ -33,7 +34,7 @@ def paint(picture: Any, e: Element, points: Points, margin: float, value: int = 
         wide = max(round((line_type(e.style).width + margin) * SCALE), 1)
         cv2.polylines(picture, [fixed(points)], False, value, wide, cv2.LINE_8, 4)
     for f in e.fills:
-        cv2.fillPoly(picture, [fixed(f)], value, cv2.LINE_8, 4)
+        fill(picture, f, value)
         if margin:
             cv2.polylines(picture, [fixed(f)], True, value, round(2 * margin * SCALE), cv2.LINE_8, 4)
 
@@ -46,13 +47,13 @@ def fill(picture: Any, corners: Points, value: int = 255) -> None:
 
 
 def wipe_found(picture: Any, t: Trace, value: int = 255) -> None:
-    """Paint a line where it was found, with room to spare: among others there is more of it."""
+    """Paint a line where it was found, with room to spare."""
     if t.at is not None:
         paint(picture, t.element, t.at, ROOM if t.status == "measured" else DENSE_ROOM, value)
 
 
 def grown(e: Element, margin: float) -> Points:
-    """The corners of lettering moved outwards."""
+    """The corners of lettering moved outwards by ``margin`` mm."""
     p = e.points
     u = np.exp(1j * e.angle)
     q = (p - p.mean()) * np.conj(u)
@@ -61,11 +62,11 @@ def grown(e: Element, margin: float) -> Points:
 
 
 def wipe_small(wiped: Any, e: Element) -> None:
-    """Wipe lettering, hatching, dots and short strokes where they ought to be, generously."""
+    """Wipe out what is not measured (lettering, hatching, dots, short strokes) where it belongs, generously."""
     import cv2
 
     if e.kind == "text":
-        cv2.fillPoly(wiped, [fixed(grown(e, 0.6))], 255, cv2.LINE_8, 4)
+        fill(wiped, grown(e, 0.6))
         for p in e.pieces:
             cv2.polylines(wiped, [fixed(p)], False, 255, round(1.5 * SCALE), cv2.LINE_8, 4)
     else:

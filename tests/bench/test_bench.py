@@ -14,7 +14,7 @@ from tests.methods.linkage import shaper_truth, statics
 from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.bench import costs, diagrams, emission, linkages, plain, plots, profiles, reducers, truth, whole
-from tmm_sheets.bench.records import Bench, Record, as_json, fastest, table
+from tmm_sheets.bench.records import Bench, BenchRecord, as_json, fastest, table
 from tmm_sheets.errors import CannotBuild
 
 
@@ -142,7 +142,7 @@ def refused():
 def test_failed_runs_are_null(way, error, note):
     bench = Bench(quick=True)
     bench.row(("field", "method", "steps"), 3, way, error)
-    assert bench.records == [Record("field", "method", "steps", 3, None, None, note)]
+    assert bench.records == [BenchRecord("field", "method", "steps", 3, None, None, note)]
     assert "failed" in table(bench.records)
     assert json.loads(as_json(bench.records))["records"][0]["seconds"] is None
     assert bench.records[0].each is None
@@ -163,7 +163,7 @@ def test_fastest_of_repeated_runs():
 
 def test_diagrams(records):
     some = [r for r in records if r.field in ("cam", "rack generation")]
-    drawn = plots.diagrams([*some, Record("cam", "a failed one", "positions", 3, None, None, "why")])
+    drawn = plots.diagrams([*some, BenchRecord("cam", "a failed one", "positions", 3, None, None, "why")])
     assert set(drawn) == {"cam.svg", "rack-generation.svg"}
     assert b"r0 by tangents" in drawn["cam.svg"]
     assert b"a failed one" not in drawn["cam.svg"]

@@ -1,4 +1,4 @@
-"""An element that is not at its own place, sought in the ink that belongs to no other."""
+"""Looking for an element that is not in its own place, in the ink that belongs to no other."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed
 from tmm_sheets.compare.photo.traces import Trace
 
-FAR = 6.0  # mm within which a displaced element is sought
-THERE = 0.8  # share of its ink at its own place with which an element is not sought elsewhere
-TRIES = 500  # guesses from places picked at random
+FAR = 6.0  # mm from its place within which a displaced element is sought
+THERE = 0.8  # share of its ink in its own place from which on an element is not sought elsewhere
+TRIES = 500  # guesses from stations picked at random
 BARE, BARE_LENGTH = 0.35, 2.5
-"""Share of an element without ink, and mm of it in the open, with which it is missing."""
+"""Share of an element without ink, and mm of that not hidden by others, beyond which it is missing."""
 
 
 def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: float) -> Trace:
-    """An element that was not found at its own place.
+    """The trace of an element that was not found in its own place.
 
     Parameters
     ----------
     e, s
-        The element and places along it.
+        The element and its stations.
     left
-        The rectified picture without what was found.
+        The rectified picture without what was found so far.
     wiped
-        Where that was.
+        Where that was, 255 there.
     ink
         The rectified picture.
     level
@@ -42,13 +42,13 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: f
     about = np.abs(offsets) <= 0.5
     here = smoothed(sample(ink, at[:, about])) > level
     if here[:, np.abs(offsets[about]) <= 0.2].any(1).mean() > THERE * expected:
-        # There is ink where it ought to be, only it cannot be told from others'.
+        # There is ink where it belongs, only it cannot be told from others'.
         return Trace(e, "dense", covered=float(here.any(1).mean()), at=e.points)
     profile, unknown = smoothed(sample(left, at)), sample(wiped, at) > 100
     found = _elsewhere(e, s, profile, unknown, offsets, level)
     if found is not None:
         return found
-    # At its own place: hidden by what is there, or nowhere?
+    # Hidden in its own place, or nowhere?
     bare = ~here.any(1)
     hidden = unknown[:, about].all(1)
     if bare.mean() > BARE * expected and (bare & ~hidden).sum() * (e.length / len(bare)) > BARE_LENGTH:
@@ -57,6 +57,7 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: f
 
 
 def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float) -> Trace | None:
+    """The element where the ink that is left fits it best, None when nothing fits."""
     import cv2
 
     expected, reach = expected_ink(e), float(offsets[-1])
@@ -90,7 +91,7 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
 
 
 def _guesses(e: Element, s: Stations, base: Floats, dark: Any, offsets: Floats) -> Floats:
-    """Where it may be: nothing, parallel shifts, and what some of the dark places say."""
+    """Displacements to try, (n, k): none, parallel shifts, and such as bring some random stations onto dark places."""
     n, k = base.shape
     guesses: list[Floats] = [np.zeros((1, k))]
     if not k:

@@ -1,4 +1,4 @@
-"""An element sought at its own place."""
+"""Looking for an element in its own place."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_i
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.drawing.styles import line_type
 
-NEAR = 2.0  # mm about its own place within which an element is sought first
+NEAR = 2.0  # mm from its own place within which an element is sought
 OFFSETS = np.arange(-NEAR - 1, NEAR + 1 + STEP / 2, STEP)
-AT_ONCE = 3000  # places across which ink is looked at in one call: many more do not fit into the processor's memory
-APART = 4  # steps of bare paper that part two lines to the eye
-BROAD = 18  # steps: what lies together wider than this is not measured as one
-OFF = 0.6  # mm off its place from which on a line is looked at once more
-AS_DARK = 0.6  # share of the darkness where a line is found: its own place is not bare
-FREE = 0.25  # share of a line that must be free of others for it to be measured by itself
-SHARED = 0.4  # share of a line that must be free or lie with others in one stroke for it to be measured with them
+AT_ONCE = 3000  # stations sampled in one call; many more do not fit into the processor's cache
+APART = 4  # steps of bare paper that separate two lines to the eye
+BROAD = 18  # steps; a wider stroke is not measured as one
+OFF = 0.6  # mm; a line farther off its place is measured a second time
+AS_DARK = 0.6  # darkness of its own place, as a share of that where a line was found, at which the place is not bare
+FREE = 0.25  # least share of a line free of others for it to be measured by itself
+SHARED = 0.4  # least share of a line free or in one stroke with others for it to be measured with them
 
 
 class Strip(NamedTuple):
-    """An element, places along it, the ink across it at :data:`OFFSETS` and where other elements are there."""
+    """An element with the ink across it at :data:`OFFSETS` and where others are drawn there, (stations, offsets)."""
 
     element: Element
     stations: Stations
@@ -37,8 +37,8 @@ class Strip(NamedTuple):
 
 
 def strips(elements: Sequence[Element], ink: Any, owners: Owners) -> Iterator[Strip]:
-    """The ink across elements, one after another."""
-    # A curve in place is off here and there rather than too large.
+    """The strips of elements, in order, sampled many at a time."""
+    # A curve in its place is off here and there rather than too large.
     waiting: list[tuple[Element, Stations]] = []
     for e in elements:
         waiting.append((e, stations(e, e.kind in ("circle", "arc"))))
@@ -63,10 +63,10 @@ def _across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) 
 
 
 def in_place(strip: Strip, level: float) -> Trace | None:
-    """An element at its own place, or None when it is not there."""
+    """The trace of an element in its own place, or None when it is not there; ``level`` is the darkness of ink."""
     e, s, profile, others = strip
     width = line_type(e.style).width
-    # The way to the next known line on either side, and how far to look; where another line runs here nothing can be told.
+    # Distance of the next known line, and how far to look; where another line runs along, nothing can be told.
     own = np.abs(OFFSETS) <= width / 2 + 0.25
     away = np.where(others & ~own, np.abs(OFFSETS), NEAR + 0.5).min(1)
     reach = np.clip(0.5 * away, 0.3, NEAR)
@@ -76,7 +76,7 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     expected = expected_ink(e)
     use = there & free
     if free.sum() < max(4, FREE * len(free)):
-        # Beside or under others nearly everywhere: it is there, or not, but its place is theirs.
+        # Others lie beside or on it nearly everywhere: whether it is there can be told, but hardly where.
         inked = (np.where(np.abs(OFFSETS) <= reach[:, None], profile, 0).max(1) > level).mean()
         if inked > 0.75 * expected:
             return _shared(strip, o, use, level) or Trace(e, "dense", covered=float(inked), at=e.points)
@@ -88,13 +88,13 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     r = np.abs(o - base @ x)
     good = use & (r < 0.45)
     share = good.sum() / free.sum()
-    # Both halves must be there, or it may be another line that crosses at a small angle.
+    # Both halves must be there, or it may be another line crossing at a small angle.
     half = len(free) // 2
     halves = [good[k].sum() / max(free[k].sum(), 1) for k in (slice(0, half), slice(half, None)) if free[k].sum() > 3]
     if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
         return None
     if (np.abs(base @ x)[free] > OFF).mean() > 0.1:
-        # Off its place: once more, about where it is, however near that is to the half way to the next line.
+        # Off its place: measured once more around where it is, even beyond the half way to the next line.
         o, strength = peaks(profile, OFFSETS, base @ x, 0.7, 0.5)
         use = (strength > level) & free
         x = fit(base, o, use, 0.3)
@@ -107,7 +107,7 @@ def in_place(strip: Strip, level: float) -> Trace | None:
 
 
 def _at_home(profile: Any, o: Floats) -> bool:
-    """Whether there is ink at its own place, too, wherever a line seems to be off by ``o``: then it may be another's, or a blur."""
+    """Whether its own place has ink too where a line seems off by ``o``, mm: then what was found may be another line, or blur."""
     away = np.abs(o) > OFF
     column = np.clip(np.round((o - OFFSETS[0]) / STEP).astype(int), 1, len(OFFSETS) - 2)
     row, middle = np.arange(len(o)), len(OFFSETS) // 2
@@ -117,7 +117,7 @@ def _at_home(profile: Any, o: Floats) -> bool:
 
 
 def _shared(strip: Strip, o: Floats, use: Any, level: float) -> Trace | None:
-    """An element that lies with others in one stroke: the stroke measured against where all of them together ought to be."""
+    """The trace of an element in one stroke with others: the stroke against where all of them together ought to be."""
     import cv2
 
     e, s, profile, others = strip
@@ -151,7 +151,7 @@ def _shared(strip: Strip, o: Floats, use: Any, level: float) -> Trace | None:
 
 
 def _local(o: Floats, use: Any, step: float) -> float:
-    """Largest offset that a stretch of ten millimetres agrees on."""
+    """Largest offset that ten millimetres of line agree on; ``step`` is the distance of the stations, mm."""
     size = max(round(10 / step), 5)
     worst = 0.0
     for i in range(0, len(o) - size + 1, max(size // 2, 1)):
@@ -162,7 +162,7 @@ def _local(o: Floats, use: Any, step: float) -> float:
 
 
 def _peaks_within(profile: Any, reach: Floats, half: float, level: float) -> tuple[Floats, Floats]:
-    """The line of each profile within its own reach: rather one near by than a blacker one farther off, but no line's flank."""
+    """The line of each profile within its own reach, preferring a near one to a blacker one farther off, but no line's flank."""
     import cv2
 
     p = np.where(np.abs(OFFSETS)[None, :] <= reach[:, None] + 1e-9, profile, 0)
