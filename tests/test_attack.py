@@ -6,7 +6,7 @@ import re
 import pytest
 
 from tests.attack import SMALL, SOURCES, case, fallen
-from tests.test_missing_parts import FORCE, GEAR, HEAD, MASS, SLIDER
+from tests.test_missing_parts import FLYWHEEL, FORCE, GEAR, HEAD, MASS, SLIDER, WORKING
 from tmm_sheets import protocols, results
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
@@ -92,6 +92,14 @@ def test_more_positions_than_a_sheet_can_show():
     assert any("(velocities), положение 2" in line for line in lines)
     done = composed(Project(variant.parse(HEAD + SLIDER + RUN.replace("12", "72"), "my.toml")), 1)
     assert {f"Положение {n}" for n in range(72)} <= {group.text for group in done.groups}
+
+
+@pytest.mark.parametrize("method", ["wittenbauer", "mertsalov"])
+def test_more_positions_than_a_flywheel_sheet_can_show(method):
+    cycle = WORKING.replace("working = 6", "working = 600")
+    text = HEAD + SLIDER + cycle + FORCE + MASS + FLYWHEEL.format(method)
+    with pytest.raises(CannotBuild, match="606 positions of one turn"):
+        composed(Project(variant.parse(text, "my.toml")), 2)
 
 
 def test_a_rocker_about_the_crank_pivot():

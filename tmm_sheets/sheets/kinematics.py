@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Combined position plans with path marks and the force graph over the path."""
-    kinematic_frames.check_number(project)
     study, cycle, k = project.study, project.cycle, project.force_index
     pos = study.positions
     m = pos.mechanism

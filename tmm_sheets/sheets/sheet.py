@@ -113,6 +113,10 @@ def composed(project: Project, n: int) -> Composed:
     """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
     sheets = project.variant.sheets
     plan = arrange(sheets[n - 1]).fitted(project.parts)
+    if {"positions", "flywheel"} & {view.needs for view in plan.views}:
+        from tmm_sheets.sheets.kinematic_frames import check_number
+
+        check_number(project)
     canvas = Canvas()
     block = project.variant.title_block
     canvas.of = "title block"
