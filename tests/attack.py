@@ -29,7 +29,7 @@ from tmm_sheets.task import variant
 
 TESTS = Path(__file__).parent
 WHOLE = (*(resources.variants() / "lugansk").glob("*.toml"), resources.variants() / "press.toml",
-         *(TESTS / "projects").glob("*.toml"), TESTS / "methods/radial.toml")
+         *(TESTS / "projects").glob("*.toml"), TESTS / "methods/linkage/radial.toml")
 SOURCES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(WHOLE)}
 SMALL = {name: HEAD + text for name, (text, _, _) in FILES.items()}
 GONE = object()

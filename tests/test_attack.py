@@ -47,7 +47,7 @@ def test_nothing_falls_over(n):
         (SLIDER.replace('"60 rpm"', '"1e-13 rpm"'), "crank.speed", "is the unit right?"),
         (SLIDER + RUN.replace("12", "1000000"), "cycle.positions", "a whole number of 100000 or less"),
         (GEAR.replace("28", "10000000"), "gear.teeth[2]", "a whole number of 100000 or less"),
-        (HEAD.replace("Механизм", "Механизм 🙂") + GEAR, "project.title", "the drawing font has no '🙂' (U+1F642)"),
+        (HEAD.replace("Механизм", "Механизм 🙂") + GEAR, "project.title", 'the drawing font has no "🙂" (U+1F642'),
     ],
 )  # fmt: skip
 def test_it_is_said_what_is_wrong_and_where(text, field, said):

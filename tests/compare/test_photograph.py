@@ -114,7 +114,7 @@ def test_too_many_pixels_are_not_decoded(form, width, height, path, monkeypatch)
 MEASURED = """
 import resource, sys
 from pathlib import Path
-from tmm_sheets.compare.photograph import read
+from tmm_sheets.compare.photo.photograph import read
 try:
     print(read(Path(sys.argv[1])).grey.shape)
 finally:

@@ -250,10 +250,13 @@ def test_a_killed_worker_costs_its_project_only_this_time(tmp_path, monkeypatch)
 
 @pytest.fixture
 def heard():
-    """Interrupts are heard, also when the tests are a shell's background job."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    """Signals are heard, also when the tests are a shell's background job or run under nohup."""
+    before = {signal.SIGINT: signal.signal(signal.SIGINT, signal.default_int_handler)}
+    if hasattr(signal, "SIGHUP"):
+        before[signal.SIGHUP] = signal.signal(signal.SIGHUP, signal.SIG_DFL)
     yield
-    signal.signal(signal.SIGINT, before)
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 def test_interrupt_that_the_parent_ignores_stops_no_worker(tmp_path):
@@ -354,6 +357,7 @@ def test_nohup_is_kept(tmp_path):
     assert running.returncode == 0
 
 
+@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_one_project(number, tmp_path):
     """The first file is a pipe nobody reads: the program waits there, with the others beside their places."""
