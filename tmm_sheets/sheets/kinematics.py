@@ -92,10 +92,9 @@ def _guide_line(canvas: Canvas, project: Project, frame: Frame, name: str, room:
 
 def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
-    study, cycle, k = project.study, project.cycle, project.force_index
+    study = project.study
     pos = study.positions
     m = pos.mechanism
-    centre = frame(m.fixed[m.crank.pivot])
     # A point on a fixed guide has its marks there; one that slides on a moving link is told by the marks of others.
     sliding = {str(g.inner): guide for g in m.groups for guide in g.guides if m.guides[guide].link == m.frame}
     carried = {g.inner for g in m.groups if g.kind == 2 and m.guides[g.guides[0]].link != m.frame}
@@ -103,11 +102,7 @@ def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
     hinges += [g.inner for g in m.groups if g.inner and g.inner not in sliding and g.inner not in carried and g.kind in (1, 2, 4)]
     for name in dict.fromkeys(hinges):
         z = np.asarray(frame(pos.points[name].value))
-        middle = centre if name == m.crank.pin else z.mean() - 40j
-        for i, _ in cycle.drawn:
-            if i != k:
-                symbols.hinge(canvas, z[i], "thin", 0.7)
-                canvas.label(z[i], cycle.labels[i], z[i] - middle, 2.5, 0.9, leader=False)
+        _hinge_numbers(canvas, project, z, frame(m.fixed[m.crank.pivot]) if name == m.crank.pin else z.mean() - 40j)
     on = list(sliding.values())
     for name, guide in sliding.items():
         z = np.asarray(frame(pos.points[name].value))
@@ -118,6 +113,15 @@ def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
         else:
             speed = (np.asarray(study.velocities.points[name].value) * np.conj(u)).real
             _own_path(canvas, project, z, n, speed, u)
+
+
+def _hinge_numbers(canvas: Canvas, project: Project, z: Any, middle: complex) -> None:
+    """Small hinges at the points ``z`` (mm) of all positions but the highlighted one, their numbers away from ``middle``."""
+    cycle = project.cycle
+    for i, _ in cycle.drawn:
+        if i != project.force_index:
+            symbols.hinge(canvas, z[i], "thin", 0.7)
+            canvas.label(z[i], cycle.labels[i], z[i] - middle, 2.5, 0.9, leader=False)
 
 
 def _upper_side(u: complex) -> complex:

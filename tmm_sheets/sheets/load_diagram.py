@@ -35,10 +35,10 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]
     turned = np.unique(np.concatenate((np.linspace(0, cycle.period, SAMPLES), jumps)))
     turned = turned[(turned >= 0) & (turned <= cycle.period)]
-    unit = "Н" if shown[0].point is not None else "Н·м"
+    kind, unit = ("F", "Н") if shown[0].point is not None else ("M", "Н·м")
     inside = box.inset(10.0, 8.0, 14.0, 24.0)
     top = max(float(np.max(f.magnitude(turned))) for f in shown)
-    scale = pick(project, canvas, "loads", "μ_F" if shown[0].point is not None else "μ_M", f"{unit}/мм", top / inside.height)
+    scale = pick(project, canvas, "loads", f"μ_{kind}", f"{unit}/мм", top / inside.height)
     canvas.title(box, f"Технологическая нагрузка{' (принято)' if _accepted(project, shown) else ''}",
                  f"{scale}, μ_φ = {number(cycle.period / inside.width)} рад/мм")
     origin = complex(inside.x0, inside.y0)
@@ -55,12 +55,9 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     canvas.label(origin + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
     _positions(project, canvas, shown, at)
     for f in shown:
-        values = f.magnitude(turned)
-        canvas.polyline(at(turned, values), "curve")
+        canvas.polyline(at(turned, f.magnitude(turned)), "curve")
         if len(shown) > 1:
-            acting = turned[values >= 0.5 * values.max()]
-            middle = float(acting[len(acting) // 2]) if len(acting) else pi
-            canvas.label(at(middle, float(np.ravel(f.magnitude(middle))[0])), indexed(f.name), 1j, 3.5, 1.5)
+            _sign(canvas, f, turned, at)
 
 
 def _accepted(project: Project, shown: list[Applied]) -> bool:
@@ -78,6 +75,14 @@ def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
         return None
     a, b = (fixed(degrees(x) % degrees(cycle.period), 1) for x in (strokes.begin, strokes.end))
     return f"Точка {strokes.output} меняет направление {times(len(strokes.runs))} за оборот; рабочий ход φ = {a}°…{b}°"
+
+
+def _sign(canvas: Canvas, f: Applied, turned: Any, at: Callable[[Any, Any], Any]) -> None:
+    """Sign of one of several loads over the middle of where it is at least half its greatest."""
+    values = f.magnitude(turned)
+    acting = turned[values >= 0.5 * values.max()]
+    middle = float(acting[len(acting) // 2]) if len(acting) else pi
+    canvas.label(at(middle, float(np.ravel(f.magnitude(middle))[0])), indexed(f.name), 1j, 3.5, 1.5)
 
 
 def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Callable[[Any, Any], Any]) -> None:
