@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
@@ -15,6 +15,8 @@ from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
     from tmm_sheets.output.building import Order
+    from tmm_sheets.output.plot import Job, PlotLook
+    from tmm_sheets.progress import Progress
     from tmm_sheets.project import Project
     from tmm_sheets.task.variant import Variant
 
@@ -191,13 +193,12 @@ def _listed(file: BinaryIO) -> list[str]:
 def _build_one(project: str, order: Order, output: Path | None, explain: bool) -> None:
     from tmm_sheets.explain import Stopwatch
     from tmm_sheets.output.building import build as build_project
-    from tmm_sheets.output.building import folder_name
     from tmm_sheets.progress import Progress
 
     watch = Stopwatch()
     with watch.phase("read"):
         variant = _read(project, order.corrected)
-    outlet = order.outlet(output if output is not None else Path("out") / folder_name(variant.project.name))
+    outlet = order.outlet(_folder(variant, output))
     with Progress() as progress:
         built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
     for path in built.paths:
@@ -340,38 +341,25 @@ def plot(
     from tmm_sheets.output import plot as plotting
     from tmm_sheets.progress import Progress
 
-    jobs: dict[Path, plotting.Job] = {}
+    finished = project.lower().endswith(plotting.FILES)
+    if finished and (sheets or tile or bar or window or outline == "off"):
+        raise click.UsageError(f"{project} is finished: it can be sent or shown, not changed")
     problem = None
     with Progress() as progress:
-        if project.lower().endswith(plotting.FILES):
-            if sheets or tile or bar or window or outline == "off":
-                raise click.UsageError(f"{project} is finished: it can be sent or shown, not changed")
-            jobs[Path(project)] = plotting.ready(Path(project))
+        if finished:
             folder = output if output is not None else Path(project).parent
+            jobs = {Path(project): plotting.ready(Path(project))}
             made: dict[Path, bytes] = {}
         else:
-            from tmm_sheets.output.building import chosen, folder_name
-
             opened = _open(project, corrected)
-            folder = output if output is not None else Path("out") / folder_name(opened.variant.project.name)
+            folder = _folder(opened.variant, output)
             if not dry_run:
                 files.check_folder(folder)
-            look = plotting.Look(machine, tile, overlap, bar, outline == "on", window)
-            from tmm_sheets.sheets import sheet
-
-            attempt = sheet.every(opened, lambda what: progress.say(f"{what} ..."), chosen(opened.variant, sheets))
-            problem = attempt.problem()
-            for n, composed in attempt.drawn.items():
-                job = plotting.job(composed.drawing, f"sheet{n}", look)
-                jobs[folder / job.name] = job
+            look = plotting.PlotLook(machine, tile, overlap, bar, outline == "on", window)
+            jobs, problem = _plots(opened, sheets, look, folder, progress)
             made = {path: job.data for path, job in jobs.items()}
         if preview:
-            from tmm_sheets.drawing.plotters import plotter
-
-            for path, job in jobs.items():
-                progress.say(f"preview of {path} ...")
-                pictures = plotting.preview(job, machine or plotter(), dpi)
-                made |= {folder / name: data for name, data in pictures.items()}
+            made |= _previews(jobs, machine, dpi, folder, progress)
         if ctb:
             from tmm_sheets.backends import dxf
 
@@ -382,15 +370,49 @@ def plot(
         click.echo(path)
         for note in jobs[path].notes if path in jobs else ():
             click.echo(f"    {note}")
-    for path, job in jobs.items() if printer is not None else ():
-        if dry_run:
-            import shlex
-
-            click.echo(f"would send: {shlex.join(plotting.command(job, path, str(printer)))}")
-        else:
-            click.echo(plotting.send(job, path, str(printer)))
+    if printer is not None:
+        _send(jobs, printer, dry_run)
     if problem is not None:
         raise problem
+
+
+def _plots(opened: Project, sheets: tuple[int, ...], look: PlotLook, folder: Path, progress: Progress) -> tuple[
+        dict[Path, Job], CannotBuild | None]:
+    """Plots of the sheets asked for by their files, and what is to be said of those that cannot be drawn."""
+    from tmm_sheets.output import plot as plotting
+    from tmm_sheets.output.building import chosen
+    from tmm_sheets.sheets import sheet
+
+    attempt = sheet.every(opened, lambda what: progress.say(f"{what} ..."), chosen(opened.variant, sheets))
+    problem = attempt.problem()
+    jobs = [plotting.job(composed.drawing, f"sheet{n}", look) for n, composed in attempt.drawn.items()]
+    return {folder / job.name: job for job in jobs}, problem
+
+
+def _previews(jobs: Mapping[Path, Job], machine: Plotter | None, dpi: float, folder: Path, progress: Progress) -> dict[
+        Path, bytes]:
+    """Pictures of the plots, made from the plots themselves."""
+    from tmm_sheets.drawing.plotters import plotter
+    from tmm_sheets.output import plot as plotting
+
+    made: dict[Path, bytes] = {}
+    for path, job in jobs.items():
+        progress.say(f"preview of {path} ...")
+        made |= {folder / name: data for name, data in plotting.preview(job, machine or plotter(), dpi).items()}
+    return made
+
+
+def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
+    """Send the plots to a printer of CUPS, or tell the commands that would."""
+    import shlex
+
+    from tmm_sheets.output import plot as plotting
+
+    for path, job in jobs.items():
+        if dry_run:
+            click.echo(f"would send: {shlex.join(plotting.command(job, path, printer))}")
+        else:
+            click.echo(plotting.send(job, path, printer))
 
 
 @commands.command()
@@ -420,11 +442,10 @@ def compare(
     if sheet is None and image is not None:
         raise click.UsageError("--image needs --sheet N: which sheet it shows")
     from tmm_sheets import files
-    from tmm_sheets.output.building import folder_name
     from tmm_sheets.progress import Progress
 
     opened = _open(project, corrected)
-    folder = output if output is not None else Path("out") / folder_name(opened.variant.project.name)
+    folder = _folder(opened.variant, output)
     with Progress() as progress:
         def say(what: str) -> None:
             progress.say(f"{what} ...")
@@ -531,6 +552,13 @@ def stress(cases: int, seed: int, single: int | None) -> None:
     failed = report.exceeded(worst)
     if failed:
         raise CannotBuild(f"bound exceeded: {', '.join(failed)}", "the table names a case that shows it")
+
+
+def _folder(variant: Variant, output: Path | None) -> Path:
+    """Folder of a project's files: the one asked for, or one of its own."""
+    from tmm_sheets.output.building import folder_name
+
+    return output if output is not None else Path("out") / folder_name(variant.project.name)
 
 
 def _open(project: str, corrected: bool) -> Project:

@@ -9,7 +9,7 @@ from PIL import Image
 
 from tests.backends.geometry import area, drawn
 from tmm_sheets.backends import png
-from tmm_sheets.drawing.ink import Stroke
+from tmm_sheets.drawing.ink import InkStroke
 from tmm_sheets.drawing.marks import Drawing, Fill, Line
 
 DPI = 127.0  # 5 pixels in a millimetre
@@ -53,7 +53,7 @@ def test_chunks_are_whole():
 def test_widths_are_true(width, turn):
     """A line of 100 mm covers 100 mm times its width and a round end: measured from the sum of the grey."""
     a = 80 + 80j
-    line = Stroke(np.array([a, a + 100 * turn]), width)
+    line = InkStroke(np.array([a, a + 100 * turn]), width)
     grey = np.asarray(read(png.picture(200, 200, [line], 254)), dtype=float)
     covered = float((255 - grey).sum()) / 255 / 100
     assert covered / 100 == pytest.approx(width + np.pi * width**2 / 400, abs=0.01)
@@ -61,8 +61,8 @@ def test_widths_are_true(width, turn):
 
 def test_places_are_true_wherever_a_band_ends(monkeypatch):
     monkeypatch.setattr(png, "BAND", 3000)
-    strokes = [Stroke(np.array([10 + 1j * y, 60 + 1j * y]), 0.8) for y in np.arange(5, 195, 3.7)]
-    strokes.append(Stroke(np.array([62 + 5j, 95 + 195j, 95 + 5j]), 0.8))
+    strokes = [InkStroke(np.array([10 + 1j * y, 60 + 1j * y]), 0.8) for y in np.arange(5, 195, 3.7)]
+    strokes.append(InkStroke(np.array([62 + 5j, 95 + 195j, 95 + 5j]), 0.8))
     many = np.asarray(read(png.picture(100, 200, strokes, DPI)))
     monkeypatch.setattr(png, "BAND", 10**9)
     whole = np.asarray(read(png.picture(100, 200, strokes, DPI)))
@@ -81,7 +81,7 @@ def test_lines_across_bands_are_where_they_are_and_nowhere_else(monkeypatch, see
     rng = np.random.default_rng(seed)
     monkeypatch.setattr(png, "BAND", 500 * (40 + 7 * seed))
     corners = (np.sort(rng.integers(25, 475, 60)) + 1j * rng.integers(100, 400, 60)) / 5
-    image = np.asarray(read(png.picture(100, 100, [Stroke(corners, 0.5)], DPI)))
+    image = np.asarray(read(png.picture(100, 100, [InkStroke(corners, 0.5)], DPI)))
     line = shapely.LineString(np.column_stack((corners.real, corners.imag)))
     i, j = np.nonzero(image < 255)
     assert shapely.distance(shapely.points((j + 0.5) / 5, (500 - i - 0.5) / 5), line).max() < 0.25 + 0.2
@@ -117,7 +117,7 @@ def test_filled_areas_have_no_line_round_them():
 
 
 def test_a_dot_is_as_large_as_its_pen():
-    grey = np.asarray(read(png.picture(20, 20, [Stroke(np.array([10 + 10j, 10 + 10j]), 2.0)], 254)), dtype=float)
+    grey = np.asarray(read(png.picture(20, 20, [InkStroke(np.array([10 + 10j, 10 + 10j]), 2.0)], 254)), dtype=float)
     assert float((255 - grey).sum()) / 255 / 100 == pytest.approx(np.pi, abs=0.05)  # Agg's circle has corners
 
 

@@ -18,7 +18,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
 from tmm_sheets.output import batch, building
 from tmm_sheets.output.batch import Outcome
-from tmm_sheets.output.build_store import RECORD, Archive, Record
+from tmm_sheets.output.build_store import RECORD, Archive, BuildRecord
 from tmm_sheets.output.building import Order
 from tmm_sheets.progress import Bar
 from tmm_sheets.sheets import sheet
@@ -132,7 +132,7 @@ def test_sheets_built_one_by_one_are_still_checked_together(tmp_path, capsys):
 @pytest.mark.parametrize("damage", [b"", b"{}", b"[1]", b"null", b'{"schema": 1, "whole": "", "files": {"a": 1}}', b"\xff\xfe"])
 def test_a_damaged_record_is_no_record(mine, damage):
     _, out, build = mine
-    assert Record.read(damage) == Record()
+    assert BuildRecord.read(damage) == BuildRecord()
     assert build() == 0
     first = contents(out)
     (out / RECORD).write_bytes(damage)
@@ -141,8 +141,8 @@ def test_a_damaged_record_is_no_record(mine, damage):
 
 
 def test_record_round_trip():
-    record = Record({"b": ("1", "2"), "a": ("3", "4")}, "5")
-    assert Record.read(record.data()) == record
+    record = BuildRecord({"b": ("1", "2"), "a": ("3", "4")}, "5")
+    assert BuildRecord.read(record.data()) == record
     assert list(json.loads(record.data())["files"]) == ["a", "b"]
 
 

@@ -55,13 +55,13 @@ def pages(data):
 
 
 def test_pdf_whole_in_tiles_and_of_a_window(sheet):
-    whole = plot.job(sheet, "sheet1", plot.Look())
+    whole = plot.job(sheet, "sheet1", plot.PlotLook())
     assert (whole.name, pages(whole.data)) == ("sheet1-print.pdf", [pytest.approx((841, 594), abs=1e-3)])
-    tiled = plot.job(sheet, "sheet1", plot.Look(tile="a4"))
+    tiled = plot.job(sheet, "sheet1", plot.PlotLook(tile="a4"))
     assert tiled.name == "sheet1-a4.pdf"
     assert pages(tiled.data) == [pytest.approx((210, 297), abs=1e-3)] * 15
     assert tiled.notes[0] == "15 pages A4: 3 rows of 5, overlap 10 mm"
-    part = plot.job(sheet, "sheet1", plot.Look(window=Box(50, 60, 350, 260)))
+    part = plot.job(sheet, "sheet1", plot.PlotLook(window=Box(50, 60, 350, 260)))
     assert (part.name, pages(part.data)) == ("sheet1-x50y60-print.pdf", [pytest.approx((300, 200), abs=1e-3)])
     for job in (whole, tiled, part):
         assert b"/PrintScaling /None" in job.data
@@ -69,12 +69,12 @@ def test_pdf_whole_in_tiles_and_of_a_window(sheet):
 
 
 def test_a_window_in_tiles_has_fewer_pages(sheet):
-    made = plot.job(sheet, "sheet1", plot.Look(tile="a4", window=Box(100, 100, 400, 300)))
+    made = plot.job(sheet, "sheet1", plot.PlotLook(tile="a4", window=Box(100, 100, 400, 300)))
     assert made.notes[0] == "2 pages A4: 1 rows of 2, overlap 10 mm"
 
 
 def test_plot_file_tells_its_paths_and_travel(sheet):
-    made = plot.job(sheet, "sheet1", plot.Look(plotter("a1")))
+    made = plot.job(sheet, "sheet1", plot.PlotLook(plotter("a1")))
     assert made.name == "sheet1-a1.plt"
     assert made.options == ("-o", "raw")
     text = "\n".join(made.notes)
@@ -86,13 +86,13 @@ def test_plot_file_tells_its_paths_and_travel(sheet):
 
 def test_what_a_small_plotter_does_not_reach_is_told_with_windows_that_do(sheet):
     machine = plotter("a3")
-    text = "\n".join(plot.job(sheet, "sheet1", plot.Look(machine)).notes)
+    text = "\n".join(plot.job(sheet, "sheet1", plot.PlotLook(machine)).notes)
     assert "m of lines are beyond the reach of plotter a3" in text
     windows = [Box(*map(float, w.split(","))) for w in re.findall(r"--window (\S+)", text)]
     assert windows == plot.passes(machine, 841, 594)
     covered = np.zeros((594, 841), bool)
     for w in windows:
-        plot.job(sheet, "sheet1", plot.Look(machine, window=w))
+        plot.job(sheet, "sheet1", plot.PlotLook(machine, window=w))
         covered[round(w.y0) : round(w.y1), round(w.x0) : round(w.x1)] = True
     assert covered.all()
 
@@ -101,7 +101,7 @@ def test_outline_and_bar(sheet):
     machine = plotter("a1")
 
     def extent(**look):
-        strokes = plot_file.read(plot.job(sheet, "s", plot.Look(machine, **look)).data, machine).strokes
+        strokes = plot_file.read(plot.job(sheet, "s", plot.PlotLook(machine, **look)).data, machine).strokes
         points = np.concatenate([s.points for s in strokes])
         return points.real.min(), points.real.max()
 
@@ -113,11 +113,11 @@ def test_outline_and_bar(sheet):
 @pytest.mark.parametrize(
     ("look", "said"),
     [
-        (plot.Look(window=Box(0, 0, 900, 100)), "the window 0,0,900,100 is not a part of the sheet, which is 0,0,841,594 mm"),
-        (plot.Look(window=Box(50, 0, 50, 100)), "is not a part of the sheet"),
-        (plot.Look(window=Box(0, 0, float("nan"), 100)), "is not a part of the sheet"),
-        (plot.Look(plotter("a3"), window=Box(0, 0, 500, 100)), "more than plotter a3 reaches: 400 x 276 mm"),
-        (plot.Look(tile="a4", overlap=200), "expected an overlap from 0 to 95 mm"),
+        (plot.PlotLook(window=Box(0, 0, 900, 100)), "the window 0,0,900,100 is not a part of the sheet, which is 0,0,841,594 mm"),
+        (plot.PlotLook(window=Box(50, 0, 50, 100)), "is not a part of the sheet"),
+        (plot.PlotLook(window=Box(0, 0, float("nan"), 100)), "is not a part of the sheet"),
+        (plot.PlotLook(plotter("a3"), window=Box(0, 0, 500, 100)), "more than plotter a3 reaches: 400 x 276 mm"),
+        (plot.PlotLook(tile="a4", overlap=200), "expected an overlap from 0 to 95 mm"),
     ],
 )
 def test_impossible_looks(sheet, look, said):
@@ -128,7 +128,7 @@ def test_impossible_looks(sheet, look, said):
 @pytest.mark.parametrize("name", ["a1", "a1_centre", "printer", "a3"])
 def test_preview_shows_the_plot_file(sheet, name):
     machine = plotter(name)
-    job = plot.job(sheet, "sheet1", plot.Look(machine))
+    job = plot.job(sheet, "sheet1", plot.PlotLook(machine))
     ((file, data),) = plot.preview(job, machine, 127).items()
     image = np.asarray(Image.open(BytesIO(data)))
     width, height = (841, 594) if name != "a3" else (400, 276)
@@ -156,10 +156,10 @@ def test_without_a_program_that_shows_pdf(monkeypatch):
 
 
 def test_what_lp_is_given(sheet, lp, tmp_path):
-    job = plot.job(sheet, "sheet1", plot.Look(plotter("printer")))
+    job = plot.job(sheet, "sheet1", plot.PlotLook(plotter("printer")))
     assert plot.send(job, tmp_path / job.name, "A1") == "request id is A1-7"
     assert lp.read_text().split() == ["-d", "A1", "-t", job.name, "-o", "raw", "--", str(tmp_path / job.name)]
-    job = plot.job(sheet, "sheet1", plot.Look(tile="a3"))
+    job = plot.job(sheet, "sheet1", plot.PlotLook(tile="a3"))
     plot.send(job, tmp_path / job.name, "-x; rm")
     assert lp.read_text().split("\n")[:2] == ["-d", "-x; rm"]
     assert lp.read_text().split("\n")[4:8] == ["-o", "print-scaling=none", "-o", "media=A3"]
@@ -167,13 +167,13 @@ def test_what_lp_is_given(sheet, lp, tmp_path):
 
 def test_lp_refuses(sheet, lp, tmp_path):
     with pytest.raises(CannotBuild, match="printer nobody did not take it: lp: no such printer\n    lpstat -p"):
-        plot.send(plot.job(sheet, "sheet1", plot.Look()), tmp_path / "a.pdf", "nobody")
+        plot.send(plot.job(sheet, "sheet1", plot.PlotLook()), tmp_path / "a.pdf", "nobody")
 
 
 def test_no_cups(sheet, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", "")
     with pytest.raises(CannotBuild, match="there is no CUPS here"):
-        plot.send(plot.job(sheet, "sheet1", plot.Look()), tmp_path / "a.pdf", "A1")
+        plot.send(plot.job(sheet, "sheet1", plot.PlotLook()), tmp_path / "a.pdf", "A1")
 
 
 # --- the command ----------------------------------------------------------------------------------------------------

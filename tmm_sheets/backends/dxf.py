@@ -67,7 +67,7 @@ TITLE, AUTHOR, HANDSEED = "{title}", "{author}", "{first free handle}"
 """What stands in a frame for what differs from sheet to sheet."""
 
 
-class Frame(NamedTuple):
+class DxfFrame(NamedTuple):
     """Everything round the entities, the same for all sheets of a size: text before and after, owner and first free handle."""
 
     head: str
@@ -77,7 +77,7 @@ class Frame(NamedTuple):
 
 
 @cache
-def _frame(width: float, height: float) -> Frame:
+def _frame(width: float, height: float) -> DxfFrame:
     before = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True  # no dates and random identifiers: the same bytes every time
     try:
@@ -86,7 +86,7 @@ def _frame(width: float, height: float) -> Frame:
         options.write_fixed_meta_data_for_testing = before
 
 
-def _written(doc: Document) -> Frame:
+def _written(doc: Document) -> DxfFrame:
     # The library keeps the names of required classes in a set: without sorting their order changes from run to run.
     doc.classes.add_required_classes(doc.dxfversion)
     doc.classes.classes = OrderedDict(sorted(doc.classes.classes.items()))
@@ -95,7 +95,7 @@ def _written(doc: Document) -> Frame:
     start, entities, tail = text.getvalue().partition("  2\nENTITIES\n")
     first = str(doc.entitydb.handles)
     head = re.sub(r"(?<=\$HANDSEED\n  5\n)[0-9A-F]+", HANDSEED, start + entities, count=1)
-    return Frame(head, tail, doc.modelspace().layout_key, int(first, 16))
+    return DxfFrame(head, tail, doc.modelspace().layout_key, int(first, 16))
 
 
 def _document(width: float, height: float) -> Document:

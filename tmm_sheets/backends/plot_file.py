@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_sheets.drawing.ink import Stroke
+from tmm_sheets.drawing.ink import InkStroke
 from tmm_sheets.drawing.pen_paths import STEP
 from tmm_sheets.drawing.plotters import Plotter
 
@@ -25,7 +25,7 @@ class Plot:
     ``pens`` are the pens taken, in order; ``size`` the page in mm if the file says it; ``travel`` the way of the lifted pen.
     """
 
-    strokes: list[Stroke] = field(default_factory=list)
+    strokes: list[InkStroke] = field(default_factory=list)
     pens: list[int] = field(default_factory=list)
     size: tuple[float, float] | None = None
     travel: float = 0.0
@@ -39,7 +39,7 @@ def read(data: bytes, plotter: Plotter) -> Plot:
     ValueError
         When it is not HPGL, or holds a command that this program does not write; the message names command and place.
     """
-    reader = _Reader({pen.number: pen.width for pen in plotter.pens})
+    reader = _PlotReader({pen.number: pen.width for pen in plotter.pens})
     text = _WRAPPER.sub("", data.decode("latin-1")).strip()
     at = 0
     while at < len(text):
@@ -58,7 +58,7 @@ def read(data: bytes, plotter: Plotter) -> Plot:
     return reader.plot
 
 
-class _Reader:
+class _PlotReader:
     """The state of the machine; its methods with names in capitals are the commands."""
 
     def __init__(self, widths: dict[int, float]) -> None:
@@ -71,7 +71,7 @@ class _Reader:
     def lift(self) -> None:
         """What was drawn since the pen went down becomes a stroke."""
         if len(self.path) > 1 and not self.polygon:
-            self.plot.strokes.append(Stroke(np.array(self.path), self.width))
+            self.plot.strokes.append(InkStroke(np.array(self.path), self.width))
             self.path = self.path[-1:]
 
     def IN(self, numbers: list[float]) -> None:
@@ -103,7 +103,7 @@ class _Reader:
         self.lift()
         self.polygon = not numbers or numbers[0] == 0
         if not self.polygon:
-            self.plot.strokes.append(Stroke(np.array(self.path), 0.0, True))
+            self.plot.strokes.append(InkStroke(np.array(self.path), 0.0, True))
             self.path = self.path[-1:]
 
 

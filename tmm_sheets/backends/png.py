@@ -20,7 +20,7 @@ from matplotlib.path import Path as AggPath
 from matplotlib.transforms import Affine2D
 
 from tmm_sheets.drawing.clipping import polyline_inside
-from tmm_sheets.drawing.ink import SAGITTA, Stroke, ink
+from tmm_sheets.drawing.ink import SAGITTA, InkStroke, ink
 from tmm_sheets.drawing.marks import Box, Drawing, Points
 from tmm_sheets.files import put
 
@@ -50,7 +50,7 @@ def render(drawing: Drawing, dpi: float = DPI) -> bytes:
 
 
 def picture(
-    width: float, height: float, strokes: Iterable[Stroke], dpi: float = DPI, title: str = "", author: str = ""
+    width: float, height: float, strokes: Iterable[InkStroke], dpi: float = DPI, title: str = "", author: str = ""
 ) -> bytes:
     """PNG of strokes on paper of ``width`` x ``height`` mm.
 
@@ -92,7 +92,7 @@ def _filtered(bands: Iterable[npt.NDArray[np.uint8]]) -> Iterator[bytes]:
         yield lines.tobytes()
 
 
-def _bands(columns: int, rows: int, strokes: list[Stroke], dpi: float) -> Iterator[npt.NDArray[np.uint8]]:
+def _bands(columns: int, rows: int, strokes: list[InkStroke], dpi: float) -> Iterator[npt.NDArray[np.uint8]]:
     """The picture from the top down, in bands of whole rows: 255 for paper, 0 for ink."""
     pixel = dpi / INCH
     # Lines are cut a little outside of a band, by half a pen and more, where their round ends do not show.
@@ -119,7 +119,7 @@ def _bands(columns: int, rows: int, strokes: list[Stroke], dpi: float) -> Iterat
         yield 255 - np.asarray(agg.buffer_rgba())[rim : tall - rim, :, 3]
 
 
-def _paths(stroke: Stroke, box: Box) -> Iterator[AggPath]:
+def _paths(stroke: InkStroke, box: Box) -> Iterator[AggPath]:
     """A stroke as Agg wants it, cut to a box: left to itself matplotlib draws lines of its own where a curve leaves the picture."""
     points = stroke.points
     if stroke.filled:

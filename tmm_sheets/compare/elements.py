@@ -25,7 +25,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing import dashes
-from tmm_sheets.drawing.canvas import Group
+from tmm_sheets.drawing.canvas import MarkGroup
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
@@ -192,7 +192,7 @@ def _numbered(found: Sequence[tuple[str, str, Box]]) -> Iterator[ElementView]:
         yield ElementView(n, name if count[name] == 1 else f"{name}, {count[name]}", draw, box)
 
 
-def _groups(marks: Sequence[Mark], groups: Sequence[Group]) -> Iterator[tuple[int, int, Group | None]]:
+def _groups(marks: Sequence[Mark], groups: Sequence[MarkGroup]) -> Iterator[tuple[int, int, MarkGroup | None]]:
     """Ranges of marks that are one thing, in order: groups, consecutive hatch lines, single marks."""
     begin = {g.first: g for g in groups}
     i = 0
@@ -225,7 +225,7 @@ def _line(mark: Mark) -> Points:
     return np.append(points, points[:1]) if isinstance(mark, Fill) or mark.closed else points
 
 
-def _element(number: int, view: ElementView, marks: Sequence[Mark], group: Group | None) -> Element:
+def _element(number: int, view: ElementView, marks: Sequence[Mark], group: MarkGroup | None) -> Element:
     """The element that consists of some marks."""
     grouped = group.kind if group is not None else ""
     whole, of = tuple(marks), marks[0].of
@@ -293,7 +293,7 @@ def _rectangle(z: Points) -> Points:
     return np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1), complex(x0, y0)])
 
 
-def _named(found: list[Element], groups: Sequence[Group], view_of_part: tuple[ElementView, ...]) -> Iterator[Element]:
+def _named(found: list[Element], groups: Sequence[MarkGroup], view_of_part: tuple[ElementView, ...]) -> Iterator[Element]:
     """The elements, named by the labels of the sheet: a label knows the point it was asked for."""
     anchors: dict[ElementView, tuple[list[complex], list[str]]] = {}
     for g in groups:

@@ -66,7 +66,7 @@ class Part(NamedTuple):
     scales: int = 0
 
 
-class Group(NamedTuple):
+class MarkGroup(NamedTuple):
     """Marks ``first`` .. ``end`` - 1, which whoever looks at the sheet sees as one thing.
 
     ``text`` is the markup of lettering; ``part`` and ``anchor`` are those of a label, set when all views were drawn.
@@ -96,7 +96,7 @@ class Canvas:
     chosen: set[str] = field(default_factory=set)
     of: str = ""
     parts: list[Part] = field(default_factory=list)
-    groups: list[Group] = field(default_factory=list)
+    groups: list[MarkGroup] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
@@ -105,7 +105,7 @@ class Canvas:
 
     def _one(self, kind: Literal["arrow", "dot", "hatch", "lettering"], first: int, text: str = "") -> None:
         if len(self.marks) > first:
-            self.groups.append(Group(kind, first, len(self.marks), text))
+            self.groups.append(MarkGroup(kind, first, len(self.marks), text))
 
     def line(self, a: complex, b: complex, style: str = "thin") -> None:
         """Straight stroke; nothing is drawn for a zero length or a NaN end."""
@@ -321,4 +321,4 @@ def hatch_polygon(canvas: Canvas, outline: Points, step: float = 3.0, angle: flo
             (ax, ay), (bx, by) = part.coords[0], part.coords[-1]
             canvas.line(complex(ax, ay), complex(bx, by), "hatch")
     if len(canvas.marks) > first:
-        canvas.groups.append(Group("hatch", first, len(canvas.marks)))
+        canvas.groups.append(MarkGroup("hatch", first, len(canvas.marks)))

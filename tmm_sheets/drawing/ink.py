@@ -20,7 +20,7 @@ from tmm_sheets.drawing.styles import line_type
 SAGITTA = 0.005  # mm between an arc and its chords
 
 
-class Stroke(NamedTuple):
+class InkStroke(NamedTuple):
     """A round pen ``width`` mm wide along ``points``, mm; when ``filled`` the area they go round, without a pen."""
 
     points: Points
@@ -28,7 +28,7 @@ class Stroke(NamedTuple):
     filled: bool = False
 
 
-def ink(marks: Iterable[Mark], sagitta: float = SAGITTA) -> Iterator[Stroke]:
+def ink(marks: Iterable[Mark], sagitta: float = SAGITTA) -> Iterator[InkStroke]:
     """Strokes of the marks in their order; a closed curve ends where it began.
 
     Raises
@@ -40,11 +40,11 @@ def ink(marks: Iterable[Mark], sagitta: float = SAGITTA) -> Iterator[Stroke]:
         check(mark)
         if isinstance(mark, Text):
             for points in letters(mark):
-                yield Stroke(points, lettering.PEN * mark.height)
+                yield InkStroke(points, lettering.PEN * mark.height)
         elif isinstance(mark, Fill):
-            yield Stroke(np.asarray(mark.points), 0.0, True)
+            yield InkStroke(np.asarray(mark.points), 0.0, True)
         else:
-            yield Stroke(_points(mark, sagitta), line_type(mark.style).width)
+            yield InkStroke(_points(mark, sagitta), line_type(mark.style).width)
 
 
 def letters(text: Text) -> Iterator[Points]:

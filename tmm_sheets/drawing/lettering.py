@@ -33,7 +33,7 @@ _OVERLAP = 0.25  # mm an index may reach into the cell of its base, or the next 
 # the slope asks for more, but programs that read a PDF back would take that for lettering printed over lettering
 
 
-class Run(NamedTuple):
+class LetterRun(NamedTuple):
     """Plain letters on one baseline; ``at`` is its left end relative to the whole lettering, mm."""
 
     at: complex
@@ -41,7 +41,7 @@ class Run(NamedTuple):
     height: float
 
 
-class Bar(NamedTuple):
+class VectorBar(NamedTuple):
     """A stroke over a letter, mm."""
 
     a: complex
@@ -54,8 +54,8 @@ class Lettering(NamedTuple):
     width: float
     ascent: float
     descent: float
-    runs: tuple[Run, ...]
-    bars: tuple[Bar, ...]
+    runs: tuple[LetterRun, ...]
+    bars: tuple[VectorBar, ...]
 
 
 class Glyph(NamedTuple):
@@ -146,8 +146,8 @@ class _Setter:
 
     def __init__(self, markup: str) -> None:
         self.source = markup
-        self.runs: list[Run] = []
-        self.bars: list[Bar] = []
+        self.runs: list[LetterRun] = []
+        self.bars: list[VectorBar] = []
 
     def fail(self, why: str) -> ValueError:
         return ValueError(f"lettering '{self.source}': {why}")
@@ -181,7 +181,7 @@ class _Setter:
 
     def flush(self, text: str, start: complex, height: float) -> None:
         if text.strip():
-            self.runs.append(Run(start, text, height))
+            self.runs.append(LetterRun(start, text, height))
 
     def indices(self, markup: str, i: int, pen: complex, height: float) -> tuple[int, complex]:
         """Set the index at ``i`` and one of the other kind right after it; returns where the markup and the line go on."""
@@ -229,7 +229,7 @@ class _Setter:
             last = self.bars.pop()
             lift = max(a.imag - last.a.imag, 0.0)
             a, b = last.a + complex(slant() * lift, lift), complex(b.real, last.a.imag + lift)
-        self.bars.append(Bar(a, b))
+        self.bars.append(VectorBar(a, b))
 
 
 @lru_cache(maxsize=8192)

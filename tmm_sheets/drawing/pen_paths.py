@@ -71,28 +71,7 @@ def plan(drawing: Drawing, plotter: Plotter, window: Box | None = None) -> PenPl
     view = window or Box(0.0, 0.0, drawing.width, drawing.height)
     width, height = view.x1 - view.x0, view.y1 - view.y0
     shift = complex(-view.x0, -view.y0) - (complex(width, height) / 2 if plotter.origin == "centre" else 0)
-    reach = Box(*(round(v, 6) for v in (
-        max(plotter.reach.x0, view.x0 + shift.real), max(plotter.reach.y0, view.y0 + shift.imag),
-        min(plotter.reach.x1, view.x1 + shift.real), min(plotter.reach.y1, view.y1 + shift.imag),
-    )))  # fmt: skip
-    lines: dict[Pen, list[Path]] = defaultdict(list)
-    areas: dict[Pen, list[Path]] = defaultdict(list)
-    lost, strokes = 0.0, 0
-    for stroke in ink(drawing.marks):
-        points = stroke.points + shift
-        if not _touches(reach, points):  # in a window: another will have it
-            lost += 0.0 if stroke.filled else _length(points)
-            continue
-        strokes += 1
-        if stroke.filled and not plotter.pens:
-            if _inside(reach, points):
-                areas[Pen(1, 0.2)].append(_steps(points))
-            continue
-        pen = plotter.finest if stroke.filled else plotter.pen(stroke.width)
-        for way in of_area(points, pen.width) if stroke.filled else of_line(points, stroke.width, pen.width):
-            parts = [way] if _inside(reach, way) else polyline_inside(reach, way)
-            lost += _length(way) - sum(map(_length, parts))
-            lines[pen] += [_steps(part) for part in parts]
+    lines, areas, strokes, lost = _pen_ways(drawing, plotter, view, shift)
     order = plotter.pens or tuple(sorted({*lines, *areas}, key=lambda pen: pen.width))
     layers, before, after, drawn, doubled, place = [], 0.0, 0.0, 0.0, 0.0, (0, 0)
     last = (0, 0)
@@ -111,6 +90,37 @@ def plan(drawing: Drawing, plotter: Plotter, window: Box | None = None) -> PenPl
         layers.append(Layer(pen, tuple(paths), tuple(areas[pen])))
     return PenPlan(plotter, width, height, tuple(layers), strokes, STEP * drawn, STEP * before, STEP * after, STEP * doubled,
                    lost if window is None else 0.0)  # fmt: skip
+
+
+def _pen_ways(drawing: Drawing, plotter: Plotter, view: Box, shift: complex) -> tuple[
+        defaultdict[Pen, list[Path]], defaultdict[Pen, list[Path]], int, float]:
+    """Lines and filled areas of each pen within the view and the plotter's reach, in the drawing's order.
+
+    Also how many strokes of the drawing they come from, and the length of what is beyond the reach, mm.
+    """
+    reach = Box(*(round(v, 6) for v in (
+        max(plotter.reach.x0, view.x0 + shift.real), max(plotter.reach.y0, view.y0 + shift.imag),
+        min(plotter.reach.x1, view.x1 + shift.real), min(plotter.reach.y1, view.y1 + shift.imag),
+    )))  # fmt: skip
+    lines: defaultdict[Pen, list[Path]] = defaultdict(list)
+    areas: defaultdict[Pen, list[Path]] = defaultdict(list)
+    lost, strokes = 0.0, 0
+    for stroke in ink(drawing.marks):
+        points = stroke.points + shift
+        if not _touches(reach, points):  # in a window: another will have it
+            lost += 0.0 if stroke.filled else _length(points)
+            continue
+        strokes += 1
+        if stroke.filled and not plotter.pens:
+            if _inside(reach, points):
+                areas[Pen(1, 0.2)].append(_steps(points))
+            continue
+        pen = plotter.finest if stroke.filled else plotter.pen(stroke.width)
+        for way in of_area(points, pen.width) if stroke.filled else of_line(points, stroke.width, pen.width):
+            parts = [way] if _inside(reach, way) else polyline_inside(reach, way)
+            lost += _length(way) - sum(map(_length, parts))
+            lines[pen] += [_steps(part) for part in parts]
+    return lines, areas, strokes, lost
 
 
 def without_doubles(paths: Iterable[Path]) -> Iterator[Path]:

@@ -47,7 +47,7 @@ def program() -> str:
 
 
 @dataclass
-class Record:
+class BuildRecord:
     """What is known of the files of an earlier build: for each name what it was made from and its content, as fingerprints.
 
     ``whole`` is the fingerprint of the inputs with which all sheets of the project passed together.
@@ -57,7 +57,7 @@ class Record:
     whole: str = ""
 
     @classmethod
-    def read(cls, data: bytes | None) -> Record:
+    def read(cls, data: bytes | None) -> BuildRecord:
         """The record of these bytes; an empty one when they are not such a record."""
         try:
             tree = json.loads(data or b"")
@@ -152,12 +152,12 @@ class Archive:
 Outlet = Folder | Archive
 
 
-def record_of(outlet: Outlet) -> Record:
+def record_of(outlet: Outlet) -> BuildRecord:
     """The record that stands at a place."""
-    return Record.read(outlet.read(RECORD))
+    return BuildRecord.read(outlet.read(RECORD))
 
 
-def current(outlet: Outlet, record: Record, name: str, made_from: str) -> bool:
+def current(outlet: Outlet, record: BuildRecord, name: str, made_from: str) -> bool:
     """True when the file is there as it was made from these very inputs."""
     known = record.files.get(name)
     if known is None or known[0] != made_from:
@@ -166,8 +166,8 @@ def current(outlet: Outlet, record: Record, name: str, made_from: str) -> bool:
     return data is not None and fingerprint(data) == known[1]
 
 
-def keep(outlet: Outlet, record: Record, made: Mapping[str, bytes], made_from: Mapping[str, str], whole: str | None) -> None:
+def keep(outlet: Outlet, record: BuildRecord, made: Mapping[str, bytes], made_from: Mapping[str, str], whole: str | None) -> None:
     """Write files together with the record of them."""
     known: dict[str, Any] = record.files | {name: (made_from[name], fingerprint(data)) for name, data in made.items()}
-    told = Record(known, record.whole if whole is None else whole)
+    told = BuildRecord(known, record.whole if whole is None else whole)
     outlet.write({**made, RECORD: told.data()})

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.explain import Stopwatch
-from tmm_sheets.output.build_store import Archive, Folder, Outlet, current, fingerprint, keep, program, record_of
+from tmm_sheets.output.build_store import Archive, BuildRecord, Folder, Outlet, current, fingerprint, keep, program, record_of
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.marks import Drawing
@@ -90,17 +90,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     outlet.check()
     wanted = {(form, n): f"sheet{n}.{SUFFIXES.get(form, form)}" for form in order.formats for n in numbers}
     outlet.sweep(wanted.values())
-    inputs = fingerprint(program(), variant.text)
-    set_so = {form: repr(sorted(order.settings.get(form, {}).items())) for form in order.formats}
-    made_from = {name: fingerprint(inputs, set_so[form]) for (form, _), name in wanted.items()}
-    with watch.phase("compare with what is there"):
-        record = record_of(outlet)
-        due = {key: name for key, name in wanted.items()
-               if order.force or not current(outlet, record, name, made_from[name])}
-    # Only all sheets together can tell whether each scale factor of the file is of use.
-    whole = len(numbers) == len(variant.sheets)
-    check = whole and (order.force or record.whole != inputs)
-    asked = numbers if check else sorted({n for _, n in due})
+    work = _work(variant, order, outlet, numbers, wanted, watch)
 
     @contextmanager
     def watched(n: int) -> Iterator[None]:
@@ -108,15 +98,56 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
         with watch.phase(f"sheet {n}"):
             yield
 
-    drawn, problem = _drawn(opened, asked, watched, others=len(asked) < len(numbers))
-    whole_passed = check and problem is None
+    drawn, problem = _drawn(opened, work.sheets, watched, others=len(work.sheets) < len(numbers))
+    whole_passed = work.whole and problem is None
     if whole_passed:
         _refuse_idle_scales(variant, {name for composed in drawn.values() for name in composed.scales})
+    failed = set(work.sheets) - set(drawn)
     if problem is not None:
-        problem = _with_stale(problem, [name for (_, n), name in wanted.items() if n in asked and n not in drawn], outlet)
-    wanted = {(form, n): name for (form, n), name in wanted.items() if n in drawn or n not in asked}
-    due = {key: name for key, name in due.items() if key in wanted}
+        problem = _with_stale(problem, [name for (_, n), name in wanted.items() if n in failed], outlet)
     drawings = {n: composed.drawing for n, composed in drawn.items()}
+    made = _rendered(drawings, {key: name for key, name in work.due.items() if key[1] not in failed}, order, watch, say)
+    if made or whole_passed:
+        with watch.phase("write files"):
+            keep(outlet, work.record, made, work.made_from, work.inputs if whole_passed else None)
+    paths = tuple(outlet.path(name) for (_, n), name in wanted.items() if n not in failed)
+    sizes = {outlet.path(name): len(data) for name, data in made.items()}
+    return Built(paths, sizes, drawings, opened, problem, _warnings(opened, drawn))
+
+
+@dataclass(frozen=True)
+class _Work:
+    """What a build has to do: the files that are due, by format and sheet, and the sheets to be drawn for them.
+
+    ``whole`` is true where all sheets together are to be checked, which only they can be: whether each scale factor of the
+    file is of use. ``inputs`` is the fingerprint of program and project file, ``made_from`` those of each file wanted.
+    """
+
+    record: BuildRecord
+    inputs: str
+    made_from: dict[str, str]
+    due: dict[tuple[str, int], str]
+    sheets: list[int]
+    whole: bool
+
+
+def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wanted: Mapping[tuple[str, int], str],
+          watch: Stopwatch) -> _Work:
+    """What of the files wanted of sheets ``numbers`` is not current."""
+    inputs = fingerprint(program(), variant.text)
+    set_so = {form: repr(sorted(order.settings.get(form, {}).items())) for form in order.formats}
+    made_from = {name: fingerprint(inputs, set_so[form]) for (form, _), name in wanted.items()}
+    with watch.phase("compare with what is there"):
+        record = record_of(outlet)
+        due = {key: name for key, name in wanted.items()
+               if order.force or not current(outlet, record, name, made_from[name])}
+    whole = len(numbers) == len(variant.sheets) and (order.force or record.whole != inputs)
+    return _Work(record, inputs, made_from, due, numbers if whole else sorted({n for _, n in due}), whole)
+
+
+def _rendered(drawings: Mapping[int, Drawing], due: Mapping[tuple[str, int], str], order: Order, watch: Stopwatch,
+              say: Callable[[str], None]) -> dict[str, bytes]:
+    """Contents of the files due, one format after another."""
     made: dict[str, bytes] = {}
     for form in dict.fromkeys(form for form, _ in due):
         with watch.phase(f"import of the {form} writer"):
@@ -124,17 +155,18 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
         for n in (n for f, n in due if f == form):
             say(f"sheet {n} as {form}")
             with watch.phase(f"{form} of sheet {n}"):
-                made[wanted[form, n]] = render(drawings[n], **order.settings.get(form, {}))
-    if made or whole_passed:
-        with watch.phase("write files"):
-            keep(outlet, record, made, made_from, inputs if whole_passed else None)
-    sizes = {outlet.path(name): len(data) for name, data in made.items()}
-    warnings = [f"sheet {n}: {told}" for n, composed in drawn.items() for told in (*composed.leaving, *composed.crowded)]
-    if drawings and variant.crank is not None:
+                made[due[form, n]] = render(drawings[n], **order.settings.get(form, {}))
+    return made
+
+
+def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]:
+    """What is not as a sheet should be, sheet by sheet, then the plans that no sheet shows."""
+    told = [f"sheet {n}: {what}" for n, composed in drawn.items() for what in (*composed.leaving, *composed.crowded)]
+    if drawn and opened.variant.crank is not None:
         from tmm_sheets.sheets import kinematic_frames
 
-        warnings += kinematic_frames.left_out(opened, drawings)
-    return Built(tuple(outlet.path(name) for name in wanted.values()), sizes, drawings, opened, problem, tuple(warnings))
+        told += kinematic_frames.left_out(opened, drawn)
+    return tuple(told)
 
 
 def _drawn(opened: Project, asked: list[int], around: Callable[[int], AbstractContextManager[None]], *, others: bool) -> tuple[

@@ -29,7 +29,7 @@ PATIENCE = 600  # s for the program that shows or takes a file
 
 
 @dataclass(frozen=True)
-class Look:
+class PlotLook:
     """How sheets are put on paper.
 
     ``plotter`` makes a plot file, without one it is a PDF; ``tile`` a4 or a3 cuts it into pages with ``overlap`` mm;
@@ -54,7 +54,7 @@ class Job:
     notes: tuple[str, ...]
 
 
-def job(drawing: Drawing, name: str, look: Look) -> Job:
+def job(drawing: Drawing, name: str, look: PlotLook) -> Job:
     """The plot of a sheet.
 
     Raises
@@ -112,7 +112,7 @@ def passes(plotter: Plotter, width: float, height: float) -> list[Box]:
     return [Box(x0, y0, x1, y1) for (y0, y1), (x0, x1) in product(reversed(spans[1]), spans[0])]
 
 
-def _printed(drawing: Drawing, name: str, look: Look) -> Job:
+def _printed(drawing: Drawing, name: str, look: PlotLook) -> Job:
     from tmm_sheets.backends import pdf
     from tmm_sheets.drawing.marks import Drawing
     from tmm_sheets.drawing.tiles import tiles

@@ -94,14 +94,7 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         y -= gap + up
         origins.append(complex(x0, y))
         y -= down
-    for p in (law.rise, law.fall):
-        for at in (p.start, p.end):
-            x = x0 + float(m.scales.phi.mm(at))
-            # Interrupted where the headings of the diagrams stand.
-            for upper, lower, up in zip(origins, origins[1:], ups[1:], strict=False):
-                head = lower.imag + up
-                canvas.line(complex(x, upper.imag), complex(x, head + 11.0), "construction")
-                canvas.line(complex(x, head + 4.0), complex(x, lower.imag), "construction")
+    _phase_borders(canvas, m, origins, ups)
     heads = (
         f"{m.scales.dds}",
         f"{m.scales.ds},  H_1 = {number(m.scales.h1)} мм",
@@ -118,8 +111,24 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         _auxiliary_circle(canvas, origins[0], m)
     _integration(canvas, origins[0], origins[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
     _integration(canvas, origins[1], origins[2], m, m.names[2], m.s, "P_2", "H_2", downs[1])
-    base = origins[2] - 7j
-    for p in (law.rise, law.upper_dwell, law.fall):
+    _phase_angles(canvas, m, origins[2] - 7j)
+    _relations(canvas, m, complex(box.x0 + 2.0, origins[2].imag + ups[2]))
+
+
+def _phase_borders(canvas: Canvas, m: Motion, origins: list[complex], ups: list[float]) -> None:
+    """Lines through all diagrams where rise and fall begin and end, interrupted where the headings stand."""
+    for p in (m.law.rise, m.law.fall):
+        for at in (p.start, p.end):
+            x = origins[0].real + float(m.scales.phi.mm(at))
+            for upper, lower, up in zip(origins, origins[1:], ups[1:], strict=False):
+                head = lower.imag + up
+                canvas.line(complex(x, upper.imag), complex(x, head + 11.0), "construction")
+                canvas.line(complex(x, head + 4.0), complex(x, lower.imag), "construction")
+
+
+def _phase_angles(canvas: Canvas, m: Motion, base: complex) -> None:
+    """Dimensions of the phases in a row that begins at ``base``; of narrow ones only the sign, below the row if need be."""
+    for p in (m.law.rise, m.law.upper_dwell, m.law.fall):
         if p.angle > 0:
             a, b = (base + float(m.scales.phi.mm(v)) for v in (p.start, p.end))
             wide = abs(b - a)
@@ -127,8 +136,12 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
             canvas.dimension(a, b, -8.0, full if wide > 28.0 else p.symbol if wide > 9.0 else "")
             if wide <= 9.0:
                 canvas.label((a + b) / 2 - 8j, p.symbol, -1j, 3.5, 1.5, leader=False)
-    factor = f"{m.scales.phi}  ({number(degrees(m.scales.phi.mu))} град/мм)"
-    canvas.text(complex(box.x0 + 2.0, origins[2].imag + ups[2]), factor, 3.5)
+
+
+def _relations(canvas: Canvas, m: Motion, at: complex) -> None:
+    """Scale factor of the angle, and how the other scale factors and the heights of S'' follow from one another."""
+    law = m.law
+    canvas.text(at, f"{m.scales.phi}  ({number(degrees(m.scales.phi.mu))} град/мм)", 3.5)
     second, first, zero = (f"μ_{name}" for name in m.names)
     equal = "φ_с^2/φ_у^2 = " if law.rise.law.peak == law.fall.law.peak else ""
     lines = (
@@ -137,7 +150,7 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         f"{zero} = {first}·μ_φ·H_2",
     )
     for i, line in enumerate(lines, 1):
-        canvas.text(complex(box.x0 + 2.0, origins[2].imag + ups[2] - 8.0 * i), line, 3.5)
+        canvas.text(complex(at.real, at.imag - 8.0 * i), line, 3.5)
 
 
 def _diagram(canvas: Canvas, o: complex, up: float, down: float, end: float, symbol: str, head: str) -> None:

@@ -27,10 +27,10 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
     cam: Cam = project.cam
     room = Box(box.x0 + 3, box.y0 + 4, box.x1 - 3, box.y1 - 24)
-    picture = _Picture(cam, room)
+    picture = _ProfilePicture(cam, room)
     if not picture.corner(_table_size(cam)):
         # No free corner: the figure leaves the foot of its place to the table.
-        picture = _Picture(cam, Box(room.x0, room.y0 + _table_size(cam)[1] + 6, room.x1, room.y1))
+        picture = _ProfilePicture(cam, Box(room.x0, room.y0 + _table_size(cam)[1] + 6, room.x1, room.y1))
     canvas.scales[cam.inversion.plan.name] = picture.scale
     canvas.title(box, "Построение профиля кулачка", f"М {picture.drawn}:{picture.real}   {picture.scale}")
     inv, at, r = cam.inversion, picture.at, picture.roller
@@ -66,7 +66,7 @@ GUIDE = 22.0
 """What the guide of a translating follower and the end of its rod take above the roller, mm of paper."""
 
 
-class _Picture:
+class _ProfilePicture:
     """Where the figure of the profile stands on paper: ``at`` turns points of the cam's frame, m, into millimetres.
 
     ``start`` is the direction from which the phases are laid off, ``first`` that of the roller in position 0, rad.
@@ -209,7 +209,7 @@ def _given(cam: Any) -> list[list[str]]:
     return rows
 
 
-def _circles(canvas: Canvas, picture: _Picture) -> None:
+def _circles(canvas: Canvas, picture: _ProfilePicture) -> None:
     """Circles r0, e and l0 with their radii, drawn where the cam dwells: no follower line is there."""
     cam, origin, scale = picture.cam, picture.origin, picture.scale
     radii = [("r_0", cam.r0, 0.3)]
@@ -246,7 +246,7 @@ def _arcs(inv: Inversion, right: float) -> list[tuple[complex, float]]:
     return list(furthest.values())
 
 
-def _inverted(canvas: Canvas, picture: _Picture) -> None:
+def _inverted(canvas: Canvas, picture: _ProfilePicture) -> None:
     """Follower lines or arms in the inverted motion, and arcs about O through the marks of the path."""
     cam, at = picture.cam, picture.at
     inv, right = cam.inversion, cam.right
@@ -266,12 +266,12 @@ def _inverted(canvas: Canvas, picture: _Picture) -> None:
         canvas.arc(picture.origin, abs(at(mark) - picture.origin), ends[0], ends[1], "construction")
 
 
-def _tappet(canvas: Canvas, picture: _Picture) -> None:
+def _tappet(canvas: Canvas, picture: _ProfilePicture) -> None:
     """Translating follower in position 0: roller, rod, guide, and the marks of its path."""
     _rod(canvas, picture, min(1.8, 0.3 * picture.roller))
 
 
-def _rod(canvas: Canvas, picture: _Picture, hole: float) -> None:
+def _rod(canvas: Canvas, picture: _ProfilePicture, hole: float) -> None:
     inv, at = picture.cam.inversion, picture.at
     marks = inv.axis.value
     low = at(marks[0])
@@ -293,7 +293,7 @@ def _rod(canvas: Canvas, picture: _Picture, hole: float) -> None:
         canvas.label(p + 1.8 * side, inv.plan.labels[k], side + 0j, 3.5, 0.4)
 
 
-def _rocker(canvas: Canvas, picture: _Picture) -> None:
+def _rocker(canvas: Canvas, picture: _ProfilePicture) -> None:
     """Rocker in position 0, circle l0 with the axes of the inverted positions, marks of the path, triangle OAB."""
     cam, at = picture.cam, picture.at
     inv = cam.inversion
@@ -328,7 +328,7 @@ def _rocker(canvas: Canvas, picture: _Picture) -> None:
     canvas.label(picture.origin + 0.55 * (a0 - picture.origin), "l_0", 1j * (a0 - picture.origin), 3.5, 0.6)
 
 
-def _flat(canvas: Canvas, picture: _Picture) -> None:
+def _flat(canvas: Canvas, picture: _ProfilePicture) -> None:
     """Flat follower in position 0 and the plates of the inverted positions, whose envelope is the profile."""
     cam, at = picture.cam, picture.at
     inv = cam.inversion
@@ -339,7 +339,7 @@ def _flat(canvas: Canvas, picture: _Picture) -> None:
     _rod(canvas, picture, 0.0)
 
 
-def _second_disc(canvas: Canvas, picture: _Picture) -> None:
+def _second_disc(canvas: Canvas, picture: _ProfilePicture) -> None:
     """Centre profile and profile of the second disc, its roller, and what keeps both rollers at their distance."""
     cam, at = picture.cam, picture.at
     dense, inv = cam.dense, cam.inversion
@@ -368,7 +368,7 @@ def _second_disc(canvas: Canvas, picture: _Picture) -> None:
         canvas.label(second, "B′_0", u + 0.6, 3.5, picture.roller + 1.0)
 
 
-def _phase_angles(canvas: Canvas, picture: _Picture) -> None:
+def _phase_angles(canvas: Canvas, picture: _ProfilePicture) -> None:
     """Angles of the phases from the line of position 0, the cam's and the inverted sense of rotation."""
     cam, origin, scale, start = picture.cam, picture.origin, picture.scale, picture.start
     reach = scale.mm(cam.r0)

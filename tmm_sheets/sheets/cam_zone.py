@@ -15,6 +15,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cam import distinct, for_cams, lines_of_text
+from tmm_sheets.sheets.frame import Frame
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
@@ -103,8 +104,8 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     cam: RockerCam = project.cam
     z = cam.zone
     pivot, apex = complex(z.plan["A"].value), complex(z.apex.value)
-    starts, tips, curve = np.asarray(z.axis.value), np.asarray(z.points.value), z.curve()
-    every = np.array([pivot, apex, 0j, *starts, *curve])
+    curve = z.curve()
+    every = np.array([pivot, apex, 0j, *np.asarray(z.axis.value), *curve])
     x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
     measured = _rocker_lines(cam)
     beside = box.width > 1.3 * box.height
@@ -120,65 +121,80 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     scale = Scale("μ_l", mu, "м/мм")
     canvas.scales[z.plan.name] = scale
     canvas.title(box, "Определение основных размеров", f"{scale}")
-    origin = room.centre - scale.mm(complex((x0 + x1) / 2, (y1 + low) / 2))
-
-    def at(p: complex) -> complex:
-        return complex(origin + scale.mm(p))
-
+    at = Frame(scale, room.centre - scale.mm(complex((x0 + x1) / 2, (y1 + low) / 2)))
     picture = Box(at(complex(x0)).real - 6, at(1j * low).imag, at(complex(x1)).real + 6, at(1j * y1).imag + 4)
-    corners = [complex(picture.x0, picture.y0), complex(picture.x1, picture.y0),
-               complex(picture.x1, picture.y1), complex(picture.x0, picture.y1)]
-    region = z.cones.region([complex(scale.real(p - origin)) for p in corners])
-    if len(region) > 2:
-        hatch_polygon(canvas, np.asarray(origin + scale.mm(region)), 5.0)
-    reach = picture.width + picture.height
-    for k, ray in enumerate(z.cones.rays(cam.law.parts)):
-        shown = segment_inside(picture, at(ray.tip), at(ray.tip) + reach * ray.direction)
-        if shown and (k < 2 or abs(ray.tip - z.cones.rays(cam.law.parts)[k - 2].tip) > 1e-9):
-            canvas.line(*shown, "construction")
-    for touch, border in zip(z.touching, z.borders, strict=True):
-        tip = complex(touch.value)
-        shown = segment_inside(picture, at(tip), at(tip) + reach * complex(border.value))
-        if shown:
-            canvas.line(*shown, "axis")
-        canvas.dot(at(tip), 0.7)
-    labels = z.plan.labels
-    numbered = [k for k in range(len(starts)) if k == 0 or abs(starts[k] - starts[k - 1]) > 1e-9]
-    rising = [k for k in numbered if k <= cam.law.parts]
-    a, o, b = at(pivot), at(apex), at(0j)
-    for k in rising[1:]:
-        canvas.line(a, at(starts[k]), "thin")
-    path = np.array([at(p) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))])
-    canvas.polyline(path, "thin")
-    for k in numbered:
-        canvas.line(at(starts[k]), at(tips[k]), "thin")
-        canvas.dot(at(tips[k]), 0.5)
-    for k in rising:
-        canvas.dot(at(starts[k]), 0.6)
-        canvas.label(at(starts[k]), labels[k], complex(starts[k] - pivot), 3.5, 0.8)
-    for k in numbered:
-        if abs(at(tips[k]) - at(starts[k])) > 6:
-            canvas.label(at(tips[k]), f"{labels[k]}_D", complex(tips[k] - starts[k]), 2.5, 0.6)
-    canvas.polyline(np.asarray(origin + scale.mm(curve)), "curve")
-    for p in (a, b):
-        hinge(canvas, p)
-    bar(canvas, (o, b, a, o), (a, b))
-    canvas.dot(o, 0.9)
-    canvas.label(o, "O", -1j, 5.0, 1.5)
-    canvas.label(a, "A", complex(pivot) - 0.5j * abs(pivot), 3.5, 2.2)
-    canvas.label(b, "B_0", -complex(pivot) - 0.6j * abs(pivot), 3.5, 2.2)
-    canvas.label((o + b) / 2, "r_0", 1j * (o - b), 3.5, 0.8)
-    canvas.label((o + a) / 2, "l_0", 1j * (o - a), 3.5, 0.8)
-    radius = 0.45 * min(abs(o - b), picture.height / 2)
-    canvas.line(b, b - 1.3j * radius, "centre")
-    for lo, hi in ((-pi / 2, -pi / 2 + z.alpha), (-pi / 2 - z.alpha, -pi / 2)):
-        canvas.angle_mark(b, lo, hi, radius, "[α]")
+    _permitted(canvas, cam, at, picture)
+    _rocker_positions(canvas, cam, at)
+    canvas.polyline(np.asarray(at(curve)), "curve")
+    _rocker_and_axis(canvas, cam, at, picture)
     measured = _rocker_lines(cam, scale)
     if not beside:
         lines_of_text(canvas, box, measured)
         return
     for i, line in enumerate(measured):
         canvas.text(complex(box.x1 - text + 6.0, box.y1 - 40.0 - 8.0 * i), line, 3.5)
+
+
+def _permitted(canvas: Canvas, cam: RockerCam, at: Frame, picture: Box) -> None:
+    """The allowed zone, the rays under the permitted pressure angle and the borders that touch the curve, inside the picture."""
+    z = cam.zone
+    corners = [complex(picture.x0, picture.y0), complex(picture.x1, picture.y0),
+               complex(picture.x1, picture.y1), complex(picture.x0, picture.y1)]
+    region = z.cones.region([complex(at.scale.real(p - at.origin)) for p in corners])
+    if len(region) > 2:
+        hatch_polygon(canvas, np.asarray(at(region)), 5.0)
+    reach = picture.width + picture.height
+    rays = z.cones.rays(cam.law.parts)
+    for k, ray in enumerate(rays):
+        shown = segment_inside(picture, complex(at(ray.tip)), complex(at(ray.tip)) + reach * ray.direction)
+        if shown and (k < 2 or abs(ray.tip - rays[k - 2].tip) > 1e-9):
+            canvas.line(*shown, "construction")
+    for touch, border in zip(z.touching, z.borders, strict=True):
+        tip = complex(at(complex(touch.value)))
+        shown = segment_inside(picture, tip, tip + reach * complex(border.value))
+        if shown:
+            canvas.line(*shown, "axis")
+        canvas.dot(tip, 0.7)
+
+
+def _rocker_positions(canvas: Canvas, cam: RockerCam, at: Frame) -> None:
+    """Path of the roller's axis, the rocker in the numbered positions of the rise, the segments in all of them."""
+    z, labels = cam.zone, cam.zone.plan.labels
+    pivot, starts, tips = complex(z.plan["A"].value), np.asarray(z.axis.value), np.asarray(z.points.value)
+    numbered = [k for k in range(len(starts)) if k == 0 or abs(starts[k] - starts[k - 1]) > 1e-9]
+    rising = [k for k in numbered if k <= cam.law.parts]
+    for k in rising[1:]:
+        canvas.line(complex(at(pivot)), complex(at(starts[k])), "thin")
+    canvas.polyline(np.array([complex(at(p)) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))]), "thin")
+    for k in numbered:
+        canvas.line(complex(at(starts[k])), complex(at(tips[k])), "thin")
+        canvas.dot(complex(at(tips[k])), 0.5)
+    for k in rising:
+        canvas.dot(complex(at(starts[k])), 0.6)
+        canvas.label(complex(at(starts[k])), labels[k], complex(starts[k] - pivot), 3.5, 0.8)
+    for k in numbered:
+        if abs(at(tips[k]) - at(starts[k])) > 6:
+            canvas.label(complex(at(tips[k])), f"{labels[k]}_D", complex(tips[k] - starts[k]), 2.5, 0.6)
+
+
+def _rocker_and_axis(canvas: Canvas, cam: RockerCam, at: Frame, picture: Box) -> None:
+    """The rocker, the cam's axis in the zone's apex, both main dimensions and the permitted angles at the roller."""
+    z = cam.zone
+    pivot = complex(z.plan["A"].value)
+    a, o, b = complex(at(pivot)), complex(at(complex(z.apex.value))), complex(at(0j))
+    for p in (a, b):
+        hinge(canvas, p)
+    bar(canvas, (o, b, a, o), (a, b))
+    canvas.dot(o, 0.9)
+    canvas.label(o, "O", -1j, 5.0, 1.5)
+    canvas.label(a, "A", pivot - 0.5j * abs(pivot), 3.5, 2.2)
+    canvas.label(b, "B_0", -pivot - 0.6j * abs(pivot), 3.5, 2.2)
+    canvas.label((o + b) / 2, "r_0", 1j * (o - b), 3.5, 0.8)
+    canvas.label((o + a) / 2, "l_0", 1j * (o - a), 3.5, 0.8)
+    radius = 0.45 * min(abs(o - b), picture.height / 2)
+    canvas.line(b, b - 1.3j * radius, "centre")
+    for lo, hi in ((-pi / 2, -pi / 2 + z.alpha), (-pi / 2 - z.alpha, -pi / 2)):
+        canvas.angle_mark(b, lo, hi, radius, "[α]")
 
 
 def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:

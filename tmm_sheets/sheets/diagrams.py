@@ -40,7 +40,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class DiagramQuantity:
     """One graph: ``key`` of its scale factor in [scales], letter of the ordinate, unit, its curves."""
 
     key: str
@@ -49,7 +49,7 @@ class Quantity:
     curves: tuple[Curve, ...]
 
 
-def _columns(project: Project, options: graphs.Options) -> list[tuple[Quantity, ...]]:
+def _columns(project: Project, options: graphs.Options) -> list[tuple[DiagramQuantity, ...]]:
     """What is drawn, points and links apart. Which: option ``of``, else those of the project; none for a bare crank."""
     named = options.get("of") or project.diagrams
     links = [name for name in named if name in project.mechanism.links]
@@ -112,7 +112,8 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     left = canvas.title(box, "График уравновешивающего момента", str(angle))
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
     mean = project.flywheel.M_constant if project.variant.flywheel is not None else _mean(every, values, project.cycle.period)
-    _graph(project, canvas, left, angle, Quantity("graph-M", "M_{ур}", "Н·м", (Curve("", every, values, at),)), level=("M_д", mean))
+    moment = DiagramQuantity("graph-M", "M_{ур}", "Н·м", (Curve("", every, values, at),))
+    _graph(project, canvas, left, angle, moment, level=("M_д", mean))
 
 
 def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
@@ -156,7 +157,7 @@ def _samples(project: Project) -> Any:
     return np.linspace(0.0, c.period, SAMPLES * len(c.labels) + 1)
 
 
-def _of_points(project: Project, names: list[str]) -> tuple[Quantity, ...]:
+def _of_points(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]:
     turned = np.concatenate((_samples(project), project.cycle.turned))
     study = project.study_at(turned, tuple("" for _ in turned))
     curves: list[list[Curve]] = [[], [], []]
@@ -188,7 +189,7 @@ def _begins(way: Any) -> float:
     return float(np.sign(moved[0])) if len(moved) else 1.0
 
 
-def _of_links(project: Project, names: list[str]) -> tuple[Quantity, ...]:
+def _of_links(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]:
     turned = np.concatenate((_samples(project), project.cycle.turned))
     study = project.study_at(turned, tuple("" for _ in turned))
     curves: list[list[Curve]] = [[], [], []]
@@ -212,11 +213,11 @@ def _curve(project: Project, symbol: str, turned: Any, values: Any) -> Curve:
     return Curve(symbol, turned[:n], values[:n], values[n:])
 
 
-def _quantity(key: str, sign: str, unit: str, curves: list[Curve]) -> Quantity:
+def _quantity(key: str, sign: str, unit: str, curves: list[Curve]) -> DiagramQuantity:
     """A single curve gives the ordinate its name, several are named where they run."""
     if len(curves) == 1:
-        return Quantity(key, curves[0].symbol, unit, tuple(curves))
-    return Quantity(key, sign, unit, tuple(curves))
+        return DiagramQuantity(key, curves[0].symbol, unit, tuple(curves))
+    return DiagramQuantity(key, sign, unit, tuple(curves))
 
 
 # --- drawing ----------------------------------------------------------------------------------------------------------
@@ -229,7 +230,8 @@ def _angle(project: Project, box: Box) -> Scale:
     return Scale("μ_φ", project.cycle.period / length, "рад/мм")
 
 
-def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: Quantity, level: tuple[str, float] | None = None) -> None:
+def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQuantity,
+           level: tuple[str, float] | None = None) -> None:
     high = max(0.0, *(float(np.max(c.values)) for c in q.curves))
     low = min(0.0, *(float(np.min(c.values)) for c in q.curves))
     above, below = 10.0, 6.0
@@ -265,7 +267,7 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: Quantity
             canvas.label(at, c.symbol, 1j * np.sign(c.values[peak]), 3.5, 0.8)
 
 
-def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: Quantity, curves: list[Any]) -> None:
+def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: DiagramQuantity, curves: list[Any]) -> None:
     """Numbers of the positions at the axis, on the side where the first graph is not; the end is position 0 again."""
     labels = project.cycle.labels
     pitch = length / len(labels)

@@ -88,17 +88,12 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     left_out = f"; показаны {len(drawn)} из {len(fw.intervals)} лучей" if len(drawn) < len(fw.intervals) else ""
     graphs.heading(canvas, box, options, "Графики приведённых моментов сил",
                    f"{s.moment}, {s.angle}, H = {number(s.pole)} мм{left_out}")
-    phi = [_inside(fw, a, b) for a, b in _stretches(fw)]
-    ordinates = []
-    for p in phi:
-        ends = [graphs.one(r.moment(p[0], side=1)), graphs.one(r.moment(p[-1], side=-1))]
-        ordinates.append(s.moment.mm(np.concatenate((ends[:1], r.moment(p[1:-1]), ends[1:]))))
+    line = _moment_curve(fw)
     level = s.moment.mm(fw.M_constant)
-    low = min(0.0, level, *(float(y.min()) for y in ordinates))
-    high = max(0.0, level, *(float(y.max()) for y in ordinates))
+    low = min(0.0, level, float(line.imag.min()))
+    high = max(0.0, level, float(line.imag.max()))
     g = graphs.Graph(complex(options["axis"], box.y0 + 4.0 - low))
     graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "flywheel.moments")
-    line = np.concatenate([s.angle.mm(p) + 1j * y for p, y in zip(phi, ordinates, strict=True)])
     canvas.of = plan.name
     canvas.polyline(g(np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))))
     length = s.angle.mm(r.period)
@@ -110,8 +105,37 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.where(np.abs(points.imag) < 1.0, body, points.imag))
     for p in points:
         canvas.line(g(p.real), g(p), "thin")
+    pole = plan["P"].value
+    _rays(canvas, fw, g, drawn)
+    cut = fw.driving_plan["K′"].value
+    canvas.line(g(pole), g(cut), "construction")
+    canvas.label(g(cut), "K′", -1 + 0.6j if level > 0 else -1 - 0.6j)
+    canvas.dot(g(pole), 0.6)
+    canvas.label(g(pole), "P", -1 + 1j)
+    canvas.dimension(g(pole.real + 1j * low), g(1j * low), -3.0 if low > -12 else 5.0, "H")
+    size = np.abs(line.imag)
+    peak = int(np.argmax(size))
+    falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
+    canvas.label(g(falling), f"M_{varying}^пр", 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
+    canvas.label(g(0.78 * length + 1j * level), f"M_{constant}^пр", -1j if level > 0 else 1j, height=5)
+
+
+def _moment_curve(fw: Flywheel) -> Any:
+    """The varying moment over the crank angle, mm, with both values where it jumps."""
+    s, r = fw.scales, fw.reduced
+    stretches = []
+    for a, b in _stretches(fw):
+        p = _inside(fw, a, b)
+        ends = [graphs.one(r.moment(p[0], side=1)), graphs.one(r.moment(p[-1], side=-1))]
+        stretches.append(s.angle.mm(p) + 1j * s.moment.mm(np.concatenate((ends[:1], r.moment(p[1:-1]), ends[1:]))))
+    return np.concatenate(stretches)
+
+
+def _rays(canvas: Canvas, fw: Flywheel, g: graphs.Graph, intervals: list[str]) -> None:
+    """Ordinates in the middles of the intervals, carried over to the ordinate axis, and the rays from the pole to them."""
+    plan = fw.work_plan
     shown: dict[float, list[str]] = {}
-    for name in drawn:
+    for name in intervals:
         middle = plan[f"m{name}"].value
         if abs(middle.imag) > 0.05:
             same = next((y for y in shown if abs(y - middle.imag) < 1e-6), middle.imag)
@@ -127,17 +151,6 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         if all(abs(y - other) >= 4.5 for other in labelled):
             labelled.append(y)
             canvas.label(g(1j * y), ", ".join(names), -1 - 0.6j if y < 0 else -1 + 0.6j)
-    cut = fw.driving_plan["K′"].value
-    canvas.line(g(pole), g(cut), "construction")
-    canvas.label(g(cut), "K′", -1 + 0.6j if level > 0 else -1 - 0.6j)
-    canvas.dot(g(pole), 0.6)
-    canvas.label(g(pole), "P", -1 + 1j)
-    canvas.dimension(g(pole.real + 1j * low), g(1j * low), -3.0 if low > -12 else 5.0, "H")
-    size = np.abs(line.imag)
-    peak = int(np.argmax(size))
-    falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
-    canvas.label(g(falling), f"M_{varying}^пр", 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
-    canvas.label(g(0.78 * length + 1j * level), f"M_{constant}^пр", -1j if level > 0 else 1j, height=5)
 
 
 def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:

@@ -22,7 +22,7 @@ SHORTEST = 1.0
 """Length from which on a vector is drawn, mm; shorter ones are said."""
 
 
-class Scales(Protocol):
+class ScaleBook(Protocol):
     """Where chosen scale factors are kept: the canvas, or whatever asks for them without drawing.
 
     ``chosen`` are the names of those that a project file may set.
@@ -65,7 +65,7 @@ def joined(points: dict[str, complex], pairs: Iterable[tuple[str, str]], near: f
     return groups
 
 
-def pick(project: Project, canvas: Scales, name: str, symbol: str, unit: str, least: float) -> Scale:
+def pick(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, least: float) -> Scale:
     """Scale factor of a plan: the project file's, or the smallest handy one that is not less than ``least``.
 
     ``least`` is what the place needs, not rounded. The factor is kept on the canvas under the
@@ -87,7 +87,7 @@ def pick(project: Project, canvas: Scales, name: str, symbol: str, unit: str, le
     return scale
 
 
-def fit_frame(project: Project, canvas: Scales, name: str, symbol: str, unit: str, points: Any, offsets: Any, box: Box) -> Frame:
+def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, points: Any, offsets: Any, box: Box) -> Frame:
     """Smallest handy scale factor with which everything fits the place; its middle comes to the place's middle.
 
     ``points`` are in the plan's unit, ``offsets`` reach from each of them in millimetres of paper whatever the scale

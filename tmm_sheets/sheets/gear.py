@@ -37,7 +37,7 @@ DEEPEST = 10.0
 
 def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Engagement picture to a standard scale with the line of centres vertical."""
-    picture = _Picture(project.gear, canvas, box)
+    picture = _GearPicture(project.gear, canvas, box)
     canvas.of = "gear.engagement"
     picture.circles()
     picture.line_of_action()
@@ -51,7 +51,7 @@ def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     canvas.of = ""
 
 
-class _Picture:
+class _GearPicture:
     """The engagement picture in its place: turns metres of the plans into millimetres of the sheet."""
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:

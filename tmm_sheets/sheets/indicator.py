@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.sheets.frame import Frame, Scales, pick
+from tmm_sheets.sheets.frame import Frame, ScaleBook, pick
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Canvas
@@ -87,7 +87,7 @@ def reach(project: Project) -> tuple[list[complex], list[complex]]:
     return z, d
 
 
-def scale_of(project: Project, canvas: Scales, shown: list[Indicator]) -> Scale:
+def scale_of(project: Project, canvas: ScaleBook, shown: list[Indicator]) -> Scale:
     """One scale factor for all diagrams of a project."""
     turned = _angles(project)
     top = max(float(np.max(one.ordinate(turned))) for one in shown)

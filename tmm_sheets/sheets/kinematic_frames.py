@@ -14,7 +14,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import indicator
-from tmm_sheets.sheets.frame import Frame, Scales, extent, fit_frame, pick
+from tmm_sheets.sheets.frame import Frame, ScaleBook, extent, fit_frame, pick
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -64,7 +64,7 @@ def graph_below(project: Project) -> bool:
     return strokes.origin.imag < real.centre.imag
 
 
-def positions(project: Project, canvas: Scales, box: Box, options: dict[str, Any]) -> Frame:
+def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> Frame:
     """Frame of the position plans: all positions, the crank circle and what sticks out of them on paper.
 
     ``graph`` = false leaves the force graph over them out.
@@ -118,7 +118,7 @@ class VelocityLayout:
     every: int
 
 
-def velocities(project: Project, canvas: Scales, box: Box, options: dict[str, Any]) -> VelocityLayout:
+def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> VelocityLayout:
     """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone.
 
     ``rows`` are as many as asked for, or more where that many leave no room for the plans.
@@ -193,7 +193,7 @@ def _velocity_views(project: Project, sheets: Iterable[int]) -> Iterator[tuple[B
                 yield view.box, view.options
 
 
-def accelerations(project: Project, canvas: Scales, box: Box) -> Frame:
+def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
     """Frame of the acceleration plan at the analysed position."""
     real = plan_extent(project.study.accelerations.plan, project.force_index)
     inside = box.inset(9.0, 8.0, 9.0, 24.0)

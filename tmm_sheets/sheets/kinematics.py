@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan, Segment
+    from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
 
@@ -90,10 +92,9 @@ def _guide_line(canvas: Canvas, project: Project, frame: Frame, name: str, room:
 
 def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
-    study, cycle, k = project.study, project.cycle, project.force_index
+    study = project.study
     pos = study.positions
     m = pos.mechanism
-    centre = frame(m.fixed[m.crank.pivot])
     # A point on a fixed guide has its marks there; one that slides on a moving link is told by the marks of others.
     sliding = {str(g.inner): guide for g in m.groups for guide in g.guides if m.guides[guide].link == m.frame}
     carried = {g.inner for g in m.groups if g.kind == 2 and m.guides[g.guides[0]].link != m.frame}
@@ -101,30 +102,47 @@ def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
     hinges += [g.inner for g in m.groups if g.inner and g.inner not in sliding and g.inner not in carried and g.kind in (1, 2, 4)]
     for name in dict.fromkeys(hinges):
         z = np.asarray(frame(pos.points[name].value))
-        middle = centre if name == m.crank.pin else z.mean() - 40j
-        for i, _ in cycle.drawn:
-            if i != k:
-                symbols.hinge(canvas, z[i], "thin", 0.7)
-                canvas.label(z[i], cycle.labels[i], z[i] - middle, 2.5, 0.9, leader=False)
-    shown = list(sliding.values())
+        _hinge_numbers(canvas, project, z, frame(m.fixed[m.crank.pivot]) if name == m.crank.pin else z.mean() - 40j)
+    on = list(sliding.values())
     for name, guide in sliding.items():
         z = np.asarray(frame(pos.points[name].value))
         u = complex(pos.guide_directions[guide].at(0))
-        n = 1j * u if (1j * u).imag > 1e-9 or ((1j * u).imag > -1e-9 and u.imag < 0) else -1j * u
-        if shown.count(guide) > 1:
+        n = _upper_side(u)
+        if on.count(guide) > 1:
             _shared_path(canvas, project, z, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
-            continue
-        speed = (np.asarray(study.velocities.points[name].value) * np.conj(u)).real
-        working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
-        forth = np.sign(working)
-        for i, _ in cycle.drawn:
-            canvas.line(z[i] - 2.0 * n, z[i] + 2.0 * n, "axis")
-        shown_marks = [i for i, _ in cycle.drawn if i != k]
-        ahead = speed * (forth or 1.0) > -1e-9 * np.abs(speed).max()
-        for side, there in ((n, [i for i in shown_marks if ahead[i]]), (-n, [i for i in shown_marks if not ahead[i]])):
-            for crowd in _crowds(there, z):
-                at = complex(sum(z[i] for i in crowd)) / len(crowd)
-                canvas.label(at + 2.0 * side, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, leader=False)
+        else:
+            speed = (np.asarray(study.velocities.points[name].value) * np.conj(u)).real
+            _own_path(canvas, project, z, n, speed, u)
+
+
+def _hinge_numbers(canvas: Canvas, project: Project, z: Any, middle: complex) -> None:
+    """Small hinges at the points ``z`` (mm) of all positions but the highlighted one, their numbers away from ``middle``."""
+    cycle = project.cycle
+    for i, _ in cycle.drawn:
+        if i != project.force_index:
+            symbols.hinge(canvas, z[i], "thin", 0.7)
+            canvas.label(z[i], cycle.labels[i], z[i] - middle, 2.5, 0.9, leader=False)
+
+
+def _upper_side(u: complex) -> complex:
+    """Unit vector across a guide along ``u``, upwards, to the right of a vertical one."""
+    n = 1j * u
+    return n if n.imag > 1e-9 or (n.imag > -1e-9 and u.imag < 0) else -1j * u
+
+
+def _own_path(canvas: Canvas, project: Project, z: Any, n: complex, speed: Any, u: complex) -> None:
+    """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other."""
+    cycle, k = project.cycle, project.force_index
+    working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
+    forth = np.sign(working)
+    for i, _ in cycle.drawn:
+        canvas.line(z[i] - 2.0 * n, z[i] + 2.0 * n, "axis")
+    marks = [i for i, _ in cycle.drawn if i != k]
+    ahead = speed * (forth or 1.0) > -1e-9 * np.abs(speed).max()
+    for side, there in ((n, [i for i in marks if ahead[i]]), (-n, [i for i in marks if not ahead[i]])):
+        for crowd in _crowds(there, z):
+            at = complex(sum(z[i] for i in crowd)) / len(crowd)
+            canvas.label(at + 2.0 * side, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, leader=False)
 
 
 def _crowds(marks: list[int], z: Any) -> list[list[int]]:
@@ -165,19 +183,29 @@ def _shared_path(canvas: Canvas, project: Project, z: Any, n: complex) -> None:
 
 
 def _letters(canvas: Canvas, project: Project, frame: Frame) -> None:
-    """Letters of pairs, numbers of links, centres of mass and arrows at the highlighted plan."""
-    study, k, label = project.study, project.force_index, project.cycle.labels[project.force_index]
-    pos = study.positions
-    m = pos.mechanism
+    """Letters of pairs, numbers of links, centres of mass and arrows of rotation at the highlighted plan."""
+    k, pos = project.force_index, project.study.positions
     at = {name: frame(complex(p.at(k))) for name, p in pos.points.items()}
+    _point_letters(canvas, project, at)
+    _link_numbers(canvas, pos, k, frame, at)
+    _rotations(canvas, project, frame, at)
+
+
+def _point_letters(canvas: Canvas, project: Project, at: Mapping[str, complex]) -> None:
+    """Letters of the points, those of moving ones with the number of the position, and symbols of the centres of mass."""
+    m, label = project.mechanism, project.cycle.labels[project.force_index]
     masses = {link.centre for link in m.links.values() if link.mass}
+    own = {p.name for p in m.points if not any(p.name in g.outer for g in m.groups)}
     for name, z in at.items():
         moving = name not in m.fixed
-        away = 0j if moving else 1 - 0.5j
-        if name in masses and name in {p.name for p in m.points} and not any(name in g.outer for g in m.groups):
+        if name in masses and name in own:
             symbols.centre_of_mass(canvas, z)
         text = f"{linkage.indexed(name)}({label})" if moving and not name[1:] else linkage.indexed(name)
-        canvas.label(z, text, away, 3.5, symbols.HINGE + 1.2)
+        canvas.label(z, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
+
+
+def _link_numbers(canvas: Canvas, pos: Positions, k: int, frame: Frame, at: Mapping[str, complex]) -> None:
+    """Numbers of the links beside the middles of their bars and at their blocks."""
     for s in linkage.shapes(pos):
         if s.bar:
             p = [frame(z) for z in linkage.bar_points(pos, s, k)]
@@ -186,7 +214,12 @@ def _letters(canvas: Canvas, project: Project, frame: Frame) -> None:
             canvas.label(mid, s.link, 1j * (b - a), 5.0, 1.4)
         elif s.block is not None:
             canvas.label(at[s.block], s.link, complex(s.along.at(k)) if s.along else 0j, 5.0, 6.0)
-    c = m.crank
+
+
+def _rotations(canvas: Canvas, project: Project, frame: Frame, at: Mapping[str, complex]) -> None:
+    """Arrows of angular velocity, and of angular acceleration, of the crank and of every bar that turns."""
+    study, k, m = project.study, project.force_index, project.mechanism
+    pos, c = study.positions, m.crank
     pivot = at[c.pivot]
     radius = c.length / frame.scale.mu
     symbols.rotation_arrow(canvas, pivot, max(0.5 * radius, 7.0), linkage.clear_of_crank(pos, k), c.omega, f"ω_{c.link}")
@@ -412,11 +445,51 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
 
 COLUMNS = 7
 """Most segments the table of lengths shows where the mechanism has segments of its own to tell."""
+MOST_DRAWN = 8
+"""Most segments of the velocity plans the table of lengths shows all of."""
 
 
 def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Tables of measured segments and of velocities over all positions (manual 000, tables 3.2 and 3.3)."""
     vel, cycle = project.study.velocities, project.cycle
+    varying = []
+    for seg in vel.plan.segments:
+        value = np.abs(np.broadcast_to(seg.head.value - seg.tail.value, (len(cycle.labels),)))
+        if not np.allclose(value, value[0]):
+            varying.append((seg, value))
+    lengths = _measured_lengths(project, canvas, varying)
+    linear: dict[str, Any] = {}
+    for seg, value in varying:
+        linear.setdefault(seg.symbol.replace("\u0305", ""), value)
+    turning = [(f"ω_{link}", np.abs(w.value)) for link, w in vel.omega.items()
+               if np.ndim(w.value) and link in vel.reference]
+    left, right = _table_places(box, len(lengths), stacked=bool(options.get("stacked")))
+    if lengths:
+        _table_over_positions(project, canvas, left, "Длины отрезков, мм", lengths, 1)
+    speeds = [*linear.items(), *turning]
+    if speeds:
+        title = "Линейные, м/с, и угловые, рад/с, скорости" if turning else "Линейные скорости, м/с"
+        _table_over_positions(project, canvas, right, title, speeds, 3)
+
+
+def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]]) -> list[tuple[str, Any]]:
+    """Captions and lengths, mm, of the segments to be measured; none (NaN) of a plan that is not drawn."""
+    lengths = _lengths_on_rockers(project, canvas)
+    mu = canvas.scales["velocities"].mu
+    drawn = {f"|{plan_letter(seg.tail.name)}{plan_letter(seg.head.name)}|": value / mu for seg, value in varying}
+    if not lengths and len(drawn) <= MOST_DRAWN:
+        lengths = list(drawn.items())
+    elif len(lengths) < COLUMNS:
+        others = [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
+        lengths += others[:COLUMNS - len(lengths)]
+    for i, _ in kinematic_frames.beyond_drawing(project):
+        lengths = [(name, np.where((np.arange(len(v)) == i) & name.startswith("|"), np.nan, v)) for name, v in lengths]
+    return lengths
+
+
+def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any]]:
+    """Segments of rockers with a slot: the coincident point's velocity, the way to the stone, velocities of carried hinges."""
+    vel = project.study.velocities
     pos = vel.positions
     mu_v, mu_l = canvas.scales["velocities"], canvas.scales["positions"]
     lengths: list[tuple[str, Any]] = []
@@ -428,43 +501,32 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
             lengths.append((f"{q}{p}", np.abs(pos.points[p].value - pos.points[q].value) / mu_l.mu))
             carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
             lengths += [(f"|{q.lower()}{plan_letter(x.lower())}|", np.abs(vel.points[x].value) / mu_v.mu) for x in carried]
-    seen: dict[str, Any] = {}
-    drawn: dict[str, Any] = {}
-    for seg in vel.plan.segments:
-        value = np.abs(np.broadcast_to(seg.head.value - seg.tail.value, (len(cycle.labels),)))
-        if not np.allclose(value, value[0]):
-            seen.setdefault(seg.symbol.replace("\u0305", ""), value)
-            drawn.setdefault(f"|{plan_letter(seg.tail.name)}{plan_letter(seg.head.name)}|", value / mu_v.mu)
-    if not lengths and len(drawn) <= 8:
-        lengths = list(drawn.items())
-    elif len(lengths) < COLUMNS:
-        others = [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
-        lengths += others[:COLUMNS - len(lengths)]
-    turning = [(f"ω_{link}", np.abs(w.value)) for link, w in vel.omega.items()
-               if np.ndim(w.value) and link in vel.reference]
-    for i, _ in kinematic_frames.beyond_drawing(project):  # no segments of a plan that is not drawn
-        lengths = [(name, np.where((np.arange(len(v)) == i) & name.startswith("|"), np.nan, v)) for name, v in lengths]
-    rows = len(cycle.drawn) + 2
-    left = right = box
-    if lengths and options.get("stacked"):
+    return lengths
+
+
+def _table_places(box: Box, columns: int, *, stacked: bool) -> tuple[Box, Box]:
+    """Places of the table of lengths with so many columns and of that of speeds, which has all of it without any."""
+    if not columns:
+        return box, box
+    if stacked:
         middle = (box.y0 + box.y1) / 2
-        left, right = Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
-    elif lengths:
-        one = min(19.0, (0.45 * box.width - 10.0) / len(lengths))
-        left = Box(box.x0, box.y0, box.x0 + 10.0 + one * len(lengths), box.y1)
-        right = Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
-    tables = [(left, "Длины отрезков, мм", lengths, 1)] if lengths else []
-    speeds = [*seen.items(), *turning]
-    if speeds:
-        tables.append((right, "Линейные, м/с, и угловые, рад/с, скорости" if turning else "Линейные скорости, м/с", speeds, 3))
-    for place, title, columns, decimals in tables:
-        row = min((place.height - 15.0) / rows, 7.5)
-        canvas.text(complex(place.centre.real, place.y1 - 5.0), title, 3.5, "centre")
-        cells = [["№", *(name for name, _ in columns)]]
-        cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), decimals) for _, v in columns)]
-                  for i, label in cycle.drawn]
-        widths = [10.0] + [(place.width - 10.0) / len(columns)] * len(columns)
-        canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, min(3.5, row * 0.5))
+        return Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
+    one = min(19.0, (0.45 * box.width - 10.0) / columns)
+    left = Box(box.x0, box.y0, box.x0 + 10.0 + one * columns, box.y1)
+    return left, Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
+
+
+def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
+                          decimals: int) -> None:
+    """A column for each quantity, a row for each position that is drawn; a dash where there is no number."""
+    cycle = project.cycle
+    row = min((place.height - 15.0) / (len(cycle.drawn) + 2), 7.5)
+    canvas.text(complex(place.centre.real, place.y1 - 5.0), title, 3.5, "centre")
+    cells = [["№", *(name for name, _ in columns)]]
+    cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), decimals) for _, v in columns)]
+              for i, label in cycle.drawn]
+    widths = [10.0] + [(place.width - 10.0) / len(columns)] * len(columns)
+    canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, min(3.5, row * 0.5))
 
 
 def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

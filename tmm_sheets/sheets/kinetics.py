@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,8 @@ from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import StructuralGroup
-    from tmm_sheets.methods.linkage.forces import ForcePlan, Kinetostatics
+    from tmm_sheets.methods.linkage.forces import ForcePlan, GearForce, Kinetostatics
+    from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
 BAR = "\u0305"
@@ -196,31 +197,27 @@ def acting(shown: Iterable[Shown], force_size: float) -> list[Shown]:
 
 
 def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int) -> None:
-    pos, forces = project.study.positions, project.study.forces
+    """Loaded scheme of a group: its links, all forces and couples on it, the arms of its moment equations."""
+    pos = project.study.positions
     shown, couples = _outer_forces(project, g, k)
-    names = [n for s in linkage.shapes(pos) if s.link in g.links for n in (*s.bar, s.block or "") if n]
+    drawn = [s for s in linkage.shapes(pos) if s.link in g.links]
+    names = [n for s in drawn for n in (*s.bar, s.block or "") if n]
     centres = [str(c) for c in (project.mechanism.links[link].centre for link in g.links) if c and c not in names]
-    names += centres
-    at = [complex(pos.points[n].at(k)) for n in dict.fromkeys(names)] + [s.at for s in shown]
-    place = box.inset(3.0, 5.0, 3.0, 19.0)
+    names = list(dict.fromkeys((*names, *centres)))
+    at = [complex(pos.points[n].at(k)) for n in names] + [s.at for s in shown]
     z, d = _reach(at, shown)
     feet = _feet(complex(pos.points[_about(g)].at(k)), shown)
-    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", [*z, *feet], [*d, *(0j for _ in feet)], place)
+    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", [*z, *feet], [*d, *(0j for _ in feet)],
+                      box.inset(3.0, 5.0, 3.0, 19.0))
     canvas.of = f"group {g.name}"
     canvas.title(box, f"Группа Ассура {g.name} ({g.kind}-й вид)", str(frame.scale))
     if g.kind != 5:
         linkage.draw_guides(canvas, pos, k, frame, g.links)
     linkage.draw(canvas, pos, k, frame, "main", g.links)
-    for name in dict.fromkeys(names):
+    for name in names:
         away = 1 - 0.5j if name in project.mechanism.fixed else 0j
         canvas.label(frame(complex(pos.points[name].at(k))), linkage.indexed(name), away, 3.5, 2.8)
-    for s in linkage.shapes(pos):
-        if s.link in g.links:
-            z = frame(complex(pos.points[s.block or s.bar[-1]].at(k)))
-            if s.bar:
-                a, b = (frame(z) for z in (linkage.bar_points(pos, s, k)[0], linkage.bar_points(pos, s, k)[-1]))
-                z = a + 0.3 * (b - a)
-            canvas.label(z, s.link, 1 + 0.3j, 5.0, 2.0 if s.bar else 6.5)
+    _link_numbers(canvas, pos, drawn, k, frame)
     for name in centres:
         symbols.centre_of_mass(canvas, frame(complex(pos.points[name].at(k))))
     _arms(canvas, project, frame, g, k, shown)
@@ -228,14 +225,30 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     _from_moments(project, canvas, box, g, k, frame.scale)
     for c in couples:
         symbols.rotation_arrow(canvas, frame(c.at), 10.0, -1 - 0.4j, c.value, c.symbol)
-    for link in g.links:
-        for n, couple in enumerate(forces.link_couples.get(link, ())):
-            value = float(np.real(couple.at(k)))
-            shape = next(shape for shape in linkage.shapes(pos) if shape.link == link)
-            centre = project.mechanism.links[link].centre or shape.block or shape.bar[0]
-            if not is_zero(value, forces.moment_size(k)):
-                z = frame(complex(pos.points[centre].at(k)))
-                symbols.rotation_arrow(canvas, z, 7.0 + 4.0 * n, -1 + 0.2j, value, symbol(couple.name).replace(BAR, ""))
+    for s in drawn:
+        centre = project.mechanism.links[s.link].centre or s.block or s.bar[0]
+        for n, sign, value in _couples(project, s.link):
+            symbols.rotation_arrow(canvas, frame(complex(pos.points[centre].at(k))), 7.0 + 4.0 * n, -1 + 0.2j, value, sign)
+
+
+def _link_numbers(canvas: Canvas, pos: Positions, drawn: Iterable[linkage.Shape], k: int, frame: Frame) -> None:
+    """Numbers of the links, near the first ends of bars: their middles are left to forces and arms."""
+    for s in drawn:
+        z = frame(complex(pos.points[s.block or s.bar[-1]].at(k)))
+        if s.bar:
+            p = linkage.bar_points(pos, s, k)
+            a, b = frame(p[0]), frame(p[-1])
+            z = a + 0.3 * (b - a)
+        canvas.label(z, s.link, 1 + 0.3j, 5.0, 2.0 if s.bar else 6.5)
+
+
+def _couples(project: Project, link: str) -> Iterator[tuple[int, str, float]]:
+    """Place in the list, sheet markup and value (N m) of each couple on a link that is not zero."""
+    k, forces = project.force_index, project.study.forces
+    for n, couple in enumerate(forces.link_couples.get(link, ())):
+        value = float(np.real(couple.at(k)))
+        if not is_zero(value, forces.moment_size(k)):
+            yield n, symbol(couple.name).replace(BAR, ""), value
 
 
 def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:
@@ -243,8 +256,8 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
     forces, m = project.study.forces, project.mechanism
     said = []
     own = {f"F{pair_index(link, other)}τ" for link in g.links for other in (m.frame, *m.links)}
-    for step in forces.plan:
-        if step.rule.name == "component from moments" and step.name in own:
+    for step in forces.tangential:
+        if step.name in own:
             sign = f"F_{{{step.name[1:-1]}}}^τ"
             said.append(f"ΣM_{step.args[1].name} = 0: {sign} = {newtons(clean(abs(complex(step.at(k))), forces.force_size(k)))} Н")
     about = g.outer[0] if g.kind == 5 else g.inner
@@ -369,20 +382,7 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     frame = Frame(scale, inside.centre - scale.mm(real.centre))
     canvas.title(box, fp.plan.title, str(scale), 5.0)
     flat_crossings.warn(project, canvas, box, fp.plan)
-    number_of = {id(step): n for n, step in fp.plan.steps.items()}
-    tiny = {}
-    for sign, tail, head, _ in sides:
-        a, b = frame(complex(tail.at(k))), frame(complex(head.at(k)))
-        if abs(b - a) < SHORTEST:
-            tiny[number_of[id(tail)], number_of[id(head)]] = f"{sign} = {newtons(scale.real(abs(b - a)))} Н".replace(" ", TOGETHER)
-            continue
-        canvas.arrow(a, b, "vector")
-        centre = frame(real.centre)
-        middle = (a + b) / 2
-        n = 1j * (b - a)
-        if (np.conj(n) * (middle - centre)).real < 0:
-            n = -n
-        canvas.label(middle, sign, n, 3.5, 1.0)
+    tiny = _draw_sides(canvas, fp, sides, frame, frame(real.centre), k)
     extra = [seg for seg in fp.plan.segments if not any(seg.symbol == s[0] for s in fp.sides)]
     for seg in extra:
         canvas.arrow(frame(complex(seg.tail.at(k))), frame(complex(seg.head.at(k))), "vector")
@@ -392,11 +392,36 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         canvas.label(q, ", ".join(sorted(names, key=int)), q - frame(real.centre), 2.5, 0.8)
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
-    terms = [f"{s}({number_of[id(t)]}–{number_of[id(h)]})" for s, t, h, _ in sides]
+    vertex = _vertices(fp)
+    terms = [f"{s}({vertex[id(t)]}–{vertex[id(h)]})" for s, t, h, _ in sides]
     _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
     asked = [(s, t, h) for s, t, h, unknown in sides if unknown] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [f"{s.replace(BAR, '')} = {newtons(clean(abs(complex(h.at(k)) - complex(t.at(k))), size))} Н" for s, t, h in asked]
     _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
+
+
+def _vertices(fp: ForcePlan) -> dict[int, str]:
+    """Number of each vertex of a force polygon by its step's identity."""
+    return {id(step): n for n, step in fp.plan.steps.items()}
+
+
+def _draw_sides(canvas: Canvas, fp: ForcePlan, sides: list[tuple[str, Step, Step, bool]], frame: Frame, centre: complex,
+                k: int) -> dict[tuple[str, str], str]:
+    """Sides of a force polygon with their signs outside it; those too short to be drawn are told by their vertices."""
+    vertex, tiny = _vertices(fp), {}
+    for sign, tail, head, _ in sides:
+        a, b = frame(complex(tail.at(k))), frame(complex(head.at(k)))
+        if abs(b - a) < SHORTEST:
+            value = newtons(frame.scale.real(abs(b - a)))
+            tiny[vertex[id(tail)], vertex[id(head)]] = f"{sign} = {value} Н".replace(" ", TOGETHER)
+            continue
+        canvas.arrow(a, b, "vector")
+        middle = (a + b) / 2
+        n = 1j * (b - a)
+        if (np.conj(n) * (middle - centre)).real < 0:
+            n = -n
+        canvas.label(middle, sign, n, 3.5, 1.0)
+    return tiny
 
 
 def newtons(force: float) -> str:
@@ -456,10 +481,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     frame = fit_frame(project, canvas, "scheme-crank", "μ_l", "м/мм", z, d, left.inset(3.0, 3.0, 3.0, 19.0))
     canvas.title(left, "Начальное звено", str(frame.scale))
     if driver is not None:
-        canvas.circle(frame(pivot), driver.radius / frame.scale.mu, "centre")
-        contact = frame(pivot + driver.radius * np.exp(1j * driver.mate))
-        canvas.dot(contact, 0.6, "thin")
-        canvas.label(contact, "P", 1j * np.exp(1j * driver.mate), 3.5, 1.5)
+        _draw_driver(canvas, frame, pivot, driver)
     linkage.draw(canvas, pos, k, frame, "main", [c.link])
     for name in (c.pivot, *pins):
         canvas.label(frame(complex(pos.points[name].at(k))), linkage.indexed(name), 0j, 3.5, 2.8)
@@ -470,6 +492,14 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         symbols.rotation_arrow(canvas, frame(pivot), 24.0, away, float(forces.balancing.at(k)), balancing_sign(project))
     _crank_couples(project, canvas, left, frame(pivot), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
+
+
+def _draw_driver(canvas: Canvas, frame: Frame, pivot: complex, driver: GearForce) -> None:
+    """Pitch circle of the wheel on the crank shaft with its pitch point."""
+    canvas.circle(frame(pivot), driver.radius / frame.scale.mu, "centre")
+    contact = frame(pivot + driver.radius * np.exp(1j * driver.mate))
+    canvas.dot(contact, 0.6, "thin")
+    canvas.label(contact, "P", 1j * np.exp(1j * driver.mate), 3.5, 1.5)
 
 
 def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:
@@ -487,13 +517,11 @@ def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> c
 
 def _crank_couples(project: Project, canvas: Canvas, box: Box, at: complex, away: complex) -> None:
     """Couples on the crank, its inertia couple among them, as arrows and with their values."""
-    k, forces, c = project.force_index, project.study.forces, project.mechanism.crank
+    k, forces = project.force_index, project.study.forces
     said = []
-    for n, couple in enumerate(forces.link_couples.get(c.link, ())):
-        sign, value = symbol(couple.name).replace(BAR, ""), float(np.real(couple.at(k)))
-        if not is_zero(value, forces.moment_size(k)):
-            symbols.rotation_arrow(canvas, at, 34.0 + 10.0 * n, away, value, sign)
-            said.append(f"{sign} = {number(abs(value), 5)} Н·м")
+    for n, sign, value in _couples(project, project.mechanism.crank.link):
+        symbols.rotation_arrow(canvas, at, 34.0 + 10.0 * n, away, value, sign)
+        said.append(f"{sign} = {number(abs(value), 5)} Н·м")
     if said and project.driver is None and forces.balancing is not None:
         said.append(f"{balancing_sign(project)} = {number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))} Н·м")
     if said:
@@ -522,20 +550,24 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         canvas.line(frame(a), frame(b), "axis")
     canvas.dot(pole, 0.9, "vector")
     canvas.label(pole, "p", 0j, 3.5, 1.2)
-    joint: dict[tuple[int, int], list[str]] = {}
-    for name, z in points.items():
-        q = frame(z)
-        joint.setdefault((round(q.real * 2), round(q.imag * 2)), []).append(name)
-    for names in joint.values():
-        q = frame(points[names[0]])
-        canvas.dot(q, 0.6, "vector")
-        canvas.label(q, ", ".join(f"{n[0]}_{{{n[1:]}}}′" if n[1:] else f"{n}′" for n in names), q - pole, 3.5, 1.2)
+    _turned_letters(canvas, {name: frame(z) for name, z in points.items()}, pole)
     if lv.contact is not None and project.driver is not None:
         z = frame(complex(lv.contact.at(k)))
         canvas.line(pole, z, "axis")
         canvas.label(z, "f′", 0j, 3.5, 1.2)
     draw_arms(canvas, frame, 0j, shown, points=[frame(z) for z in points.values()])
     draw_forces(canvas, frame, shown)
+
+
+def _turned_letters(canvas: Canvas, at: Mapping[str, complex], pole: complex) -> None:
+    """Dots of the turned plan's points, mm, and their letters with a prime; those of one place together."""
+    joint: dict[tuple[int, int], list[str]] = {}
+    for name, q in at.items():
+        joint.setdefault((round(q.real * 2), round(q.imag * 2)), []).append(name)
+    for names in joint.values():
+        q = at[names[0]]
+        canvas.dot(q, 0.6, "vector")
+        canvas.label(q, ", ".join(f"{n[0]}_{{{n[1:]}}}′" if n[1:] else f"{n}′" for n in names), q - pole, 3.5, 1.2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

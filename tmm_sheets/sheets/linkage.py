@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -150,37 +150,59 @@ def outlines(pos: Positions, shape: Shape, k: int) -> list[list[complex]]:
 
 def draw(canvas: Canvas, pos: Positions, k: int, frame: Frame, style: str, only: Iterable[str] | None = None) -> None:
     """Links of the mechanism at position ``k``: with all symbols in style main, as bare lines otherwise."""
-    m = pos.mechanism
-    wanted = set(m.links if only is None else only)
-    full = style == "main"
+    wanted = set(pos.mechanism.links if only is None else only)
+    drawn = [s for s in shapes(pos) if s.link in wanted]
     # A dict, not a set: the order of the marks must be the same in every run.
-    hinges = dict.fromkeys(name for s in shapes(pos) if s.link in wanted for name in (*s.bar, s.block or "") if name)
-    at = {name: frame(complex(pos.points[name].at(k))) for name in hinges}
-    for s in shapes(pos):
-        if s.link not in wanted:
-            continue
+    names = dict.fromkeys(name for s in drawn for name in (*s.bar, s.block or "") if name)
+    at = {name: frame(complex(pos.points[name].at(k))) for name in names}
+    if style != "main":
+        _draw_bare(canvas, pos, drawn, at, frame, k, style)
+        return
+    for s in drawn:
         if s.bar:
-            solid = at.values() if full else [z for name, z in at.items() if name in m.fixed]
+            for line in outlines(pos, s, k):
+                symbols.bar(canvas, [frame(z) for z in line], at.values(), style)
+        elif s.block is not None and s.along is not None:
+            _draw_block(canvas, pos, s, frame, k, style)
+    _draw_pairs(canvas, pos, at, style, whole=only is None)
+
+
+def _draw_bare(canvas: Canvas, pos: Positions, drawn: Iterable[Shape], at: Mapping[str, complex], frame: Frame, k: int,
+               style: str) -> None:
+    """Bars as lines, interrupted at fixed pivots only, and small blocks; a ram's body would hide those of other positions."""
+    pivots = [z for name, z in at.items() if name in pos.mechanism.fixed]
+    for s in drawn:
+        if s.bar:
             for line in outlines(pos, s, k):
                 p = [frame(z) for z in line]
-                symbols.bar(canvas, p if full else (p[0], p[-1]), solid, style)
-        elif s.block is not None and s.along is not None:
-            u = complex(s.along.at(k))
-            if s.slot is None:
-                symbols.block(canvas, at[s.block], u, style, block_size(pos, s, frame) if full else (4.0, 2.4))
-                if full and s.carried is not None:
-                    _slot(canvas, pos, s, frame, k, style)
-            elif full:
-                _ram(canvas, frame, pos, s, k, style)
-            if full:
-                _arms(canvas, pos, s, frame, k, style)
-    if full:
-        for name, z in at.items():
-            if name in m.fixed:
-                if only is None or name == m.crank.pivot or any(name in g.outer for g in m.groups):
-                    symbols.pivot(canvas, z, _base_direction(pos, name))
-            elif not _is_block_of_ram(pos, name):
-                symbols.hinge(canvas, z, style)
+                symbols.bar(canvas, (p[0], p[-1]), pivots, style)
+        elif s.block is not None and s.along is not None and s.slot is None:
+            symbols.block(canvas, at[s.block], complex(s.along.at(k)), style, (4.0, 2.4))
+
+
+def _draw_block(canvas: Canvas, pos: Positions, s: Shape, frame: Frame, k: int, style: str) -> None:
+    """A block with its slot, or a ram, and what is fastened to it."""
+    assert s.block is not None
+    assert s.along is not None
+    if s.slot is not None:
+        _ram(canvas, frame, pos, s, k, style)
+    else:
+        centre = frame(complex(pos.points[s.block].at(k)))
+        symbols.block(canvas, centre, complex(s.along.at(k)), style, block_size(pos, s, frame))
+        if s.carried is not None:
+            _slot(canvas, pos, s, frame, k, style)
+    _arms(canvas, pos, s, frame, k, style)
+
+
+def _draw_pairs(canvas: Canvas, pos: Positions, at: Mapping[str, complex], style: str, *, whole: bool) -> None:
+    """Hinges and fixed pivots; of single groups only those pivots that are pairs of the mechanism."""
+    m = pos.mechanism
+    for name, z in at.items():
+        if name in m.fixed:
+            if whole or name == m.crank.pivot or any(name in g.outer for g in m.groups):
+                symbols.pivot(canvas, z, _base_direction(pos, name))
+        elif not _is_block_of_ram(pos, name):
+            symbols.hinge(canvas, z, style)
 
 
 RAM = 21.0

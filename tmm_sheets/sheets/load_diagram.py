@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,10 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import pick
+from tmm_sheets.sheets.linkage import indexed
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.linkage.loads import Applied
     from tmm_sheets.project import Project
 
 SAMPLES = 361
@@ -32,20 +35,14 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]
     turned = np.unique(np.concatenate((np.linspace(0, cycle.period, SAMPLES), jumps)))
     turned = turned[(turned >= 0) & (turned <= cycle.period)]
-    unit = "Н" if shown[0].point is not None else "Н·м"
+    kind, unit = ("F", "Н") if shown[0].point is not None else ("M", "Н·м")
     inside = box.inset(10.0, 8.0, 14.0, 24.0)
     top = max(float(np.max(f.magnitude(turned))) for f in shown)
-    scale = pick(project, canvas, "loads", "μ_F" if shown[0].point is not None else "μ_M", f"{unit}/мм", top / inside.height)
-    names = {f.name for f in shown}
-    accepted = all((*(f.accepted for f in project.variant.force if f.name in names),
-                    *(m.accepted for m in project.variant.moment if m.name in names)))
-    canvas.title(box, f"Технологическая нагрузка{' (принято)' if accepted else ''}",
+    scale = pick(project, canvas, "loads", f"μ_{kind}", f"{unit}/мм", top / inside.height)
+    canvas.title(box, f"Технологическая нагрузка{' (принято)' if _accepted(project, shown) else ''}",
                  f"{scale}, μ_φ = {number(cycle.period / inside.width)} рад/мм")
     origin = complex(inside.x0, inside.y0)
-    strokes = cycle.strokes
-    if strokes is not None and len(strokes.runs) > 2 and any(f.motion is not None and f.point == strokes.output for f in shown):
-        a, b = (fixed(degrees(x) % degrees(cycle.period), 1) for x in (strokes.begin, strokes.end))
-        said = f"Точка {strokes.output} меняет направление {times(len(strokes.runs))} за оборот; рабочий ход φ = {a}°…{b}°"
+    if (said := _many_strokes(project, shown)) is not None:
         canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
 
     def at(angle: Any, value: Any) -> Any:
@@ -53,19 +50,47 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
 
     canvas.arrow(origin, origin + 1j * (top / scale.mu + 8.0), "axis", 3.0)
     canvas.arrow(origin, origin + inside.width + 10.0, "axis", 3.0)
-    signs = ", ".join(f"{f.name[0]}_{{{f.name[1:]}}}" for f in shown)
+    signs = ", ".join(indexed(f.name) for f in shown)
     canvas.label(origin + 1j * (top / scale.mu + 6.0), f"{signs}, {unit}", 1 + 0j, 3.5, 1.5)
     canvas.label(origin + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
+    _positions(project, canvas, shown, at)
+    for f in shown:
+        canvas.polyline(at(turned, f.magnitude(turned)), "curve")
+        if len(shown) > 1:
+            _sign(canvas, f, turned, at)
+
+
+def _accepted(project: Project, shown: list[Applied]) -> bool:
+    """Whether all loads shown were chosen by whoever wrote the project, not given by the task."""
+    names = {f.name for f in shown}
+    return all((*(f.accepted for f in project.variant.force if f.name in names),
+                *(m.accepted for m in project.variant.moment if m.name in names)))
+
+
+def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
+    """What is said of an output that turns back more than twice a turn: which of its strokes is the working one."""
+    cycle = project.cycle
+    strokes = cycle.strokes
+    if strokes is None or len(strokes.runs) <= 2 or not any(f.motion is not None and f.point == strokes.output for f in shown):
+        return None
+    a, b = (fixed(degrees(x) % degrees(cycle.period), 1) for x in (strokes.begin, strokes.end))
+    return f"Точка {strokes.output} меняет направление {times(len(strokes.runs))} за оборот; рабочий ход φ = {a}°…{b}°"
+
+
+def _sign(canvas: Canvas, f: Applied, turned: Any, at: Callable[[Any, Any], Any]) -> None:
+    """Sign of one of several loads over the middle of where it is at least half its greatest."""
+    values = f.magnitude(turned)
+    acting = turned[values >= 0.5 * values.max()]
+    middle = float(acting[len(acting) // 2]) if len(acting) else pi
+    canvas.label(at(middle, float(np.ravel(f.magnitude(middle))[0])), indexed(f.name), 1j, 3.5, 1.5)
+
+
+def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Callable[[Any, Any], Any]) -> None:
+    """Numbers of the positions under the axis, and ordinates of the largest load over those inside the turn."""
+    cycle = project.cycle
     for label, angle in (*zip(cycle.labels, cycle.turned, strict=True), (cycle.labels[0], cycle.period)):
         value = max(float(np.ravel(f.magnitude(angle, side))[0]) for f in shown for side in (-1, 1))
         if value > 0 and 0 < angle < cycle.period:
             canvas.line(at(angle, 0), at(angle, value), "thin")
         canvas.line(at(angle, 0) - 1j, at(angle, 0), "thin")
         canvas.text(at(angle, 0) - 5.0j, label, 2.5, "centre")
-    for f in shown:
-        values = f.magnitude(turned)
-        canvas.polyline(at(turned, values), "curve")
-        if len(shown) > 1:
-            acting = turned[values >= 0.5 * values.max()]
-            middle = float(acting[len(acting) // 2]) if len(acting) else pi
-            canvas.label(at(middle, float(np.ravel(f.magnitude(middle))[0])), f"{f.name[0]}_{{{f.name[1:]}}}", 1j, 3.5, 1.5)

@@ -28,7 +28,7 @@ BELOW = 0.5
 def generating(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The rack in its middle position and along one flank of the pinion, whose envelope it is; the other by symmetry."""
     canvas.of = "gear-rack"
-    picture = _Picture(project.gear, canvas, box)
+    picture = _RackPicture(project.gear, canvas, box)
     picture.circles()
     picture.lines()
     picture.positions()
@@ -37,7 +37,7 @@ def generating(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     canvas.of = ""
 
 
-class _Picture:
+class _RackPicture:
     """The surroundings of the pole P0 of the generating engagement, cut out of wheel and rack."""
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:

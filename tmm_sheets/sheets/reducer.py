@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import rect
+from collections.abc import Mapping
 from math import pi
 from typing import Any
 
@@ -292,16 +293,9 @@ class _Scheme:
         def at(z: complex) -> complex:
             return complex(zero + mu.mm(z.real), self.y(z.imag))
 
-        heights = [v.imag for v in velocity.values()]
-        c.line(complex(zero, self.y(min(heights)) - 6), complex(zero, self.y(max(heights)) + 6), "axis")
-        names: dict[float, list[str]] = {}
-        for name, value in velocity.items():
-            if name[0].isupper():
-                names.setdefault(round(self.y(value.imag), 1), []).append(name if len(name) == 1 else f"{name[0]}_{name[1:]}")
-        for y, group in names.items():
-            c.line(complex(self.box.x0 + STUB, y), complex(zero, y), "construction")
-            c.dot(complex(zero, y), 0.7)
-            c.label(complex(zero, y), ", ".join(group), away=-1 + 0.6j, height=3.5, gap=1.2)
+        bottom, top = (f([v.imag for v in velocity.values()]) for f in (min, max))
+        c.line(complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis")
+        self.heights(zero, {name: value.imag for name, value in velocity.items() if name[0].isupper()})
         for name, value in velocity.items():
             if name[0].islower():
                 point = complex(zero, self.y(value.imag))
@@ -315,6 +309,17 @@ class _Scheme:
             a, b = at(on[0]), at(on[-1])
             c.ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
             c.label(a + 0.62 * (b - a), _link(link), away=1j * (b - a) * (-1 if (b - a).real > 0 else 1), height=5, gap=1.2)
+
+
+    def heights(self, zero: float, points: Mapping[str, float]) -> None:
+        """Points of the scheme carried over to the line of zero velocity; those of one height have one line."""
+        names: dict[float, list[str]] = {}
+        for name, height in points.items():
+            names.setdefault(round(self.y(height), 1), []).append(name if len(name) == 1 else f"{name[0]}_{name[1:]}")
+        for y, group in names.items():
+            self.canvas.line(complex(self.box.x0 + STUB, y), complex(zero, y), "construction")
+            self.canvas.dot(complex(zero, y), 0.7)
+            self.canvas.label(complex(zero, y), ", ".join(group), away=-1 + 0.6j, height=3.5, gap=1.2)
 
 
 def _link(name: str) -> str:

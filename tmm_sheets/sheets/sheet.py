@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing.canvas import Canvas, Group, Part
+from tmm_sheets.drawing.canvas import Canvas, MarkGroup, Part
 from tmm_sheets.drawing.labels import Crowded, place
 from tmm_sheets.drawing.marks import Drawing
 from tmm_sheets.drawing.title_block import draw_frame
@@ -43,7 +43,7 @@ class Composed:
     scales: dict[str, Scale]
     crowded: tuple[Crowded, ...]
     parts: tuple[Part, ...] = ()
-    groups: tuple[Group, ...] = ()
+    groups: tuple[MarkGroup, ...] = ()
     leaving: tuple[places.Leaving, ...] = ()
 
 

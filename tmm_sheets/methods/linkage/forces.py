@@ -99,6 +99,11 @@ class Kinetostatics:
         """Weights, inertia forces and applied forces of all links, without reactions."""
         return [load for loads in self.loads.values() for load in loads if load.role != "reaction"]
 
+    @property
+    def tangential(self) -> list[Step]:
+        """Parts of outer reactions that the moment equations gave, across their links, in the order they were found."""
+        return [step for step in self.plan if step.rule is TANGENTIAL]
+
     def force_size(self, k: int) -> float:
         """Size of the forces at position ``k``, N: beside it a force is something or nothing."""
         return size((load.vector.value for loads in self.loads.values() for load in loads), k)
