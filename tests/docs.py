@@ -23,7 +23,7 @@ from tmm_sheets.backends import dxf
 from tmm_sheets.drawing import marks, styles
 from tmm_sheets.drawing.marks import Arc, Drawing, Line
 from tmm_sheets.mechanism.model import FORMS
-from tmm_sheets.methods.linkage import cycle
+from tmm_sheets.methods.linkage import numbering
 from tmm_sheets.methods.linkage import positions as positions_module
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import frame
@@ -245,7 +245,7 @@ def walk() -> str:
     rows = (
         ("project file", resources, f'`length = "{task.data["crank"]["length"]}"`, `sense = "{task.data["crank"]["sense"]}"`'),
         ("numbers", variant, f"`crank.length = {task.crank.length}`, `crank.speed = {task.crank.speed:.6f}` rad/s"),
-        ("cycle", cycle, f"label `2`: {degrees(project.cycle.turned[2]):g}° turned from the dead position, crank at "
+        ("cycle", numbering, f"label `2`: {degrees(project.cycle.turned[2]):g}° turned from the dead position, crank at "
                          f"{degrees(project.cycle.phi[2]) % 360:g}° of the world frame"),
         ("step", positions_module, f"`{pin.name}` by the rule *{pin.rule.name}*: ({z.real:.6f}, {z.imag:.6f}) m"),
         ("frame", frame, f"origin ({circle.real:g}, {circle.imag:g}) mm, μ_l = {scale.mu:g} m/mm: B at "

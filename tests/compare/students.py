@@ -16,7 +16,8 @@ import numpy as np
 
 from tmm_sheets import catalogue
 from tmm_sheets.compare.measured.chain import Judged, judge
-from tmm_sheets.compare.measured.measurable import Measurable, Measurables, measurables
+from tmm_sheets.compare.measured.collecting import measurables
+from tmm_sheets.compare.measured.measurable import Measurable, Measurables
 from tmm_sheets.compare.measured.measured_file import Filled, Line
 from tmm_sheets.construction import error
 from tmm_sheets.construction.step import Step, value_of

@@ -18,8 +18,9 @@ from hypothesis import strategies as st
 from tests.methods.linkage import shaper_truth as truth
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
+from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.methods.flywheel.energy_mass import limit
-from tmm_sheets.methods.flywheel.flywheel import Scales, Space, flywheel, wheel
+from tmm_sheets.methods.flywheel.flywheel import Scales, Space, wheel
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
 MANUALS = Path(__file__).parents[2] / "manuals"

@@ -19,7 +19,8 @@ from tests.methods.linkage.shaper_truth import Shaper
 from tmm_sheets import catalogue
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.methods.flywheel.flywheel import Flywheel, MotorCheck, Scales, flywheel, wheel
+from tmm_sheets.methods.flywheel.chosen import flywheel
+from tmm_sheets.methods.flywheel.flywheel import Flywheel, MotorCheck, Scales, wheel
 from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov
 from tmm_sheets.methods.flywheel.running import Energy, steady
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer

@@ -14,8 +14,8 @@ import pytest
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.loads import Motion, stroke_law, turning_motion
+from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.project import Project

@@ -756,20 +756,6 @@ ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m -
                     "{name} = (M − ω²/2·dJ/dφ)/J = ({0} − {3}²/2·{1})/{2} = {value} рад/с².")
 
 
-def flywheel(reduced: Reduced, data: Data) -> Flywheel:
-    """Flywheel of a linkage by the method its data name."""
-    # The methods build on this module.
-    if data.method == "mertsalov":
-        from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov
-
-        return Mertsalov(reduced, data, SPACE)
-    if data.method == "wittenbauer":
-        from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
-
-        return Wittenbauer(reduced, data)
-    raise ValueError(f"flywheel method {data.method!r} is not known; known: 'wittenbauer', 'mertsalov'")
-
-
 def _within(phi: Floats, turn: float) -> Floats:
     """Angles of later turns as those of the first; whole turns but the first end it."""
     later = phi > turn * (1 + 1e-12)
