@@ -54,14 +54,8 @@ def collect(project: Project, found: Measurables, shown: set[str]) -> None:
 
 def _position(plan: Plan, scales: Mapping[str, Scale], k: int) -> Iterator[Measurable]:
     """Lines of links, distances of the moving points from the first fixed point, directions of the links."""
-    points = [s for s in plan if s.rule.gives == "point"]
-    origin = points[0]
-    lines = [(s.args[0], s.args[1]) for s in plan if s.rule is rules.RAY]
-    # Each point from the one it was laid off from, and all from the first pivot, so that each is fixed by two lengths.
-    lines += [(a, s) for s in points for a in s.args[:1] if isinstance(a, Step) and a.rule.gives == "point"]
-    lines += [(origin, s) for s in points if np.ndim(s.value) and s is not origin]
     seen: set[frozenset[str]] = set()
-    for tail, head in lines:
+    for tail, head in _position_lines(plan):
         pair = frozenset((tail.name, head.name))
         if pair not in seen and len(pair) == 2 and not any("₀" in name for name in pair):
             seen.add(pair)
@@ -72,6 +66,15 @@ def _position(plan: Plan, scales: Mapping[str, Scale], k: int) -> Iterator[Measu
             label, name = plan.labels[k], f"∠{s.name}"
             yield Measurable(f"{plan.name}/{label}/{name}", plan.name, plan.title, label, name, DEGREES, "angle",
                              degrees(np.angle(u)) % 360, ((s, k, 1j * u * degrees(1)),), reading=degrees(1 / PROTRACTOR), head=s)
+
+
+def _position_lines(plan: Plan) -> list[tuple[Step, Step]]:
+    """Lines of links; each point from the one it was laid off from, and all from the first pivot, so that two lengths fix each."""
+    points = [s for s in plan if s.rule.gives == "point"]
+    origin = points[0]
+    lines = [(s.args[0], s.args[1]) for s in plan if s.rule is rules.RAY]
+    lines += [(a, s) for s in points for a in s.args[:1] if isinstance(a, Step) and a.rule.gives == "point"]
+    return lines + [(origin, s) for s in points if np.ndim(s.value) and s is not origin]
 
 
 def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = "") -> Iterator[Measurable]:
@@ -119,15 +122,8 @@ def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> No
     """Reduced moments and energies from the velocity plans: their errors are those of the velocities."""
     study, r = project.study, project.reduced
     vel, omega1, mu = study.velocities, project.reduced.omega1, found.scales["velocities"].mu
-    links, fixed = project.mechanism.links.values(), project.mechanism.fixed
     title, unit = "Приведённый момент сил", "Н·м"
-    acting: list[tuple[str, Step, Any]] = []
-    for f in project.applied:
-        acting.append((f.name, vel.omega[f.link], f.law(study.turned, 1)) if f.point is None
-                      else (f.name, vel.points[f.point], f.vector(study.turned, 1)))
-    for link in links:
-        if r.gravity and link.mass and link.centre is not None and link.centre not in fixed:
-            acting.append((f"G{link.name}", vel.points[link.centre], np.full(len(study.labels), -1j * link.mass * r.gravity)))
+    acting = _acting(project)
     exact = np.asarray(r.moment(study.turned, side=1))
     for k in indices:
         label = study.labels[k]
@@ -149,6 +145,20 @@ def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> No
         found.add(Measurable(f"{RESULTS}/{label}/M_red", RESULTS, title, label, "M_пр", unit, "result", float(exact[k]),
                              tuple((step, k, g) for _, step, g in parts), "velocities", read, signed=True))
     _energies(project, found, indices)
+
+
+def _acting(project: Project) -> list[tuple[str, Step, Any]]:
+    """Technological forces and moments and the weights that count: name, velocity they work with, values at the positions."""
+    study, gravity = project.study, project.reduced.gravity
+    vel = study.velocities
+    acting: list[tuple[str, Step, Any]] = []
+    for f in project.applied:
+        acting.append((f.name, vel.omega[f.link], f.law(study.turned, 1)) if f.point is None
+                      else (f.name, vel.points[f.point], f.vector(study.turned, 1)))
+    for link in project.mechanism.links.values():
+        if gravity and link.mass and link.centre is not None and link.centre not in project.mechanism.fixed:
+            acting.append((f"G{link.name}", vel.points[link.centre], np.full(len(study.labels), -1j * link.mass * gravity)))
+    return acting
 
 
 def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> None:
@@ -195,23 +205,41 @@ def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> N
 
 def _forces(project: Project, found: Measurables) -> None:
     """Force plans, arms and the lever at the position of the force analysis, and what they give."""
+    _loads(project, found)
+    _force_plans(project, found)
+    k = project.force_index
+    label = project.study.labels[k]
+    for name, step in project.study.forces.arms.items():
+        value = complex(value_at(step, k))
+        found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, "Плечи реакций", label, name, "м", "result", abs(value),
+                             ((step, k, 1 + 0j if value.real >= 0 else -1 + 0j),), head=step))
+    _balancing(project, found)
+    _arms(project, found, k, label)
+    _lever(project, found)
+
+
+def _loads(project: Project, found: Measurables) -> None:
+    """Weights and forces of inertia, and the tangential reactions that the moments of a link give."""
     study, k = project.study, project.force_index
-    f, lever, label = study.forces, study.lever, study.labels[project.force_index]
+    label = study.labels[k]
+    given = {a.name for a in study.applied}
+    for step in study.loads[2]:
+        if step.rule.gives in ("force", "number") and step.name not in given:
+            unit = "Н" if step.rule.gives == "force" else "Н·м"
+            found.add(size("Силы тяжести и инерции", f"{RESULTS}/{label}/{step.name}", label, step.name, unit, k, step, by=step))
+    for step in study.forces.plan:
+        if step.rule is TANGENTIAL:
+            found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
+
+
+def _force_plans(project: Project, found: Measurables) -> None:
+    """Sides of the force plans and the reactions they give, each once: F12 is F21 the other way."""
+    study, k = project.study, project.force_index
+    label = study.labels[k]
     given: set[str] = set()
     links = (project.mechanism.frame, *project.mechanism.links)
     opposite = {f"F{pair_index(a, b)}": f"F{pair_index(b, a)}" for a in links for b in links}
-    for step in study.loads[2]:
-        title = "Силы тяжести и инерции"
-        if step.rule.gives in ("force", "number") and not any(step.name == a.name for a in study.applied):
-            unit = "Н" if step.rule.gives == "force" else "Н·м"
-            found.add(size(title, f"{RESULTS}/{label}/{step.name}", label, step.name, unit, k, step, by=step))
-    for step in f.plan:
-        if step.rule is TANGENTIAL:
-            found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
-    for fp in f.plans.values():
-        plan = fp.plan
-        if plan.name not in found.scales:
-            continue
+    for plan in (fp.plan for fp in study.forces.plans.values() if fp.plan.name in found.scales):
         found.plans.append((plan, plan.name))
         for entry in _segments(plan, found.scales, k, "–"):
             found.add(entry)
@@ -222,25 +250,28 @@ def _forces(project: Project, found: Measurables) -> None:
             if step.rule.gives == "force" and step.name not in given and opposite.get(step.name) not in given:
                 given.add(step.name)
                 found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
-    for name, step in f.arms.items():
-        value = complex(value_at(step, k))
-        found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, "Плечи реакций", label, name, "м", "result", abs(value),
-                             ((step, k, 1 + 0j if value.real >= 0 else -1 + 0j),), head=step))
-    by = "по плану сил"
-    for way, balancing in ((by, f.balancing), ("по рычагу", lever.balancing)):
-        if balancing is not None:
-            name = project.balancing
-            unit = "Н" if study.driver is not None else "Н·м"
-            entry_id = f"{RESULTS}/{label}/{name}{'' if way == by else '-lever'}"
-            found.add(size(f"Уравновешивание {way}", entry_id, label, name, unit, k, balancing, by=balancing))
-    _arms(project, found, k, label)
-    if "lever" in found.scales:
-        found.plans.append((lever.plan, "lever"))
-        for name, step in lever.points.items():
-            found.add(length(lever.plan, found.scales, k, lever.plan["p"], step, f"p{name}"))
-        for h in lever.hung:
-            entry = measured_step(lever.plan, found.scales, k, h.arm, h.arm.name.replace("\u0305", ""))
-            found.add(magnitude(entry))
+
+
+def _balancing(project: Project, found: Measurables) -> None:
+    """The balancing moment or force by both ways."""
+    study, k = project.study, project.force_index
+    label, name = study.labels[k], project.balancing
+    unit = "Н" if study.driver is not None else "Н·м"
+    for way, mark, step in (("по плану сил", "", study.forces.balancing), ("по рычагу", "-lever", study.lever.balancing)):
+        if step is not None:
+            found.add(size(f"Уравновешивание {way}", f"{RESULTS}/{label}/{name}{mark}", label, name, unit, k, step, by=step))
+
+
+def _lever(project: Project, found: Measurables) -> None:
+    """Arms of Zhukovsky's lever and the points they are measured from."""
+    if "lever" not in found.scales:
+        return
+    lever, k = project.study.lever, project.force_index
+    found.plans.append((lever.plan, "lever"))
+    for name, step in lever.points.items():
+        found.add(length(lever.plan, found.scales, k, lever.plan["p"], step, f"p{name}"))
+    for h in lever.hung:
+        found.add(magnitude(measured_step(lever.plan, found.scales, k, h.arm, h.arm.name.replace("\u0305", ""))))
 
 
 def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
