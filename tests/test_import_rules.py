@@ -52,7 +52,8 @@ RULES = {
 
 LIBRARIES = {
     "ezdxf": "backends.dxf bench.plain compare.cad.cad_file", "reportlab": "backends.pdf bench.plain",
-    "matplotlib": "backends.png bench.plots", "pydantic": "task.variant", "cv2": "compare.photo", "pypdfium2": "compare.photo",
+    "matplotlib": "backends.png bench.plots", "pydantic": "task.values task.schema task.messages task.variant",
+    "pydantic_core": "task.messages", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods bench compare",
 }  # fmt: skip
 """Large libraries and the modules or rooms they belong to."""
