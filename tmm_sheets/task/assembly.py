@@ -10,7 +10,7 @@ from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism,
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
     Applied,
-    Motion,
+    OutputMotion,
     Table,
     angle_law,
     straight_motion,
@@ -104,7 +104,7 @@ def _moment(m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
     return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion)
 
 
-def _by_run(motion: Motion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[
+def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[
         list[Table | None], list[float]]:
     """Diagram of each run, that of its stroke, and sign: it follows the motion unless the direction is fixed."""
     acts = [stroke == "both" or (stroke == "working") == run.working for run in motion.runs]

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
-from tmm_sheets.compare.measured.measured_file import Filled, Line, factor_of
+from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
@@ -74,7 +74,7 @@ class Judged:
     ``tolerance`` is infinite where the construction has none to give.
     """
 
-    line: Line
+    line: MeasuredLine
     exact: float
     deviation: float
     tolerance: float
@@ -130,7 +130,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     return judged
 
 
-def _judged(line: Line, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
+def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
     e = line.entry
     ratio = found.scales[e.scale].mu / factor_of(line, found.scales, factors) if e.scale else 1.0
     size = ratio if e.kind == "length" else 1.0

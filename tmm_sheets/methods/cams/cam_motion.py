@@ -149,7 +149,7 @@ def _coarser(least: float) -> list[float]:
 
 
 @dataclass(frozen=True)
-class Motion:
+class FollowerMotion:
     """The diagrams S'', S' and S on paper: points in mm, each diagram from its own origin.
 
     ``dds``, ``ds`` and ``s`` hold the steps of the numbered positions, ``circle`` those of the auxiliary circle by the
@@ -204,7 +204,7 @@ class Motion:
         return np.concatenate(points)
 
 
-def motion(law: PositionFunction, scales: MotionScales) -> Motion:
+def motion(law: PositionFunction, scales: MotionScales) -> FollowerMotion:
     """Record the construction of the three diagrams: auxiliary circle, two integrations with rays and chords."""
     plan = Plan("cam-motion", "Графики движения толкателя" if law.symbol == "S" else "Графики движения коромысла", "mm")
     x = [float(v) for v in scales.phi.mm(law.positions)]
@@ -219,7 +219,7 @@ def motion(law: PositionFunction, scales: MotionScales) -> Motion:
     place = {k: i for i, k in enumerate(kept)}
     place.setdefault(top + 1, place[top])
     every = [place[k] for k in range(len(x))]
-    return Motion(law, scales, plan, circle, dds, [ds[i] for i in every], [s[i] for i in every])
+    return FollowerMotion(law, scales, plan, circle, dds, [ds[i] for i in every], [s[i] for i in every])
 
 
 def _acceleration(plan: Plan, law: PositionFunction, scales: MotionScales, x: list[float]) -> tuple[dict[int, Step], list[Step]]:

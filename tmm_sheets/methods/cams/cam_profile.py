@@ -25,7 +25,7 @@ from tmm_sheets.methods.cams import cam_inversion, cam_zone
 from tmm_sheets.methods.cams.cam_closure import Spring, second_disc_of_rocker, second_disc_of_tappet, spring
 from tmm_sheets.methods.cams.cam_inversion import CONTACT, Inversion, curvature
 from tmm_sheets.methods.cams.cam_laws import LAWS, Law, Phase, PositionFunction, table_law
-from tmm_sheets.methods.cams.cam_motion import Motion, MotionScales, motion, motion_scales
+from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
 from tmm_sheets.methods.cams.cam_zone import Plate, Zone
 
 Reals = npt.NDArray[np.float64]
@@ -195,7 +195,7 @@ class Cam:
     # --- motion
 
     @cached_property
-    def motion(self) -> Motion:
+    def motion(self) -> FollowerMotion:
         """Diagrams S'', S', S at the scale factors of the shipped sheet."""
         return motion(self.law, self._scales)
 
@@ -206,7 +206,7 @@ class Cam:
     def _scales_on(self, width: float, height: float) -> MotionScales:
         return motion_scales(self.law, width, height)
 
-    def motion_on(self, width: float, height: float) -> Motion:
+    def motion_on(self, width: float, height: float) -> FollowerMotion:
         """Diagrams S'', S', S at the scale factors that suit another place on paper, mm."""
         scales = self._scales_on(width, height)
         return self.motion if scales == self._scales else motion(self.law, scales)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tmm_sheets.methods.flywheel import mertsalov, wittenbauer
-from tmm_sheets.methods.flywheel.flywheel import Data, Flywheel, Reduced
+from tmm_sheets.methods.flywheel.flywheel import Flywheel, FlywheelData, ReducedData
 
 
-def flywheel(reduced: Reduced, data: Data) -> Flywheel:
+def flywheel(reduced: ReducedData, data: FlywheelData) -> Flywheel:
     """Flywheel of a linkage by the method its data name.
 
     Raises
