@@ -21,7 +21,7 @@ from tests.test_missing_parts import FILES, HEAD
 from tests.test_odd_input import places, written
 from tmm_sheets import protocols, resources, results, summary
 from tmm_sheets.backends import svg
-from tmm_sheets.compare.measured.measurable import measurables
+from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet

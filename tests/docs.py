@@ -1,7 +1,7 @@
 """The tables of docs/ that follow from the program: keys of the project file, units, options, arrangements, examples.
 
 A line ``<!-- made: NAME ARGUMENT -->`` begins such a part, ``<!-- end -->`` ends it; ``make docs`` writes what is between anew.
-What a key means stands in a string under it in ``variant.py``, where only this module looks for it: the program starts no slower.
+What a key means stands in a string under it in ``schema.py``, where only this module looks for it: the program starts no slower.
 """
 
 import ast
@@ -23,14 +23,14 @@ from tmm_sheets.backends import dxf
 from tmm_sheets.drawing import marks, styles
 from tmm_sheets.drawing.marks import Arc, Drawing, Line
 from tmm_sheets.mechanism.model import FORMS
-from tmm_sheets.methods.linkage import cycle
+from tmm_sheets.methods.linkage import numbering
 from tmm_sheets.methods.linkage import positions as positions_module
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import frame
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.frame import Frame
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.task import units, variant
+from tmm_sheets.task import messages, schema, units, variant
 from tmm_sheets.task.cam_keys import FOLLOWER_KEYS
 from tmm_sheets.task.names import GROUP_KEYS
 
@@ -52,7 +52,7 @@ def code(*words: Any) -> str:
 # --- keys of the project file ---------------------------------------------------------------------------------------
 
 
-def meanings(model: type[variant.Table]) -> dict[str, str]:
+def meanings(model: type[schema.Table]) -> dict[str, str]:
     """What the strings under the keys of a table say, by key."""
     (tree,) = ast.parse(inspect.getsource(model)).body
     found, before = {}, None
@@ -63,7 +63,7 @@ def meanings(model: type[variant.Table]) -> dict[str, str]:
     return found
 
 
-def meaning(model: type[variant.Table], name: str, takes: str) -> str:
+def meaning(model: type[schema.Table], name: str, takes: str) -> str:
     """Description (what a message about a missing key says) and the string under the key, without what ``takes`` says already."""
     described = quoted(model.model_fields[name].description or "")
     news = described.replace(",", " or") != takes.replace(",", " or")
@@ -132,7 +132,7 @@ def first_lower(text: str) -> str:
 def default(hint: Any, field: FieldInfo) -> str:
     if field.default is PydanticUndefined:
         return "needed"
-    if field.default in (None, (), {}, "") or isinstance(field.default, variant.Table):
+    if field.default in (None, (), {}, "") or isinstance(field.default, schema.Table):
         return "–"
     if isinstance(field.default, bool):
         return f"`{str(field.default).lower()}`"
@@ -157,11 +157,11 @@ def keys(section: str) -> str:
     """Every key of a table of the project file; ``flywheel.motor`` is the table in a table."""
     model: Any = variant.Variant
     for key in section.split("."):
-        model = variant._model(model.model_fields[key].annotation)
+        model = messages.table_of(model.model_fields[key].annotation)
     return table(("key", "value", "left out", "meaning"), *key_rows(model))
 
 
-def key_rows(model: type[variant.Table]) -> Iterator[tuple[str, ...]]:
+def key_rows(model: type[schema.Table]) -> Iterator[tuple[str, ...]]:
     hints = get_type_hints(model, include_extras=True)
     for name, field in model.model_fields.items():
         key = field.alias or name
@@ -245,7 +245,7 @@ def walk() -> str:
     rows = (
         ("project file", resources, f'`length = "{task.data["crank"]["length"]}"`, `sense = "{task.data["crank"]["sense"]}"`'),
         ("numbers", variant, f"`crank.length = {task.crank.length}`, `crank.speed = {task.crank.speed:.6f}` rad/s"),
-        ("cycle", cycle, f"label `2`: {degrees(project.cycle.turned[2]):g}° turned from the dead position, crank at "
+        ("cycle", numbering, f"label `2`: {degrees(project.cycle.turned[2]):g}° turned from the dead position, crank at "
                          f"{degrees(project.cycle.phi[2]) % 360:g}° of the world frame"),
         ("step", positions_module, f"`{pin.name}` by the rule *{pin.rule.name}*: ({z.real:.6f}, {z.imag:.6f}) m"),
         ("frame", frame, f"origin ({circle.real:g}, {circle.imag:g}) mm, μ_l = {scale.mu:g} m/mm: B at "

@@ -13,7 +13,7 @@ from tests import docs
 from tmm_sheets import __main__, catalogue, cli, resources
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.task import variant
+from tmm_sheets.task import schema, variant
 
 ROOT = docs.ROOT
 TEXTS = {p.relative_to(ROOT).as_posix(): p.read_text(encoding="utf-8") for p in docs.PAPERS}
@@ -189,7 +189,8 @@ def test_every_table_of_the_project_file_is_told():
 
 
 def tables():
-    return [m for m in vars(variant).values() if isinstance(m, type) and issubclass(m, variant.Table) and m is not variant.Table]
+    named = [m for m in vars(schema).values() if isinstance(m, type) and issubclass(m, schema.Table) and m is not schema.Table]
+    return [*named, variant.Variant]
 
 
 @pytest.mark.parametrize("table", tables())
@@ -201,10 +202,10 @@ def test_every_key_has_a_value_and_a_meaning(table):
 
 
 def test_meanings_are_read():
-    rows = {row[0]: row[1:] for row in docs.key_rows(variant.Crank)}
+    rows = {row[0]: row[1:] for row in docs.key_rows(schema.CrankTable)}
     assert rows["`length`"] == ("length greater than zero", "needed", "length with its unit, for example `\"0.08 m\"`")
     assert rows["`angular_acceleration`"][:2] == ('`"flywheel"` or angular acceleration', "`0`")
-    assert {row[0]: row[2] for row in docs.key_rows(variant.Forces)} == {"`gravity`": '`"9.81 m/s2"`'}
+    assert {row[0]: row[2] for row in docs.key_rows(schema.ForcesTable)} == {"`gravity`": '`"9.81 m/s2"`'}
 
 
 # --- messages -------------------------------------------------------------------------------------------------------

@@ -52,7 +52,8 @@ RULES = {
 
 LIBRARIES = {
     "ezdxf": "backends.dxf bench.plain compare.cad.cad_file", "reportlab": "backends.pdf bench.plain",
-    "matplotlib": "backends.png bench.plots", "pydantic": "task.variant", "cv2": "compare.photo", "pypdfium2": "compare.photo",
+    "matplotlib": "backends.png bench.plots", "pydantic": "task.values task.schema task.messages task.variant",
+    "pydantic_core": "task.messages", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods bench compare",
 }  # fmt: skip
 """Large libraries and the modules or rooms they belong to."""
@@ -174,6 +175,12 @@ def circles(arrows):
         if v not in order:
             visit(v)
     return [group for group in found if len(group) > 1]
+
+
+def test_no_circles():
+    """Not even in annotations, or in imports inside functions."""
+    arrows = {m: {ours(n) for n, *_ in imports(syntax(m)) if n.startswith("tmm_sheets")} - {m} for m in MODULES}
+    assert circles(arrows) == []
 
 
 def test_circles_are_found():

@@ -88,7 +88,7 @@ class Project:
     @cached_property
     def cycle(self) -> Cycle:
         """Numbered positions of one turn."""
-        from tmm_sheets.methods.linkage.cycle import dead_cycle, even_cycle
+        from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 
         c = self._section("cycle")
         if c.start == "dead":
@@ -151,7 +151,7 @@ class Project:
             raise CannotBuild("a flywheel needs a technological force or moment", "add [[force]] or [[moment]] to the project file")
         if not any(link.mass or link.inertia or link.pivot_inertia for link in self.mechanism.links.values()):
             raise CannotBuild("a flywheel needs links with masses", "add mass, centre and inertia to [[link]] of the project file")
-        from tmm_sheets.methods.flywheel.flywheel import flywheel
+        from tmm_sheets.methods.flywheel.chosen import flywheel
 
         return flywheel(self.reduced, self._section("flywheel"))
 

@@ -51,11 +51,7 @@ def assemble(
     CannotBuild
         when a part cannot be computed and there is no ``refused`` to take it, or nothing else was asked for.
     """
-    there = project.parts
-    asked = there if parts is None else tuple(parts)
-    for part in asked:
-        if part not in there:
-            raise BadInput(f'{project.variant.project.name} has no part "{part}"', hint=f"it has {', '.join(there)}")
+    asked = _asked(project, parts)
     tree: dict[str, Any] = {
         "schema": SCHEMA, "project": project.variant.project.name, "variant": project.variant.project.variant,
     }  # fmt: skip
@@ -82,6 +78,16 @@ def assemble(
         refused |= lost
         tree["not_computed"] = {name: str(reason) for name, reason in lost.items()}
     return _plain(tree)  # type: ignore[no-any-return]
+
+
+def _asked(project: Project, parts: Iterable[str] | None) -> tuple[str, ...]:
+    """Parts that are asked for: of a project, all unless told; BadInput names one that it does not have."""
+    there = project.parts
+    asked = there if parts is None else tuple(parts)
+    for part in asked:
+        if part not in there:
+            raise BadInput(f'{project.variant.project.name} has no part "{part}"', hint=f"it has {', '.join(there)}")
+    return asked
 
 
 @contextmanager

@@ -16,8 +16,9 @@ import numpy as np
 
 from tmm_sheets import catalogue
 from tmm_sheets.compare.measured.chain import Judged, judge
-from tmm_sheets.compare.measured.measurable import Measurable, Measurables, measurables
-from tmm_sheets.compare.measured.measured_file import Filled, Line
+from tmm_sheets.compare.measured.collecting import measurables
+from tmm_sheets.compare.measured.measurable import Measurable, Measurables
+from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine
 from tmm_sheets.construction import error
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.project import Project
@@ -117,14 +118,14 @@ class Hand:
 
     def filled(self, chosen: Mapping[str, Measurable] | None = None) -> Filled:
         """A file with everything that can be measured, or with what was chosen."""
-        lines: list[Line] = []
+        lines: list[MeasuredLine] = []
         written: dict[str, float] = {}
         for i, e in enumerate((chosen or self.found.entries).values()):
             value = self.computed(e, written)
             written[e.id] = value
             if np.isfinite(value):
                 half = 0.25 if e.kind != "result" else 0.5 * 10.0 ** (np.floor(np.log10(abs(value) or 1)) - 2)
-                lines.append(Line(e, value, float(half), i))
+                lines.append(MeasuredLine(e, value, float(half), i))
         return Filled(lines)
 
 

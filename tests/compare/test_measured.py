@@ -12,7 +12,7 @@ from tests.compare.manual_tables import opened
 from tests.compare.students import PENCIL, READING, Hand, Plant
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.measured_file import Filled, Line
+from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine
 from tmm_sheets.compare.measured.measured_lengths import NAME
 
 FEW = ("positions", "velocities", "accelerations", "force-5", "force-2", "lever")
@@ -63,7 +63,7 @@ def test_exact_numbers_are_green(shaper):
     def written(e):
         return float(f"{e.value:.4g}") if e.kind == "result" else round(2 * e.value) / 2
 
-    lines = [Line(e, written(e), 0.0, 1) for e in shaper.entries.values()]
+    lines = [MeasuredLine(e, written(e), 0.0, 1) for e in shaper.entries.values()]
     of = judged(shaper, Filled(lines))
     assert len(of) > 600
     assert {j.verdict for j in of} == {"green"}

@@ -17,7 +17,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.flywheel import flywheel
+from tmm_sheets.methods.flywheel.chosen import flywheel
 
 VIEWS = tomllib.loads((Path(__file__).parents[2] / "templates/sheets/flywheel.toml").read_text(encoding="utf-8"))["view"]
 FRAME = Box(20, 5, 836, 589)

@@ -15,7 +15,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.flywheel import flywheel
+from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import mertsalov
 from tmm_sheets.sheets.arrangement import arrangement

@@ -14,7 +14,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.bench import truth
 from tmm_sheets.bench.records import Bench
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import even_cycle
+from tmm_sheets.methods.linkage.numbering import even_cycle
 from tmm_sheets.methods.linkage.study import Study
 from tmm_sheets.project import Project
 

@@ -16,7 +16,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.bench.records import Bench
 from tmm_sheets.methods.cams.cam_profile import RollerCam, cam
 from tmm_sheets.methods.gears.gear_engagement import divisions, involute_plan
-from tmm_sheets.methods.gears.gear_geometry import Wheel
+from tmm_sheets.methods.gears.gear_geometry import GearWheel
 from tmm_sheets.methods.gears.gear_pair import GearPair
 from tmm_sheets.methods.gears.rack import Rack, flank
 from tmm_sheets.project import Project
@@ -165,7 +165,7 @@ def _cams(bench: Bench) -> None:
 # --- involute by unrolling ----------------------------------------------------------------------------------------------
 
 
-def _involute_at(wheel: Wheel, share: Any) -> Any:
+def _involute_at(wheel: GearWheel, share: Any) -> Any:
     """Point of the involute where the tangent has that share of its length at the pole; centre at 0, pole at 1."""
     rb, whole = mp.mpf(wheel.rb), mp.mpf(wheel.t_pole)
 
@@ -176,7 +176,7 @@ def _involute_at(wheel: Wheel, share: Any) -> Any:
     return r / r_pole * mp.expj(turned - turned_pole)
 
 
-def _seen(pair: GearPair, wheel: Wheel, points: Any) -> Complex:
+def _seen(pair: GearPair, wheel: GearWheel, points: Any) -> Complex:
     """Constructed points in the same frame, mirrored where the involute winds the other way."""
     centre, pole = (complex(pair.engagement[name].value) for name in (f"O{wheel.number}", "Pw"))
     z = (np.asarray(points) - centre) / (pole - centre)

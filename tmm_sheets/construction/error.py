@@ -215,49 +215,64 @@ class Errors:
         if not _numeric(step.value) or _beyond_paper(step):
             return None
         args = _on_paper(step)
-        base, size = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {})), np.size(step.value)
-        if base.shape != (size,):
+        base = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {}))
+        if base.shape != (np.size(step.value),):
             return None
         snapped = self._snapped(step, args)
         drawn, measured = self._ends(step, args, snapped)
-        mu = self._mu.get(id(step), 0.0)
-        moves: list[tuple[int, Floats]] = []
-        for i, a in enumerate(args):
-            known = self._known[id(a)] if isinstance(a, Step) else None
-            if isinstance(a, Step) and (not _numeric(a.value) or np.size(a.value) > size):
-                continue  # a whole curve at once: its error is that of the line drawn along it
-            if known is not None or i in drawn or i in measured:
-                error = np.zeros(1) if known is None else _greatest(known.covariance)
-                ends = self.pencil * self._mu.get(id(a), mu) if i in drawn or i in measured else 0.0
-                moves.append((i, np.maximum(error, ends)))
-        derivatives, bend = _derivatives(step, args, base, moves, snapped)
+        derivatives, bend = _derivatives(step, args, base, self._moves(step, args, {*drawn, *measured}), snapped)
         columns = [(known, d) for i, d in derivatives.items() if (known := self._known.get(id(args[i]))) is not None]
-        lines = sum((_square(derivatives[i]) for i in drawn if i in derivatives), np.zeros((1, 2, 2)))
-        # Each end of a segment has its share of reading it, a point measured from the pole all of it.
-        share = 0.5 if len(drawn) + len(measured) > 1 else 1.0
-        own = sum((share * (self.reading * self._mu.get(id(args[i]), mu)) ** 2 * _square(derivatives[i])
-                   for i in measured if i in derivatives), np.zeros((1, 2, 2)))
-        if id(step) in self._mu and id(step) not in self._poles:
-            if step.rule.gives in _DRAWN:
-                spread = np.trace(lines, axis1=1, axis2=2) / 2
-                crossing = ~(spread < 1 - 1e-9) & _all_lines([derivatives[i] for i in drawn if i in derivatives])
-                own = own + np.where(crossing[:, None, None], lines, np.eye(2)) * (self.pencil * mu) ** 2
-            elif step.rule.gives in _MEASURED and any(isinstance(a, Step) for a in args):
-                own = own + np.diag([1.0, 0.0]) * (self.pencil * mu) ** 2
+        own = (self._ruler_error(step, args, drawn, measured, derivatives)
+               + self._pencil_error(step, [derivatives[i] for i in drawn if i in derivatives]))
         if np.isnan(base).any():
             own = np.where(np.isnan(base)[:, None, None], np.nan, own)
         source = step.rule.gives != "direction" and id(step) not in self._poles
         return self._joined(step, columns, own, bend, source) if columns or source else None
 
+    def _moves(self, step: Step, args: tuple[Any, ...], ends: set[int]) -> list[tuple[int, Floats]]:
+        """By how much each argument is moved: its own error, and a pencil's width at the ``ends`` of lines and lengths."""
+        mu = self._mu.get(id(step), 0.0)
+        moves: list[tuple[int, Floats]] = []
+        for i, a in enumerate(args):
+            known = self._known[id(a)] if isinstance(a, Step) else None
+            if isinstance(a, Step) and (not _numeric(a.value) or np.size(a.value) > np.size(step.value)):
+                continue  # a whole curve at once: its error is that of the line drawn along it
+            if known is not None or i in ends:
+                error = np.zeros(1) if known is None else _greatest(known.covariance)
+                moves.append((i, np.maximum(error, self.pencil * self._mu.get(id(a), mu) if i in ends else 0.0)))
+        return moves
+
+    def _ruler_error(self, step: Step, args: tuple[Any, ...], drawn: list[int], measured: list[int],
+                     derivatives: Mapping[int, Matrices]) -> Matrices:
+        """Covariance that reading the ``measured`` arguments off a ruler gives the step."""
+        mu = self._mu.get(id(step), 0.0)
+        # Each end of a segment has its share of reading it, a point measured from the pole all of it.
+        share = 0.5 if len(drawn) + len(measured) > 1 else 1.0
+        return sum((share * (self.reading * self._mu.get(id(args[i]), mu)) ** 2 * _square(derivatives[i])
+                    for i in measured if i in derivatives), np.zeros((1, 2, 2)))
+
+    def _pencil_error(self, step: Step, through: list[Matrices]) -> Matrices:
+        """Covariance of drawing the step itself; ``through``: its derivatives by the points that its lines are drawn through."""
+        if id(step) not in self._mu or id(step) in self._poles:
+            return np.zeros((1, 2, 2))
+        pencil = (self.pencil * self._mu[id(step)]) ** 2
+        if step.rule.gives in _DRAWN:
+            lines = sum(map(_square, through), np.zeros((1, 2, 2)))
+            spread = np.trace(lines, axis1=1, axis2=2) / 2
+            crossing = ~(spread < 1 - 1e-9) & _all_lines(through)
+            return np.asarray(np.where(crossing[:, None, None], lines, np.eye(2)) * pencil)
+        if step.rule.gives in _MEASURED and any(isinstance(a, Step) for a in _on_paper(step)):
+            return np.diag([1.0, 0.0])[None] * pencil
+        return np.zeros((1, 2, 2))
+
     def _ends(self, step: Step, args: tuple[Any, ...], snapped: Mapping[int, Any]) -> tuple[list[int], list[int]]:
         """Numbers of the arguments that lines of this step are drawn through, and of those between which something is measured."""
-        gives = step.rule.gives
-        if gives not in (*_DRAWN, "force", "number"):
-            return [], []
         points = [i for i, a in enumerate(args) if _kind(step, i, a) in _DRAWN]
-        if gives not in _DRAWN:
-            known = {*snapped, *(first for first, _ in snapped.values())} if len(snapped) > 0 else set()
+        if step.rule.gives in ("force", "number"):
+            known = {*snapped, *(first for first, _ in snapped.values())}
             return [], [i for i in points if i not in known and isinstance(args[i], Step)]
+        if step.rule.gives not in _DRAWN:
+            return [], []
         here = self._paper.get(id(step))
         drawn = [i for i in points if not isinstance(args[i], Step) or self._paper.get(id(args[i])) == here]
         foreign = [i for i in points if i not in drawn and i not in snapped]

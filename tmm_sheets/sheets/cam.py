@@ -20,7 +20,7 @@ from tmm_sheets.numbers import fixed, number
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.cams.cam_closure import Spring
-    from tmm_sheets.methods.cams.cam_motion import Motion
+    from tmm_sheets.methods.cams.cam_motion import FollowerMotion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
 
 HEADS = 66.0
@@ -162,7 +162,7 @@ def _diagram(canvas: Canvas, o: complex, up: float, down: float, end: float, sym
     canvas.label(o + end + 12.0, "φ, рад", 1j, 3.5, 1.5, leader=False)
 
 
-def _ordinates(canvas: Canvas, o: complex, m: Motion, steps: list[Step]) -> None:
+def _ordinates(canvas: Canvas, o: complex, m: FollowerMotion, steps: list[Step]) -> None:
     """Ordinates of the numbered positions, their numbers on the other side of the axis."""
     points = np.array([complex(s.value) for s in steps])
     kept = distinct(m.law.labels, points.real)
@@ -174,7 +174,7 @@ def _ordinates(canvas: Canvas, o: complex, m: Motion, steps: list[Step]) -> None
         canvas.label(at, m.law.labels[k], side, 2.5 if narrow else 3.5, 0.7, leader=False)
 
 
-def _auxiliary_circle(canvas: Canvas, o: complex, m: Motion) -> None:
+def _auxiliary_circle(canvas: Canvas, o: complex, m: FollowerMotion) -> None:
     """Auxiliary circles of the law with their division points carried to the ordinates."""
     centre = o + complex(m.plan["M"].value)
     half = m.law.parts + 1
@@ -207,7 +207,7 @@ def _auxiliary_circle(canvas: Canvas, o: complex, m: Motion) -> None:
         canvas.label(centre + rect(0.6 * radius, pi - angle), name, 1j * rect(1, pi - angle), 3.5, 0.6, leader=False)
 
 
-def _integration(canvas: Canvas, upper: complex, lower: complex, m: Motion, symbol: str, ends: list[Step],
+def _integration(canvas: Canvas, upper: complex, lower: complex, m: FollowerMotion, symbol: str, ends: list[Step],
                  pole: str, distance: str, down: float) -> None:
     """Rays from the pole of the upper diagram, rectangles of equal area, chords of the lower diagram."""
     plan = m.plan

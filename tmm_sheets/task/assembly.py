@@ -10,14 +10,15 @@ from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism,
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
     Applied,
-    Motion,
+    OutputMotion,
     Table,
     angle_law,
     straight_motion,
     stroke_law,
     turning_motion,
 )
-from tmm_sheets.task.variant import Force, Group, Moment, Variant
+from tmm_sheets.task.schema import ForceTable, GroupTable, MomentTable
+from tmm_sheets.task.variant import Variant
 
 
 def mechanism_of(variant: Variant) -> Mechanism:
@@ -52,7 +53,7 @@ def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Ap
             *(_moment(m, mechanism, cycle) for m in variant.moment))
 
 
-def _force(variant: Variant, f: Force, mechanism: Mechanism, cycle: Cycle) -> Applied:
+def _force(variant: Variant, f: ForceTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
     c = variant.cycle
     named = f.sense or (c.working_sense if c is not None else None)
     area = pi * f.bore**2 / 4 if f.bore is not None else 1.0
@@ -84,7 +85,7 @@ def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
     return unit(guide.direction) * (1 if named[0] == "+" else -1)
 
 
-def _moment(m: Moment, mechanism: Mechanism, cycle: Cycle) -> Applied:
+def _moment(m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
     sense = -1 if m.sense == "clockwise" else 1
     tables = m.diagrams()
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
@@ -103,7 +104,7 @@ def _moment(m: Moment, mechanism: Mechanism, cycle: Cycle) -> Applied:
     return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion)
 
 
-def _by_run(motion: Motion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[
+def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[
         list[Table | None], list[float]]:
     """Diagram of each run, that of its stroke, and sign: it follows the motion unless the direction is fixed."""
     acts = [stroke == "both" or (stroke == "working") == run.working for run in motion.runs]
@@ -119,7 +120,7 @@ def unit(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
 
 
-def _group(g: Group) -> StructuralGroup:
+def _group(g: GroupTable) -> StructuralGroup:
     lengths = g.lengths or (() if g.length is None else (g.length,))
     guides = g.guides or (() if g.guide is None else (g.guide,))
     slot = pi / 2 if g.slot is None else g.slot

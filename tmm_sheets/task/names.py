@@ -63,6 +63,18 @@ def _words(value: Any) -> list[str]:
     return [v for v in value if isinstance(v, str)] if isinstance(value, list) else []
 
 
+def _keys_of_kind(path: KeyPath, group: dict[str, Any], kind: int) -> Iterator[Found]:
+    """Keys that a group of this kind lacks or has too many."""
+    must, may = GROUP_KEYS.get(kind, ((), tuple(group)))
+    known = f"kind {kind} has links, {', '.join(must + may)}"
+    for key in must:
+        if key not in group:
+            yield path, f'a group of kind {kind} needs "{key}"', known
+    for key in group:
+        if key not in ("kind", "links", *must, *may) and any(key in m + n for m, n in GROUP_KEYS.values()):
+            yield (*path, key), f"a group of kind {kind} has none", known
+
+
 class _Names:
     """Walks through the file in the order in which the mechanism is put together."""
 
@@ -146,15 +158,9 @@ class _Names:
     def group(self, path: KeyPath, group: dict[str, Any]) -> Iterator[Found]:
         given = group.get("kind")
         kind = given if isinstance(given, int) and given in GROUP_KEYS and not isinstance(given, bool) else 0
-        must, may = GROUP_KEYS.get(kind, ((), tuple(group)))
-        for key in must:
-            if key not in group:
-                yield path, f'a group of kind {kind} needs "{key}"', f"kind {kind} has links, {', '.join(must + may)}"
-        for key in group:
-            if key not in ("kind", "links", *must, *may) and any(key in m + n for m, n in GROUP_KEYS.values()):
-                yield (*path, key), f"a group of kind {kind} has none", f"kind {kind} has links, {', '.join(must + may)}"
-        outer = _words(group.get("outer"))
-        if kind and "outer" in group and isinstance(group["outer"], list) and len(group["outer"]) != OUTER_POINTS[kind]:
+        yield from _keys_of_kind(path, group, kind)
+        outer, links = _words(group.get("outer")), _words(group.get("links"))
+        if kind and isinstance(group.get("outer"), list) and len(group["outer"]) != OUTER_POINTS[kind]:
             count = OUTER_POINTS[kind]
             yield (*path, "outer"), f"expected {count} point{'s' * (count > 1)} for a group of kind {kind}", ""
         for i, name in enumerate(outer):
@@ -162,16 +168,18 @@ class _Names:
         yield from self.guide_use((*path, "guide"), group.get("guide"))
         for i, name in enumerate(_words(group.get("guides"))):
             yield from self.guide_use((*path, "guides", i), name)
-        links = _words(group.get("links"))
-        for i, link in enumerate(links):
-            yield from self.spelt((*path, "links", i), link, "link")
-            if link in self.on or link in links[:i]:
-                yield (*path, "links", i), f'the link "{link}" is there already', "give each link its own number"
+        yield from self.new_links(path, links)
         self.join(kind, links, outer)
         self.slide(kind, links, [group["guide"]] if isinstance(group.get("guide"), str) else _words(group.get("guides")))
         if kind in (1, 2, 4, 5):
             inner_links = links[1:] if kind == 5 else links
             yield from self.define((*path, "inner"), group.get("inner"), *inner_links)
+
+    def new_links(self, path: KeyPath, links: list[str]) -> Iterator[Found]:
+        for i, link in enumerate(links):
+            yield from self.spelt((*path, "links", i), link, "link")
+            if link in self.on or link in links[:i]:
+                yield (*path, "links", i), f'the link "{link}" is there already', "give each link its own number"
 
     def guide_use(self, path: KeyPath, name: Any) -> Iterator[Found]:
         yield from self.known(path, name, set(self.guides), "guide")

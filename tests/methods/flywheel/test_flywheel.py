@@ -18,14 +18,15 @@ from hypothesis import strategies as st
 from tests.methods.linkage import shaper_truth as truth
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
+from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.methods.flywheel.energy_mass import limit
-from tmm_sheets.methods.flywheel.flywheel import Scales, Space, flywheel, wheel
+from tmm_sheets.methods.flywheel.flywheel import DiagramSpace, FlywheelScales, wheel
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
 MANUALS = Path(__file__).parents[2] / "manuals"
 DATA = SimpleNamespace(method="wittenbauer", delta=0.025, form="rim", density=7300.0, width_ratio=0.2, thickness_ratio=0.12,
                        rim_share=1.0, motor=None)
-MANUAL_SCALES = Scales(
+MANUAL_SCALES = FlywheelScales(
     angle=Scale("μ_φ", 2 * pi / 72, "рад/мм"), force=Scale("μ_F", 100.0, "Н/мм"), moment=Scale("μ_M", 12.5, "Н·м/мм"),
     work=Scale("μ_A", 12.5 * 2 * pi / 72 * 16, "Дж/мм"), energy=Scale("μ_E", 12.5 * pi / 72 * 16, "Дж/мм"),
     inertia=Scale("μ_J", 0.0875, "кг·м²/мм"), pole=16.0)
@@ -258,7 +259,7 @@ def test_scales_are_handy_and_fit_for_any_size(strength, mass, positions):
             return mass * super().inertia(phi)
 
     f = flywheel(Sized(positions), DATA)
-    s, space = f.scales, Space()
+    s, space = f.scales, DiagramSpace()
     for scale in (s.angle, s.force, s.moment, s.work, s.energy, s.inertia):
         mantissa = float(f"{scale.mu:.6e}".split("e")[0])
         assert mantissa in (1.0, 2.0, 2.5, 4.0, 5.0)
@@ -273,14 +274,14 @@ def test_scales_are_handy_and_fit_for_any_size(strength, mass, positions):
 @settings(max_examples=20, deadline=None)
 @given(st.floats(0.01, 0.2), st.floats(1, 100), st.floats(5, 100), st.floats(0.1, 50), st.floats(0.001, 0.5))
 def test_results_do_not_depend_on_the_scales(mu_phi, mu_m, pole, mu_e, mu_j):
-    scales = Scales(Scale("", mu_phi, ""), Scale("", 1.0, ""), Scale("", mu_m, ""), Scale("", mu_m * mu_phi * pole, ""),
+    scales = FlywheelScales(Scale("", mu_phi, ""), Scale("", 1.0, ""), Scale("", mu_m, ""), Scale("", mu_m * mu_phi * pole, ""),
                     Scale("", mu_e, ""), Scale("", mu_j, ""), pole)
     assert Wittenbauer(truth.Shaper(), DATA, fixed_scales=scales).J_flywheel == pytest.approx(318.280127014037, rel=1e-12)
 
 
 def test_scales_that_contradict_each_other():
     with pytest.raises(ValueError, match="is not mu_M mu_phi H"):
-        Scales(Scale("", 1.0, ""), Scale("", 1.0, ""), Scale("", 2.0, ""), Scale("", 3.0, ""), Scale("", 1.0, ""),
+        FlywheelScales(Scale("", 1.0, ""), Scale("", 1.0, ""), Scale("", 2.0, ""), Scale("", 3.0, ""), Scale("", 1.0, ""),
                Scale("", 1.0, ""), 4.0)
 
 

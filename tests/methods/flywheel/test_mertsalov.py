@@ -19,7 +19,8 @@ from tests.methods.linkage.shaper_truth import Shaper
 from tmm_sheets import catalogue
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.methods.flywheel.flywheel import Flywheel, MotorCheck, Scales, flywheel, wheel
+from tmm_sheets.methods.flywheel.chosen import flywheel
+from tmm_sheets.methods.flywheel.flywheel import Flywheel, FlywheelScales, MotorCheck, wheel
 from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov
 from tmm_sheets.methods.flywheel.running import Energy, steady
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
@@ -246,7 +247,7 @@ def test_kinetostatics_with_this_acceleration_gives_the_driving_moment(press):
 
 
 def test_results_do_not_depend_on_the_scales(fw):
-    scales = Scales(Scale("", 0.05, ""), Scale("", 1.0, ""), Scale("", 30.0, ""), Scale("", 30.0 * 0.05 * 50, ""),
+    scales = FlywheelScales(Scale("", 0.05, ""), Scale("", 1.0, ""), Scale("", 30.0, ""), Scale("", 30.0 * 0.05 * 50, ""),
                     Scale("", 7.0, ""), Scale("", 0.003, ""), 50.0)
     other = Mertsalov(fw.reduced, data(), SPACE, scales)
     assert other.J_first == pytest.approx(fw.J_first, rel=1e-12)

@@ -15,7 +15,7 @@ from tests.methods.settings import kinds_alone, tried
 from tmm_sheets import catalogue
 from tmm_sheets.mechanism.model import Link
 from tmm_sheets.methods.flywheel.reduced import Reduced
-from tmm_sheets.methods.linkage.cycle import even_cycle
+from tmm_sheets.methods.linkage.numbering import even_cycle
 from tmm_sheets.project import Project
 
 TURN = np.linspace(0, 2 * np.pi, 101)[:-1] + 0.003

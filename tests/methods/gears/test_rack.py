@@ -15,7 +15,7 @@ from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_engagement import unrolled
 from tmm_sheets.methods.gears.gear_geometry import shift_without_undercut
-from tmm_sheets.methods.gears.gear_pair import Pair, gear_pair, settled
+from tmm_sheets.methods.gears.gear_pair import MeshingPair, gear_pair, settled
 from tmm_sheets.methods.gears.rack import Rack, flank
 
 ALPHA = radians(20)
@@ -169,10 +169,10 @@ class _Reducer:
 
 
 def test_settled_data():
-    assert settled(_Section()) == Pair((12, 30), 0.005, (shift_without_undercut(12, 1.0, ALPHA), 0.0), ALPHA, 1.0, 0.25, 1,
+    assert settled(_Section()) == MeshingPair((12, 30), 0.005, (shift_without_undercut(12, 1.0, ALPHA), 0.0), ALPHA, 1.0, 0.25, 1,
                                        "clockwise", "rack")
     got = settled(_Section(teeth="reducer", module=None, shift=(0.3, -0.1)), _Reducer())
-    assert got == Pair((11, 33), 0.012, (0.3, -0.1), ALPHA, 0.8, 0.2, 1, "clockwise", "rack")
+    assert got == MeshingPair((11, 33), 0.012, (0.3, -0.1), ALPHA, 0.8, 0.2, 1, "clockwise", "rack")
 
 
 def test_rack_teeth_stand_where_the_others_do():

@@ -13,7 +13,7 @@ from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
 from tmm_sheets.methods.linkage.checks import check_assembly, check_turn
-from tmm_sheets.methods.linkage.cycle import even_cycle
+from tmm_sheets.methods.linkage.numbering import even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
 
 CLOCKWISE = Crank("1", "A", "B", 0.1, 10.0, -1)

@@ -9,7 +9,8 @@ import pytest
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import dead_cycle, dead_positions, even_cycle
+from tmm_sheets.methods.linkage.dead_positions import dead_positions
+from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import root
 

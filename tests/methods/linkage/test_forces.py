@@ -13,7 +13,7 @@ from tests.methods.linkage.mechanisms import mechanisms, value
 from tests.methods.settings import every_kind, tried
 from tmm_sheets import catalogue
 from tmm_sheets.mechanism.model import Link
-from tmm_sheets.methods.linkage.cycle import even_cycle
+from tmm_sheets.methods.linkage.numbering import even_cycle
 from tmm_sheets.methods.linkage.study import Study
 from tmm_sheets.project import Project
 from tmm_sheets.task import variant
@@ -264,7 +264,7 @@ def test_two_digit_links_lose_no_reaction(radial):
 def test_two_digit_links_in_everything_a_user_reads(radial):
     """The numbers of both pairs stand in the results, the protocol, the table to fill in and on the sheet, each under its name."""
     from tmm_sheets import protocols, results
-    from tmm_sheets.compare.measured.measurable import measurables
+    from tmm_sheets.compare.measured.collecting import measurables
     from tmm_sheets.sheets import sheet
 
     true = radial_truth(radial, radial.force_index)

@@ -14,8 +14,8 @@ import pytest
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import dead_cycle, even_cycle
-from tmm_sheets.methods.linkage.loads import Motion, stroke_law, turning_motion
+from tmm_sheets.methods.linkage.loads import OutputMotion, stroke_law, turning_motion
+from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.project import Project
@@ -139,7 +139,7 @@ def law_of(direction, stroke="both", within=(0.0, 1.0)):
         return np.where(x < 1, (1 - np.cos(2 * pi * x)) / 2, 0.0)
 
     runs = runs_of(dwelling)
-    motion = Motion(over_cycle(in_strokes(runs, way([r.begin for r in runs])), 2 * pi), way, 2 * pi).within(*within)
+    motion = OutputMotion(over_cycle(in_strokes(runs, way([r.begin for r in runs])), 2 * pi), way, 2 * pi).within(*within)
     laws, signs = _by_run(motion, stroke, [([0.0], [10.0])], {"against": -1.0, "along": 1.0}.get(direction))
     return stroke_law(motion, laws, signs)
 

@@ -12,8 +12,8 @@ from tests.methods.linkage.mechanisms import mechanism, mechanisms, value
 from tests.methods.linkage.test_forces import loaded
 from tests.methods.settings import every_kind, tried
 from tmm_sheets.mechanism.model import Link, LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import even_cycle
 from tmm_sheets.methods.linkage.forces import GearForce
+from tmm_sheets.methods.linkage.numbering import even_cycle
 from tmm_sheets.methods.linkage.study import Study
 
 

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
-from tmm_sheets.compare.measured.measured_file import Filled, Line, factor_of
+from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
@@ -74,7 +74,7 @@ class Judged:
     ``tolerance`` is infinite where the construction has none to give.
     """
 
-    line: Line
+    line: MeasuredLine
     exact: float
     deviation: float
     tolerance: float
@@ -130,38 +130,50 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     return judged
 
 
-def _judged(line: Line, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
+def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
     e = line.entry
     ratio = found.scales[e.scale].mu / factor_of(line, found.scales, factors) if e.scale else 1.0
     size = ratio if e.kind == "length" else 1.0
-    # On diagrams the pencil's millimetres stay what they are, whatever the ordinates mean.
-    on_paper = e.scale in found.on_paper
-    error, rows = errors.of_sum((s, k, g * (1.0 if on_paper else size)) for s, k, g in e.terms)
-    if on_paper:
+    if e.scale in found.on_paper:
+        # On diagrams the pencil's millimetres stay what they are, whatever the ordinates mean.
+        error, rows = errors.of_sum(e.terms)
         rows = [(s, g * size) for s, g in rows]
         error /= ratio if e.kind == "result" else 1.0
+    else:
+        error, rows = errors.of_sum((s, k, g * size) for s, k, g in e.terms)
     exact = e.value * size if e.slope is None else _tilted(e.value, e.slope, found, factors)
     read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
     # A ruler is read no better than its reading is written.
     written = line.half_digit if e.terms or e.calculated else 0.0
-    second = 0.0
-    for factor, step, k, per_mm in e.squares:
-        of_step = errors.error(step)
-        second += 2 * factor * (float(of_step[min(k, len(of_step) - 1)]) ** 2 + (per_mm / ratio * reading) ** 2)
-    tolerance = hypot(error, max(read, written), e.calculated * exact, second)
+    tolerance = hypot(error, max(read, written), e.calculated * exact, _of_squares(e, errors, reading, ratio))
     # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
     if not isfinite(tolerance) or (e.kind == "length" and exact > LONG and tolerance > exact):
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact) if e.kind == "angle" else measured - exact
     judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size)
-    if tolerance == float("inf"):
-        judged.remark = "the construction degenerates here: no tolerance"
-    elif e.signed and judged.verdict == "red" and abs(-measured - exact) <= tolerance:
-        judged.remark = "the sign is wrong"
-    elif judged.verdict == "red" and e.kind != "angle":
-        judged.remark = _slip(measured, exact, tolerance)
+    judged.remark = _remark(judged, measured, tolerance)
     return judged
+
+
+def _of_squares(e: Measurable, errors: Errors, reading: float, ratio: float) -> float:
+    """Error of the squares of an energy beyond their gradient; ``reading`` in mm, ``ratio`` of the scale factors."""
+    second = 0.0
+    for factor, step, k, per_mm in e.squares:
+        of_step = errors.error(step)
+        second += 2 * factor * (float(of_step[min(k, len(of_step) - 1)]) ** 2 + (per_mm / ratio * reading) ** 2)
+    return second
+
+
+def _remark(judged: Judged, measured: float, tolerance: float) -> str:
+    """What is recognised at sight: a degenerate construction, a wrong sign, a slip of the pen."""
+    if tolerance == float("inf"):
+        return "the construction degenerates here: no tolerance"
+    if judged.verdict != "red":
+        return ""
+    if judged.entry.signed and abs(-measured - judged.exact) <= tolerance:
+        return "the sign is wrong"
+    return "" if judged.entry.kind == "angle" else _slip(measured, judged.exact, tolerance)
 
 
 def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: Mapping[str, float]) -> float:
@@ -221,23 +233,26 @@ def _wrong_scales(judged: list[Judged]) -> list[Judged]:
     for j in judged:
         if j.entry.kind == "length" and j.entry.scale and j.line.factor is None:
             plans.setdefault(j.entry.scale, []).append(j)
-    marked: set[int] = set()
-    for of_plan in plans.values():
-        long = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance]
-        off = [j for j in long if j.verdict == "red"]
-        if len(long) < SCALED or len(off) < 0.6 * len(long) or _has_reason(off, judged):
-            continue
-        times = float(np.median([j.line.value / j.exact for j in long]))
-        explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
-        if times <= 0 or abs(times - 1) < 0.01 or len(explained) < 0.8 * len(of_plan):
-            continue
-        first = next(j for j in of_plan if j in off)
-        first.starts, first.scale = True, f"all lengths of this plan are {times:.3g} times the exact ones: another scale factor?"
-        for j in explained:
-            marked.add(id(j))
-            if j is not first and j.verdict != "green":
-                j.follows = first
+    marked = {id(j) for of_plan in plans.values() for j in _drawn_to_another_scale(of_plan, judged)}
     return [j for j in judged if id(j) not in marked]
+
+
+def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list[Judged]:
+    """Lengths of a plan that another scale factor explains, marked as such; none when it does not."""
+    long = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance]
+    off = [j for j in long if j.verdict == "red"]
+    if len(long) < SCALED or len(off) < 0.6 * len(long) or _has_reason(off, judged):
+        return []
+    times = float(np.median([j.line.value / j.exact for j in long]))
+    explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
+    if times <= 0 or abs(times - 1) < 0.01 or len(explained) < 0.8 * len(of_plan):
+        return []
+    first = off[0]
+    first.starts, first.scale = True, f"all lengths of this plan are {times:.3g} times the exact ones: another scale factor?"
+    for j in explained:
+        if j is not first and j.verdict != "green":
+            j.follows = first
+    return explained
 
 
 def _has_reason(off: list[Judged], judged: list[Judged]) -> bool:

@@ -6,28 +6,20 @@ its tolerance.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from math import degrees, hypot, isfinite
+from math import degrees, isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.linkage.forces import MOMENTS, TANGENTIAL
-from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.project import Project
 
 Kind = Literal["length", "angle", "result"]
 Term = tuple[Step, int, complex]
@@ -161,60 +153,6 @@ class Measurables:
             self.entries.setdefault(plain(entry.id), replace(entry, id=plain(entry.id)))
 
 
-def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
-    """Everything on the sheets of a project that can be measured, and its results.
-
-    The sheets are drawn for it: they decide on the scale factors and on the positions that are shown.
-    """
-    from tmm_sheets.sheets import sheet
-
-    found = Measurables()
-    shown: set[str] = set()
-    attempt = sheet.every(project, say)
-    problem = attempt.problem()
-    if problem is not None:
-        found.notes.append(str(problem))
-    for composed in attempt.drawn.values():
-        for key, scale in composed.scales.items():
-            found.scales.setdefault(key, scale)
-        shown |= {str(mark.of) for mark in composed.drawing.marks}
-    from tmm_sheets.compare.measured import diagram_items, flywheel_items, machine_items
-
-    there = project.parts
-    if "positions" in there:
-        _linkage(project, found, shown)
-        diagram_items.collect(project, found)
-    for part, collect in (("flywheel", flywheel_items.collect), ("gear", machine_items.gear), ("reducer", machine_items.reducer),
-                          ("cam", machine_items.cam)):
-        if part in there:
-            with suppress(CannotBuild):  # its sheet has said why
-                collect(project, found)
-    machine_items.others(project, found)
-    titles = list(dict.fromkeys(e.title for e in found.entries.values()))
-    found.entries = dict(sorted(found.entries.items(), key=lambda pair: titles.index(pair[1].title)))
-    return found
-
-
-# --- linkage --------------------------------------------------------------------------------------------------------------
-
-
-def _linkage(project: Project, found: Measurables, shown: set[str]) -> None:
-    study, cycle, force = project.study, project.cycle, project.force_index
-    drawn = [i for i, _ in cycle.drawn]
-    of_velocities = [i for i, label in cycle.drawn if {f"velocity plan {label}", f"velocity plan {cycle.labels[i]}"} & shown]
-    plans = ((study.positions.plan, drawn), (study.velocities.plan, of_velocities), (study.accelerations.plan, [force]))
-    for plan, indices in plans:
-        if plan.name not in found.scales:
-            continue
-        found.plans.append((plan, plan.name))
-        for k in indices:
-            for entry in _position(plan, found.scales, k) if plan.pole is None else _segments(plan, found.scales, k):
-                found.add(entry)
-    if "forces" in project.parts and any(fp.plan.name in found.scales for fp in study.forces.plans.values()):
-        _forces(project, found)
-    _motion_results(project, found, of_velocities)
-
-
 def length(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: Step, name: str, key: str = "") -> Measurable:
     """Distance of two points on paper, mm."""
     key = key or plan.name
@@ -247,38 +185,6 @@ def measured_step(plan: Plan, scales: Mapping[str, Scale], k: int, step: Step, n
                       ((step, k, along / mu),), key, 1.0, head=step, signed=True)
 
 
-def _position(plan: Plan, scales: Mapping[str, Scale], k: int) -> Iterator[Measurable]:
-    """Lines of links, distances of the moving points from the first fixed point, directions of the links."""
-    points = [s for s in plan if s.rule.gives == "point"]
-    origin = points[0]
-    lines = [(s.args[0], s.args[1]) for s in plan if s.rule is rules.RAY]
-    # Each point from the one it was laid off from, and all from the first pivot, so that each is fixed by two lengths.
-    lines += [(a, s) for s in points for a in s.args[:1] if isinstance(a, Step) and a.rule.gives == "point"]
-    lines += [(origin, s) for s in points if np.ndim(s.value) and s is not origin]
-    seen: set[frozenset[str]] = set()
-    for tail, head in lines:
-        pair = frozenset((tail.name, head.name))
-        if pair not in seen and len(pair) == 2 and not any("₀" in name for name in pair):
-            seen.add(pair)
-            yield length(plan, scales, k, tail, head, tail.name + head.name)
-    for s in plan:
-        if s.rule is rules.RAY and np.ndim(s.value):
-            u = complex(value_at(s, k))
-            label, name = plan.labels[k], f"∠{s.name}"
-            yield Measurable(f"{plan.name}/{label}/{name}", plan.name, plan.title, label, name, DEGREES, "angle",
-                             degrees(np.angle(u)) % 360, ((s, k, 1j * u * degrees(1)),), reading=degrees(1 / PROTRACTOR), head=s)
-
-
-def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = "") -> Iterator[Measurable]:
-    """Vectors of a plan and the segments that similarity gives, each once."""
-    for s in plan.segments:
-        yield length(plan, scales, k, s.tail, s.head, f"{s.tail.name}{between}{s.head.name}")
-    for step in plan:
-        start = step.args[0] if step.rule is SIMILAR else None
-        if isinstance(start, Step) and start.name != plan.pole:
-            yield length(plan, scales, k, start, step, f"{start.name}{step.name}")
-
-
 def size(title: str, entry_id: str, label: str, quantity: str, unit: str, k: int, step: Step, scale: tuple[str, float] = ("", 0.0),
          by: Step | None = None) -> Measurable:
     """Magnitude of a vector from the pole or of a number as a result; ``scale`` of the plan a vector is measured on, key and mu."""
@@ -288,191 +194,11 @@ def size(title: str, entry_id: str, label: str, quantity: str, unit: str, k: int
                       head=by)
 
 
-def _motion_results(project: Project, found: Measurables, of_velocities: list[int]) -> None:
-    """Velocities and angular velocities at the positions with a velocity plan, accelerations at that of the force analysis."""
-    study, force = project.study, project.force_index
-    # The tables of a flywheel have all positions of the cycle, also those that are drawn but once.
-    indices = list(range(len(study.labels))) if project.variant.flywheel is not None else of_velocities
-    kinds: list[tuple[Any, str, Mapping[str, Step], str, str, str, str, list[int], str]] = [
-        (study.velocities, "V", study.velocities.omega, "ω", "м/с", "рад/с", "velocities", indices, "Скорости"),
-        (study.accelerations, "a", study.accelerations.epsilon, "ε", "м/с²", "рад/с²", "accelerations", [force], "Ускорения"),
-    ]
-    for of, letter, turning, greek, unit, angular, key, positions, title in kinds:
-        if key not in found.scales:
-            continue
-        mu = found.scales[key].mu
-        for k in positions:
-            label = study.labels[k]
-            vectors = [(re.sub(r"[\u0305{}]", "", s.symbol), s.tail, s.head) for s in of.plan.segments]
-            vectors += [(f"{letter}_{name}", of.pole, step) for name, step in of.points.items() if step is not of.pole]
-            for name, tail, head in vectors:
-                drawn = length(of.plan, found.scales, k, tail, head, name)
-                terms = tuple((s, i, g * mu) for s, i, g in drawn.terms)
-                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, name, unit, "result", drawn.value * mu,
-                                     terms, key, mu))
-                found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float, key)
-            for link, step in turning.items():
-                if link != project.mechanism.frame and (step.rule is not SAME or link == project.mechanism.crank.link):
-                    name = f"{greek}{link}"
-                    found.add(size(title, f"{RESULTS}/{label}/{name}", label, name, angular, k, step, by=step))
-    if project.variant.flywheel is not None and "velocities" in found.scales:
-        _reduced(project, found, indices)
-
-
-def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> None:
-    """Reduced moments and energies from the velocity plans: their errors are those of the velocities."""
-    study, r = project.study, project.reduced
-    vel, omega1, mu = study.velocities, project.reduced.omega1, found.scales["velocities"].mu
-    links, fixed = project.mechanism.links.values(), project.mechanism.fixed
-    title, unit = "Приведённый момент сил", "Н·м"
-    acting: list[tuple[str, Step, Any]] = []
-    for f in project.applied:
-        acting.append((f.name, vel.omega[f.link], f.law(study.turned, 1)) if f.point is None
-                      else (f.name, vel.points[f.point], f.vector(study.turned, 1)))
-    for link in links:
-        if r.gravity and link.mass and link.centre is not None and link.centre not in fixed:
-            acting.append((f"G{link.name}", vel.points[link.centre], np.full(len(study.labels), -1j * link.mass * r.gravity)))
-    exact = np.asarray(r.moment(study.turned, side=1))
-    for k in indices:
-        label = study.labels[k]
-        parts = [(name, step, complex(f[k]) / omega1) for name, step, f in acting]
-        named = {id(step): name for name, step in (*vel.points.items(), *vel.omega.items())}
-        for name, step, g in parts:
-            moment = float((np.conj(g) * complex(value_at(step, k))).real)
-            speed = abs(complex(value_at(step, k)))
-            if speed > 0:
-                letter = "ω" if step.rule.gives == "number" else "V_"
-                found.check(f"{RESULTS}/{label}/M_{name}", [f"{RESULTS}/{label}/{letter}{named[id(step)]}"],
-                            lambda v, m=moment / speed: m * v)
-            read = abs(g) * mu if step.rule.gives != "number" else 0.0
-            found.add(Measurable(f"{RESULTS}/{label}/M_{name}", RESULTS, title, label, f"M_{name}", unit, "result", moment,
-                                 ((step, k, g),), "velocities", read, signed=True))
-        read = hypot(*(abs(g) * mu for _, step, g in parts if step.rule.gives != "number"))
-        working = [f"{RESULTS}/{label}/M_{name}" for name, _, g in parts if g]
-        found.check(f"{RESULTS}/{label}/M_red", working, lambda *moments: float(sum(moments)))
-        found.add(Measurable(f"{RESULTS}/{label}/M_red", RESULTS, title, label, "M_пр", unit, "result", float(exact[k]),
-                             tuple((step, k, g) for _, step, g in parts), "velocities", read, signed=True))
-    _energies(project, found, indices)
-
-
-def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> None:
-    """Twice the kinetic energy of each link and the reduced moment of inertia."""
-    study, r = project.study, project.reduced
-    vel, mu = study.velocities, found.scales["velocities"].mu
-    title, total = "Удвоенные кинетические энергии звеньев", np.asarray(r.inertia(study.turned))
-    for k in indices:
-        label = study.labels[k]
-        terms: list[Term] = []
-        reads: list[float] = []
-        energies: list[str] = []
-        squares: list[tuple[float, Step, int, float]] = []
-        for link in project.mechanism.links.values():
-            turning = link.pivot_inertia or link.inertia
-            if link.pivot_inertia is None and link.mass and link.centre is not None and link.centre not in project.mechanism.fixed:
-                v = complex(value_at(vel.points[link.centre], k))
-                step, read = vel.points[link.centre], 2 * link.mass * abs(v) * mu
-                name = f"m{link.name}V_{link.centre}²"
-                squares.append((link.mass, step, k, mu))
-                found.add(Measurable(f"{RESULTS}/{label}/m{link.name}V_{link.centre}^2", RESULTS, title, label, name, "кг·м²/с²",
-                                     "result", link.mass * abs(v) ** 2, ((step, k, 2 * link.mass * v),), "velocities", read,
-                                     squares=(squares[-1],)))
-                terms.append((step, k, 2 * link.mass * v / r.omega1**2))
-                reads.append(read / r.omega1**2)
-                energies.append(f"{RESULTS}/{label}/m{link.name}V_{link.centre}^2")
-                found.check(energies[-1], [f"{RESULTS}/{label}/V_{link.centre}"], lambda v, m=link.mass: m * v**2)
-            if turning:
-                w = float(value_at(vel.omega[link.name], k))
-                step, letter = vel.omega[link.name], "J" if link.pivot_inertia is not None else "J_S"
-                name = f"{letter}{link.name}ω{link.name}²"
-                squares.append((turning, step, k, 0.0))
-                found.add(Measurable(f"{RESULTS}/{label}/{letter}{link.name}omega{link.name}^2", RESULTS, title, label, name,
-                                     "кг·м²/с²", "result", turning * w**2, ((step, k, complex(2 * turning * w)),),
-                                     squares=(squares[-1],)))
-                terms.append((step, k, complex(2 * turning * w / r.omega1**2)))
-                energies.append(f"{RESULTS}/{label}/{letter}{link.name}omega{link.name}^2")
-                found.check(energies[-1], [f"{RESULTS}/{label}/ω{link.name}"], lambda w, j=turning: j * w**2)
-        found.check(f"{RESULTS}/{label}/J_red", energies, lambda *parts: float(sum(parts)) / r.omega1**2)
-        found.add(Measurable(f"{RESULTS}/{label}/J_red", RESULTS, "Приведённый момент инерции", label, "J_пр", "кг·м²", "result",
-                             float(total[k]), tuple(terms), "velocities", hypot(*reads),
-                             squares=tuple((factor / r.omega1**2, step, at, per_mm) for factor, step, at, per_mm in squares)))
-
-
-def _forces(project: Project, found: Measurables) -> None:
-    """Force plans, arms and the lever at the position of the force analysis, and what they give."""
-    study, k = project.study, project.force_index
-    f, lever, label = study.forces, study.lever, study.labels[project.force_index]
-    given: set[str] = set()
-    links = (project.mechanism.frame, *project.mechanism.links)
-    opposite = {f"F{pair_index(a, b)}": f"F{pair_index(b, a)}" for a in links for b in links}
-    for step in study.loads[2]:
-        title = "Силы тяжести и инерции"
-        if step.rule.gives in ("force", "number") and not any(step.name == a.name for a in study.applied):
-            unit = "Н" if step.rule.gives == "force" else "Н·м"
-            found.add(size(title, f"{RESULTS}/{label}/{step.name}", label, step.name, unit, k, step, by=step))
-    for step in f.plan:
-        if step.rule is TANGENTIAL:
-            found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
-    for fp in f.plans.values():
-        plan = fp.plan
-        if plan.name not in found.scales:
-            continue
-        found.plans.append((plan, plan.name))
-        for entry in _segments(plan, found.scales, k, "–"):
-            found.add(entry)
-        for side in plan.segments:
-            name = re.sub(r"[\u0305{}^]", "", side.symbol).replace("F_", "F")
-            found.check(f"{RESULTS}/{label}/{name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float, plan.name)
-        for step in plan:
-            if step.rule.gives == "force" and step.name not in given and opposite.get(step.name) not in given:
-                given.add(step.name)
-                found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
-    for name, step in f.arms.items():
-        value = complex(value_at(step, k))
-        found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, "Плечи реакций", label, name, "м", "result", abs(value),
-                             ((step, k, 1 + 0j if value.real >= 0 else -1 + 0j),), head=step))
-    by = "по плану сил"
-    for way, balancing in ((by, f.balancing), ("по рычагу", lever.balancing)):
-        if balancing is not None:
-            name = project.balancing
-            unit = "Н" if study.driver is not None else "Н·м"
-            entry_id = f"{RESULTS}/{label}/{name}{'' if way == by else '-lever'}"
-            found.add(size(f"Уравновешивание {way}", entry_id, label, name, unit, k, balancing, by=balancing))
-    _arms(project, found, k, label)
-    if "lever" in found.scales:
-        found.plans.append((lever.plan, "lever"))
-        for name, step in lever.points.items():
-            found.add(length(lever.plan, found.scales, k, lever.plan["p"], step, f"p{name}"))
-        for h in lever.hung:
-            entry = measured_step(lever.plan, found.scales, k, h.arm, h.arm.name.replace("\u0305", ""))
-            found.add(_magnitude(entry))
-
-
-def _magnitude(entry: Measurable) -> Measurable:
+def magnitude(entry: Measurable) -> Measurable:
+    """The same entry asked for without its sign."""
     if entry.value >= 0:
         return replace(entry, signed=False)
     return replace(entry, signed=False, value=-entry.value, terms=tuple((s, k, -g) for s, k, g in entry.terms))
-
-
-def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
-    """Arms of forces about the points that moments were taken of, as they are measured on the schemes of groups or on the plan."""
-    f = project.study.forces
-    schemes = {link: key for key in found.scales if key.startswith("scheme-") for link in key.removeprefix("scheme-").split("-")}
-    crank = project.mechanism.crank.link
-    for step in f.plan:
-        if step.rule is not MOMENTS:
-            continue
-        about = step.args[0]
-        link = step.name.removeprefix("ΣM").split("–")[0]
-        key = "scheme-crank" if link == crank and "scheme-crank" in found.scales else schemes.get(link, "positions")
-        for at, force in zip(step.args[1::3], step.args[2::3], strict=False):
-            if not isinstance(force, Step) or at is about or not abs(complex(value_at(force, k))) > 0:
-                continue
-            arm = Step(f"∂h{force.name}", rules.ARM, (about, at, force))
-            value, mu = float(np.real(value_at(arm, k))), found.scales[key].mu
-            name = f"h_{force.name}({about.name})"
-            sign = 1.0 if value >= 0 else -1.0
-            found.add(Measurable(f"arms/{label}/{name}", "arms", "Плечи сил", label, name, MILLIMETRES, "length", abs(value) / mu,
-                                 ((arm, k, complex(sign / mu)),), key, 1.0, head=arm))
 
 
 def angle_apart(a: float, b: float) -> float:
@@ -487,5 +213,5 @@ def scalar(found: Measurables, title: str, name: str, value: Any, unit: str, ter
         exact = isinstance(value, int)
         entry = Measurable(f"{RESULTS}/{name}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms), scale,
                            calculated=0.0 if exact else calculated, reading=reading, signed=True)
-        found.add(entry if signed else _magnitude(entry))
+        found.add(entry if signed else magnitude(entry))
 

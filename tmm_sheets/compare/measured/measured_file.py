@@ -58,7 +58,7 @@ _LATIN: Mapping[str, str] = {
 
 
 @dataclass(frozen=True)
-class Line:
+class MeasuredLine:
     """One filled line: the number in the unit of its entry, how exactly it was written, and where.
 
     ``factor`` is the scale factor of this line alone, where it states one.
@@ -75,7 +75,7 @@ class Line:
 class Filled:
     """A file that was read: lines, scale factors by key, and what was mended."""
 
-    lines: list[Line] = field(default_factory=list)
+    lines: list[MeasuredLine] = field(default_factory=list)
     factors: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     empty: int = 0
@@ -246,7 +246,7 @@ def _columns(rows: list[Row], name: str, found: Measurables, notes: list[str]) -
 
 def _read_rows(rows: Iterable[Row], columns: Mapping[Column, int], name: str, found: Measurables, filled: Filled,
                problems: list[Problem]) -> None:
-    seen: dict[str, Line] = {}
+    seen: dict[str, MeasuredLine] = {}
     used = {key for key in found.scales if any(e.scale == key for e in found.entries.values())}
     points = commas = 0
     for number, cells in rows:
@@ -276,7 +276,7 @@ def _read_rows(rows: Iterable[Row], columns: Mapping[Column, int], name: str, fo
             where = COLUMNS["id"] if message.startswith("unknown") else COLUMNS["measured"]
             problems.append(Problem(message, name, number, where, hint))
             continue
-        line = Line(entry, value, half, number, factor)
+        line = MeasuredLine(entry, value, half, number, factor)
         before = seen.get(entry.id)
         if before is not None:
             if before.value != value:
@@ -380,6 +380,6 @@ def _unit(unit: str) -> str:
     return re.sub(r"[а-яА-Я]+", lambda word: _LATIN.get(word[0], word[0]), bare)
 
 
-def factor_of(line: Line, scales: Mapping[str, Scale], factors: Mapping[str, float]) -> float:
+def factor_of(line: MeasuredLine, scales: Mapping[str, Scale], factors: Mapping[str, float]) -> float:
     """The scale factor a length was drawn with."""
     return line.factor or factors.get(line.entry.scale, scales[line.entry.scale].mu)

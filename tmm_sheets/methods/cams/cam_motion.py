@@ -79,22 +79,42 @@ def motion_scales(law: PositionFunction, width: float, height: float, equal: boo
     of the rest is taken. With ``equal`` all three diagrams have one scale factor: both pole distances are 1/mu_phi (manual
     000, 7 ex. 3).
     """
-    finest = handy(degrees(law.fall.end) / (0.68 * width))
-    amplitude = max(law.rise.amplitude, law.fall.amplitude)
-    circle = 2.0 if has_circle(law) else 0.0
-    beside = BESIDE if circle else BARE
     shares = np.linspace(0, 1, 65)
     spans = float(np.abs(law.rise.ds(shares)).max() + np.abs(law.fall.ds(shares)).max()), law.stroke
+    return (_equal_scales if equal else _own_scales)(law, spans, width, height)
+
+
+def _finest(law: PositionFunction, width: float) -> float:
+    """Finest scale of the angle axis, degrees per mm: the phases leave room for what stands on their left."""
+    return handy(degrees(law.fall.end) / (0.68 * width))
+
+
+def _left_of_axis(law: PositionFunction) -> tuple[float, float]:
+    """What stands there: the room between axis and pole, mm, and the diameters of the auxiliary circle in amplitudes of S''."""
+    return (BESIDE, 2.0) if has_circle(law) else (BARE, 0.0)
+
+
+def _equal_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float) -> MotionScales:
+    """One scale factor for all three diagrams."""
+    amplitude = max(law.rise.amplitude, law.fall.amplitude)
+    beside, circle = _left_of_axis(law)
+    tall = 2 * amplitude + sum(spans)
+    pairs = [(Scale("μ_φ", radians(deg), "рад/мм"), mu) for mu in _coarser(tall / height)
+             for deg in _coarser(_finest(law, width))]
+
+    def free(phi: Scale, mu: float) -> float:
+        return width - float(phi.mm(law.fall.end)) - beside - circle * amplitude / mu - 1 / phi.mu
+
+    phi, mu = min([p for p in pairs if free(*p) >= 0] or pairs[-1:], key=lambda p: p[0].mu ** 1.5 * p[1])
+    return MotionScales(phi, *(Scale(f"μ_{law.symbol}{primes}", mu, "м/мм") for primes in ("''", "'", "")))
+
+
+def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float) -> MotionScales:
+    """A scale factor for each diagram; ``spans``: what S' and S need, in their units."""
+    finest = _finest(law, width)
+    amplitude = max(law.rise.amplitude, law.fall.amplitude)
+    beside, circle = _left_of_axis(law)
     unit, of = ("м/мм", "м/мм") if law.symbol == "S" else ("рад/мм", "1/мм")
-    if equal:
-        tall = 2 * amplitude + sum(spans)
-        pairs = [(Scale("μ_φ", radians(deg), "рад/мм"), mu) for mu in _coarser(tall / height) for deg in _coarser(finest)]
-
-        def free(phi: Scale, mu: float) -> float:
-            return width - float(phi.mm(law.fall.end)) - beside - circle * amplitude / mu - 1 / phi.mu
-
-        phi, mu = min([p for p in pairs if free(*p) >= 0] or pairs[-1:], key=lambda p: p[0].mu ** 1.5 * p[1])
-        return MotionScales(phi, *(Scale(f"μ_{law.symbol}{primes}", mu, "м/мм") for primes in ("''", "'", "")))
     phi = Scale("μ_φ", radians(finest), "рад/мм")
     left = width - phi.mm(law.fall.end) - beside
     dds = fit(f"μ_{law.symbol}''", of, amplitude, min((left - LEAST_POLE - 5.0) / 2, 0.15 * height) if circle else 0.15 * height)
@@ -129,7 +149,7 @@ def _coarser(least: float) -> list[float]:
 
 
 @dataclass(frozen=True)
-class Motion:
+class FollowerMotion:
     """The diagrams S'', S' and S on paper: points in mm, each diagram from its own origin.
 
     ``dds``, ``ds`` and ``s`` hold the steps of the numbered positions, ``circle`` those of the auxiliary circle by the
@@ -184,7 +204,7 @@ class Motion:
         return np.concatenate(points)
 
 
-def motion(law: PositionFunction, scales: MotionScales) -> Motion:
+def motion(law: PositionFunction, scales: MotionScales) -> FollowerMotion:
     """Record the construction of the three diagrams: auxiliary circle, two integrations with rays and chords."""
     plan = Plan("cam-motion", "Графики движения толкателя" if law.symbol == "S" else "Графики движения коромысла", "mm")
     x = [float(v) for v in scales.phi.mm(law.positions)]
@@ -199,7 +219,7 @@ def motion(law: PositionFunction, scales: MotionScales) -> Motion:
     place = {k: i for i, k in enumerate(kept)}
     place.setdefault(top + 1, place[top])
     every = [place[k] for k in range(len(x))]
-    return Motion(law, scales, plan, circle, dds, [ds[i] for i in every], [s[i] for i in every])
+    return FollowerMotion(law, scales, plan, circle, dds, [ds[i] for i in every], [s[i] for i in every])
 
 
 def _acceleration(plan: Plan, law: PositionFunction, scales: MotionScales, x: list[float]) -> tuple[dict[int, Step], list[Step]]:

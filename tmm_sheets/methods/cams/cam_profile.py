@@ -25,7 +25,7 @@ from tmm_sheets.methods.cams import cam_inversion, cam_zone
 from tmm_sheets.methods.cams.cam_closure import Spring, second_disc_of_rocker, second_disc_of_tappet, spring
 from tmm_sheets.methods.cams.cam_inversion import CONTACT, Inversion, curvature
 from tmm_sheets.methods.cams.cam_laws import LAWS, Law, Phase, PositionFunction, table_law
-from tmm_sheets.methods.cams.cam_motion import Motion, MotionScales, motion, motion_scales
+from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
 from tmm_sheets.methods.cams.cam_zone import Plate, Zone
 
 Reals = npt.NDArray[np.float64]
@@ -195,7 +195,7 @@ class Cam:
     # --- motion
 
     @cached_property
-    def motion(self) -> Motion:
+    def motion(self) -> FollowerMotion:
         """Diagrams S'', S', S at the scale factors of the shipped sheet."""
         return motion(self.law, self._scales)
 
@@ -206,7 +206,7 @@ class Cam:
     def _scales_on(self, width: float, height: float) -> MotionScales:
         return motion_scales(self.law, width, height)
 
-    def motion_on(self, width: float, height: float) -> Motion:
+    def motion_on(self, width: float, height: float) -> FollowerMotion:
         """Diagrams S'', S', S at the scale factors that suit another place on paper, mm."""
         scales = self._scales_on(width, height)
         return self.motion if scales == self._scales else motion(self.law, scales)
@@ -558,24 +558,11 @@ def cam(data: CamData) -> Cam:
     CannotBuild
         when the numbers allow no cam: at once for angles and lengths, for the axis and the roller when they are asked for.
     """
-    turn = data.rise + data.upper_dwell + data.fall
     if data.follower not in FOLLOWERS:
         raise CannotBuild(f"cam.follower: expected one of {', '.join(FOLLOWERS)}, not {data.follower!r}")
-    for name, value in (("rise", data.rise), ("fall", data.fall)):
-        if not value > 0:
-            raise CannotBuild(f"cam.{name}: expected a phase angle greater than 0 deg, not {degrees(value):g} deg")
-    if not data.upper_dwell >= 0:
-        raise CannotBuild(f"cam.upper_dwell: expected a phase angle of 0 deg or more, not {degrees(data.upper_dwell):g} deg")
-    if not turn <= 2 * pi * (1 + 1e-9):
-        raise CannotBuild(f"cam: rise, upper_dwell and fall make {degrees(turn):g} deg together, more than a turn of the cam",
-                          "shorten a phase: what is left of 360 deg is the lower dwell")
     follower, angular = FOLLOWERS[data.follower]
-    for name, length in (("arm", data.arm),) if angular else (("stroke", data.stroke),):
-        if length is None or not (length > 0 and isfinite(length)):
-            raise CannotBuild(f"cam.{name}: expected a length greater than 0 mm, not {(length or 0.0) * 1e3:g} mm")
-    if angular and not 0 < (data.swing or 0.0) < pi / 2:
-        raise CannotBuild("cam.swing: expected an angle greater than 0 and less than 90 deg, "
-                          f"not {degrees(data.swing or 0.0):g} deg")
+    _check_phases(data)
+    _check_displacement(data, angular)
     if follower is not FlatCam and not 1e-6 < (data.pressure_angle or 0.0) < pi / 2 - 1e-6:
         raise CannotBuild("cam.pressure_angle: expected a permitted pressure angle greater than 0 and less than 90 deg, "
                           f"not {degrees(data.pressure_angle or 0.0):g} deg", "usual values are 30 deg for translating followers")
@@ -587,6 +574,29 @@ def cam(data: CamData) -> Cam:
     law = PositionFunction.of(data.rise, data.upper_dwell, data.fall, float(stroke or 0.0), _law(data, data.law, "table"), fall_law,
                               data.parts, symbol)
     return follower(data, law)
+
+
+def _check_phases(data: CamData) -> None:
+    """The phase angles: a rise and a fall there must be, and a turn of the cam holds all three."""
+    turn = data.rise + data.upper_dwell + data.fall
+    for name, value in (("rise", data.rise), ("fall", data.fall)):
+        if not value > 0:
+            raise CannotBuild(f"cam.{name}: expected a phase angle greater than 0 deg, not {degrees(value):g} deg")
+    if not data.upper_dwell >= 0:
+        raise CannotBuild(f"cam.upper_dwell: expected a phase angle of 0 deg or more, not {degrees(data.upper_dwell):g} deg")
+    if not turn <= 2 * pi * (1 + 1e-9):
+        raise CannotBuild(f"cam: rise, upper_dwell and fall make {degrees(turn):g} deg together, more than a turn of the cam",
+                          "shorten a phase: what is left of 360 deg is the lower dwell")
+
+
+def _check_displacement(data: CamData, angular: bool) -> None:
+    """The stroke, or of a rocker arm and swing."""
+    for name, length in (("arm", data.arm),) if angular else (("stroke", data.stroke),):
+        if length is None or not (length > 0 and isfinite(length)):
+            raise CannotBuild(f"cam.{name}: expected a length greater than 0 mm, not {(length or 0.0) * 1e3:g} mm")
+    if angular and not 0 < (data.swing or 0.0) < pi / 2:
+        raise CannotBuild("cam.swing: expected an angle greater than 0 and less than 90 deg, "
+                          f"not {degrees(data.swing or 0.0):g} deg")
 
 
 def _law(data: CamData, name: str, table: str) -> Law:

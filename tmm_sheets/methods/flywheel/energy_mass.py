@@ -111,7 +111,7 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, curve
 
 
 @dataclass(frozen=True)
-class Limit:
+class ConvergedWheel:
     """The limit of the construction for vanishing intervals.
 
     ``segment`` is ``ab mu_E``, J; ``inertia`` that of the flywheel, kg m2, both negative when none is needed; ``error`` the
@@ -125,7 +125,7 @@ class Limit:
     phi_min: float
 
 
-def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: float, tolerance: float = 1e-13) -> Limit:
+def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: float, tolerance: float = 1e-13) -> ConvergedWheel:
     """Flywheel without chords: max(dE - J omega_max^2/2) - min(dE - J omega_min^2/2) = delta omega^2 J_flywheel.
 
     ``moment`` (without the constant one, N m) and ``inertia`` (without the flywheel, kg m2) are vectorised functions of
@@ -151,7 +151,7 @@ def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: f
             contact.append(highest(height, samples))
             segment += float(height(np.array(contact[-1:]))[0])
         error = abs(segment - result.segment) / (abs(segment) or 1.0) if result else np.inf
-        result = Limit(segment, segment / (delta * omega**2), error, contact[0], contact[1])
+        result = ConvergedWheel(segment, segment / (delta * omega**2), error, contact[0], contact[1])
         if error <= tolerance:
             break
     assert result is not None

@@ -21,7 +21,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.energy_mass import Limit, limit, speed
+from tmm_sheets.methods.flywheel.energy_mass import ConvergedWheel, limit, speed
 from tmm_sheets.methods.flywheel.running import Energy, Running, steady
 from tmm_sheets.methods.integration import ORIGIN, Floats, Quadrature, differentiate, integrate, ordinates, smooth
 
@@ -29,7 +29,7 @@ RIM_SPEED = 30.0
 """Speed of the rim up to which a rim with spokes is used, m/s (manual 000, 5.7)."""
 
 
-class Reduced(Protocol):
+class ReducedData(Protocol):
     """What the flywheel asks of the linkage: its quantities reduced to the crank, over the crank's turn.
 
     Angles are turned from position 0 in the sense of rotation, rad.
@@ -148,7 +148,7 @@ class MotorData(Protocol):
         ...
 
 
-class Data(Protocol):
+class FlywheelData(Protocol):
     """The flywheel's own numbers, section ``[flywheel]`` of the project file."""
 
     @property
@@ -198,7 +198,7 @@ class Data(Protocol):
 
 
 @dataclass(frozen=True)
-class Space:
+class DiagramSpace:
     """Room for the diagrams on paper, mm: length of the angle axis and extents of the ordinates.
 
     ``stack`` is the room of moment, work, energy and inertia together where they stand one under another; then the extents of
@@ -216,7 +216,7 @@ class Space:
 
 
 @dataclass(frozen=True)
-class Scales:
+class FlywheelScales:
     """Scale factors of the diagrams and the pole distance, mm; ``work.mu`` = ``moment.mu angle.mu pole``."""
 
     angle: Scale
@@ -234,7 +234,7 @@ class Scales:
 
 
 @dataclass(frozen=True)
-class Wheel:
+class RimWheel:
     """Sizes: diameter D (of the middle of the rim, or of the disc), width B, thickness of the rim H, m; mass, kg.
 
     ``speed`` is that of the rim at D/2, m/s; H is NaN for a disc.
@@ -272,7 +272,7 @@ class MotorCheck:
 
 
 def wheel(inertia: float, omega: float, form: str, density: float, width_ratio: float, thickness_ratio: float,
-          rim_share: float = 1.0) -> Wheel:
+          rim_share: float = 1.0) -> RimWheel:
     """Sizes of a cast wheel with that moment of inertia, kg m2 (manual 000, 5.7).
 
     Rim with spokes: D = (4 J/(pi rho kappa c))^(1/5), m = 4 J/D^2; disc: D = (32 J/(pi rho kappa))^(1/5), m = 8 J/D^2;
@@ -283,9 +283,9 @@ def wheel(inertia: float, omega: float, form: str, density: float, width_ratio: 
         rim = rim_share * inertia
         d = (4 * rim / (pi * density * width_ratio * thickness_ratio)) ** 0.2
         if omega * d / 2 < RIM_SPEED:
-            return Wheel("rim", d, width_ratio * d, thickness_ratio * d, 4 * rim / d**2, omega * d / 2)
+            return RimWheel("rim", d, width_ratio * d, thickness_ratio * d, 4 * rim / d**2, omega * d / 2)
     d = (32 * inertia / (pi * density * width_ratio)) ** 0.2
-    return Wheel("disc", d, width_ratio * d, float("nan"), 8 * inertia / d**2, omega * d / 2)
+    return RimWheel("disc", d, width_ratio * d, float("nan"), 8 * inertia / d**2, omega * d / 2)
 
 
 def lettered(n: int) -> str:
@@ -335,10 +335,10 @@ class Flywheel(ABC):
     the moment graph; the ends of the chords are joined by the smooth curve whose slopes are the graph's own ordinates.
     """
 
-    reduced: Reduced
-    data: Data
-    space: Space | None = None
-    fixed_scales: Scales | None = None
+    reduced: ReducedData
+    data: FlywheelData
+    space: DiagramSpace | None = None
+    fixed_scales: FlywheelScales | None = None
 
     # --- division of the angle axis -------------------------------------------------------------
     @property
@@ -410,11 +410,11 @@ class Flywheel(ABC):
 
     # --- scales -----------------------------------------------------------------------------------
     @cached_property
-    def scales(self) -> Scales:
+    def scales(self) -> FlywheelScales:
         """Scale factors from the handy series that fill the space, with mu_A = mu_M mu_phi H."""
         return self.fixed_scales or self._fitted_scales()
 
-    def _fitted_scales(self) -> Scales:
+    def _fitted_scales(self) -> FlywheelScales:
         space, reduced = self.space or self._space(), self.reduced
         work = Quadrature(reduced.moment, self.edges)
         constant = -work.total / reduced.period
@@ -431,7 +431,7 @@ class Flywheel(ABC):
             raise CannotBuild("a flywheel needs links with masses", "add mass, centre and inertia to [[link]] of the project file")
         spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), float(mass.max()))
         mu_m, mu_a, mu_e, mu_j = _stacked(spans, mu_phi, space) if space.stack else _alone(spans, mu_phi, space)
-        return Scales(
+        return FlywheelScales(
             angle=Scale("μ_φ", mu_phi, "рад/мм"),
             force=fit(*(("μ_M′", "Н·м/мм") if reduced.forces_are_moments else ("μ_F", "Н/мм")), largest, space.force),
             moment=Scale("μ_M", mu_m, "Н·м/мм"),
@@ -441,9 +441,9 @@ class Flywheel(ABC):
             pole=mu_a / (mu_m * mu_phi),
         )
 
-    def _space(self) -> Space:
+    def _space(self) -> DiagramSpace:
         """Room for the diagrams when none is given."""
-        return Space()
+        return DiagramSpace()
 
     @abstractmethod
     def _energies(self, excess: Floats, mass: Floats) -> Iterable[float]:
@@ -649,7 +649,7 @@ class Flywheel(ABC):
                 f"({self.J_flywheel_converged:.4g} kg m2): the difference is the construction's error")
 
     @cached_property
-    def limit(self) -> Limit:
+    def limit(self) -> ConvergedWheel:
         """Exact flywheel, with its error: that of the energy-mass curve for vanishing intervals."""
         return limit(self.reduced.moment, self.reduced.inertia, self.edges, self.reduced.omega1, self.data.delta)
 
@@ -659,7 +659,7 @@ class Flywheel(ABC):
         return 100 * (self.J_flywheel / self.J_flywheel_converged - 1) if self.J_flywheel_converged else float("nan")
 
     @cached_property
-    def wheel(self) -> Wheel | None:
+    def wheel(self) -> RimWheel | None:
         """Sizes of the wheel with the drawn construction's moment of inertia; None when no flywheel is needed."""
         d = self.data
         if not self.needed:
@@ -756,20 +756,6 @@ ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m -
                     "{name} = (M − ω²/2·dJ/dφ)/J = ({0} − {3}²/2·{1})/{2} = {value} рад/с².")
 
 
-def flywheel(reduced: Reduced, data: Data) -> Flywheel:
-    """Flywheel of a linkage by the method its data name."""
-    # The methods build on this module.
-    if data.method == "mertsalov":
-        from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov
-
-        return Mertsalov(reduced, data, SPACE)
-    if data.method == "wittenbauer":
-        from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
-
-        return Wittenbauer(reduced, data)
-    raise ValueError(f"flywheel method {data.method!r} is not known; known: 'wittenbauer', 'mertsalov'")
-
-
 def _within(phi: Floats, turn: float) -> Floats:
     """Angles of later turns as those of the first; whole turns but the first end it."""
     later = phi > turn * (1 + 1e-12)
@@ -790,7 +776,7 @@ def _next_handy(mu: float) -> float:
 Four = tuple[float, float, float, float]
 
 
-def _alone(spans: Four, mu_phi: float, space: Space) -> Four:
+def _alone(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
     """Scale factors of moment, work, energy and inertia, each for its own room; those of moment and work suit the pole."""
     mu_m, mu_a, mu_e, mu_j = (handy(span / room) for span, room in
                               zip(spans, (space.moment, space.work, space.energy, space.inertia), strict=True))
@@ -802,7 +788,7 @@ def _alone(spans: Four, mu_phi: float, space: Space) -> Four:
     return mu_m, mu_a, mu_e, mu_j
 
 
-def _stacked(spans: Four, mu_phi: float, space: Space) -> Four:
+def _stacked(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
     """The same for graphs one under another: of all that fit together those with the greatest product of heights."""
     rooms = (space.moment, space.work, space.energy, space.inertia)
     series = []

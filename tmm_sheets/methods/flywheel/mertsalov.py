@@ -22,12 +22,12 @@ from tmm_sheets.construction.rules import DISTANCE
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Rule
 from tmm_sheets.methods.flywheel.energy_mass import Curve, highest
-from tmm_sheets.methods.flywheel.flywheel import PLOT, Flywheel, Space
+from tmm_sheets.methods.flywheel.flywheel import PLOT, DiagramSpace, Flywheel
 from tmm_sheets.methods.flywheel.running import Running
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
 
-SPACE = Space(moment=100.0, work=130.0, energy=220.0, inertia=175.0, stack=480.0)
+SPACE = DiagramSpace(moment=100.0, work=130.0, energy=220.0, inertia=175.0, stack=480.0)
 """Room for the diagrams: all four stand one under another over a common angle axis, mm."""
 
 

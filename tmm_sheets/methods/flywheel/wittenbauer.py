@@ -10,7 +10,7 @@ from typing import Any
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan
-from tmm_sheets.methods.flywheel.flywheel import Flywheel, Space
+from tmm_sheets.methods.flywheel.flywheel import DiagramSpace, Flywheel
 from tmm_sheets.methods.integration import Floats
 
 TURN = 2 * pi
@@ -29,9 +29,9 @@ class Wittenbauer(Flywheel):
         """Name of the method, as in the project file."""
         return "wittenbauer"
 
-    def _space(self) -> Space:
+    def _space(self) -> DiagramSpace:
         # The peaks of a four-stroke engine need height in the graph of moments, its works little.
-        return Space() if self.reduced.period <= TURN else Space(moment=105.0, work=145.0, energy=168.0)
+        return DiagramSpace() if self.reduced.period <= TURN else DiagramSpace(moment=105.0, work=145.0, energy=168.0)
 
     @cached_property
     def inertia_angle(self) -> Scale:

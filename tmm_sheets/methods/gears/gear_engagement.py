@@ -25,7 +25,7 @@ from tmm_sheets.construction.rules import (
     TANGENT,
 )
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.methods.gears.gear_geometry import PairGeometry, Wheel
+from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry
 
 COMMON_ORDINATES = (25.0, 20.0, 15.0, 10.0, 5.0)
 """Ordinate of both speeds at the pole, mm of paper: 25 (manual 000, 6 example), less where the far one gets too high."""
@@ -196,13 +196,13 @@ def parts_of_pole_segment(drawn: float) -> int:
     return max(2, round(drawn / 20))
 
 
-def divisions(wheel: Wheel, parts: int) -> range:
+def divisions(wheel: GearWheel, parts: int) -> range:
     """Division numbers from 0 at the pole to the last one beyond N that the tip needs, two at least (manual 000: 2-4)."""
     beyond = (wheel.t_tip / wheel.t_pole - 1) * parts
     return range(parts + max(2, int(np.ceil(beyond - 1e-9))) + 1)
 
 
-def involute_plan(wheel: Wheel, engagement: Plan, parts: int) -> Plan:
+def involute_plan(wheel: GearWheel, engagement: Plan, parts: int) -> Plan:
     """Involute through the pole by unrolling, with every division that is drawn.
 
     Division ``k`` of P_wN (``parts`` of them, further ones beyond N) is carried to the base circle as an arc from N, and
@@ -214,13 +214,13 @@ def involute_plan(wheel: Wheel, engagement: Plan, parts: int) -> Plan:
     return plan
 
 
-def smooth_involute(wheel: Wheel, engagement: Plan, numbers: Any) -> Any:
+def smooth_involute(wheel: GearWheel, engagement: Plan, numbers: Any) -> Any:
     """Points of the same involute by the same steps at any fractions of P_wN (0 at the base circle, 1 at the pole)."""
     plan = Plan("gear-involute-curve", "Эвольвента", "m", tuple(f"{v:g}" for v in numbers))
     return _unroll(plan, wheel, engagement, np.asarray(numbers, dtype=float), 1, ("k", "k′", "Pwk", "E")).value
 
 
-def _unroll(plan: Plan, wheel: Wheel, engagement: Plan, k: Any, parts: int, names: tuple[str, str, str, str]) -> Step:
+def _unroll(plan: Plan, wheel: GearWheel, engagement: Plan, k: Any, parts: int, names: tuple[str, str, str, str]) -> Step:
     centre, foot, pole = engagement[f"O{wheel.number}"], engagement[f"N{wheel.number}"], engagement["Pw"]
     division = plan.add(names[0], DIVIDE, pole, foot, k, parts)
     base = plan.add(names[1], LAY_ARC, centre, foot, pole, k, parts)
@@ -228,7 +228,7 @@ def _unroll(plan: Plan, wheel: Wheel, engagement: Plan, k: Any, parts: int, name
     return plan.add(names[3], END_OF_TANGENT, centre, foot, pole, base, length)
 
 
-def tooth_plan(pair: PairGeometry, wheel: Wheel, engagement: Plan) -> Plan:
+def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
     """Tooth whose working flank goes through the pole.
 
     Steps: ``E F`` both flanks on the pitch circle, ``M`` and ``axis`` of the tooth, ``G`` beginning of the involute,

@@ -70,7 +70,7 @@ def shift_without_undercut(teeth: int, addendum: float, alpha: float) -> float:
 
 
 @dataclass(frozen=True)
-class Wheel:
+class GearWheel:
     """One wheel of the pair.
 
     ``t_tip``, ``t_low`` and ``t_fillet`` are lengths of the unrolled tangent (radii of curvature of the involute) at the
@@ -127,7 +127,7 @@ class PairGeometry:
     driver: int
     sense: Literal["clockwise", "counter-clockwise"]
     profile: Literal["fillet", "rack"]
-    wheels: tuple[Wheel, Wheel]
+    wheels: tuple[GearWheel, GearWheel]
 
     def results(self) -> dict[str, Any]:
         """The ``gear`` section of ``solve --json``: lengths in millimetres, angles in radians."""
@@ -190,7 +190,7 @@ def pair_geometry(data: GearData, kind: type[Pair]) -> Pair:
     return pair
 
 
-def _wheel(i: int, data: GearData, alpha_w: float, ra: float, t_tip: float, t_low: float, g_alpha: float) -> Wheel:
+def _wheel(i: int, data: GearData, alpha_w: float, ra: float, t_tip: float, t_low: float, g_alpha: float) -> GearWheel:
     m, alpha, ha, c = data.module, data.pressure_angle, data.addendum, data.clearance
     z, x = data.teeth[i], data.shift[i]
     r = m * z / 2
@@ -206,7 +206,7 @@ def _wheel(i: int, data: GearData, alpha_w: float, ra: float, t_tip: float, t_lo
     else:
         fillet = _fillet_radius(FILLET * m, rb, rf, half, pi / z, t_low)
         t_fillet = max(_fillet_start(fillet, rb, rf), 0.0)
-    return Wheel(
+    return GearWheel(
         number=i + 1, teeth=z, shift=x, least_shift=ha * (z_min - z) / z_min, r=r, rb=rb, rw=rb / cos(alpha_w), ra=ra, rf=rf, s=s,
         s_chord=2 * r * sin(s / (2 * r)), p_chord=2 * r * sin(pi * m / (2 * r)),
         sa=2 * ra * (half - involute(atan2(t_tip, rb))), tau=2 * pi / z, t_pole=rb * tan(alpha_w), t_tip=t_tip, t_low=t_low,

@@ -14,7 +14,14 @@ from tmm_sheets.construction.scale import Scale, fit_standard
 from tmm_sheets.methods.gears import gear_engagement as ge
 from tmm_sheets.methods.gears import gear_teeth as gt
 from tmm_sheets.methods.gears import rack
-from tmm_sheets.methods.gears.gear_geometry import GearData, PairGeometry, Wheel, pair_geometry, shift_without_undercut, warnings_of
+from tmm_sheets.methods.gears.gear_geometry import (
+    GearData,
+    GearWheel,
+    PairGeometry,
+    pair_geometry,
+    shift_without_undercut,
+    warnings_of,
+)
 
 POSITIONS = 13
 """Positions of the rack that are drawn along one flank."""
@@ -55,12 +62,12 @@ class GearPair(PairGeometry):
         one, two = (shape(w, self.hand, self.engagement, self.tooth(w)) for w in self.wheels)
         return one, two
 
-    def generated(self, wheel: Wheel) -> gt.ToothShape:
+    def generated(self, wheel: GearWheel) -> gt.ToothShape:
         """Tooth of one wheel as the rack cuts it, in contact at the pole, whatever the pair's own profile."""
         return gt.generated_shape(wheel, self.hand, self.engagement, self.tooth(wheel))
 
     @property
-    def pinion(self) -> Wheel:
+    def pinion(self) -> GearWheel:
         """The wheel with fewer teeth, the first of two alike: the one whose cutting is shown."""
         return min(self.wheels, key=lambda w: w.teeth)
 
@@ -75,15 +82,15 @@ class GearPair(PairGeometry):
         """Which way the line of action falls from N1 to N2: +1 to the right, -1 to the left."""
         return ge.hand(self)
 
-    def tooth(self, wheel: Wheel) -> Plan:
+    def tooth(self, wheel: GearWheel) -> Plan:
         """Tooth, axis and fillet of one wheel."""
         return self._teeth[wheel.number - 1]
 
-    def shape(self, wheel: Wheel) -> gt.ToothShape:
+    def shape(self, wheel: GearWheel) -> gt.ToothShape:
         """Tooth of one wheel as a curve, in contact at the pole."""
         return self._shapes[wheel.number - 1]
 
-    def working_strip(self, wheel: Wheel, width: float) -> npt.NDArray[np.complex128]:
+    def working_strip(self, wheel: GearWheel, width: float) -> npt.NDArray[np.complex128]:
         """Closed strip along the working part of the flank through the pole, ``width`` m deep."""
         return gt.strip(wheel, self.engagement, width)
 
@@ -91,15 +98,15 @@ class GearPair(PairGeometry):
         """Scale factor of the largest GOST 2.302 scale with which the centre distance takes at most ``room`` mm of paper."""
         return standard("μ_l", self.a_w * 1e3, room)
 
-    def parts(self, wheel: Wheel, scale: Scale | None = None) -> int:
+    def parts(self, wheel: GearWheel, scale: Scale | None = None) -> int:
         """Number of equal parts of P_wN when drawn with this scale factor (that of the picture by default)."""
         return ge.parts_of_pole_segment((scale or self.picture_scale()).mm(wheel.t_pole))
 
-    def divisions(self, wheel: Wheel, scale: Scale | None = None) -> range:
+    def divisions(self, wheel: GearWheel, scale: Scale | None = None) -> range:
         """Numbers of the divisions of :meth:`involute`, from 0 at the pole to the last beyond N."""
         return ge.divisions(wheel, self.parts(wheel, scale))
 
-    def involute(self, wheel: Wheel, scale: Scale | None = None) -> Plan:
+    def involute(self, wheel: GearWheel, scale: Scale | None = None) -> Plan:
         """Involute by unrolling with the divisions that are drawn with this scale factor; built once for each number of parts."""
         parts = self.parts(wheel, scale)
         key = wheel.number, parts
@@ -111,12 +118,12 @@ class GearPair(PairGeometry):
     def _involutes(self) -> dict[tuple[int, int], Plan]:
         return {}
 
-    def smooth_involute(self, wheel: Wheel, points: int = 40, reach: float = 1.0) -> npt.NDArray[np.complex128]:
+    def smooth_involute(self, wheel: GearWheel, points: int = 40, reach: float = 1.0) -> npt.NDArray[np.complex128]:
         """The same construction with many divisions, from the base circle to ``reach`` times the tip's tangent."""
         numbers = np.sqrt(np.linspace(0, (wheel.t_tip / wheel.t_pole * reach) ** 2, points))
         return np.asarray(ge.smooth_involute(wheel, self.engagement, numbers))
 
-    def rolled(self, wheel: Wheel, points: Any, travel: float) -> Any:
+    def rolled(self, wheel: GearWheel, points: Any, travel: float) -> Any:
         """Points of a wheel when the contact has moved by ``travel`` m along the line of action from the pole to N2."""
         centre, foot = (self.engagement[f"{name}{wheel.number}"].value for name in "ON")
         shift = travel * self.engagement["N1N2"].value
@@ -149,7 +156,7 @@ class GearPair(PairGeometry):
 
 
 @dataclass(frozen=True)
-class Pair:
+class MeshingPair:
     """A gear pair as it is to be built: :class:`GearData` with every number settled."""
 
     teeth: tuple[int, int]
@@ -163,7 +170,7 @@ class Pair:
     profile: str
 
 
-def settled(section: Any, reducer: Any = None) -> Pair:
+def settled(section: Any, reducer: Any = None) -> MeshingPair:
     """Data of a ``[gear]`` section whose teeth may come from the reducer's simple stage, and its shifts from the rule."""
     if section.teeth == "reducer":
         teeth, module, addendum, clearance = reducer.simple_pair
@@ -174,7 +181,8 @@ def settled(section: Any, reducer: Any = None) -> Pair:
     shift = section.shift
     if shift == "rule":
         shift = tuple(shift_without_undercut(z, addendum, section.pressure_angle) for z in teeth)
-    return Pair(teeth, module, shift, section.pressure_angle, addendum, clearance, section.driver, section.sense, section.profile)
+    return MeshingPair(teeth, module, shift, section.pressure_angle, addendum, clearance, section.driver, section.sense,
+                       section.profile)
 
 
 def gear_pair(data: GearData) -> GearPair:

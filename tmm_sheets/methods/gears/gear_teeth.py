@@ -11,7 +11,7 @@ import numpy.typing as npt
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.methods.gears import rack
 from tmm_sheets.methods.gears.gear_engagement import on_normal, unrolled
-from tmm_sheets.methods.gears.gear_geometry import Wheel
+from tmm_sheets.methods.gears.gear_geometry import GearWheel
 
 Points = npt.NDArray[np.complex128]
 
@@ -64,7 +64,7 @@ class ToothShape:
         return np.asarray(self.centre + radius * self.axis * np.exp(1j * self.side * angles))
 
 
-def tooth_shape(wheel: Wheel, side: int, engagement: Plan, tooth: Plan, points: int = 32) -> ToothShape:
+def tooth_shape(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan, points: int = 32) -> ToothShape:
     """Shape of the tooth recorded in ``tooth``; the flank runs from the root circle to the tip, ``points`` on the involute."""
     i = wheel.number
     centre, foot, pole = (engagement[name].value for name in (f"O{i}", f"N{i}", "Pw"))
@@ -80,7 +80,7 @@ def tooth_shape(wheel: Wheel, side: int, engagement: Plan, tooth: Plan, points: 
     )
 
 
-def generated_shape(wheel: Wheel, side: int, engagement: Plan, tooth: Plan, points: int = 32) -> ToothShape:
+def generated_shape(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan, points: int = 32) -> ToothShape:
     """Shape of the tooth as the rack cuts it, about the axis recorded in ``tooth``; ``points`` on the involute."""
     centre, axis = complex(engagement[f"O{wheel.number}"].value), complex(tooth["axis"].value)
     flank = rack.flank(wheel.rack, wheel.ra, points)
@@ -96,7 +96,7 @@ def _arc_between(centre: complex, begin: complex, end: complex, n: int) -> Point
     return np.asarray(centre + start * np.exp(1j * turn * np.linspace(0, 1, n + 1)))
 
 
-def strip(wheel: Wheel, engagement: Plan, width: float, points: int = 24) -> Points:
+def strip(wheel: GearWheel, engagement: Plan, width: float, points: int = 24) -> Points:
     """Closed strip inside the working part of the flank, from its lowest contact point to the tip, ``width`` m deep."""
     i = wheel.number
     centre, foot, pole = (engagement[name].value for name in (f"O{i}", f"N{i}", "Pw"))

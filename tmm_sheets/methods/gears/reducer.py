@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from math import gcd, pi, sin
 from typing import Any
@@ -11,6 +10,7 @@ from typing import Any
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.methods.gears import reducer_speeds
 from tmm_sheets.methods.gears.planetary import SCHEMES, Driver, inner_ratio, least_ring, stage_efficiency, stage_ratio
+from tmm_sheets.methods.gears.reducer_stages import ReducerWheel, Stage
 from tmm_sheets.methods.gears.tooth_search import (
     ReducerData,
     ToothSet,
@@ -21,52 +21,6 @@ from tmm_sheets.methods.gears.tooth_search import (
     stage_numbers,
 )
 from tmm_sheets.numbers import number
-
-
-@dataclass(frozen=True)
-class Wheel:
-    """A wheel of the reducer: ``name`` "z3" .. with its number, teeth, diameter of the pitch circle (m), speed (rad/s)."""
-
-    number: str
-    teeth: int
-    diameter: float
-    speed: float
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One planetary stage: its wheels in the order 1, 2, 3, 4 of the formulas (a single row: 1, 2, 2, 4) and its carrier."""
-
-    signs: tuple[int, int]
-    driver: Driver
-    wheels: tuple[Wheel, Wheel, Wheel, Wheel]
-    carrier: str
-    carrier_speed: float
-
-    @property
-    def single(self) -> bool:
-        """True when one wheel meshes with both central wheels."""
-        return self.wheels[1] is self.wheels[2]
-
-    @property
-    def axis(self) -> float:
-        """Distance of the satellites' axes from the main one, m."""
-        return (self.wheels[0].diameter + self.signs[0] * self.wheels[1].diameter) / 2
-
-    @property
-    def fixed(self) -> Wheel:
-        """The central wheel that stands still."""
-        return self.wheels[0] if self.driver == "ring" else self.wheels[3]
-
-    @property
-    def input_speed(self) -> float:
-        """Speed of the driving link, rad/s."""
-        return {"sun": self.wheels[0].speed, "ring": self.wheels[3].speed, "carrier": self.carrier_speed}[self.driver]
-
-    @property
-    def output_speed(self) -> float:
-        """Speed of the driven link, rad/s."""
-        return self.wheels[0].speed if self.driver == "carrier" else self.carrier_speed
 
 
 class Reducer:
@@ -101,20 +55,20 @@ class Reducer:
         block = carrier - s[0] * (one - carrier) * z[0] / z[1]
         numbers = stage_numbers(self.data, k)
         speeds = (one, block, block, four)
-        wheels = [Wheel(n, t, t * self.data.module, v) for n, t, v in zip(numbers, z, speeds, strict=True)]
+        wheels = [ReducerWheel(n, t, t * self.data.module, v) for n, t, v in zip(numbers, z, speeds, strict=True)]
         if self.scheme.single:
             wheels[2] = wheels[1]
         name = f"H{k + 1}" if self.data.stages > 1 else "H"
         return Stage(s, self.driver, (wheels[0], wheels[1], wheels[2], wheels[3]), name, carrier)
 
     @cached_property
-    def simple(self) -> tuple[Wheel, Wheel]:
+    def simple(self) -> tuple[ReducerWheel, ReducerWheel]:
         """Pinion and wheel of the simple stage."""
         pinion, wheel = self.chosen.pinion, self.chosen.wheel
         m = self.data.simple_module
         speed = self.data.input_speed if self.data.simple == "before" else self.stages[-1].output_speed
         first, second = simple_numbers(self.data)
-        return Wheel(first, pinion, pinion * m, speed), Wheel(second, wheel, wheel * m, -speed * pinion / wheel)
+        return ReducerWheel(first, pinion, pinion * m, speed), ReducerWheel(second, wheel, wheel * m, -speed * pinion / wheel)
 
     @property
     def simple_pair(self) -> tuple[tuple[int, int], float, float, float]:
@@ -128,7 +82,7 @@ class Reducer:
         return self.stages[-1].output_speed if self.data.simple == "before" else self.simple[1].speed
 
     @cached_property
-    def wheels(self) -> tuple[Wheel, ...]:
+    def wheels(self) -> tuple[ReducerWheel, ...]:
         """All wheels by their numbers."""
         found = {w.number: w for w in (*self.simple, *(w for stage in self.stages for w in stage.wheels))}
         return tuple(found[str(n)] for n in range(1, len(found) + 1))

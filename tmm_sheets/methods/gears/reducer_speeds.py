@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,9 +18,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN, RAY
 from tmm_sheets.construction.step import Helper, Rule, Step
-
-if TYPE_CHECKING:
-    from tmm_sheets.methods.gears.reducer import Stage, Wheel
+from tmm_sheets.methods.gears.reducer_stages import ReducerWheel, Stage
 
 LETTERS = "ABCDEFGKLMNQRST"
 """Names of the points in the order of the power; O is the main axis, P the pole."""
@@ -53,7 +51,7 @@ READ = Rule("measure a speed of rotation", _read, ("point", "point", "point"), "
             "Отрезок {1}{0} даёт частоту вращения {name} = {value} об/мин.")
 
 
-class _Picture:
+class _SpeedPicture:
     """Adds the links one after another, in the order of the power."""
 
     def __init__(self) -> None:
@@ -77,7 +75,7 @@ class _Picture:
         """The velocity everything begins with."""
         return self.plan.add(point.name.lower(), LAY_VELOCITY, point, speed)
 
-    def simple(self, pair: tuple[Wheel, Wheel], before: bool, line: Step | None) -> Step:
+    def simple(self, pair: tuple[ReducerWheel, ReducerWheel], before: bool, line: Step | None) -> Step:
         """The simple stage over the main axis, where it begins the train, or under it; gives the driven wheel's line."""
         one, two = pair
         r1, r2 = one.diameter / 2, two.diameter / 2
@@ -111,12 +109,12 @@ class _Picture:
         return self.line(one.number if stage.driver == "carrier" else stage.carrier, self.axis, velocity)
 
 
-def picture(simple: tuple[Wheel, Wheel], stages: Sequence[Stage], before: bool) -> Plan:
+def picture(simple: tuple[ReducerWheel, ReducerWheel], stages: Sequence[Stage], before: bool) -> Plan:
     """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link.
 
     A link that is one with the link before it (a carrier with the next sun) has one line, under its first name.
     """
-    drawn = _Picture()
+    drawn = _SpeedPicture()
     line = drawn.simple(simple, before, None) if before else None
     for stage in stages:
         line = drawn.stage(stage, line)

@@ -29,7 +29,7 @@ NEAR = 1e-12
 
 
 @dataclass(frozen=True)
-class Motion:
+class OutputMotion:
     """How a point moves along a line, or a link turns: its runs over the cycle, each a part of a stroke.
 
     ``travelled(turned)`` is the way from where the working strokes begin, as a fraction 0..1 of the whole way between the
@@ -73,7 +73,7 @@ class Motion:
 
         return sorted(root(ahead(level), run.begin, run.end) for level in levels)
 
-    def within(self, begin: float, end: float) -> Motion:
+    def within(self, begin: float, end: float) -> OutputMotion:
         """The same motion between two fractions of the way only."""
         runs = []
         for r in self.runs:
@@ -106,7 +106,7 @@ def distinct(angles: Iterable[float], period: float) -> tuple[float, ...]:
 
 
 def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, known: Strokes | None = None,
-                    first: float = 0.0) -> Motion:
+                    first: float = 0.0) -> OutputMotion:
     """Strokes of a point that moves to and fro; working strokes go along the unit vector ``sense``.
 
     Raises :class:`CannotBuild` when the mechanism does not assemble all the way round or the point does not move that way.
@@ -126,11 +126,11 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     if not high - low > 1e-9 * m.crank.length:
         _refuse(m, f"point {point} does not move to and fro that way: its force has no strokes",
                 "give the sense of the working strokes along its path")
-    return Motion(over_cycle(in_strokes(runs, ways), cycle.period, first),
+    return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first),
                   lambda t: np.clip((along(np.asarray(t)) - low) / (high - low), 0.0, 1.0), cycle.period)
 
 
-def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: float = 0.0) -> Motion:
+def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: float = 0.0) -> OutputMotion:
     """Strokes of a link that swings, or of a link that turns all the way round, which may go back for a while as well."""
 
     def speed(turned: Floats) -> Any:
@@ -156,7 +156,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
         def travelled(t: Any) -> Any:
             return np.clip((np.mod(angle(t) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
 
-        return Motion(over_cycle(in_strokes(runs, ways), cycle.period, first), travelled, cycle.period)
+        return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first), travelled, cycle.period)
     way = 1 if turns >= 0 else -1
     swept = way * (swept - swept[0]) / TURN
 
@@ -168,7 +168,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     # Each turn begins with position 0, where the way does.
     cut = [p for r in runs for p in ((replace(r, end=TURN), Run(0.0, r.end - TURN, r.sense)) if r.end > TURN + NEAR else (r,))]
     whole = [replace(r, working=turns > 0) for r in sorted(cut, key=lambda r: r.begin)]
-    return Motion(over_cycle(whole, cycle.period, first), round_and_round, cycle.period, True, way)
+    return OutputMotion(over_cycle(whole, cycle.period, first), round_and_round, cycle.period, True, way)
 
 
 def _refuse(m: Mechanism, message: str, hint: str = "") -> NoReturn:
@@ -190,7 +190,7 @@ class Applied:
     toward: complex
     law: Callable[[Any, int], Any]
     jumps: tuple[float, ...]
-    motion: Motion | None = None
+    motion: OutputMotion | None = None
 
     def vector(self, turned: Any, side: int = 0) -> Any:
         """Force vector, N, complex."""
@@ -266,7 +266,7 @@ def jumps_of(table: Table) -> tuple[float, ...]:
     return tuple(a for (a, p), (b, q) in pairwise(zip(*table, strict=True)) if a == b and p != q)
 
 
-def stroke_law(motion: Motion, tables: Sequence[Table | None], signs: Sequence[float], smooth: bool = False,
+def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequence[float], smooth: bool = False,
                always: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
     """Law over the runs in their order, and the angles where it is not smooth.
 

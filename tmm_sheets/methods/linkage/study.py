@@ -19,7 +19,7 @@ from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
 
 
-class Running(Protocol):
+class CrankMotion(Protocol):
     """What the forces need of a crank that does not turn evenly: the flywheel says it."""
 
     @property
@@ -47,7 +47,7 @@ class Study:
     gravity: float
     technological: Callable[[], tuple[Applied, ...]]
     driver: GearForce | None
-    running: Callable[[], Running] | None = None
+    running: Callable[[], CrankMotion] | None = None
 
     @cached_property
     def applied(self) -> tuple[Applied, ...]:

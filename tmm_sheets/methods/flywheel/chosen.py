@@ -1,0 +1,21 @@
+"""The flywheel of a linkage by the method that its data name."""
+
+from __future__ import annotations
+
+from tmm_sheets.methods.flywheel import mertsalov, wittenbauer
+from tmm_sheets.methods.flywheel.flywheel import Flywheel, FlywheelData, ReducedData
+
+
+def flywheel(reduced: ReducedData, data: FlywheelData) -> Flywheel:
+    """Flywheel of a linkage by the method its data name.
+
+    Raises
+    ------
+    ValueError
+        when there is no method of that name.
+    """
+    if data.method == "mertsalov":
+        return mertsalov.Mertsalov(reduced, data, mertsalov.SPACE)
+    if data.method == "wittenbauer":
+        return wittenbauer.Wittenbauer(reduced, data)
+    raise ValueError(f"flywheel method {data.method!r} is not known; known: 'wittenbauer', 'mertsalov'")

@@ -1,0 +1,625 @@
+"""Tables of the project file as they are checked: keys, ranges, what needs what. The strings under the keys are for the docs."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from tmm_sheets.task import units
+from tmm_sheets.task.values import (
+    AcuteAngle,
+    Angle,
+    CamDiagram,
+    CamLaw,
+    Coordinate,
+    Count,
+    CrankAcceleration,
+    Density,
+    Diagram,
+    EvenParts,
+    ForceDirection,
+    Fraction,
+    Gravity,
+    GuidePoint,
+    Inertia,
+    InnerFraction,
+    Length,
+    Mass,
+    Name,
+    Newtons,
+    Number,
+    PhaseAngle,
+    PositiveNumber,
+    Pressure,
+    Sense,
+    SheetName,
+    Side,
+    Speed,
+    Start,
+    Teeth,
+    Torque,
+    diagram,
+    in_range,
+    or_word,
+    positive,
+    si,
+    whole,
+)
+
+
+class Table(BaseModel):
+    """A table of the project file: no key but the declared ones, nothing changes after reading."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+
+
+class HeadingTable(Table):
+    """``[project]``: what the project is called and which sheets it has."""
+
+    name: Name = Field(description='name of the project, "family/name"')
+    title: str = Field(description="title as it stands on the sheets")
+    variant: str = ""
+    """the variant of the task, as it stands in `show` and in the results"""
+    sheets: tuple[SheetName, ...] | None = Field(
+        default=None, min_length=1, description='the sheets in order, for example ["gear", "cam"]'
+    )
+
+
+class TitleBlockTable(Table):
+    """``[title_block]``: what stands in the title block (GOST 2.104); what is left out stays empty."""
+
+    form: Literal["1", "2a"] = "1"
+    """form of GOST 2.104: the whole block, or the small one for following sheets"""
+    designation: str = ""
+    """field 2; the code of the sheet is added to it (`Д1`, `Д2` ...)"""
+    institution: str = ""
+    """field 9, upper line"""
+    group: str = ""
+    """field 9, lower line"""
+    student: str = ""
+    """field 11: who developed it; also the author in the files"""
+    supervisor: str = ""
+    """field 11: the head of the project"""
+    checker: str = ""
+    """field 11: who checks it"""
+    letter: str = ""
+    """field 4: `У` for a study project"""
+    first_sheet: Count = 1
+    """running number of the first sheet"""
+
+
+class CrankTable(Table):
+    """``[crank]``: the initial link."""
+
+    link: Name = Field(description='number of the link, for example "1"')
+    pivot: Name = Field(description='fixed point it turns about, for example "A"')
+    pin: Name = Field(description='point at its end, for example "B"')
+    length: Length = Field(description='length with its unit, for example "0.08 m"')
+    speed: Speed = Field(description='speed of rotation, for example "72 rpm" or "7.54 rad/s"')
+    """without sign, `sense` has it"""
+    sense: Sense = Field(description='"clockwise" or "counter-clockwise"')
+    """of the crank"""
+    angular_acceleration: CrankAcceleration = 0.0
+    """positive in the sense of rotation; `"flywheel"`: that of the uneven running with the flywheel found, whose inertia the
+    crank then carries
+    """
+
+
+class GuideTable(Table):
+    """``[[guide]]``: a straight guide for a slider or a stone, on the frame or (with ``link``) on a moving link.
+
+    In SI ``through`` is a point's name or coordinates in m, ``direction`` in rad.
+    """
+
+    name: Name = Field(description="name of the guide")
+    through: GuidePoint = Field(
+        description='a point of the guide: ["0 m", "0.33 m"] or the name of a point'
+    )
+    """with `link` a point of that link"""
+    direction: Angle = 0.0
+    """of a fixed guide against the x axis; of one on a link against the line from `through` to `towards`"""
+    link: Name | None = None
+    """the moving link that carries the guide; left out: the frame"""
+    towards: Name | None = None
+    """with `link`: another of its points; for a guide on a slider also the guide the slider runs on"""
+
+
+class GroupTable(Table):
+    """``[[group]]``: an Assur group of two links (class II, order 2), in the order in which they can be drawn.
+
+    Which keys a kind has: :data:`tmm_sheets.task.names.GROUP_KEYS`.
+    """
+
+    kind: Literal[1, 2, 3, 4, 5] = Field(description="kind of the group, 1 (RRR) to 5 (RPP)")
+    links: tuple[Name, Name] = Field(description='the two links, for example ["2", "3"]')
+    outer: tuple[Name, ...] = ()
+    """points of the outer turning pairs"""
+    inner: Name | None = None
+    """name of the point the group adds"""
+    lengths: tuple[Length, Length] | None = None
+    """kind 1: from the outer points to the inner one"""
+    length: Length | None = None
+    """kind 2: of the rod"""
+    offset: Coordinate = 0.0
+    """kind 3: distance of the slot from the rocker's pivot"""
+    guide: Name | None = None
+    """kinds 2 and 5: the guide of the slider"""
+    guides: tuple[Name, Name] | None = None
+    """kind 4: the guides of both links"""
+    slot: Angle | None = None
+    """kind 5: direction of the second sliding pair against the guide"""
+    side: Side = 1
+    """which of the two ways the group is put together; 1: left of the line from the first outer point to the second, or further
+    along the guide
+    """
+
+
+class PointTable(Table):
+    """``[[point]]``: a further point of a link: a hinge of a later group, a centre of mass, a point whose path is wanted."""
+
+    name: Name = Field(description="name of the point")
+    link: Name = Field(description="the link it belongs to")
+    from_: Name = Field(alias="from", description="a point of the link the distance is measured from")
+    towards: Name = Field(description="a point that gives the direction")
+    """another point of the link; on a slider also its guide"""
+    distance: Coordinate = Field(description='distance with its unit; negative: away from "towards"')
+    angle: Angle = 0.0
+    """turns it from that line: the link may be a plate"""
+
+
+class LinkTable(Table):
+    """``[[link]]``: mass and moment of inertia of a link; links that are not listed have none."""
+
+    name: Name = Field(description="number of the link")
+    title: str = ""
+    """what the link is: crank, coupler, rocker"""
+    mass: Mass = 0.0
+    """of the whole link"""
+    centre: Name | None = None
+    """the point where the mass is; needed with `mass`"""
+    inertia: Inertia = 0.0
+    """about the centre of mass"""
+    pivot_inertia: Inertia | None = None
+    """about the fixed point the link turns about, where the task gives it beside `inertia`: the energy is taken with it"""
+
+    @model_validator(mode="after")
+    def _mass_has_centre(self) -> Self:
+        if self.mass > 0 and self.centre is None:
+            raise ValueError('expected "centre", the point where the mass is; write for example centre = "S3"')
+        return self
+
+
+class CycleTable(Table):
+    """``[cycle]``: the numbered positions of the mechanism, from a dead position or from a crank angle."""
+
+    start: Start = Field(
+        description='"dead" or the crank angle of position 0, for example "90 deg"'
+    )
+    """`"dead"`: where the working stroke of `output` begins"""
+    output: Name | None = None
+    """the point whose strokes count"""
+    working_sense: Literal["+x", "-x", "+y", "-y"] | None = None
+    """the way of the output on the working stroke"""
+    positions: Annotated[int, whole(4)] | None = None
+    """parts of one turn, with a crank angle as `start`"""
+    working: Count | None = None
+    """parts of the working stroke, with `start = "dead"`"""
+    idle: Count | None = None
+    """parts of the idle stroke"""
+    division: Literal["nominal", "exact"] = "exact"
+    """`nominal`: the strokes take the crank angles of K instead of those of the lengths"""
+    coefficient: Annotated[float, si(units.NUMBER), in_range("K of 1 or more", lambda x: x >= 1)] | None = None
+    """K, for `division = "nominal"`"""
+    force_position: Name | None = None
+    """label of the position of the force analysis, drawn thick; left out: position 0"""
+    zero: Name = "0"
+    """label of position 0"""
+    turns: Literal[1, 2] = 1
+    """turns of the crank in a cycle"""
+    extra: dict[Name, Angle] = {}
+    """further positions by label and angle turned from position 0: `{ "1′" = "22.5 deg" }`"""
+    diagrams: tuple[Name, ...] = ()
+    """points (S, V, a) and links (ψ, ω, ε) whose kinematic diagrams are drawn; left out: the output"""
+
+    @model_validator(mode="after")
+    def _whole_turn(self) -> Self:
+        if self.start != "dead" and self.positions is None:
+            raise ValueError("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12")
+        if self.start == "dead":
+            absent = [k for k in ("output", "working_sense", "working", "idle") if getattr(self, k) is None]
+            if absent:
+                raise ValueError(f'start = "dead" needs {", ".join(absent)} as well')
+            if self.division == "nominal" and self.coefficient is None:
+                raise ValueError('division = "nominal" needs the coefficient K, for example coefficient = 1.5')
+        count = self.positions if self.positions is not None else (self.working or 0) + (self.idle or 0)
+        if count < 4:
+            raise ValueError("expected 4 positions or more: positions, or working and idle together")
+        if self.positions is not None and (self.working or self.idle):
+            raise ValueError("expected either positions or working and idle, not both")
+        return self
+
+
+class ForcesTable(Table):
+    """``[forces]``: what acts on all links."""
+
+    gravity: Gravity = 9.81
+    """free fall; 0 for a mechanism in a horizontal plane"""
+
+
+class ForceTable(Table):
+    """``[[force]]``: a technological force at a point of a link: one of ``value``, ``table`` and ``tables``.
+
+    Strokes lie between the true extremes of the way, however often the point turns back; inside them a force against the motion
+    follows the velocity's sign.
+    SI: N, with ``bore`` Pa; arguments are fractions of the way of ``point`` or, with ``over`` = "angle", rad.
+    """
+
+    name: Name = Field(description='symbol of the force, for example "F5"')
+    link: Name = Field(description="the link it acts on")
+    point: Name = Field(description="the point it acts at")
+    direction: ForceDirection = Field(
+        description='"against motion", "along motion" or an angle'
+    )
+    """the first two follow the motion of the point; an angle is a fixed direction of the world frame"""
+    stroke: Literal["working", "idle", "both"] = "both"
+    """the strokes it acts on"""
+    sense: Name | None = None
+    """the way of its working strokes: `+x`, `-y` ..., or `+name`, `-name` along a guide; left out: that of the cycle's output"""
+    value: Newtons | None = None
+    """a constant force"""
+    over: Literal["stroke", "angle"] = "stroke"
+    """argument of the diagrams: fraction of the stroke, or crank angle turned from position 0"""
+    table: Diagram | None = None
+    """a diagram, for example `[[0, "0 N"], [0.6, "0 N"], [1, "1000 kN"]]`"""
+    tables: tuple[Diagram, ...] | None = None
+    """a diagram for each stroke in turn, `[]` for none"""
+    first: Angle = 0.0
+    """with `tables`: the first is for the stroke that begins nearest to this crank angle"""
+    bore: Length | None = None
+    """diameter of a piston: the diagrams are then pressures"""
+    ambient: Pressure = 0.0
+    """with `bore`: pressure on the other side of the piston"""
+    curve: Literal["straight", "smooth"] = "straight"
+    """how the points of a diagram are joined; a smooth curve rises and falls only where they do"""
+    from_: Fraction = Field(default=0.0, alias="from")
+    """where the action begins, as a fraction of the way"""
+    to: Fraction = 1.0
+    """where it ends"""
+    accepted: bool = Field(default=False, description='true: our own assumption, marked "принято" on the sheet')
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        given = [k for k in ("value", "table", "tables") if getattr(self, k) is not None]
+        if len(given) != 1:
+            raise ValueError(f"expected one of value, table and tables, not {' and '.join(given) or 'none'}")
+        if not self.from_ < self.to:
+            raise ValueError(f'expected "from" before "to", not {self.from_} and {self.to}')
+        self.diagrams()
+        return self
+
+    def diagrams(self) -> tuple[tuple[list[float], list[float]] | None, ...]:
+        """The law as diagrams in SI, one for each stroke in turn; a constant is a diagram of one point."""
+        return _diagrams(self, units.PRESSURE if self.bore is not None else units.FORCE)
+
+
+class MomentTable(Table):
+    """``[[moment]]``: a technological moment on a link: one of ``value``, ``table`` and ``tables``."""
+
+    name: Name = Field(description='symbol of the moment, for example "M5"')
+    link: Name = Field(description="the link it acts on")
+    direction: Literal["against motion", "along motion", "clockwise", "counter-clockwise"] = Field(
+        description='"against motion", "along motion", "clockwise" or "counter-clockwise"'
+    )
+    """the first two follow the motion of the link"""
+    stroke: Literal["working", "idle", "both"] = "both"
+    """the strokes it acts on"""
+    sense: Sense = Field(default="counter-clockwise", description="sense of rotation of the link on the working stroke")
+    value: Torque | None = None
+    """a constant moment"""
+    over: Literal["stroke", "angle"] = "stroke"
+    """argument of the diagrams: fraction of the link's way, or crank angle turned from position 0"""
+    table: Diagram | None = None
+    """a diagram, as for forces"""
+    tables: tuple[Diagram, ...] | None = None
+    """a diagram for each stroke in turn, `[]` for none"""
+    first: Angle = 0.0
+    """as for forces"""
+    curve: Literal["straight", "smooth"] = "straight"
+    """as for forces"""
+    accepted: bool = False
+    """true: our own assumption, marked "принято" on the sheet"""
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        given = [k for k in ("value", "table", "tables") if getattr(self, k) is not None]
+        if len(given) != 1:
+            raise ValueError(f"expected one of value, table and tables, not {' and '.join(given) or 'none'}")
+        self.diagrams()
+        return self
+
+    def diagrams(self) -> tuple[tuple[list[float], list[float]] | None, ...]:
+        """The law as diagrams in SI, one for each stroke in turn; a constant is a diagram of one point."""
+        return _diagrams(self, units.MOMENT)
+
+
+def _diagrams(load: ForceTable | MomentTable, quantity: units.Quantity) -> tuple[tuple[list[float], list[float]] | None, ...]:
+    if load.value is not None:
+        return (([0.0], [load.value]),)
+    argument = units.NUMBER if load.over == "stroke" else units.ANGLE
+    given = load.tables if load.tables is not None else (load.table or (),)
+    return tuple(diagram(pairs, argument, quantity) if pairs else None for pairs in given)
+
+
+class BalancingTable(Table):
+    """``[balancing]``: what drives the crank: a pure moment, or the force of a gear pair on the crank shaft."""
+
+    kind: Literal["moment", "gear force"] = Field(description='"moment" or "gear force"')
+    """what drives the crank"""
+    name: Name = Field(description='symbol, for example "F1"')
+    teeth: Teeth | None = None
+    """of the wheel on the crank shaft"""
+    module: Length | None = None
+    """of the gear pair"""
+    pressure_angle: AcuteAngle | None = None
+    """of the gear pair"""
+    mate: Angle | None = None
+    """direction from the crank pivot to the centre of the other wheel"""
+
+    @model_validator(mode="after")
+    def _gear_is_whole(self) -> Self:
+        keys = ("teeth", "module", "pressure_angle", "mate")
+        absent = [k for k in keys if getattr(self, k) is None]
+        if self.kind == "gear force" and absent:
+            raise ValueError(f'kind = "gear force" needs {", ".join(absent)} as well')
+        if self.kind == "moment" and len(absent) < len(keys):
+            raise ValueError(f'kind = "moment" has no {", ".join(k for k in keys if k not in absent)}')
+        return self
+
+
+class MotorTable(Table):
+    """``[flywheel.motor]``: the motor to be checked and the gear train between it and the crank."""
+
+    name: Name = Field(description='type of the motor, for example "4А160М6"')
+    power: Annotated[float, si(units.POWER), positive("power")] = Field(description='power, for example "15 kW"')
+    synchronous: Speed = Field(description='synchronous speed, for example "1000 rpm"')
+    rated: Speed = Field(description='speed under the full load, for example "975 rpm"')
+    efficiency: InnerFraction = Field(description="efficiency of the gear train, for example 0.85")
+    rotor_inertia: Inertia = 0.0
+    """of the rotor about its axis"""
+    ratio: PositiveNumber | None = None
+    """speed of the rotor over that of the crank; left out: with the rated speed"""
+    accepted: bool = False
+    """true: our own assumption, marked "принято" on the sheet"""
+
+
+class FlywheelTable(Table):
+    """``[flywheel]``: how even the rotation must be, and what the flywheel is made of."""
+
+    method: Literal["wittenbauer", "mertsalov"] = Field(description='"wittenbauer" or "mertsalov"')
+    """energy-mass curve, or the energy of the crank's group"""
+    delta: InnerFraction = Field(description="coefficient of non-uniformity, for example 0.025")
+    form: Literal["rim", "disc"] = "rim"
+    """a rim with spokes, or a disc"""
+    density: Density = Field(description='density, for example "7300 kg/m3"')
+    width_ratio: InnerFraction = Field(description="B/D, for example 0.2")
+    thickness_ratio: InnerFraction = Field(description="H/D, for example 0.12")
+    rim_share: Annotated[float, si(units.NUMBER), in_range("a number above 0, 1 at most", lambda x: 0 < x <= 1)] = 1.0
+    """part of the moment of inertia that the rim has"""
+    weights: bool = False
+    """true: the reduced moment counts the weights of the links"""
+    accepted: bool = False
+    """true: delta is our own assumption, marked "принято" on the sheet"""
+    motor: MotorTable | None = None
+    """table `[flywheel.motor]`"""
+
+
+class GearTable(Table):
+    """``[gear]``: a pair of external involute spur gears."""
+
+    teeth: Annotated[tuple[Teeth, Teeth], or_word("reducer")] = Field(description="tooth numbers, for example [14, 28]")
+    """`"reducer"`: the simple stage of `[reducer]` with its module, addendum and clearance"""
+    module: Length | None = Field(default=None, description='module, for example "3.5 mm"')
+    """needed unless `teeth = "reducer"`"""
+    shift: Annotated[tuple[Number, Number], or_word("rule")] = Field(
+        default=(0.0, 0.0), description="shifts, for example [0.2, 0]"
+    )
+    """in modules; `"rule"`: the least shifts without undercut"""
+    pressure_angle: AcuteAngle = Field(description='profile angle of the rack, for example "20 deg"')
+    addendum: PositiveNumber | None = None
+    """coefficient ha*; left out: 1"""
+    clearance: PositiveNumber | None = None
+    """coefficient c*; left out: 0.25"""
+    driver: Literal[1, 2] = 1
+    """the wheel that drives"""
+    sense: Sense = "clockwise"
+    """sense of rotation of wheel 1"""
+    profile: Literal["fillet", "rack"] = "fillet"
+    """`fillet`: a fillet of constant radius; `rack`: as a rack cuts the teeth, with undercut where it happens"""
+
+    @model_validator(mode="after")
+    def _module_from_one_place(self) -> Self:
+        teeth: Any = self.teeth
+        if teeth != "reducer":
+            if self.module is None:
+                raise ValueError('expected "module" too, for example module = "3.5 mm"')
+        else:
+            given = [k for k in ("module", "addendum", "clearance") if getattr(self, k) is not None]
+            if given:
+                raise ValueError(f'teeth = "reducer" takes {", ".join(given)} from [reducer]')
+        return self
+
+
+class SynthesisTable(Table):
+    """``[synthesis]``: conditions from which lengths are found.
+
+    Where one is used, ``"synthesis l_AB"`` or ``"0.5 synthesis l_CD"`` stands instead of a length.
+    ``"quick return"`` finds l_AB and l_CD, ``"engine"`` H, l_AB and l_BC; with ``centre_ratio`` also l_CS or l_BS.
+    """
+
+    kind: Literal["quick return", "engine"] = Field(description='"quick return" or "engine"')
+    """crank and rocker, or crank and slider"""
+    coefficient: Annotated[float, si(units.NUMBER), in_range("K greater than 1", lambda x: x > 1)] | None = None
+    """quick return: K, the ratio of mean velocities"""
+    stroke: Length | None = None
+    """quick return: of the rocker's end"""
+    centre_distance: Length | None = None
+    """quick return: between the pivots of crank and rocker"""
+    mean_velocity: Annotated[float, si(units.VELOCITY), positive("velocity")] | None = None
+    """engine: of the piston"""
+    rod_ratio: Annotated[float, si(units.NUMBER), in_range("a ratio greater than 1", lambda x: x > 1)] | None = None
+    """engine: l_BC/l_AB"""
+    centre_ratio: PositiveNumber | None = None
+    """place of the centre of mass on rocker or rod, as a share of its length"""
+    round: Length | None = None
+    """found lengths are rounded to this step"""
+
+    @model_validator(mode="after")
+    def _conditions_of_the_kind(self) -> Self:
+        own = {"quick return": ("coefficient", "stroke", "centre_distance"), "engine": ("mean_velocity", "rod_ratio")}
+        for kind, keys in own.items():
+            absent = [k for k in keys if getattr(self, k) is None]
+            if kind == self.kind and absent:
+                raise ValueError(f'kind = "{kind}" needs {", ".join(absent)} as well')
+            if kind != self.kind and len(absent) < len(keys):
+                raise ValueError(f'kind = "{self.kind}" has no {", ".join(k for k in keys if k not in absent)}')
+        return self
+
+
+class ReducerTable(Table):
+    """``[reducer]``: a planetary reducer with a simple stage; tooth numbers that are not given are searched.
+
+    Wheels are numbered from the input on, those of the simple stage first where it stands ``before`` the planetary one:
+    z1, z2 | z3 sun, z4 satellites, z5 ring; ``after``: z1 .. z3 or z1 .. z4 | z5, z6. Two stages of a single row have
+    z1 .. z3, z4 .. z6 | z7, z8.
+    """
+
+    scheme: Literal["single row", "external-internal", "two external", "two internal"] = Field(
+        description='"single row", "external-internal", "two external" or "two internal"'
+    )
+    """`single row`: sun, satellites, ring; `external-internal`: sun, blocks of two satellites, ring;
+    `two external`, `two internal`: the carrier drives, blocks between two suns or two rings
+    """
+    simple: Literal["before", "after"] = Field(description='the simple stage stands "before" or "after" the planetary one')
+    stages: Literal[1, 2] = 1
+    """2: two equal single rows"""
+    driver: Literal["sun", "ring", "carrier"] | None = None
+    """of a single row: the other central wheel is fixed; left out: the sun"""
+    ratio: PositiveNumber | None = None
+    """ratio of the whole reducer, this or `output_speed`"""
+    input_speed: Speed = Field(description='speed of the input, for example "1250 rpm"')
+    output_speed: Speed | None = Field(default=None, description='speed of the output, for example "300 rpm"')
+    """this or `ratio`"""
+    teeth: dict[Name, Teeth] = Field(description="tooth numbers that are given, for example { z5 = 12 }")
+    """the pinion of the simple stage must be there, any other may"""
+    module: Length = Field(description='module of the planetary stage, for example "5 mm"')
+    simple_module: Length = Field(description='module of the simple stage, for example "10 mm"')
+    satellites: Annotated[int, whole(2)] = Field(description="number of satellites, for example 3")
+    addendum: PositiveNumber = 1.0
+    """coefficient ha*"""
+    clearance: PositiveNumber = 0.25
+    """coefficient c*"""
+    pair_efficiency: Fraction = 0.98
+    """efficiency of one pair of wheels"""
+    tolerance: InnerFraction = 0.05
+    """greatest deviation of the ratio"""
+    simple_ratio: tuple[PositiveNumber, PositiveNumber] | None = None
+    """limits of the ratio of the simple stage, for example `[1.5, 4]`"""
+    least_teeth: Teeth = 15
+    """of the planetary wheels"""
+    most_teeth: Teeth | None = None
+    """of the planetary wheels"""
+    strict_internal: bool = False
+    """true: no interference in internal pairs"""
+
+    @model_validator(mode="after")
+    def _ratio_is_known(self) -> Self:
+        if (self.ratio is None) == (self.output_speed is None):
+            raise ValueError("expected either ratio or output_speed")
+        if self.stages == 2 and self.scheme != "single row":
+            raise ValueError('stages = 2 goes with scheme = "single row" only')
+        if self.simple_ratio is not None and not self.simple_ratio[0] <= self.simple_ratio[1]:
+            raise ValueError("expected a simple_ratio that rises, for example [1.5, 4]")
+        return self
+
+    @model_validator(mode="after")
+    def _driver_fits(self) -> Self:
+        can = {"single row": ("sun", "ring"), "external-internal": ("sun",)}.get(self.scheme, ("carrier",))
+        if self.driver is not None and self.driver not in can:
+            raise ValueError(f'scheme = "{self.scheme}" is driven by the {" or the ".join(can)}')
+        return self
+
+
+class CamTable(Table):
+    """``[cam]``: a disc cam and its follower.
+
+    Which keys belong to which follower: :data:`tmm_sheets.task.cam_keys.FOLLOWER_KEYS`.
+    """
+
+    follower: Literal["translating roller", "oscillating roller", "flat"] = Field(
+        description='"translating roller", "oscillating roller" or "flat"'
+    )
+    """what the cam moves: a tappet with a roller, a rocker with a roller, a tappet with a flat face"""
+    law: CamLaw = Field(description='law of the acceleration, for example "sine"')
+    """of both phases"""
+    fall_law: CamLaw | None = None
+    """left out: the fall mirrors the rise"""
+    table: CamDiagram | None = None
+    """for `law = "table"`: relative acceleration over the share of the phase, speeding up positive, for example
+    `[[0, 1], [0.4, 0], [1, -0.5]]`; smoothly joined, two pairs with one share are a corner or a jump
+    """
+    fall_table: CamDiagram | None = None
+    """the same for `fall_law = "table"`"""
+    rise: PhaseAngle = Field(description='phase angle of the rise, for example "100 deg"')
+    upper_dwell: PhaseAngle = 0.0
+    """phase angle of the upper dwell"""
+    fall: PhaseAngle = Field(description='phase angle of the fall, for example "70 deg"')
+    parts: EvenParts = 8
+    """equal parts of each phase"""
+    stroke: Length | None = Field(default=None, description='stroke of the follower, for example "10 mm"')
+    eccentricity: Coordinate | None = None
+    """left out: the most favourable one; positive to the side to which the S′ of the rise are laid off"""
+    arm: Length | None = Field(default=None, description='length of the rocker, for example "90 mm"')
+    swing: AcuteAngle | None = Field(default=None, description='angle through which the rocker swings, for example "30 deg"')
+    rotation: Literal["same", "opposite"] = Field(
+        default="same", description='"same": cam and rocker turn the same way in the rise; "opposite"'
+    )
+    pressure_angle: AcuteAngle | None = Field(default=None, description='permitted pressure angle, for example "30 deg"')
+    limit: Literal["rise", "both"] = "both"
+    """the phases whose pressure angle is limited; `rise` goes with force closure"""
+    centre: Literal["vertex", "least"] = "vertex"
+    """where the axis of the cam is put: the vertex of the allowed zone, or the point of it that makes the cam least"""
+    base_radius: Length | None = None
+    """of the cam with a flat follower; left out: the least"""
+    sense: Sense = "clockwise"
+    """sense of rotation of the cam"""
+    roller: Length | None = None
+    """radius of the roller; left out: by both rules, r_p ≤ (0.3…0.4) r0 and r_p ≤ (0.7…0.8) ρ_min"""
+    curvature_share: InnerFraction | None = None
+    """the largest roller as a share of the least radius of curvature ρ_min; left out: 0.7…0.8"""
+    closure: Literal["force", "geometric"] = "force"
+    """`force`: a spring, chosen when `speed` and the follower's mass or inertia are there; `geometric`: a second disc"""
+    speed: Speed | None = Field(default=None, description='speed of the cam, for example "300 rpm"')
+    """for the spring"""
+    follower_mass: Annotated[float, si(units.MASS), positive("mass")] | None = None
+    """of a translating or flat follower, for the spring"""
+    follower_inertia: Annotated[float, si(units.INERTIA), positive("moment of inertia")] | None = None
+    """of a rocker about its pivot, for the spring"""
+    spring_factor: Annotated[float, si(units.NUMBER), in_range("a number from 1 to 5", lambda x: 1 <= x <= 5)] = 1.75
+    """largest force of the spring over the largest force of inertia"""
+    preload: InnerFraction = 0.3
+    """force of the spring in the lowest position as a share of the largest"""
+
+    @model_validator(mode="after")
+    def _phases_fit(self) -> Self:
+        if self.rise <= 0 or self.fall <= 0:
+            raise ValueError("expected a rise and a fall greater than 0 deg")
+        if min(self.rise, self.fall) < units.parse("0.1 deg", units.ANGLE):
+            raise ValueError("expected a rise and a fall of 0.1 deg or more")
+        if self.rise + self.upper_dwell + self.fall > units.parse("360.000001 deg", units.ANGLE):
+            raise ValueError("expected rise, upper_dwell and fall of 360 deg together or less")
+        return self
+
+    def diagram(self, table: str) -> tuple[list[float], list[float]]:
+        """Shares of the phase and relative accelerations of ``table`` or ``fall_table``."""
+        return diagram(getattr(self, table), units.NUMBER, units.NUMBER)

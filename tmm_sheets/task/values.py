@@ -1,0 +1,199 @@
+"""Types of the values in a project file: numbers with units, read into SI, with their ranges; names, directions, diagrams."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+from itertools import pairwise
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, WrapValidator
+
+from tmm_sheets import resources
+from tmm_sheets.task import units
+
+LEAST, GREATEST = 1e-12, 1e12
+"""Sizes of numbers in SI that any machine may have, zero besides: powers and products of what lies beyond are no numbers."""
+
+
+def parsed(value: Any, quantity: units.Quantity) -> float:
+    """A number with its unit in SI; ValueError where it is none or of no size that a machine has."""
+    found = units.parse(value, quantity)
+    if found and not LEAST <= abs(found) <= GREATEST:
+        raise ValueError(f"expected a {quantity.name} of {LEAST:g} to {GREATEST:g} in SI units, not {value!r}; is the unit right?")
+    return found
+
+
+def si(quantity: units.Quantity) -> BeforeValidator:
+    """Reads a quantity into SI."""
+    return BeforeValidator(lambda value: parsed(value, quantity))
+
+
+def si_or(word: str, quantity: units.Quantity) -> BeforeValidator:
+    """The same, or one word in its place."""
+    return BeforeValidator(lambda value: value if value == word else parsed(value, quantity))
+
+
+def in_range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
+    """Refuses values for which ``holds`` is false; ``wording`` says what was expected."""
+
+    def check(value: float) -> float:
+        if not holds(value):
+            raise ValueError(f"expected {wording}")
+        return value
+
+    return AfterValidator(check)
+
+
+MOST = 100_000
+"""Greatest count: teeth, positions."""
+
+
+def whole(least: int, most: int = MOST) -> BeforeValidator:
+    """Takes whole numbers from ``least`` to ``most``."""
+
+    def check(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or value < least:
+            raise ValueError(f"expected a whole number, {least} or more")
+        if value > most:
+            raise ValueError(f"expected a whole number of {most} or less")
+        return value
+
+    return BeforeValidator(check)
+
+
+def _even_parts(parts: int) -> int:
+    """Even, 12 at most."""
+    if parts % 2 or parts > 12:
+        raise ValueError("expected an even number of parts, 12 at most")
+    return parts
+
+
+def positive(of: str) -> AfterValidator:
+    """Refuses zero and less."""
+    return in_range(f"a {of} greater than zero", lambda x: x > 0)
+
+
+def not_negative(of: str) -> AfterValidator:
+    """Refuses less than zero."""
+    return in_range(f"a {of} of zero or more", lambda x: x >= 0)
+
+
+_ACUTE = in_range("an angle between 0 and 90 deg, both excluded", lambda x: 0 < x < units.parse("90 deg", units.ANGLE))
+_PHASE = in_range("an angle from 0 to 360 deg", lambda x: 0 <= x <= units.parse("360 deg", units.ANGLE))
+_FRACTION = in_range("a number from 0 to 1", lambda x: 0 <= x <= 1)
+_INNER_FRACTION = in_range("a number between 0 and 1, both excluded", lambda x: 0 < x < 1)
+
+Coordinate = Annotated[float, si(units.LENGTH)]
+Length = Annotated[float, si(units.LENGTH), positive("length")]
+Angle = Annotated[float, si(units.ANGLE)]
+AcuteAngle = Annotated[float, si(units.ANGLE), _ACUTE]
+PhaseAngle = Annotated[float, si(units.ANGLE), _PHASE]
+Speed = Annotated[float, si(units.ANGULAR_VELOCITY), positive("speed of rotation")]
+CrankAcceleration = Annotated[float | Literal["flywheel"], si_or("flywheel", units.ANGULAR_ACCELERATION)]
+Start = Annotated[str | float, si_or("dead", units.ANGLE)]
+Gravity = Annotated[float, si(units.ACCELERATION), not_negative("gravity")]
+Mass = Annotated[float, si(units.MASS), not_negative("mass")]
+Inertia = Annotated[float, si(units.INERTIA), not_negative("moment of inertia")]
+Newtons = Annotated[float, si(units.FORCE), not_negative("force")]
+Density = Annotated[float, si(units.DENSITY), positive("density")]
+Number = Annotated[float, si(units.NUMBER)]
+PositiveNumber = Annotated[float, si(units.NUMBER), positive("number")]
+Fraction = Annotated[float, si(units.NUMBER), _FRACTION]
+InnerFraction = Annotated[float, si(units.NUMBER), _INNER_FRACTION]
+Teeth = Annotated[int, whole(4)]
+Count = Annotated[int, whole(1)]
+EvenParts = Annotated[int, AfterValidator(_even_parts), whole(4)]
+Side = Literal[1, -1]
+CamLaw = Literal["constant", "cosine", "sine", "trapezoid", "linearly decreasing", "table"]
+Sense = Literal["clockwise", "counter-clockwise"]
+
+
+def _name(value: Any) -> str:
+    """Name in quotes."""
+    if not isinstance(value, str) or not value.strip():
+        raise ValueError('expected a name in quotes, for example "B"')
+    return value
+
+
+def _direction(value: Any) -> float | str:
+    """`"against motion"`, `"along motion"` or an angle."""
+    if isinstance(value, str) and value in ("against motion", "along motion"):
+        return value
+    try:
+        return parsed(value, units.ANGLE)
+    except ValueError:
+        raise ValueError('expected "against motion", "along motion" or an angle, for example "30 deg"') from None
+
+
+def _through(value: Any) -> str | tuple[float, float]:
+    """Name of a point or its two coordinates."""
+    if isinstance(value, str) and value.strip():
+        return value
+    if isinstance(value, list) and len(value) == 2:
+        return parsed(value[0], units.LENGTH), parsed(value[1], units.LENGTH)
+    raise ValueError('expected the name of a point or two coordinates, for example ["0 m", "0.33 m"]')
+
+
+Name = Annotated[str, BeforeValidator(_name)]
+ForceDirection = Annotated[str | float, BeforeValidator(_direction)]
+GuidePoint = Annotated[str | tuple[float, float], BeforeValidator(_through)]
+
+
+def _diagram(value: Any) -> tuple[tuple[str | float, str | float], ...]:
+    """List of pairs.
+
+    They stay as written: their units follow from the table they stand in and are read there.
+    """
+    if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
+        raise ValueError('expected a list of pairs, for example [[0, "0 N"], [0.6, "0 N"], [1, "1000 kN"]]')
+    return tuple((p[0], p[1]) for p in value)
+
+
+Diagram = Annotated[tuple[tuple[Any, Any], ...], BeforeValidator(_diagram)]
+Torque = Annotated[float, si(units.MOMENT), not_negative("moment")]
+Pressure = Annotated[float, si(units.PRESSURE)]
+
+
+def diagram(pairs: Sequence[tuple[Any, Any]], argument: units.Quantity, value: units.Quantity) -> tuple[list[float], list[float]]:
+    """Arguments and values of a diagram in SI; ValueError where a unit is wrong or the arguments do not rise."""
+    x = [parsed(p[0], argument) for p in pairs]
+    y = [parsed(p[1], value) for p in pairs]
+    if any(b < a for a, b in pairwise(x)):
+        raise ValueError("expected arguments that rise from pair to pair")
+    return x, y
+
+
+def _shares(pairs: Sequence[tuple[Any, Any]]) -> Sequence[tuple[Any, Any]]:
+    """Shares of the phase from 0 to 1."""
+    x, _ = diagram(pairs, units.NUMBER, units.NUMBER)
+    if len(x) < 2 or x[0] != 0 or x[-1] != 1:
+        reach = f"from {x[0]:g} to {x[-1]:g}" if x else "an empty table"
+        raise ValueError(f"expected shares of the phase from 0 to 1, not {reach}")
+    return pairs
+
+
+CamDiagram = Annotated[tuple[tuple[Any, Any], ...], AfterValidator(_shares), BeforeValidator(_diagram)]
+
+
+def _arrangement(name: str) -> str:
+    """Name of an arrangement."""
+    known = sorted(p.stem for p in resources.template("sheets").glob("*.toml"))
+    if name not in known:
+        near, listed = nearest(name, known)
+        raise ValueError(f'unknown sheet, not in templates/sheets: "{name}"; {near or f"known are {listed}"}')
+    return name
+
+
+SheetName = Annotated[Name, AfterValidator(_arrangement)]
+
+
+def or_word(word: str) -> WrapValidator:
+    """Lets one word stand for the value."""
+    return WrapValidator(lambda value, read: value if value == word else read(value))
+
+
+def nearest(word: str, known: list[str]) -> tuple[str, str]:
+    """A hint at the word that was meant, empty when none is near; all words that are known."""
+    near = get_close_matches(word, known, n=1)
+    return (f'did you mean "{near[0]}"?' if near else "", ", ".join(known))
