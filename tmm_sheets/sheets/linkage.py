@@ -55,19 +55,19 @@ def shapes(pos: Positions) -> list[Shape]:
 def _group_shapes(pos: Positions, g: StructuralGroup) -> list[Shape]:
     m, (i, j) = pos.mechanism, g.links
     inner = g.inner or ""
-    if g.kind == 1:
+    if g.kind.number == 1:
         return [_bar(m, i, (g.outer[0], inner)), _bar(m, j, (g.outer[1], inner))]
-    if g.kind == 2:
+    if g.kind.number == 2:
         return [_bar(m, i, (g.outer[0], inner)),
                 Shape(j, block=inner, along=pos.guide_directions[g.guides[0]], carried=_carried(pos, j))]
-    if g.kind == 3:
+    if g.kind.number == 3:
         p, q = g.outer
         foot = pos.feet.get(j)
         rocker = _bar(m, j, (q, p) if foot is None else (q,), p)
         if foot is not None:  # the slot passes the pivot: an arm to its foot, and the slot from there to the stone
             rocker = replace(rocker, arms=((q, foot), (foot, p), *rocker.arms))
         return [Shape(i, block=p, along=pos.directions[j]), rocker]
-    if g.kind == 4:
+    if g.kind.number == 4:
         return [Shape(link, block=inner, along=pos.guide_directions[name]) for link, name in zip(g.links, g.guides, strict=True)]
     return [Shape(i, block=g.outer[0], along=pos.directions[i]),
             Shape(j, block=inner, along=pos.guide_directions[g.guides[0]], slot=pos.directions[i])]
@@ -193,8 +193,9 @@ def block_size(pos: Positions, s: Shape, frame: Frame) -> tuple[float, float]:
         name, direction = s.carried
         way = ((pos.points[name].value - pos.points[str(s.block)].value) * np.conj(direction.value)).real
         return 18.0, 2 * (float(np.nanmax(np.abs(way))) / frame.scale.mu + symbols.BLOCK[0] / 2 + 2.0)
-    if any(g.kind == 4 and g.inner == s.block and pos.mechanism.guides[g.guides[g.links.index(s.link)]].link == pos.mechanism.frame
-           for g in pos.mechanism.groups if s.link in g.links):
+    m = pos.mechanism
+    if any(g.kind.number == 4 and g.inner == s.block and m.guides[g.guides[g.links.index(s.link)]].link == m.frame
+           for g in m.groups if s.link in g.links):
         return 1.6 * symbols.BLOCK[0], 1.7 * symbols.BLOCK[1]
     return symbols.BLOCK
 
@@ -224,7 +225,7 @@ def _arms(canvas: Canvas, pos: Positions, s: Shape, frame: Frame, k: int, style:
 
 
 def _is_block_of_ram(pos: Positions, name: str) -> bool:
-    return any(g.kind == 5 and g.inner == name for g in pos.mechanism.groups)
+    return any(g.kind.number == 5 and g.inner == name for g in pos.mechanism.groups)
 
 
 def _base_direction(pos: Positions, name: str) -> complex:
@@ -258,12 +259,12 @@ def draw_guides(canvas: Canvas, pos: Positions, k: int, frame: Frame, only: Iter
     m = pos.mechanism
     wanted = set(m.links if only is None else only)
     for g in m.groups:
-        if g.kind == 5 and g.links[1] in wanted and m.guides[g.guides[0]].link == m.frame:
+        if g.kind.number == 5 and g.links[1] in wanted and m.guides[g.guides[0]].link == m.frame:
             z, u = frame(complex(pos.points[str(g.inner)].at(k))), complex(pos.guide_directions[g.guides[0]].at(k))
             for end, side in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
                 a, b = sorted((z + end * 10.0 * u, z + end * 19.5 * u), key=lambda p: (p * np.conj(u)).real)
                 symbols.fixed_guide(canvas, a + side * 6.2j * u, b + side * 6.2j * u, side, "axis")
-        sliding = {2: g.links[1:], 4: g.links}.get(g.kind, ())
+        sliding = {2: g.links[1:], 4: g.links}.get(g.kind.number, ())
         for link, name in zip(sliding, g.guides, strict=True) if sliding else ():
             if link not in wanted or m.guides[name].link != m.frame:
                 continue

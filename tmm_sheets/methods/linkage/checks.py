@@ -60,7 +60,7 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
         naming every group that does not assemble, the positions or crank angles (world frame, counter-clockwise from the
         x axis), the lack in millimetres and what to try.
     """
-    limits = [limit for g in mechanism.groups for limit in LIMITS[g.kind](mechanism, g)]
+    limits = [limit for g in mechanism.groups for limit in LIMITS[g.kind.number](mechanism, g)]
     search = _Search(mechanism, cycle, limits)
     failures = [(search.failure(i), limit) for i, limit in enumerate(limits)]
     said = [message for message, _ in failures if message]

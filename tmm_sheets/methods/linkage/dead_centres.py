@@ -50,16 +50,16 @@ class Crossing:
 def crossing(m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
     """Crossing of a group of kind 1, 2 or 3 between crank and frame; None where no such form exists."""
     with localcontext(prec=DIGITS):
-        found = LENGTHS[g.kind](m, g)
+        found = LENGTHS[g.kind.number](m, g)
     if found is None:
         return None
     half, distance = (None if f is None else Step(name, OF_ANGLE, (f, phi))
                       for name, f in zip((f"h {g.name}", f"d {g.name}"), found, strict=True))
     assert half is not None
     name = f"sin {g.name}"
-    if g.kind == 1:
+    if g.kind.number == 1:
         return Crossing(half, distance, Step(name, SINE_ARCS, (half, distance, *g.lengths, g.side)))
-    if g.kind == 2:
+    if g.kind.number == 2:
         return Crossing(half, None, Step(name, SINE_LINE, (half, g.lengths[0], g.side)))
     return Crossing(half, distance, Step(name, SINE_SLOT, (half, distance)))
 

@@ -1,0 +1,55 @@
+"""What every kind of Assur group of class II knows: one object per kind, one module each.
+
+The contexts handed to a kind (mechanism, plans) are typed where a kind overrides a method; here they stay open, so that this room
+knows nothing of the rooms that use it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
+
+
+class GroupKind(ABC):
+    """A kind of two-link group (вид группы Ассура; manual 000, table 3.1); a kind has no state of its own.
+
+    ``number`` and ``form`` are the manual's: the pairs in Russian letters, outer, inner, outer, В turning, П sliding.
+    ``orders`` are the same pairs as R and P, in every order the two links can be met in.
+    """
+
+    number: ClassVar[int]
+    form: ClassVar[str]
+    orders: ClassVar[tuple[str, ...]]
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other)
+
+    def __hash__(self) -> int:
+        return hash(type(self))
+
+    def __repr__(self) -> str:
+        return type(self).__name__
+
+    @abstractmethod
+    def pairs(self, m: Any, g: Any) -> list[Any]:
+        """Outer, inner and outer kinematic pair of a group in a mechanism."""
+
+    def carrier(self, g: Any) -> str:
+        """Link on which the inner point is fixed."""
+        return str(g.links[0])
+
+    @abstractmethod
+    def position(self, pos: Any, g: Any) -> None:
+        """Construct the inner point and the directions of both links in the position plan."""
+
+    @abstractmethod
+    def velocity(self, vel: Any, g: Any) -> None:
+        """Solve the vector equations of the velocities by two lines (manual 000, table 3.1)."""
+
+    @abstractmethod
+    def acceleration(self, acc: Any, g: Any) -> None:
+        """Solve the vector equations of the accelerations by two lines (manual 000, table 3.6)."""
+
+    @abstractmethod
+    def force(self, forces: Any, g: Any) -> None:
+        """Reactions in the group's pairs from force plans and moment equations (manual 000, table 4.1)."""

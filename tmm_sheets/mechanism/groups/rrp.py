@@ -1,0 +1,84 @@
+"""Kind 2, RRP: a rod hinged to a slider on a guide."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.indices import on_link
+from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.linkage.accelerations import Accelerations
+    from tmm_sheets.methods.linkage.forces import Kinetostatics
+    from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.methods.linkage.velocities import Velocities
+
+
+class RRPKind(GroupKind):
+    """Kind 2: a rod hinged to a slider on a guide."""
+
+    number, form, orders = 2, "ВВП", ("RRP", "PRR")
+
+    def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
+        p, c, (i, j) = g.outer[0], str(g.inner), g.links
+        return [turning(p, m.owner(p), i), turning(c, i, j), sliding(c + "′", j, m.guides[g.guides[0]].link)]
+
+    def carrier(self, g: StructuralGroup) -> str:
+        return g.links[1]
+
+    def position(self, pos: Positions, g: StructuralGroup) -> None:
+        assert g.inner is not None
+        guide = g.guides[0]
+        pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_LINE, pos.points[g.outer[0]], g.lengths[0], pos.guide_points[guide],
+                                           pos.guide_directions[guide], g.side, *pos.crossing(g))
+        pos.directions[g.links[0]] = pos.direction(g.outer[0], g.inner)
+        pos.directions[g.links[1]] = pos.guide_directions[guide]
+
+    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
+        pos, plan = vel.positions, vel.plan
+        p, c, guide = g.outer[0], str(g.inner), g.guides[0]
+        carrier, link = vel.guide(guide, c)
+        n = vel.perpendicular(p, c)
+        step = plan.add(vel.name(c), rules.LINE_LINE, vel.points[p], n, carrier, pos.guide_directions[guide], *pos.known_sine(g))
+        vel.points[c] = step
+        plan.vector(f"V̅_{c}", vel.pole, step)
+        plan.vector(f"V̅_{c}{p}", vel.points[p], step)
+        if carrier is not vel.pole:
+            plan.vector(f"V̅_{{{c}{carrier.name.upper()}}}", carrier, step)
+        vel.turning(g.links[0], p, c, vel.points[p], step)
+        vel.turns_with(g.links[1], link)
+        vel.coincident[on_link(c, g.links[1])] = step
+
+    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
+        plan, pos, vel = acc.plan, acc.positions, acc.velocities
+        p, c, guide = g.outer[0], str(g.inner), g.guides[0]
+        carrier, v_carrier, link = acc.guide(guide, c)
+        n = acc.normal(acc.points[p], g.links[0], p, c)
+        k = acc.coriolis(carrier, link, v_carrier, vel.points[c], on_link(c, link))
+        step = plan.add(acc.name(c), rules.LINE_LINE, n, acc.perpendicular(p, c), k, pos.guide_directions[guide],
+                        *pos.known_sine(g))
+        acc.points[c] = acc.coincident[on_link(c, g.links[1])] = step
+        plan.vector(f"a̅_{{{c}{p}}}^τ", n, step)
+        plan.vector(f"a̅_{c}", acc.pole, step)
+        acc.turning(g.links[0], p, c, acc.points[p], step)
+        acc.turns_with(g.links[1], link)
+
+    def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
+        """Kind 2: tangential part from moments of the rod about the inner hinge; the guide's reaction across it."""
+        pos, m = forces.positions, forces.positions.mechanism
+        (i, j), p, c, guide = g.links, g.outer[0], str(g.inner), g.guides[0]
+        a, base = m.owner(p), m.guides[guide].link
+        total = forces.moment_sum(f"ΣM{i}", pos.points[c], [i])
+        part = forces.tangential(i, a, total, c, p)
+        across = forces.across(guide, pos.guide_directions[guide])
+        # The lines of the velocities turned by 90 degrees, one of them the other way round.
+        sine = tuple(forces.negative(s) for s in pos.known_sine(g))
+        f_one, f_two, _ = forces.group_polygon(g, part, None, pos.direction(p, c), across, (a, base), sine)
+        couple = forces.sliding(j, base, f_two, pos.points[c])
+        forces.react(i, a, pos.points[p], f_one)
+        forces.react(j, base, pos.points[c], f_two, couple)
+
+
+RRP = RRPKind()
