@@ -53,3 +53,14 @@ class GroupKind(ABC):
     @abstractmethod
     def force(self, forces: Any, g: Any) -> None:
         """Reactions in the group's pairs from force plans and moment equations (manual 000, table 4.1)."""
+
+    @abstractmethod
+    def limits(self, m: Any, g: Any) -> list[Any]:
+        """Conditions of assembly (:class:`tmm_sheets.mechanism.groups.limits.AssemblyLimit`)."""
+
+    def crossing(self, m: Any, g: Any, phi: Any) -> Any:
+        """What crank angles ``phi`` (rad) know of the crossing of a group between crank and frame; None without such a form.
+
+        It is a :class:`tmm_sheets.mechanism.groups.dead_centres.Crossing`.
+        """
+        return None

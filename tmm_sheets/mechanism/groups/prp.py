@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
@@ -73,6 +74,12 @@ class PRPKind(GroupKind):
         for link, base, force in zip(g.links, bases, found[:2], strict=True):
             couple = forces.sliding(link, base, force, pos.points[c])
             forces.react(link, base, pos.points[c], force, couple)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        a, b = g.guides
+        return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.guide_directions[a].value, pos.guide_directions[b].value) - TOUCH,
+                              lambda lack: f"the guides {a} and {b} are parallel there",
+                              lambda pos: "turn one of the guides so that they cross at every position", measured=False)]
 
 
 PRP = PRPKind()

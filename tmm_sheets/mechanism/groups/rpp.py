@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
@@ -125,6 +126,12 @@ class RPPKind(GroupKind):
         outer = forces.sliding(j, base, f_jb, pos.points[p])
         forces.react(i, owner, pos.points[p], f_io)
         forces.react(j, base, pos.points[p], f_jb, outer)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        i, j = g.links
+        return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
+                              lambda lack: f"the slot of link {j} is parallel to its guide {g.guides[0]}",
+                              lambda pos: 'try slot = "90 deg"', measured=False)]
 
 
 RPP = RPPKind()

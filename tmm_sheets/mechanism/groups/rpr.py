@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from decimal import Decimal, localcontext
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
+from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.plan import symbol
-from tmm_sheets.construction.step import Helper, Rule
+from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
 from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
@@ -22,6 +28,8 @@ ALONG_TANGENT = Rule(
     "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
     ("point", "point"), "direction", "Проведём прямую {0}{1}.", lambda a, v: (Helper("line", a[0], a[1]),),
 )
+SINE = Rule("sine between slot and perpendicular to the line of pivots", lambda h, d: h / d, (), "number",
+            "Синус угла между пазом и перпендикуляром к линии шарниров {name} = {value}.")
 
 
 class RPRKind(GroupKind):
@@ -119,6 +127,27 @@ class RPRKind(GroupKind):
         f_jb = forces.close(rocker, j, base, tail, first)
         forces.react(i, owner, pos.points[p], f_io)
         forces.react(j, base, pos.points[q], f_jb)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        p, q = g.outer
+        offset = abs(g.offset)
+        if not offset:
+            return [AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - TOUCH * m.crank.length,
+                                  lambda lack: f"{p} passes through {q}, so that the guide {q}{p} has no direction",
+                                  lambda pos: f"move {q} off the path of {p}", measured=False)]
+        return [AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - offset - TOUCH * m.crank.length,
+                              lambda lack: f"{p} comes {lacking(lack)} too near to {q} for the offset of {mm(offset)}",
+                              lambda pos: f"try an offset below {less(extremes(span(pos, p, q))[0])}")]
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """With an offset e the tangent's length sqrt(d^2 - e^2)."""
+        with localcontext(prec=DIGITS):
+            less = span_from_crank(m, g) if g.offset else None
+            if less is None:
+                return None
+            tangent, none = less(Decimal(g.offset)), less(Decimal(0))
+        half, distance = measured(g, phi, lambda phi: np.sqrt(-tangent(phi)), lambda phi: np.sqrt(-none(phi)))
+        return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance)))
 
 
 RPR = RPRKind()

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from decimal import Decimal, localcontext
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
+from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, direction
+from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, height, measured, on_crank
 from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
@@ -14,6 +22,9 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.methods.linkage.velocities import Velocities
+
+SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
+            "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.")
 
 
 class RRPKind(GroupKind):
@@ -79,6 +90,30 @@ class RRPKind(GroupKind):
         couple = forces.sliding(j, base, f_two, pos.points[c])
         forces.react(i, a, pos.points[p], f_one)
         forces.react(j, base, pos.points[c], f_two, couple)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        p, guide, length = g.outer[0], g.guides[0], g.lengths[0]
+        rod = f"{p}{g.inner}"
+
+        def away(pos: Positions) -> Any:
+            return np.abs(ar.cross(pos.guide_directions[guide].value, pos.guide_points[guide].value - pos.points[p].value))
+
+        return [AssemblyLimit(g, m.crank.length, lambda pos: length - away(pos),
+                              lambda lack: f"rod {rod} = {mm(length)} is {lacking(lack)} too short to reach the guide {guide}",
+                              lambda pos: f"try {rod} >= {more(extremes(away(pos))[1])}")]
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
+        with localcontext(prec=DIGITS):
+            guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
+            if pin is None or isinstance(guide.through, str):
+                return None
+            (l1, ahead), length = pin, Decimal(g.lengths[0])
+            e0 = height(m.fixed[m.crank.pivot], guide)[0]
+            start = direction(guide.direction)[0] - ahead
+            below, above = Cosine(length + e0, l1, start + PI / 2), Cosine(length - e0, l1, start - PI / 2)
+        half, _ = measured(g, phi, lambda phi: np.sqrt(below(phi) * above(phi)))
+        return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
 
 
 RRP = RRPKind()

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from decimal import Decimal, localcontext
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.limit_angles import DIGITS
+from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
 from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, span
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, turning
 
 if TYPE_CHECKING:
@@ -13,6 +20,9 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.methods.linkage.velocities import Velocities
+
+SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
+            "Синус угла между звеньями {name} = {value}.")
 
 
 class RRRKind(GroupKind):
@@ -73,6 +83,38 @@ class RRRKind(GroupKind):
                                                pos.known_sine(g))
         forces.react(i, a, pos.points[p], f_one)
         forces.react(j, b, pos.points[q], f_two)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        (p, q), (l1, l2) = g.outer, g.lengths
+        first, second = f"{p}{g.inner}", f"{g.inner}{q}"
+        (long, a), (short, b) = sorted(((first, l1), (second, l2)), key=lambda x: -x[1])
+
+        def hint(pos: Positions) -> str:
+            low, high = extremes(span(pos, p, q))
+            for name, other in ((first, l2), (second, l1)):
+                least, most = max(high - other, other - low), other + low
+                if most > least * 1.001:
+                    return f"try {name} from {more(least)} to {less(most)}"
+            return f"try {first} = {second} = {more(high / 2)} or longer"
+
+        return [
+            AssemblyLimit(g, m.crank.length, lambda pos: l1 + l2 - span(pos, p, q),
+                          lambda lack: f"{first} = {mm(l1)} and {second} = {mm(l2)} together are {lacking(lack)} too short", hint),
+            AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - (a - b),
+                          lambda lack: f"{long} = {mm(a)} is {lacking(lack)} too long beside {short} = {mm(b)}", hint),
+        ]
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
+        with localcontext(prec=DIGITS):
+            less = span_from_crank(m, g)
+            if less is None:
+                return None
+            l2, l3 = (Decimal(x) for x in g.lengths)
+            outer, inner, none = less(l2 + l3), less(l2 - l3), less(Decimal(0))
+        half, distance = measured(g, phi, lambda phi: np.sqrt(outer(phi) * inner(phi) / none(phi)) / 2,
+                                  lambda phi: np.sqrt(-none(phi)))
+        return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
 
 
 RRR = RRRKind()

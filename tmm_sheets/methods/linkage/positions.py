@@ -12,8 +12,8 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, foot_on_guide
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.dead_centres import crossing, foot_on_guide
 
 
 @dataclass
@@ -50,7 +50,7 @@ class Positions:
 
     def crossing(self, group: StructuralGroup) -> tuple[Step, ...]:
         """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
-        found = crossing(self.mechanism, group, self.phi)
+        found: Crossing | None = group.kind.crossing(self.mechanism, group, self.phi)
         if found is None:
             return ()
         self.sines[group.links[0]] = found.sine
