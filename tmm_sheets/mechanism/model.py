@@ -148,8 +148,8 @@ class Mechanism:
             if p.name == point:
                 return p.link
         for g in self.groups:
-            if g.inner == point:
-                return g.kind.carrier(g)
+            if point in (carried := g.kind.carried(g)):
+                return carried[point]
         raise KeyError(point)
 
     @property

@@ -65,7 +65,7 @@ def _paths(canvas: Canvas, project: Project, frame: Frame, room: Box) -> None:
     turned = np.linspace(0, 2 * pi, 181)
     pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
     m = pos.mechanism
-    shown = [p.name for p in m.points] + [g.inner for g in m.groups if g.kind.number == 1 and g.inner]
+    shown = [p.name for p in m.points] + [g.inner for g in m.groups if g.inner and not g.guides]
     for name in shown:
         z = np.asarray(pos.points[name].value)
         if np.ndim(z):
@@ -97,10 +97,10 @@ def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
     centre = frame(m.fixed[m.crank.pivot])
     # A point on a fixed guide has its marks there; one that slides on a moving link is told by the marks of others.
     sliding = {str(g.inner): guide for g in m.groups for guide in g.guides if m.guides[guide].link == m.frame}
-    carried = {g.inner for g in m.groups if g.kind.number == 2 and m.guides[g.guides[0]].link != m.frame}
+    carried = {g.inner for g in m.groups if len(g.kind.sliders(g)) == 1 and m.guides[g.guides[0]].link != m.frame}
     hinges = [m.crank.pin, *(p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))]
     hinges += [g.inner for g in m.groups
-               if g.inner and g.inner not in sliding and g.inner not in carried and g.kind.number in (1, 2, 4)]
+               if g.inner and g.inner not in sliding and g.inner not in carried and not g.kind.ram(g)]
     for name in dict.fromkeys(hinges):
         z = np.asarray(frame(pos.points[name].value))
         middle = centre if name == m.crank.pin else z.mean() - 40j
@@ -424,8 +424,8 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     lengths: list[tuple[str, Any]] = []
     hinges = {name for g in pos.mechanism.groups for name in g.outer}
     for g in pos.mechanism.groups:
-        if g.kind.number == 3:
-            (p, q), j = g.outer, g.links[1]
+        if (j := g.kind.rocker(g)) is not None:
+            p, q = g.outer
             lengths.append((f"|p{plan_letter(on_link(p.lower(), j))}|", np.abs(vel.coincident[on_link(p, j)].value) / mu_v.mu))
             lengths.append((f"{q}{p}", np.abs(pos.points[p].value - pos.points[q].value) / mu_l.mu))
             carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]

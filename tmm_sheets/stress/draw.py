@@ -303,7 +303,7 @@ def loaded(rng: np.random.Generator, m: Mechanism, spread: float = 0.3, empty: f
     for name in m.links:
         own = [p.name for p in m.pairs if name in p.links and p.motion == "rotation"]
         own += [p.name for p in m.points if p.link == name]
-        own += [str(g.inner) for g in m.groups if g.kind.number == 5 and g.links[1] == name]
+        own += [str(g.inner) for g in m.groups if g.kind.ram(g) == name]
         mass, inertia = (0.0 if rng.random() < empty else 10.0 ** float(rng.normal(0, spread)) for _ in range(2))
         links[name] = Link(name, "", mass, own[int(rng.integers(len(own)))], inertia * m.crank.length**2)
     return replace(m, links=links)

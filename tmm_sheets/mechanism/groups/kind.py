@@ -34,9 +34,9 @@ class GroupKind(ABC):
     def pairs(self, m: Any, g: Any) -> list[Any]:
         """Outer, inner and outer kinematic pair of a group in a mechanism."""
 
-    def carrier(self, g: Any) -> str:
-        """Link on which the inner point is fixed."""
-        return str(g.links[0])
+    def carried(self, g: Any) -> dict[str, str]:
+        """Points the group brings along, each with the link it is fixed on."""
+        return {g.inner: g.links[0]} if g.inner else {}
 
     @abstractmethod
     def position(self, pos: Any, g: Any) -> None:
@@ -63,4 +63,32 @@ class GroupKind(ABC):
 
         It is a :class:`tmm_sheets.mechanism.groups.dead_centres.Crossing`.
         """
+        return None
+
+    @abstractmethod
+    def outlines(self, pos: Any, g: Any) -> list[Any]:
+        """How both links look (:class:`tmm_sheets.mechanism.groups.hints.Outline`)."""
+
+    @abstractmethod
+    def outer_reactions(self, forces: Any, g: Any) -> list[Any]:
+        """Reactions from outside (:class:`tmm_sheets.mechanism.groups.hints.OuterReaction`), in order of the links."""
+
+    def force_plans(self, g: Any) -> tuple[str, ...]:
+        """Names of the force plans, in the order they are drawn: that of the whole group, or one of each link."""
+        return (str(g.name),)
+
+    def about(self, g: Any) -> str:
+        """Point of the moment equations: the middle hinge, unless a kind says otherwise."""
+        return str(g.inner)
+
+    def sliders(self, g: Any) -> tuple[tuple[str, str], ...]:
+        """Links that are blocks at the inner point, each with its guide."""
+        return ()
+
+    def ram(self, g: Any) -> str | None:
+        """The guided link with a slot for the other's stone."""
+        return None
+
+    def rocker(self, g: Any) -> str | None:
+        """The link that turns about the second outer hinge and guides the other's stone."""
         return None

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
+from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
@@ -80,6 +81,15 @@ class PRPKind(GroupKind):
         return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.guide_directions[a].value, pos.guide_directions[b].value) - TOUCH,
                               lambda lack: f"the guides {a} and {b} are parallel there",
                               lambda pos: "turn one of the guides so that they cross at every position", measured=False)]
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        return [Outline(link, block=str(g.inner), along=pos.guide_directions[name]) for link, name in self.sliders(g)]
+
+    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+        return [OuterReaction(link, str(g.inner), name) for link, name in self.sliders(g)]
+
+    def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
+        return tuple(zip(g.links, g.guides, strict=True))
 
 
 PRP = PRPKind()

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
+from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
@@ -26,8 +27,8 @@ class RPPKind(GroupKind):
         p, (i, j) = g.outer[0], g.links
         return [turning(p, m.owner(p), i), sliding(p + "′", i, j), sliding(p + "″", j, m.guides[g.guides[0]].link)]
 
-    def carrier(self, g: StructuralGroup) -> str:
-        return g.links[1]
+    def carried(self, g: StructuralGroup) -> dict[str, str]:
+        return {str(g.inner): g.links[1]}
 
     def position(self, pos: Positions, g: StructuralGroup) -> None:
         assert g.inner is not None
@@ -132,6 +133,25 @@ class RPPKind(GroupKind):
         return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
                               lambda lack: f"the slot of link {j} is parallel to its guide {g.guides[0]}",
                               lambda pos: 'try slot = "90 deg"', measured=False)]
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        (i, j), slot = g.links, pos.directions[g.links[0]]
+        return [Outline(i, block=g.outer[0], along=slot),
+                Outline(j, block=str(g.inner), along=pos.guide_directions[g.guides[0]], slot=slot)]
+
+    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+        (i, j), p = g.links, g.outer[0]
+        return [OuterReaction(i, p), OuterReaction(j, p, g.guides[0])]
+
+    def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
+        i, j = g.links
+        return j, i
+
+    def about(self, g: StructuralGroup) -> str:
+        return g.outer[0]
+
+    def ram(self, g: StructuralGroup) -> str | None:
+        return g.links[1]
 
 
 RPP = RPPKind()

@@ -14,6 +14,7 @@ from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
+from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
@@ -148,6 +149,27 @@ class RPRKind(GroupKind):
             tangent, none = less(Decimal(g.offset)), less(Decimal(0))
         half, distance = measured(g, phi, lambda phi: np.sqrt(-tangent(phi)), lambda phi: np.sqrt(-none(phi)))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance)))
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        (i, j), (p, q) = g.links, g.outer
+        foot = pos.feet.get(j)
+        # With an offset the slot passes the pivot: an arm to its foot, and the slot from there to the stone.
+        rocker = Outline(j, (q, p), p) if foot is None else Outline(j, (q,), p, ((q, foot), (foot, p)))
+        return [Outline(i, block=p, along=pos.directions[j]), rocker]
+
+    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+        (i, j), (p, q) = g.links, g.outer
+        plan = forces.plans[i].plan
+        return [OuterReaction(i, p, parts=(plan["2"], plan["3"])), OuterReaction(j, q)]
+
+    def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
+        return g.links
+
+    def about(self, g: StructuralGroup) -> str:
+        return g.outer[1]
+
+    def rocker(self, g: StructuralGroup) -> str | None:
+        return g.links[1]
 
 
 RPR = RPRKind()

@@ -13,6 +13,7 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, direction
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.dead_centres import Crossing, height, measured, on_crank
+from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
@@ -36,8 +37,8 @@ class RRPKind(GroupKind):
         p, c, (i, j) = g.outer[0], str(g.inner), g.links
         return [turning(p, m.owner(p), i), turning(c, i, j), sliding(c + "′", j, m.guides[g.guides[0]].link)]
 
-    def carrier(self, g: StructuralGroup) -> str:
-        return g.links[1]
+    def carried(self, g: StructuralGroup) -> dict[str, str]:
+        return {str(g.inner): g.links[1]}
 
     def position(self, pos: Positions, g: StructuralGroup) -> None:
         assert g.inner is not None
@@ -114,6 +115,17 @@ class RRPKind(GroupKind):
             below, above = Cosine(length + e0, l1, start + PI / 2), Cosine(length - e0, l1, start - PI / 2)
         half, _ = measured(g, phi, lambda phi: np.sqrt(below(phi) * above(phi)))
         return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        (i, j), c = g.links, str(g.inner)
+        return [Outline(i, (g.outer[0], c)), Outline(j, block=c, along=pos.guide_directions[g.guides[0]], slotted=True)]
+
+    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+        plan, (i, j) = forces.plans[g.name].plan, g.links
+        return [OuterReaction(i, g.outer[0], parts=(plan["2"], plan["3"])), OuterReaction(j, str(g.inner), g.guides[0])]
+
+    def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
+        return ((g.links[1], g.guides[0]),)
 
 
 RRP = RRPKind()

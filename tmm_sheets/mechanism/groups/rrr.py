@@ -11,6 +11,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
+from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, span
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, turning
@@ -115,6 +116,15 @@ class RRRKind(GroupKind):
         half, distance = measured(g, phi, lambda phi: np.sqrt(outer(phi) * inner(phi) / none(phi)) / 2,
                                   lambda phi: np.sqrt(-none(phi)))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        return [Outline(link, (end, str(g.inner))) for link, end in zip(g.links, g.outer, strict=True)]
+
+    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+        plan, (i, j), (p, q) = forces.plans[g.name].plan, g.links, g.outer
+        last = max(int(n) for n in plan.steps if n.isdigit())
+        return [OuterReaction(i, p, parts=(plan["2"], plan["3"])),
+                OuterReaction(j, q, parts=(plan[str(last - 1)], plan[str(last)]))]
 
 
 RRR = RRRKind()
