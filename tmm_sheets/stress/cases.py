@@ -272,7 +272,7 @@ def _mirrored(m: Mechanism) -> Mechanism:
     guides = {name: replace(g, through=g.through if isinstance(g.through, str) else g.through.conjugate(), direction=-g.direction)
               for name, g in m.guides.items()}
     # On a guide the side is told along it, and that stays.
-    groups = tuple(replace(g, side=g.side if g.kind.number == 2 else -g.side, slot=-g.slot) for g in m.groups)
+    groups = tuple(replace(g, side=g.side if len(g.kind.sliders(g)) == 1 else -g.side, slot=-g.slot) for g in m.groups)
     return replace(m, crank=replace(m.crank, sense=-m.crank.sense), fixed={name: z.conjugate() for name, z in m.fixed.items()},
                    guides=guides, groups=groups, points=tuple(replace(p, angle=-p.angle) for p in m.points))
 

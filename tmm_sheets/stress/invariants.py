@@ -189,7 +189,7 @@ def rigidity(s: State) -> Iterator[Residual]:
             yield "velocity closure", np.abs(s.v[p] - s.v[names[0]] - 1j * w * r) / (fastest * far)
             yield "acceleration closure", np.abs(s.a[p] - s.a[names[0]] - (1j * e - w * w) * r) / (sharpest * far)
     for g in s.m.groups:
-        for name in g.guides if g.kind.number in (2, 4) else ():
+        for _, name in g.kind.sliders(g):
             guide = s.m.guides[name]
             at, (through, u) = s.z[str(g.inner)], s.guide(name)
             carried: Any = 0j if guide.link == s.m.frame else s.velocities.coincident.get(

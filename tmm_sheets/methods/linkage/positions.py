@@ -125,7 +125,7 @@ def _line_on(pos: Positions, link: str, start: str, towards: str) -> Step:
     if towards in pos.guide_directions and towards not in pos.points:
         return pos.guide_directions[towards]
     for g in pos.mechanism.groups:
-        if g.kind.number == 3 and g.offset and link in g.links and towards == g.outer[0]:
+        if g.kind.rocker(g) and g.offset and link in g.links and towards == g.outer[0]:
             return pos.directions[link]
     return pos.direction(start, towards)
 
