@@ -22,7 +22,7 @@ from tmm_sheets import catalogue, cli, resources
 from tmm_sheets.backends import dxf
 from tmm_sheets.drawing import marks, styles
 from tmm_sheets.drawing.marks import Arc, Drawing, Line
-from tmm_sheets.mechanism.model import FORMS
+from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.methods.linkage import numbering
 from tmm_sheets.methods.linkage import positions as positions_module
 from tmm_sheets.project import Project
@@ -176,7 +176,7 @@ def whole() -> str:
 
 
 def groups() -> str:
-    rows = ((f"{kind}", f"{PAIRS[kind - 1]} ({FORMS[kind]})", code("links", *must), code(*may) or "–")
+    rows = ((f"{kind}", f"{PAIRS[kind - 1]} ({KINDS[kind].form})", code("links", *must), code(*may) or "–")
             for kind, (must, may) in GROUP_KEYS.items())
     return table(("kind", "pairs", "needs", "may have"), *rows)
 

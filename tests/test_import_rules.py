@@ -15,7 +15,9 @@ METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.i
 
 RULES = {
     # room: (what it imports at run time, what else it names in annotations)
-    "mechanism": ("", ""),
+    "mechanism": ("", "mechanism.groups.kind"),
+    "mechanism.groups": ("construction mechanism", "methods.linkage"),
+    "mechanism.structure": ("mechanism", ""),
     "construction": ("", ""),
     "drawing": ("", ""),
     "methods": ("construction", ""),
@@ -35,7 +37,7 @@ RULES = {
     "summary": ("mechanism project task", ""),
     "explain": ("construction", "drawing project"),
     "protocols": ("construction explain sheets", "project"),
-    "sheets": ("construction drawing", f"project mechanism {METHODS}"),
+    "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets", "task"),
     "compare": ("drawing sheets", ""),

@@ -61,7 +61,7 @@ class Project:
         if not m.groups:
             return ()
         g = m.groups[-1]
-        slides = g.kind in (2, 5) and m.guides[g.guides[0]].link == m.frame
+        slides = g.links[1] in g.kind.carried(g).values() and m.guides[g.guides[0]].link == m.frame
         return (str(g.inner) if slides else g.links[1],)
 
     def _section(self, name: str) -> Any:

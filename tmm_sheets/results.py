@@ -221,7 +221,7 @@ def _structure(project: Project) -> dict[str, Any]:
     return {
         "W": m.mobility,
         "class": m.grade,
-        "groups": [{"links": list(g.links), "class": 2, "order": 2, "kind": g.kind} for g in m.groups],
+        "groups": [{"links": list(g.links), "class": 2, "order": 2, "kind": g.kind.number} for g in m.groups],
         "formula": m.structure,
     }
 

@@ -63,9 +63,7 @@ def _structure(m: Mechanism) -> Iterator[str]:
     n, p5 = len(m.links), len(m.pairs)
     yield f"\nMobility W = 3n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {m.mobility}"
     yield "\nAssur groups, the farthest first"
-    from tmm_sheets.mechanism.model import FORMS
-
-    yield from _table([(g.name, "class 2, order 2", f"kind {g.kind} ({FORMS[g.kind]})") for g in reversed(m.groups)])
+    yield from _table([(g.name, "class 2, order 2", f"kind {g.kind.number} ({g.form})") for g in reversed(m.groups)])
     yield f"\nFormula of structure: {m.structure}"
 
 

@@ -8,6 +8,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors, errors
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.integration import integrate
 from tmm_sheets.methods.linkage.positions import position_plan
@@ -76,7 +77,7 @@ def test_errors_in_common_cancel():
 
 def slider_crank(phi):
     """Crank 30 mm, rod 100 mm, guide 10 mm above the pivot; drawn 1:1 and 1 (m/s)/mm."""
-    m = mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (0.1,), ("x",)), guides=[Guide("x", "0", 0.01j, 0.0)],
+    m = mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.1,), ("x",)), guides=[Guide("x", "0", 0.01j, 0.0)],
                   crank=Crank("1", "A", "B", 0.03, 1000.0, 1))
     pos = position_plan(m, phi)
     return pos, velocity_plan(pos)

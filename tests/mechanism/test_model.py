@@ -6,7 +6,9 @@ import pytest
 
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, Mechanism, Pair, StructuralGroup
+from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.task.assembly import mechanism_of
 
 
@@ -19,8 +21,8 @@ def engine():
     """Two-cylinder engine: opposite pins B and D of one crank, two rods, two pistons."""
     crank = Crank("1", "A", "B", 0.054, 251.3, -1)
     return mechanism(
-        StructuralGroup(2, ("2", "3"), ("B",), "C", (0.192,), ("axis",)),
-        StructuralGroup(2, ("4", "5"), ("D",), "E", (0.192,), ("axis",)),
+        StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.192,), ("axis",)),
+        StructuralGroup(RRP, ("4", "5"), ("D",), "E", (0.192,), ("axis",)),
         guides=[Guide("axis", "0", 0j, 1.5707963267948966)], crank=crank, points=[LinkPoint("D", "1", "A", "B", -0.054)],
     )
 
@@ -34,8 +36,8 @@ def test_shaper(shaper):
 
 
 def test_farthest_group_is_detached_first(shaper):
-    found = shaper.decompose()
-    assert [(g.name, g.kind, g.form) for g in found] == [("4–5", 5, "ВПП"), ("2–3", 3, "ВПВ")]
+    found = decompose(shaper)
+    assert [(g.name, g.kind.number, g.form) for g in found] == [("4–5", 5, "ВПП"), ("2–3", 3, "ВПВ")]
 
 
 def test_groups_are_found_whatever_the_order_of_the_pairs(shaper, monkeypatch):
@@ -43,17 +45,17 @@ def test_groups_are_found_whatever_the_order_of_the_pairs(shaper, monkeypatch):
     for turn in range(len(pairs)):
         shuffled = pairs[turn:] + pairs[:turn]
         monkeypatch.setattr(Mechanism, "pairs", property(lambda self, p=shuffled: p))
-        assert sorted((sorted(g.links), g.kind) for g in shaper.decompose()) == [(["2", "3"], 3), (["4", "5"], 5)]
+        assert sorted((sorted(g.links), g.kind.number) for g in decompose(shaper)) == [(["2", "3"], 3), (["4", "5"], 5)]
 
 
 def test_pairs_of_every_kind():
     guides = [Guide("x", "0", 0j, 0.0), Guide("m", "1", "A", 1.0, "B")]
     kinds = {
-        1: StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (1.0, 1.0)),
-        2: StructuralGroup(2, ("2", "3"), ("B",), "C", (1.0,), ("x",)),
-        3: StructuralGroup(3, ("2", "3"), ("B", "D")),
-        4: StructuralGroup(4, ("2", "3"), (), "C", (), ("m", "x")),
-        5: StructuralGroup(5, ("2", "3"), ("B",), "C", (), ("x",), slot=1.0),
+        1: StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (1.0, 1.0)),
+        2: StructuralGroup(RRP, ("2", "3"), ("B",), "C", (1.0,), ("x",)),
+        3: StructuralGroup(RPR, ("2", "3"), ("B", "D")),
+        4: StructuralGroup(PRP, ("2", "3"), (), "C", (), ("m", "x")),
+        5: StructuralGroup(RPP, ("2", "3"), ("B",), "C", (), ("x",), slot=1.0),
     }
     expected = {
         1: ["A rotation 0-1", "B rotation 1-2", "C rotation 2-3", "D rotation 3-0"],
@@ -66,13 +68,13 @@ def test_pairs_of_every_kind():
         m = mechanism(group, fixed={"D": 2 + 0j}, guides=guides)
         assert [f"{p.name} {p.motion} {'-'.join(p.links)}" for p in m.pairs] == expected[kind]
         assert m.mobility == 1
-        assert [g.kind for g in m.decompose()] == [kind]
+        assert [g.kind.number for g in decompose(m)] == [kind]
 
 
 def test_two_groups_side_by_side():
     m = engine()
     assert m.mobility == 1
-    assert [g.name for g in m.decompose()] == ["4–5", "2–3"]
+    assert [g.name for g in decompose(m)] == ["4–5", "2–3"]
     assert m.structure == "I(0,1) → II(2,3) → II(4,5)"
 
 
@@ -107,7 +109,7 @@ def test_a_loose_link(monkeypatch):
     m = with_pairs(monkeypatch, ("A", "0-1", "rotation"), ("B", "1-2", "rotation"), ("C", "2-3", "rotation"))
     assert m.mobility == 3
     with pytest.raises(ValueError, match="links 2, 3 form no group of class II"):
-        m.decompose()
+        decompose(m)
 
 
 def test_three_links_on_a_triangle_are_of_class_three(monkeypatch):
@@ -118,11 +120,11 @@ def test_three_links_on_a_triangle_are_of_class_three(monkeypatch):
     )
     assert m.mobility == 1
     with pytest.raises(ValueError, match="links 2, 5, 3, 4 form no group of class II"):
-        m.decompose()
+        decompose(m)
 
 
 def test_three_sliding_pairs_are_no_group(monkeypatch):
     m = with_pairs(monkeypatch, ("A", "0-1", "rotation"), ("B", "1-2", "translation"), ("C", "2-3", "translation"),
                    ("D", "3-0", "translation"))
     with pytest.raises(ValueError, match="links 2 and 3 with pairs P-P-P can slide without turning"):
-        m.decompose()
+        decompose(m)

@@ -13,6 +13,7 @@ from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.__main__ import run
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
+from tmm_sheets.mechanism.groups import PRP, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
 from tmm_sheets.stress import report, truth
@@ -67,9 +68,10 @@ def test_memory_is_that_of_a_chunk():
 @pytest.mark.parametrize("kind", [1, 2])
 def test_decimal_truth_against_differentiation(kind):
     if kind == 1:
-        m = mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), -1), fixed={"D": 0.4 - 0.1j})
+        m = mechanism(StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), -1), fixed={"D": 0.4 - 0.1j})
     else:
-        m = mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",), -1), guides=[Guide("x", "0", 0.1 + 0.05j, 0.3)])
+        m = mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.35,), ("x",), -1),
+                      guides=[Guide("x", "0", 0.1 + 0.05j, 0.3)])
     m = replace(m, crank=replace(m.crank, acceleration=50.0))
     for phi in (0.3, -2.0, 100.0):
         found, true = truth.motion(m, phi), fifty_digits.motion(m, phi, epsilon=50.0)
@@ -79,7 +81,7 @@ def test_decimal_truth_against_differentiation(kind):
 
 def test_decimal_truth_knows_what_does_not_assemble():
     crank = Crank("1", "A", "B", 0.1, 10.0, 1)
-    m = mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (0.05,), ("x",)), guides=[Guide("x", "0", 0j, 0.0)], crank=crank)
+    m = mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.05,), ("x",)), guides=[Guide("x", "0", 0j, 0.0)], crank=crank)
     with mpmath.workdps(40):
         limit = mpmath.asin(mpmath.mpf(0.05) / mpmath.mpf(0.1))
         assert truth.motion(m, float(limit - mpmath.mpf("1e-15"))) is not None
@@ -99,7 +101,7 @@ def errors(m, phi):
 @pytest.mark.parametrize("direction", [0.3, -2.0, 1.57])
 def test_a_guide_given_far_away_is_as_exact_as_a_near_one(way, direction):
     through = 0.02j * np.exp(1j * direction) + way * np.exp(1j * direction)
-    g = StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",))
+    g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.35,), ("x",))
     m = mechanism(g, guides=[Guide("x", "0", complex(through), direction)])
     for phi in (0.3, -2.0, 3.0):
         s, true = State(m, [phi]), truth.motion(m, phi)
@@ -109,7 +111,7 @@ def test_a_guide_given_far_away_is_as_exact_as_a_near_one(way, direction):
 
 def test_guides_near_the_mechanism_keep_their_own_point():
     guide = Guide("x", "0", 0.3 + 0.1j, 0.3)
-    m = mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",)), guides=[guide])
+    m = mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.35,), ("x",)), guides=[guide])
     assert positions.near_point(m, guide) == guide.through
 
 
@@ -126,7 +128,7 @@ def moved(m, phi, name, by):
 def test_far_from_the_origin_half_a_unit_of_a_pivot_does_as_much(away, phi):
     """The error of a mechanism far away is that of the numbers it is given by: pivots are doubles."""
     at = away * np.exp(0.7j) * 1.0
-    m = mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), ()), fixed={"A": at, "D": at + 0.4 - 0.1j})
+    m = mechanism(StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), ()), fixed={"A": at, "D": at + 0.4 - 0.1j})
     half = np.spacing(max(at.real, at.imag)) / 2
     nature = np.max([moved(m, phi, "A", half * np.exp(1j * t)) for t in np.arange(0, 2 * np.pi, 0.5)], axis=0)
     s = State(m, [phi])
@@ -141,7 +143,7 @@ def test_far_from_the_origin_half_a_unit_of_a_pivot_does_as_much(away, phi):
 def test_at_a_change_point_half_a_unit_of_the_rod_does_as_much(gap):
     """Crank and rod of one length fold on the guide's perpendicular: the half-chord there is a difference of lengths."""
     phi = float(np.pi / 2 - gap)
-    m = mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (0.1,), ("x",)), guides=[Guide("x", "0", 0j, 0.0)])
+    m = mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.1,), ("x",)), guides=[Guide("x", "0", 0j, 0.0)])
     _, error = errors(m, phi)
     with mpmath.workdps(50):
         longer = replace(m, groups=(replace(m.groups[0], lengths=(mpmath.mpf(0.1) + np.spacing(0.1) / 2,)),))
@@ -153,8 +155,8 @@ def test_a_moving_guide_is_known_by_the_points_it_goes_through():
     """Twice as near to each other, twice as much turns the guide: condition of a slider on a link."""
     def slider(length):
         guide = Guide("y", "2", "B", 0.0, "C")
-        rocker = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (length, 0.3), ())
-        slide = StructuralGroup(4, ("4", "5"), (), "E", (), ("y", "x"))
+        rocker = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (length, 0.3), ())
+        slide = StructuralGroup(PRP, ("4", "5"), (), "E", (), ("y", "x"))
         return State(mechanism(rocker, slide, fixed={"D": 0.2 + 0j}, guides=[guide, Guide("x", "0", 0.05 + 0j, 1.5)]), [0.3])
 
     for length in (0.3, 0.2):

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from tmm_sheets import catalogue
 from tmm_sheets.bench import truth
 from tmm_sheets.bench.records import Bench
+from tmm_sheets.mechanism.groups import RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.numbering import even_cycle
 from tmm_sheets.methods.linkage.study import Study
@@ -26,8 +27,8 @@ CHECKED = 8
 GRAVITY = 9.81
 
 CRANK = Crank("1", "A", "B", 0.1, 10.0, 1)
-ROCKER_DYAD = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), 1)
-SLIDER_DYAD = StructuralGroup(2, ("2", "3"), ("B",), "C", (0.35,), ("x",), 1)
+ROCKER_DYAD = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (0.35, 0.25), (), 1)
+SLIDER_DYAD = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.35,), ("x",), 1)
 SLIDER_GUIDE = Guide("x", "0", -0.02j, 0.0)
 
 

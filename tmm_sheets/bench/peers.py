@@ -24,6 +24,7 @@ from tmm_sheets.bench.linkages import BLOCK, CRANK, ROCKER_DYAD, SLIDER_DYAD, SL
 from tmm_sheets.bench.peer_programs import PointArrays, Program, Turn
 from tmm_sheets.bench.records import Bench, BenchRecord, told
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Guide, Link, LinkPoint, Mechanism, StructuralGroup
 
 COUNTS = (12, 360, 10_000)
@@ -60,14 +61,14 @@ def slider_crank() -> Mechanism:
 def six_bar() -> Mechanism:
     """The four-bar, its rocker lengthened to 0.4 m, with a rod of 0.5 m that drives a slider on a fixed guide."""
     return Mechanism(CRANK, {"A": 0j, "D": 0.4 + 0j}, {"x": Guide("x", "0", 0.3j, 0.0)},
-                     (ROCKER_DYAD, StructuralGroup(2, ("4", "5"), ("E",), "F", (0.5,), ("x",), 1)),
+                     (ROCKER_DYAD, StructuralGroup(RRP, ("4", "5"), ("E",), "F", (0.5,), ("x",), 1)),
                      (LinkPoint("E", "3", "D", "C", 0.4),), _links(5))
 
 
 def turning_guide() -> Mechanism:
     """The four-bar with a slider along its rocker, held by a rod of 0.25 m from the frame: Coriolis on a turning guide."""
     return Mechanism(CRANK, {"A": 0j, "D": 0.4 + 0j, "E": 0.55 + 0j}, {"r": Guide("r", "3", "D", 0.0, "C")},
-                     (ROCKER_DYAD, StructuralGroup(2, ("4", "5"), ("E",), "F", (0.25,), ("r",), 1)), (), _links(5))
+                     (ROCKER_DYAD, StructuralGroup(RRP, ("4", "5"), ("E",), "F", (0.25,), ("r",), 1)), (), _links(5))
 
 
 MECHANISMS: tuple[tuple[str, Callable[[], Mechanism]], ...] = (

@@ -66,7 +66,7 @@ def state(m: Mechanism, phi: Any) -> TrueState:
 def _base(m: Mechanism, s: TrueState, link: str, start: str, towards: str) -> Any:
     """Direction from one point of a link to another; towards the pin of a sliding block it is the slot, even if offset."""
     for g in m.groups:
-        if g.kind == 3 and link in g.links and towards == g.outer[0]:
+        if g.kind.number == 3 and link in g.links and towards == g.outer[0]:
             return s.links[link]
     return _unit(s.points[towards] - s.points[start])
 
@@ -88,21 +88,21 @@ def _place(m: Mechanism, s: TrueState, g: StructuralGroup) -> None:
     i, j = g.links
     outer = [s.points[name] for name in g.outer]
     guides = [_guide(m, s, m.guides[name]) for name in g.guides]
-    if g.kind == 1:
+    if g.kind.number == 1:
         p, q = outer
         l1, l2, d = mp.mpf(g.lengths[0]), mp.mpf(g.lengths[1]), abs(q - p)
         c = p + l1 * _unit(q - p) * mp.expj(g.side * mp.acos((d * d + l1 * l1 - l2 * l2) / (2 * d * l1)))
         s.points[str(g.inner)], s.links[i], s.links[j] = c, _unit(c - p), _unit(c - q)
-    elif g.kind == 2:
+    elif g.kind.number == 2:
         (p,), ((through, u),) = outer, guides
         angle = mp.asin(-((p - through) / u).imag / mp.mpf(g.lengths[0]))
         rod = mp.expj(angle if g.side > 0 else mp.pi - angle) * u
         s.points[str(g.inner)], s.links[i], s.links[j] = p + g.lengths[0] * rod, rod, u
-    elif g.kind == 3:
+    elif g.kind.number == 3:
         p, q = outer
         turn = mp.asin(abs(mp.mpf(g.offset)) / abs(p - q))
         s.links[i] = s.links[j] = _unit(p - q) * mp.expj(g.side * turn)
-    elif g.kind == 4:
+    elif g.kind.number == 4:
         (p, u), (q, v) = guides
         s.points[str(g.inner)], s.links[i], s.links[j] = _meet(p, u, q, v), u, v
     else:
@@ -137,13 +137,13 @@ def _axes(m: Mechanism, s: TrueState) -> dict[tuple[str, str], Any]:
         i, j = g.links
         guides = [m.guides[name] for name in g.guides]
         along = [_guide(m, s, guide)[1] for guide in guides]
-        if g.kind == 2:
+        if g.kind.number == 2:
             found[j, guides[0].link] = along[0]
-        elif g.kind == 3:
+        elif g.kind.number == 3:
             found[i, j] = s.links[i]
-        elif g.kind == 4:
+        elif g.kind.number == 4:
             found[guides[0].link, i], found[j, guides[1].link] = along
-        elif g.kind == 5:
+        elif g.kind.number == 5:
             found[i, j], found[j, guides[0].link] = along[0] * mp.expj(g.slot), along[0]
     return found
 

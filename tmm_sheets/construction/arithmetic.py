@@ -56,6 +56,14 @@ def along(p: Any, u: Any, distance: Any) -> Any:
     return p + distance * u
 
 
+def unit(angle: float) -> complex:
+    """Unit vector; exact for multiples of 90 degrees, where cos(pi/2) would leave 6e-17."""
+    quarter = angle / (np.pi / 2)
+    if quarter == round(quarter):
+        return (1 + 0j, 1j, -1 + 0j, -1j)[round(quarter) % 4]
+    return complex(np.cos(angle), np.sin(angle))
+
+
 def turned(u: Any) -> Any:
     """Direction turned by +90 degrees."""
     return 1j * u

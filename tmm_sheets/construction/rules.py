@@ -85,3 +85,5 @@ DISTANCE = Rule("measure a length", _distance, ("point", "point"), "length", "И
 DIFFERENCE = Rule("measure a vector", _difference, ("point", "point"), "vector", "Измерим вектор {0}{1}: {value}.")
 ARM = Rule("measure an arm", ar.arm, ("point", "point", "force"), "length",
            "Измерим плечо силы {2} относительно точки {0}: {value}.")
+TURNED_BY = Rule("turn a direction", lambda u, angle: u * ar.unit(angle), ("direction", "angle"), "direction",
+                 "Под углом {1} к {0} проведём направление {name}.")

@@ -115,7 +115,7 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     _relations(canvas, m, complex(box.x0 + 2.0, origins[2].imag + ups[2]))
 
 
-def _phase_borders(canvas: Canvas, m: Motion, origins: list[complex], ups: list[float]) -> None:
+def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], ups: list[float]) -> None:
     """Lines through all diagrams where rise and fall begin and end, interrupted where the headings stand."""
     for p in (m.law.rise, m.law.fall):
         for at in (p.start, p.end):
@@ -126,7 +126,7 @@ def _phase_borders(canvas: Canvas, m: Motion, origins: list[complex], ups: list[
                 canvas.line(complex(x, head + 4.0), complex(x, lower.imag), "construction")
 
 
-def _phase_angles(canvas: Canvas, m: Motion, base: complex) -> None:
+def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
     """Dimensions of the phases in a row that begins at ``base``; of narrow ones only the sign, below the row if need be."""
     for p in (m.law.rise, m.law.upper_dwell, m.law.fall):
         if p.angle > 0:
@@ -138,7 +138,7 @@ def _phase_angles(canvas: Canvas, m: Motion, base: complex) -> None:
                 canvas.label((a + b) / 2 - 8j, p.symbol, -1j, 3.5, 1.5, leader=False)
 
 
-def _relations(canvas: Canvas, m: Motion, at: complex) -> None:
+def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:
     """Scale factor of the angle, and how the other scale factors and the heights of S'' follow from one another."""
     law = m.law
     canvas.text(at, f"{m.scales.phi}  ({number(degrees(m.scales.phi.mu))} град/мм)", 3.5)

@@ -61,7 +61,7 @@ def indicators(project: Project) -> list[Indicator]:
     found: list[Indicator] = []
     taken: list[str] = []
     for force in project.applied:
-        group = next((g for g in m.groups if g.inner == force.point and g.kind in (2, 4, 5)), None)
+        group = next((g for g in m.groups if g.inner == force.point and g.guides), None)
         if force.name not in areas or group is None:
             continue
         guide = m.guides[group.guides[-1]]

@@ -80,7 +80,7 @@ def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, 
     for name, step in pos.points.items():
         at = np.ravel(step.value)
         # What sticks out of a point whatever the scale: a pivot's base, a ram's body, numbers and letters.
-        wide = 32.0 if any(g.kind == 5 and g.inner == name for g in m.groups) else 14.0
+        wide = 32.0 if any(g.kind.ram(g) and g.inner == name for g in m.groups) else 14.0
         for offset in (wide, -wide, 8.0j, -11.0j if name in m.fixed else -9.0j):
             z.append(at)
             d.append(np.full(len(at), offset))

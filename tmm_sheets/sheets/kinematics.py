@@ -17,6 +17,7 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
+from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick
@@ -66,7 +67,7 @@ def _paths(canvas: Canvas, project: Project, frame: Frame, room: Box) -> None:
     turned = np.linspace(0, 2 * pi, 181)
     pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
     m = pos.mechanism
-    shown = [p.name for p in m.points] + [g.inner for g in m.groups if g.kind == 1 and g.inner]
+    shown = [p.name for p in m.points] + [g.inner for g in m.groups if g.inner and not g.guides]
     for name in shown:
         z = np.asarray(pos.points[name].value)
         if np.ndim(z):
@@ -97,9 +98,10 @@ def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
     m = pos.mechanism
     # A point on a fixed guide has its marks there; one that slides on a moving link is told by the marks of others.
     sliding = {str(g.inner): guide for g in m.groups for guide in g.guides if m.guides[guide].link == m.frame}
-    carried = {g.inner for g in m.groups if g.kind == 2 and m.guides[g.guides[0]].link != m.frame}
+    carried = {g.inner for g in m.groups if len(g.kind.sliders(g)) == 1 and m.guides[g.guides[0]].link != m.frame}
     hinges = [m.crank.pin, *(p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))]
-    hinges += [g.inner for g in m.groups if g.inner and g.inner not in sliding and g.inner not in carried and g.kind in (1, 2, 4)]
+    hinges += [g.inner for g in m.groups
+               if g.inner and g.inner not in sliding and g.inner not in carried and not g.kind.ram(g)]
     for name in dict.fromkeys(hinges):
         z = np.asarray(frame(pos.points[name].value))
         _hinge_numbers(canvas, project, z, frame(m.fixed[m.crank.pivot]) if name == m.crank.pin else z.mean() - 40j)
@@ -495,8 +497,8 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
     lengths: list[tuple[str, Any]] = []
     hinges = {name for g in pos.mechanism.groups for name in g.outer}
     for g in pos.mechanism.groups:
-        if g.kind == 3:
-            (p, q), j = g.outer, g.links[1]
+        if (j := g.kind.rocker(g)) is not None:
+            p, q = g.outer
             lengths.append((f"|p{plan_letter(on_link(p.lower(), j))}|", np.abs(vel.coincident[on_link(p, j)].value) / mu_v.mu))
             lengths.append((f"{q}{p}", np.abs(pos.points[p].value - pos.points[q].value) / mu_l.mu))
             carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
@@ -541,8 +543,8 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     if not m.groups:
         return
     rows = [["Группа", "Класс", "Порядок", "Вид", "Пары"]]
-    for g, found in zip(reversed(m.groups), m.decompose(), strict=True):
+    for g, found in zip(reversed(m.groups), decompose(m), strict=True):
         outer_i, outer_j = found.outer
-        rows.append([g.name, "II", "2", f"{found.kind} ({found.form})", f"{outer_i}, {found.inner}, {outer_j}"])
+        rows.append([g.name, "II", "2", f"{found.kind.number} ({found.form})", f"{outer_i}, {found.inner}, {outer_j}"])
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
     canvas.table(complex(box.x0, y + 3.5), [w * box.width for w in widths], rows, 7.0, 3.5)

@@ -82,9 +82,7 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         left = Box(box.x0, box.y1 - share * box.height, box.x1, box.y1)
         right = Box(box.x0, box.y0, box.x1, left.y0 - 2.0)
     _scheme(project, canvas, left, g, k)
-    names = [name for name in (*reversed(g.links), g.name) if name in forces.plans]
-    if g.kind == 3:
-        names.reverse()
+    names = g.kind.force_plans(g)
     if right.height / len(names) < STACKED and len(names) > 1:
         width = (right.width + GAP) / len(names)
         places = [Box(right.x0 + i * width, right.y0, right.x0 + (i + 1) * width - GAP, right.y1) for i in range(len(names))]
@@ -140,7 +138,6 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
             if name in internal:
                 continue
             shown.append(Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))))
-    i, j = g.links
 
     def hinge(link: str, point: str, parts: tuple[Step, Step] | None = None) -> None:
         """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
@@ -171,23 +168,11 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
             offset = 0.0
         shown.append(Shown(f"F̅_{{{name}}}", foot + u * offset, f if acts else 0j))
 
-    plan = forces.plans[i if g.kind in (3, 5) else g.name].plan
-    if g.kind in (1, 2):
-        hinge(i, g.outer[0], (plan["2"], plan["3"]))
-    if g.kind == 1:
-        last = max(int(n) for n in plan.steps if n.isdigit())
-        hinge(j, g.outer[1], (plan[str(last - 1)], plan[str(last)]))
-    if g.kind == 2:
-        guided(j, g.guides[0], str(g.inner))
-    if g.kind == 3:
-        hinge(i, g.outer[0], (plan["2"], plan["3"]))
-        hinge(j, g.outer[1])
-    if g.kind == 4:
-        guided(i, g.guides[0], str(g.inner))
-        guided(j, g.guides[1], str(g.inner))
-    if g.kind == 5:
-        hinge(i, g.outer[0])
-        guided(j, g.guides[0], g.outer[0])
+    for reaction in g.kind.outer_reactions(forces, g):
+        if reaction.guide is None:
+            hinge(reaction.link, reaction.point, reaction.parts)
+        else:
+            guided(reaction.link, reaction.guide, reaction.point)
     return acting(shown, forces.force_size(k)), couples
 
 
@@ -206,12 +191,12 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     names = list(dict.fromkeys((*names, *centres)))
     at = [complex(pos.points[n].at(k)) for n in names] + [s.at for s in shown]
     z, d = _reach(at, shown)
-    feet = _feet(complex(pos.points[_about(g)].at(k)), shown)
+    feet = _feet(complex(pos.points[g.kind.about(g)].at(k)), shown)
     frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", [*z, *feet], [*d, *(0j for _ in feet)],
                       box.inset(3.0, 5.0, 3.0, 19.0))
     canvas.of = f"group {g.name}"
-    canvas.title(box, f"Группа Ассура {g.name} ({g.kind}-й вид)", str(frame.scale))
-    if g.kind != 5:
+    canvas.title(box, f"Группа Ассура {g.name} ({g.kind.number}-й вид)", str(frame.scale))
+    if g.kind.ram(g) is None:
         linkage.draw_guides(canvas, pos, k, frame, g.links)
     linkage.draw(canvas, pos, k, frame, "main", g.links)
     for name in names:
@@ -256,11 +241,11 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
     forces, m = project.study.forces, project.mechanism
     said = []
     own = {f"F{pair_index(link, other)}τ" for link in g.links for other in (m.frame, *m.links)}
-    for step in forces.tangential:
+    for step in forces.from_moments:
         if step.name in own:
             sign = f"F_{{{step.name[1:-1]}}}^τ"
             said.append(f"ΣM_{step.args[1].name} = 0: {sign} = {newtons(clean(abs(complex(step.at(k))), forces.force_size(k)))} Н")
-    about = g.outer[0] if g.kind == 5 else g.inner
+    about = g.kind.about(g)
     for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")
         length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
@@ -311,12 +296,7 @@ def draw_forces(canvas: Canvas, frame: Frame, shown: Iterable[Shown]) -> None:
 
 def _arms(canvas: Canvas, project: Project, frame: Frame, g: StructuralGroup, k: int, shown: list[Shown]) -> None:
     """Arms of the forces about the point of the moment equations."""
-    draw_arms(canvas, frame, complex(project.study.positions.points[_about(g)].at(k)), shown)
-
-
-def _about(g: StructuralGroup) -> str:
-    """Point of a group's moment equations: middle hinge, rocker's pivot, or pin of the block."""
-    return str(g.inner) if g.kind in (1, 2, 4) else g.outer[-1]
+    draw_arms(canvas, frame, complex(project.study.positions.points[g.kind.about(g)].at(k)), shown)
 
 
 def _foot(s: Shown, about: complex) -> complex:

@@ -14,7 +14,8 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.sheets.frame import Frame
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+    from tmm_sheets.mechanism.groups.hints import Outline
+    from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.positions import Positions
 
 
@@ -48,29 +49,15 @@ def shapes(pos: Positions) -> list[Shape]:
     c = m.crank
     found = [_bar(m, c.link, (c.pivot, c.pin))]
     for g in m.groups:
-        found += _group_shapes(pos, g)
+        found += [_shape(pos, outline) for outline in g.kind.outlines(pos, g)]
     return found
 
 
-def _group_shapes(pos: Positions, g: StructuralGroup) -> list[Shape]:
-    m, (i, j) = pos.mechanism, g.links
-    inner = g.inner or ""
-    if g.kind == 1:
-        return [_bar(m, i, (g.outer[0], inner)), _bar(m, j, (g.outer[1], inner))]
-    if g.kind == 2:
-        return [_bar(m, i, (g.outer[0], inner)),
-                Shape(j, block=inner, along=pos.guide_directions[g.guides[0]], carried=_carried(pos, j))]
-    if g.kind == 3:
-        p, q = g.outer
-        foot = pos.feet.get(j)
-        rocker = _bar(m, j, (q, p) if foot is None else (q,), p)
-        if foot is not None:  # the slot passes the pivot: an arm to its foot, and the slot from there to the stone
-            rocker = replace(rocker, arms=((q, foot), (foot, p), *rocker.arms))
-        return [Shape(i, block=p, along=pos.directions[j]), rocker]
-    if g.kind == 4:
-        return [Shape(link, block=inner, along=pos.guide_directions[name]) for link, name in zip(g.links, g.guides, strict=True)]
-    return [Shape(i, block=g.outer[0], along=pos.directions[i]),
-            Shape(j, block=inner, along=pos.guide_directions[g.guides[0]], slot=pos.directions[i])]
+def _shape(pos: Positions, o: Outline) -> Shape:
+    if o.bar:
+        bar = _bar(pos.mechanism, o.link, o.bar, o.aim)
+        return replace(bar, arms=(*o.arms, *bar.arms))
+    return Shape(o.link, block=o.block, along=o.along, slot=o.slot, carried=_carried(pos, o.link) if o.slotted else None)
 
 
 def _bar(m: Mechanism, link: str, base: tuple[str, ...], aim: str | None = None) -> Shape:
@@ -215,8 +202,9 @@ def block_size(pos: Positions, s: Shape, frame: Frame) -> tuple[float, float]:
         name, direction = s.carried
         way = ((pos.points[name].value - pos.points[str(s.block)].value) * np.conj(direction.value)).real
         return 18.0, 2 * (float(np.nanmax(np.abs(way))) / frame.scale.mu + symbols.BLOCK[0] / 2 + 2.0)
-    if any(g.kind == 4 and g.inner == s.block and pos.mechanism.guides[g.guides[g.links.index(s.link)]].link == pos.mechanism.frame
-           for g in pos.mechanism.groups if s.link in g.links):
+    m = pos.mechanism
+    if any(len(sliders) > 1 and link == s.link and m.guides[guide].link == m.frame
+           for sliders in (g.kind.sliders(g) for g in m.groups) for link, guide in sliders):
         return 1.6 * symbols.BLOCK[0], 1.7 * symbols.BLOCK[1]
     return symbols.BLOCK
 
@@ -246,7 +234,7 @@ def _arms(canvas: Canvas, pos: Positions, s: Shape, frame: Frame, k: int, style:
 
 
 def _is_block_of_ram(pos: Positions, name: str) -> bool:
-    return any(g.kind == 5 and g.inner == name for g in pos.mechanism.groups)
+    return any(g.kind.ram(g) and g.inner == name for g in pos.mechanism.groups)
 
 
 def _base_direction(pos: Positions, name: str) -> complex:
@@ -280,13 +268,12 @@ def draw_guides(canvas: Canvas, pos: Positions, k: int, frame: Frame, only: Iter
     m = pos.mechanism
     wanted = set(m.links if only is None else only)
     for g in m.groups:
-        if g.kind == 5 and g.links[1] in wanted and m.guides[g.guides[0]].link == m.frame:
+        if g.kind.ram(g) in wanted and m.guides[g.guides[0]].link == m.frame:
             z, u = frame(complex(pos.points[str(g.inner)].at(k))), complex(pos.guide_directions[g.guides[0]].at(k))
             for end, side in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
                 a, b = sorted((z + end * 10.0 * u, z + end * 19.5 * u), key=lambda p: (p * np.conj(u)).real)
                 symbols.fixed_guide(canvas, a + side * 6.2j * u, b + side * 6.2j * u, side, "axis")
-        sliding = {2: g.links[1:], 4: g.links}.get(g.kind, ())
-        for link, name in zip(sliding, g.guides, strict=True) if sliding else ():
+        for link, name in g.kind.sliders(g):
             if link not in wanted or m.guides[name].link != m.frame:
                 continue
             z, u = frame(complex(pos.points[str(g.inner)].at(k))), complex(pos.guide_directions[name].at(k))

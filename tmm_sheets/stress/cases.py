@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.mechanism.groups import RRP, RRR
 from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
 from tmm_sheets.stress import truth
 from tmm_sheets.stress.draw import chain, crank_of, loaded
@@ -129,7 +130,7 @@ def _limited(rng: np.random.Generator) -> tuple[Mechanism, float]:
         if rng.random() < 0.5:
             cos = (r * r + l0 * l0 - (l2 + l3) ** 2) / (2 * r * l0)
             if abs(cos) < 0.98:
-                g = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (l2, l3), (), side)
+                g = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (l2, l3), (), side)
                 m = Mechanism(crank, {"A": 0j, "D": l0 * np.exp(1j * psi)}, {}, (g,), (), {n: Link(n) for n in "123"})
                 return m, psi + side_of_limit * float(np.arccos(cos))
         else:
@@ -137,7 +138,7 @@ def _limited(rng: np.random.Generator) -> tuple[Mechanism, float]:
             sin = (l2 - e) / r
             if abs(sin) < 0.98:
                 through = complex(-1j * np.exp(1j * psi) * e + np.exp(1j * psi) * rng.uniform(-1, 1) * r)
-                g = StructuralGroup(2, ("2", "3"), ("B",), "C", (l2,), ("x",), side)
+                g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (l2,), ("x",), side)
                 m = Mechanism(crank, {"A": 0j}, {"x": Guide("x", "0", through, psi)}, (g,), (), {n: Link(n) for n in "123"})
                 at = float(np.arcsin(sin))
                 return m, psi + (at if side_of_limit > 0 else pi - at)
@@ -182,7 +183,7 @@ def _change_points(rng: np.random.Generator) -> Iterator[Residual]:
     if frame == 2 * max(a, b):
         rocker = frame + crank - rod  # crank + frame = rod + rocker
     rod *= 1 + float(rng.choice((0.0, 0.0, 1e-15, -1e-15, 1e-9)))
-    g = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (rod, rocker), (), int(rng.choice((1, -1))))
+    g = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (rod, rocker), (), int(rng.choice((1, -1))))
     links = {n: Link(n) for n in "123"}
     m = Mechanism(replace(crank_of(rng, size), length=crank), {"A": 0j, "D": complex(frame)}, {}, (g,), (), links)
     near = 10.0 ** rng.uniform(-15, -1, ANGLES // 2)
@@ -208,13 +209,13 @@ def _stroke_ends(rng: np.random.Generator) -> Iterator[Residual]:
     if rng.random() < 0.5:
         e = float(rng.choice((0.0, 0.0, r / 2, -r / 2)))
         guide = Guide("x", "0", complex(e * 1j * np.exp(1j * turn)), turn)
-        g = StructuralGroup(2, ("2", "3"), ("B",), "C", (l2,), ("x",), side)
+        g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (l2,), ("x",), side)
         m = Mechanism(crank, {"A": 0j}, {"x": guide}, (g,), (), links)
         ends = [float(np.arcsin(e / (l2 + r))), pi + float(np.arcsin(e / (l2 - r)))]
         ends = [turn + (x if side > 0 else pi - x) for x in ends]
     else:
         l0, l3 = (size * float(rng.integers(low, high)) / 16 for low, high in ((48, 64), (48, 64)))
-        g = StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (l2, l3), (), side)
+        g = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (l2, l3), (), side)
         m = Mechanism(crank, {"A": 0j, "D": complex(l0 * np.exp(1j * turn))}, {}, (g,), (), links)
         cosines = [(x * x + l0 * l0 - l3 * l3) / (2 * x * l0) for x in (l2 + r, l2 - r)]
         if max(map(abs, cosines)) > 0.98 or r + l0 > l2 + l3:
@@ -236,7 +237,7 @@ def _tangent(rng: np.random.Generator) -> Iterator[Residual]:
     r, e = size * float(rng.integers(1, 64)) / 16, size * float(rng.integers(-16, 17)) / 16
     side, turn = int(rng.choice((1, -1))), float(rng.choice((0.0, pi / 2, pi, -pi / 2)))
     rod = (r + abs(e)) * (1 + float(rng.choice((0.0, 0.0, 1e-15, -1e-15, 1e-9))))
-    g = StructuralGroup(2, ("2", "3"), ("B",), "C", (rod,), ("x",), side)
+    g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (rod,), ("x",), side)
     through = complex(1j * e) * {0.0: 1, pi / 2: 1j, pi: -1, -pi / 2: -1j}[turn]
     links = {n: Link(n) for n in "123"}
     m = Mechanism(replace(crank_of(rng, size), length=r), {"A": 0j}, {"x": Guide("x", "0", through, turn)}, (g,), (), links)
@@ -271,7 +272,7 @@ def _mirrored(m: Mechanism) -> Mechanism:
     guides = {name: replace(g, through=g.through if isinstance(g.through, str) else g.through.conjugate(), direction=-g.direction)
               for name, g in m.guides.items()}
     # On a guide the side is told along it, and that stays.
-    groups = tuple(replace(g, side=g.side if g.kind == 2 else -g.side, slot=-g.slot) for g in m.groups)
+    groups = tuple(replace(g, side=g.side if len(g.kind.sliders(g)) == 1 else -g.side, slot=-g.slot) for g in m.groups)
     return replace(m, crank=replace(m.crank, sense=-m.crank.sense), fixed={name: z.conjugate() for name, z in m.fixed.items()},
                    guides=guides, groups=groups, points=tuple(replace(p, angle=-p.angle) for p in m.points))
 

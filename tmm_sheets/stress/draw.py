@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 
 SURE = 0.25
@@ -165,7 +166,7 @@ def rrr(d: Draft, links: tuple[str, str]) -> None:
     want(d.hard in ("narrow", "collinear") or sine(to_p, to_q) > SURE)
     side = 1 if ((d.at[q] - d.at[p]).conjugate() * (c - d.at[p])).imag > 0 else -1
     name = d.new("C")
-    d.groups.append(StructuralGroup(1, links, (p, q), name, (abs(to_p), abs(to_q)), (), side))
+    d.groups.append(StructuralGroup(RRR, links, (p, q), name, (abs(to_p), abs(to_q)), (), side))
     d.at[name] = c
     d.on[links[0]], d.on[links[1]] = [p, name], [q, name]
 
@@ -182,7 +183,7 @@ def rrp(d: Draft, links: tuple[str, str]) -> None:
     rod = c - d.at[p]
     want(abs(rod) > d.size / 4 and (d.hard in ("narrow", "collinear") or sine(rod, 1j * u) > SURE))
     name = d.new("C")
-    d.groups.append(StructuralGroup(2, links, (p,), name, (abs(rod),), (guide,), 1 if (rod / u).real > 0 else -1))
+    d.groups.append(StructuralGroup(RRP, links, (p,), name, (abs(rod),), (guide,), 1 if (rod / u).real > 0 else -1))
     d.at[name] = c
     d.on[links[0]], d.on[links[1]] = [p, name], [name]
 
@@ -203,7 +204,7 @@ def rpr(d: Draft, links: tuple[str, str]) -> None:
     if d.hard == "offset":
         share = float(d.rng.choice((0.0, 1e-300, 1e-17, 1e-12, 1e-6)))
     side = d.side()
-    d.groups.append(StructuralGroup(3, links, (p, q), None, (), (), side, share * abs(e)))
+    d.groups.append(StructuralGroup(RPR, links, (p, q), None, (), (), side, share * abs(e)))
     d.slots[links[1]] = e / abs(e) * complex((1 - share**2) ** 0.5, side * share)
     d.on[links[0]], d.on[links[1]] = [p], [q]
 
@@ -224,7 +225,7 @@ def prp(d: Draft, links: tuple[str, str]) -> None:
     c = a + u * (((b - a).conjugate() * v).imag / (u.conjugate() * v).imag)
     want(d.hard == "narrow" or abs(c - a) < 5 * d.size)
     name = d.new("C")
-    d.groups.append(StructuralGroup(4, links, (), name, (), (one, two)))
+    d.groups.append(StructuralGroup(PRP, links, (), name, (), (one, two)))
     d.at[name] = c
     d.on[links[0]], d.on[links[1]] = [name], [name]
 
@@ -240,7 +241,7 @@ def rpp(d: Draft, links: tuple[str, str]) -> None:
     c = through + u * (((d.at[p] - through).conjugate() * v).imag / (u.conjugate() * v).imag)
     want(d.hard == "narrow" or abs(c - d.at[p]) < 5 * d.size)
     name = d.new("C")
-    d.groups.append(StructuralGroup(5, links, (p,), name, (), (guide,), 1, 0.0, slot))
+    d.groups.append(StructuralGroup(RPP, links, (p,), name, (), (guide,), 1, 0.0, slot))
     d.at[name] = c
     d.on[links[0]], d.on[links[1]] = [], [name]
 
@@ -302,7 +303,7 @@ def loaded(rng: np.random.Generator, m: Mechanism, spread: float = 0.3, empty: f
     for name in m.links:
         own = [p.name for p in m.pairs if name in p.links and p.motion == "rotation"]
         own += [p.name for p in m.points if p.link == name]
-        own += [str(g.inner) for g in m.groups if g.kind == 5 and g.links[1] == name]
+        own += [str(g.inner) for g in m.groups if g.kind.ram(g) == name]
         mass, inertia = (0.0 if rng.random() < empty else 10.0 ** float(rng.normal(0, spread)) for _ in range(2))
         links[name] = Link(name, "", mass, own[int(rng.integers(len(own)))], inertia * m.crank.length**2)
     return replace(m, links=links)

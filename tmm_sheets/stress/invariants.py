@@ -115,18 +115,18 @@ class State:
             turned: Any = 1.0
             for name in g.guides:
                 turned = turned * size / self._base(name)
-            if g.kind == 1:
+            if g.kind.number == 1:
                 (p, q), c = g.outer, str(g.inner)
                 r, t = self.z[c] - self.z[p], self.z[c] - self.z[q]
                 return size / min(g.lengths) * size / np.abs(self.z[p] - self.z[q]) / np.abs(cross(r, t) / np.abs(r * t))
-            if g.kind == 2:
+            if g.kind.number == 2:
                 r = self.z[str(g.inner)] - self.z[g.outer[0]]
                 return turned * size / g.lengths[0] / np.abs(dot(r, self.guide(g.guides[0])[1]) / np.abs(r))
-            if g.kind == 3:
+            if g.kind.number == 3:
                 r = self.z[g.outer[0]] - self.z[g.outer[1]]
                 return size / np.abs(r) / np.abs(dot(r, self.u[g.links[1]]) / np.abs(r))
             u = self.guide(g.guides[0])[1]
-            v = self.guide(g.guides[1])[1] if g.kind == 4 else self.u[g.links[0]]
+            v = self.guide(g.guides[1])[1] if g.kind.number == 4 else self.u[g.links[0]]
             return turned / np.abs(cross(u, v))
 
     def _base(self, name: str) -> Any:
@@ -142,18 +142,18 @@ def geometry(s: State) -> Iterator[Residual]:
     """Lengths of links, closures on guides, sides of assembly, points fixed on links."""
     for g in s.m.groups:
         at = [s.z[name] for name in g.outer]
-        if g.kind in (1, 2):
+        if g.kind.number in (1, 2):
             c = s.z[str(g.inner)]
             # The direction of a guide is rounded: a turn of 1e-16 about a point far away.
-            reach = s.reach if g.kind == 1 else s.reach + np.abs(s.guide(g.guides[0])[0] - c)
+            reach = s.reach if g.kind.number == 1 else s.reach + np.abs(s.guide(g.guides[0])[0] - c)
             for p, length in zip(at, g.lengths, strict=True):
                 yield "link lengths", np.abs(np.abs(c - p) - length) / reach
-        if g.kind == 1:
+        if g.kind.number == 1:
             yield "assembly side", np.maximum(0, -g.side * cross(at[1] - at[0], c - at[0])) / s.size / s.reach
-        if g.kind == 2:
+        if g.kind.number == 2:
             u = s.guide(g.guides[0])[1]
             yield "assembly side", np.maximum(0, -g.side * dot(u, c - at[0])) / s.reach
-        if g.kind == 3:
+        if g.kind.number == 3:
             yield "closure on guides", np.abs(cross(s.u[g.links[1]], at[0] - at[1]) + g.side * g.offset) / s.reach
             # The stone stays on its side of the rocker's pivot.
             yield "assembly side", np.maximum(0, -dot(s.u[g.links[1]], at[0] - at[1])) / s.reach
@@ -162,7 +162,7 @@ def geometry(s: State) -> Iterator[Residual]:
                 p, u = s.guide(name)
                 reach = s.reach + np.abs(s.z[g.inner] - p)
                 yield "closure on guides", np.abs(cross(u, s.z[g.inner] - p)) / reach
-        if g.kind == 5:
+        if g.kind.number == 5:
             yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - at[0])) / s.reach
         for link in g.links:
             yield "link lengths", np.abs(np.abs(s.u[link]) - 1)
@@ -189,7 +189,7 @@ def rigidity(s: State) -> Iterator[Residual]:
             yield "velocity closure", np.abs(s.v[p] - s.v[names[0]] - 1j * w * r) / (fastest * far)
             yield "acceleration closure", np.abs(s.a[p] - s.a[names[0]] - (1j * e - w * w) * r) / (sharpest * far)
     for g in s.m.groups:
-        for name in g.guides if g.kind in (2, 4) else ():
+        for _, name in g.kind.sliders(g):
             guide = s.m.guides[name]
             at, (through, u) = s.z[str(g.inner)], s.guide(name)
             carried: Any = 0j if guide.link == s.m.frame else s.velocities.coincident.get(
@@ -207,18 +207,18 @@ def assembled(s: State) -> Iterator[Residual]:
         at = [s.z[name] for name in g.outer]
         there = ~np.isnan(sum(at)) if at else np.ones(s.phi.shape, dtype=bool)
         reach = s.reach
-        if g.kind == 1:
+        if g.kind.number == 1:
             d = np.abs(at[1] - at[0])
             margin = np.minimum(sum(g.lengths) - d, d - abs(g.lengths[0] - g.lengths[1]))
             built = ~np.isnan(s.z[str(g.inner)])
             reach = s.reach + sum(g.lengths)
-        elif g.kind == 2:
+        elif g.kind.number == 2:
             p, u = s.guide(g.guides[0])
             margin = g.lengths[0] - np.abs(cross(u, p - at[0]))
             there = there & ~np.isnan(p * u)
             built = ~np.isnan(s.z[str(g.inner)])
             reach = s.reach + np.abs(p - at[0]) + g.lengths[0]
-        elif g.kind == 3:
+        elif g.kind.number == 3:
             margin = np.abs(at[1] - at[0]) - g.offset
             built = ~np.isnan(s.u[g.links[1]])
             reach = s.reach + g.offset

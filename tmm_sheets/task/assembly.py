@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import cos, pi, sin
 
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
@@ -124,4 +125,4 @@ def _group(g: GroupTable) -> StructuralGroup:
     lengths = g.lengths or (() if g.length is None else (g.length,))
     guides = g.guides or (() if g.guide is None else (g.guide,))
     slot = pi / 2 if g.slot is None else g.slot
-    return StructuralGroup(g.kind, g.links, g.outer, g.inner, lengths, guides, g.side, g.offset, slot)
+    return StructuralGroup(KINDS[g.kind], g.links, g.outer, g.inner, lengths, guides, g.side, g.offset, slot)

@@ -13,6 +13,7 @@ from math import cos, pi, sin
 from hypothesis import assume
 from hypothesis import strategies as st
 
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 
 SURE = 0.25
@@ -139,7 +140,7 @@ def rrr(d, links):
     assume(abs(d.at[p] - d.at[q]) > d.size / 4)
     side = 1 if ((d.at[q] - d.at[p]).conjugate() * (c - d.at[p])).imag > 0 else -1
     name = d.new("C")
-    d.groups.append(StructuralGroup(1, links, (p, q), name, (abs(to_p), abs(to_q)), (), side))
+    d.groups.append(StructuralGroup(RRR, links, (p, q), name, (abs(to_p), abs(to_q)), (), side))
     d.at[name] = c
     d.on[links[0]], d.on[links[1]] = [p, name], [q, name]
 
@@ -152,7 +153,7 @@ def rrp(d, links):
     assume(d.size / 4 < abs(rod) and crossing(rod, 1j * u) > SURE)
     side = 1 if (rod / u).real > 0 else -1
     name = d.new("C")
-    d.groups.append(StructuralGroup(2, links, (p,), name, (abs(rod),), (guide,), side))
+    d.groups.append(StructuralGroup(RRP, links, (p,), name, (abs(rod),), (guide,), side))
     d.at[name] = c
     d.on[links[0]], d.on[links[1]] = [p, name], [name]
 
@@ -167,7 +168,7 @@ def rpr(d, links, offset=None):
     assume(abs(e) > d.size / 4)
     share = d.draw(st.just(0.0) | st.floats(0.05, 0.8)) if offset is None else offset
     side = d.side()
-    d.groups.append(StructuralGroup(3, links, (p, q), None, (), (), side, share * abs(e)))
+    d.groups.append(StructuralGroup(RPR, links, (p, q), None, (), (), side, share * abs(e)))
     turn = side * complex((1 - share**2) ** 0.5, share).imag
     d.slots[links[1]] = e / abs(e) * complex((1 - share**2) ** 0.5, turn)
     d.on[links[0]], d.on[links[1]] = [p], [q]
@@ -181,7 +182,7 @@ def prp(d, links):
     c = a + u * (((b - a).conjugate() * v).imag / (u.conjugate() * v).imag)
     assume(abs(c - a) < 5 * d.size)
     name = d.new("C")
-    d.groups.append(StructuralGroup(4, links, (), name, (), (one, two)))
+    d.groups.append(StructuralGroup(PRP, links, (), name, (), (one, two)))
     d.at[name] = c
     d.on[links[0]], d.on[links[1]] = [name], [name]
 
@@ -194,7 +195,7 @@ def rpp(d, links):
     c = through + u * (((d.at[p] - through).conjugate() * v).imag / (u.conjugate() * v).imag)
     assume(abs(c - d.at[p]) < 5 * d.size)
     name = d.new("C")
-    d.groups.append(StructuralGroup(5, links, (p,), name, (), (guide,), 1, 0.0, slot))
+    d.groups.append(StructuralGroup(RPP, links, (p,), name, (), (guide,), 1, 0.0, slot))
     d.at[name] = c
     d.on[links[0]], d.on[links[1]] = [], [name]
 

@@ -40,13 +40,13 @@ def slides(m: Mechanism, s: truth.State) -> dict:
         i, j = g.links
         axes = [complex(truth.guide(m, s, name)[1]) for name in g.guides]
         owners = [m.guides[name].link for name in g.guides]
-        if g.kind == 2:
+        if g.kind.number == 2:
             found[j, owners[0]] = axes[0]
-        elif g.kind == 3:
+        elif g.kind.number == 3:
             found[i, j] = complex(s.links[i])
-        elif g.kind == 4:
+        elif g.kind.number == 4:
             found[owners[0], i], found[j, owners[1]] = axes
-        elif g.kind == 5:
+        elif g.kind.number == 5:
             found[i, j], found[j, owners[0]] = axes[0] * np.exp(1j * g.slot), axes[0]
     return found
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
 from tmm_sheets.methods.linkage.checks import check_assembly, check_turn
 from tmm_sheets.methods.linkage.numbering import even_cycle
@@ -20,15 +21,15 @@ CLOCKWISE = Crank("1", "A", "B", 0.1, 10.0, -1)
 
 
 def rrr(rod, rocker, d=0.3, **kw):
-    return mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (rod, rocker)), fixed={"D": d + 0j}, **kw)
+    return mechanism(StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (rod, rocker)), fixed={"D": d + 0j}, **kw)
 
 
 def rrp(rod, e=0.05):
-    return mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (rod,), ("ram",)), guides=[Guide("ram", "0", 1j * e, 0.0)])
+    return mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (rod,), ("ram",)), guides=[Guide("ram", "0", 1j * e, 0.0)])
 
 
 def rpr(pivot, offset=0.0):
-    return mechanism(StructuralGroup(3, ("2", "3"), ("B", "C"), offset=offset), fixed={"C": pivot})
+    return mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C"), offset=offset), fixed={"C": pivot})
 
 
 def said(m, start=0.0, positions=12):
@@ -113,18 +114,18 @@ def test_pin_through_the_pivot_even_between_the_angles_of_the_sweep(angle):
 
 def test_guides_that_become_parallel():
     guides = [Guide("a", "0", 0.05j, 0.0), Guide("b", "1", "B", np.radians(65.7), "A")]
-    message, _ = said(mechanism(StructuralGroup(4, ("2", "3"), (), "C", (), ("a", "b")), guides=guides))
+    message, _ = said(mechanism(StructuralGroup(PRP, ("2", "3"), (), "C", (), ("a", "b")), guides=guides))
     assert message == "group 2-3 does not assemble at crank angles 114.3, 294.3 deg: the guides a and b are parallel there"
 
 
 def test_fixed_guides_that_are_parallel():
     guides = [Guide("a", "0", 0.05j, 0.0), Guide("b", "0", 0.2j, np.pi)]
-    message, _ = said(mechanism(StructuralGroup(4, ("2", "3"), (), "C", (), ("a", "b")), guides=guides))
+    message, _ = said(mechanism(StructuralGroup(PRP, ("2", "3"), (), "C", (), ("a", "b")), guides=guides))
     assert message == "group 2-3 does not assemble at any position: the guides a and b are parallel there"
 
 
 def test_slot_along_its_guide():
-    m = mechanism(StructuralGroup(5, ("2", "3"), ("B",), "S", (), ("a",), slot=np.pi), guides=[Guide("a", "0", 0.05j, 0.0)])
+    m = mechanism(StructuralGroup(RPP, ("2", "3"), ("B",), "S", (), ("a",), slot=np.pi), guides=[Guide("a", "0", 0.05j, 0.0)])
     assert said(m) == ("group 2-3 does not assemble at any position: the slot of link 3 is parallel to its guide a",
                        'try slot = "90 deg"')
 
@@ -149,7 +150,8 @@ def test_a_gap_narrower_than_the_sweep():
 def test_chain_names_each_group_that_fails_by_itself():
     """Group 4-5 is judged where group 2-3 assembles; the advice is for the first."""
     m = mechanism(
-        StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.15, 0.2)), StructuralGroup(2, ("4", "5"), ("C",), "E", (0.2,), ("y",)),
+        StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (0.15, 0.2)),
+        StructuralGroup(RRP, ("4", "5"), ("C",), "E", (0.2,), ("y",)),
         fixed={"D": 0.3 + 0j}, guides=[Guide("y", "0", 0.5 + 0j, np.pi / 2)],
     )
     message, hint = said(m)
@@ -162,7 +164,8 @@ def test_chain_names_each_group_that_fails_by_itself():
 
 def test_what_lies_downstream_of_a_failing_group_is_not_blamed():
     m = mechanism(
-        StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.15, 0.2)), StructuralGroup(2, ("4", "5"), ("C",), "E", (0.9,), ("y",)),
+        StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (0.15, 0.2)),
+        StructuralGroup(RRP, ("4", "5"), ("C",), "E", (0.9,), ("y",)),
         fixed={"D": 0.3 + 0j}, guides=[Guide("y", "0", 0.5 + 0j, np.pi / 2)],
     )
     assert said(m)[0].count("\n") == 0
@@ -171,7 +174,7 @@ def test_what_lies_downstream_of_a_failing_group_is_not_blamed():
 
 def test_points_that_cannot_be_constructed():
     """A line through two points that fall together in position 0: the pin and the point of the crank under it."""
-    m = mechanism(StructuralGroup(3, ("2", "3"), ("B", "C")), fixed={"C": -0.2j},
+    m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C")), fixed={"C": -0.2j},
                   points=[LinkPoint("E", "1", "A", "B", 0.1), LinkPoint("F", "1", "B", "E", 0.1)])
     with pytest.raises(CannotBuild, match="BE cannot be constructed at positions 0, 1, 2, 3"):
         check_assembly(m, even_cycle(m, 0.0, 4))

@@ -8,6 +8,7 @@ import pytest
 
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
 from tmm_sheets.methods.linkage.dead_positions import dead_positions
 from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
@@ -102,13 +103,13 @@ def test_pivot_inside_the_crank_circle(shaper):
 
 
 def test_dead_positions_are_not_asked_of_what_does_not_assemble():
-    m = mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.15, 0.2)), fixed={"D": 0.3 + 0j})
+    m = mechanism(StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (0.15, 0.2)), fixed={"D": 0.3 + 0j})
     with pytest.raises(CannotBuild, match=r"group 2-3 does not assemble at crank angles 112\.0\.\.248\.0 deg"):
         dead_cycle(m, "C", "+x", 6, 6, None)
 
 
 def test_output_that_never_turns_back(shaper):
-    m = mechanism(StructuralGroup(3, ("2", "3"), ("B", "C")), fixed={"C": -0.05j})
+    m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C")), fixed={"C": -0.05j})
     with pytest.raises(CannotBuild, match="inside the crank circle"):
         dead_cycle(m, "B", "+x", 6, 6, None)
 
@@ -117,7 +118,7 @@ def test_output_that_never_turns_back(shaper):
 
 
 def slider(e, rod=0.3, crank=0.1, sense=1):
-    return mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (rod,), ("x",)), guides=[Guide("x", "0", 1j * e, 0.0)],
+    return mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (rod,), ("x",)), guides=[Guide("x", "0", 1j * e, 0.0)],
                      crank=Crank("1", "A", "B", crank, 10.0, sense))
 
 
@@ -134,7 +135,7 @@ def test_crank_slider(e, sense):
 
 def test_crank_rocker():
     rod, rocker, frame = 0.35, 0.25, 0.3
-    m = mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (rod, rocker)), fixed={"D": frame + 0j})
+    m = mechanism(StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (rod, rocker)), fixed={"D": frame + 0j})
     cycle = dead_cycle(m, "C", "+x", 6, 6, None)
 
     def seen(distance):
@@ -147,7 +148,7 @@ def test_crank_rocker():
 
 def test_dead_positions_found_as_zeros_where_they_cannot_be_constructed():
     """The ram of a shaper with its rocker on an offset: no construction, but the strokes are there."""
-    m = mechanism(StructuralGroup(3, ("2", "3"), ("B", "C"), offset=0.02), fixed={"C": -0.3j})
+    m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C"), offset=0.02), fixed={"C": -0.3j})
     m = replace(m, points=(LinkPoint("D", "3", "C", "B", 0.5),))
     cycle = dead_cycle(m, "D", "+x", 6, 4, None)
     # The slot touches the circle of the offset and the crank circle: its angle is extreme where crank and slot are normal.

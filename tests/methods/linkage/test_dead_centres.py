@@ -9,6 +9,7 @@ import pytest
 
 from tests.methods.linkage import truth
 from tests.methods.linkage.mechanisms import mechanism, value
+from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import acceleration_plan
 from tmm_sheets.methods.linkage.positions import position_plan
@@ -37,8 +38,8 @@ def four_bar(rng, *, swapped=False, on_pin=True):
     ahead = 0.0 if on_pin else 0.7
     end = "B" if on_pin else "E"
     side = int(rng.choice((1, -1)))
-    group = (StructuralGroup(1, ("2", "3"), ("D", end), "C", (l3, l2), (), side) if swapped
-             else StructuralGroup(1, ("2", "3"), (end, "D"), "C", (l2, l3), (), side))
+    group = (StructuralGroup(RRR, ("2", "3"), ("D", end), "C", (l3, l2), (), side) if swapped
+             else StructuralGroup(RRR, ("2", "3"), (end, "D"), "C", (l2, l3), (), side))
     points = () if on_pin else (LinkPoint("E", "1", "A", "B", l1, ahead),)
     m = mechanism(group, fixed={"D": pivot}, points=points, crank=Crank("1", "A", "B", l1 if on_pin else 0.3, 10.0, 1))
     return m, mpmath.arg(mpmath.mpmathify(pivot)) + mpmath.acos(cos) - mpmath.mpf(ahead)
@@ -50,7 +51,7 @@ def slider_crank(rng, direction=None):
     l2, e = l1 * rng.uniform(0.4, 0.85), l1 * rng.uniform(-0.1, 0.1)
     psi = rng.uniform(-pi, pi) if direction is None else direction
     through = complex(-1j * np.exp(1j * psi) * e + np.exp(1j * psi) * rng.uniform(-1, 1))
-    m = mechanism(StructuralGroup(2, ("2", "3"), ("B",), "C", (l2,), ("x",), int(rng.choice((1, -1)))),
+    m = mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (l2,), ("x",), int(rng.choice((1, -1)))),
                   guides=[Guide("x", "0", through, psi)], crank=Crank("1", "A", "B", l1, 10.0, 1))
     at = mpmath.mpf(psi) if direction is None else mpmath.pi / 2 * round(direction / (pi / 2))
     reach = (mpmath.conj(mpmath.expj(at)) * -mpmath.mpmathify(through)).imag
@@ -102,7 +103,7 @@ def test_beyond_the_limit_nothing_is_built():
 @pytest.mark.parametrize(("rod", "rocker", "frame"), [(0.5, 0.125, 0.5), (0.125, 0.5, 0.5), (0.25, 0.375, 0.5)])
 def test_the_side_is_kept_at_change_points(side, rod, rocker, frame):
     """Crank 0.125: parallelogram, kite and a four-bar that folds flat; left or right of the line from pin to pivot all round."""
-    m = mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (rod, rocker), (), side), fixed={"D": frame + 0j},
+    m = mechanism(StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (rod, rocker), (), side), fixed={"D": frame + 0j},
                   crank=Crank("1", "A", "B", 0.125, 10.0, 1))
     turn = np.concatenate([k * pi + np.array([-1e-3, -1e-9, -1e-12, 0, 1e-12, 1e-9, 1e-3]) for k in (0, 1, 2, 7)])
     p = {name: np.broadcast_to(step.value, turn.shape) for name, step in position_plan(m, turn).points.items()}
@@ -115,7 +116,8 @@ def test_the_side_is_kept_at_change_points(side, rod, rocker, frame):
 def test_what_is_not_between_crank_and_frame_has_no_such_form():
     """A second dyad on the rocker, a guide on the crank: built from the points as before."""
     m = mechanism(
-        StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.35, 0.25)), StructuralGroup(1, ("4", "5"), ("C", "E"), "F", (0.3, 0.3)),
+        StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (0.35, 0.25)),
+        StructuralGroup(RRR, ("4", "5"), ("C", "E"), "F", (0.3, 0.3)),
         fixed={"D": 0.4 + 0j, "E": 0.7 + 0j},
     )
     pos = position_plan(m, np.array([0.7]))
@@ -131,7 +133,7 @@ def test_slot_that_can_no_longer_pass_its_pivot_at_the_offset(seed):
     l1 = rng.uniform(0.5, 2)
     pivot = complex(l1 * rng.uniform(1.2, 2) * np.exp(1j * rng.uniform(-pi, pi)))
     offset = abs(pivot) - l1 + rng.uniform(0.1, 0.8) * 2 * l1
-    m = mechanism(StructuralGroup(3, ("2", "3"), ("B", "C"), None, (), (), int(rng.choice((1, -1))), offset), fixed={"C": pivot},
+    m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C"), None, (), (), int(rng.choice((1, -1))), offset), fixed={"C": pivot},
                   points=(LinkPoint("S", "3", "C", "B", 0.3, 0.4),), crank=Crank("1", "A", "B", l1, 10.0, 1))
     far = abs(mpmath.mpmathify(pivot))
     cos = (mpmath.mpf(l1) ** 2 + far**2 - mpmath.mpf(offset) ** 2) / (2 * mpmath.mpf(l1) * far)

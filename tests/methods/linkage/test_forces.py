@@ -181,7 +181,7 @@ def test_drives_by_a_moment_when_there_is_no_gear():
 def own_points(m, link):
     names = [p.name for p in m.pairs if link in p.links and p.motion == "rotation"]
     names += [p.name for p in m.points if p.link == link]
-    return names + [g.inner for g in m.groups if g.kind == 5 and g.links[1] == link]
+    return names + [g.inner for g in m.groups if g.kind.number == 5 and g.links[1] == link]
 
 
 def loaded(m, random):

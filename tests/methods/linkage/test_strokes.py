@@ -13,6 +13,7 @@ import pytest
 
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups import RPR, RRR
 from tmm_sheets.mechanism.model import LinkPoint, StructuralGroup
 from tmm_sheets.methods.linkage.loads import OutputMotion, stroke_law, turning_motion
 from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
@@ -343,7 +344,7 @@ def test_an_output_that_does_not_move_its_way():
 
 def slotted(ab, bd, d, distance, angle, f):
     """A four-bar whose coupler point E guides a slotted link 5 about F: E goes round F, or past it, to and fro."""
-    return mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (ab, bd)), StructuralGroup(3, ("4", "5"), ("E", "F")),
+    return mechanism(StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (ab, bd)), StructuralGroup(RPR, ("4", "5"), ("E", "F")),
                      fixed={"D": d + 0j, "F": f}, points=(LinkPoint("E", "2", "B", "C", distance, np.radians(angle)),))
 
 

@@ -9,6 +9,7 @@ from hypothesis import given
 from tests.methods.linkage import truth
 from tests.methods.linkage.mechanisms import mechanism, mechanisms, value
 from tests.methods.settings import every_kind, tried
+from tmm_sheets.mechanism.groups import RPP, RPR, RRR
 from tmm_sheets.mechanism.model import Guide, LinkPoint, StructuralGroup
 from tmm_sheets.methods.linkage.dead_positions import dead_positions
 from tmm_sheets.methods.linkage.positions import position_plan
@@ -116,7 +117,7 @@ def test_speeds_are_proportional_to_the_crank_speed(shaper):
 
 
 def test_nan_where_it_does_not_assemble_only():
-    m = mechanism(StructuralGroup(1, ("2", "3"), ("B", "D"), "C", (0.15, 0.2)), fixed={"D": 0.3 + 0j})
+    m = mechanism(StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (0.15, 0.2)), fixed={"D": 0.3 + 0j})
     phi = np.array([0.5, np.pi, 1.0])
     vel = velocity_plan(position_plan(m, phi))
     for step in (vel.points["C"], vel.omega["2"], vel.omega["3"]):
@@ -126,7 +127,7 @@ def test_nan_where_it_does_not_assemble_only():
 
 def test_names_that_look_like_other_names():
     """Points called P (like the pole) and B3 (like the point of link 3 under the pin)."""
-    m = mechanism(StructuralGroup(3, ("2", "3"), ("B", "C")), fixed={"C": -0.26j},
+    m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C")), fixed={"C": -0.26j},
                   points=[LinkPoint("P", "1", "A", "B", 0.05), LinkPoint("B3", "3", "C", "B", 0.1)])
     vel = velocity_plan(position_plan(m, np.array([0.7])))
     true = truth.motion(m, 0.7)
@@ -138,8 +139,8 @@ def test_names_that_look_like_other_names():
 def test_two_groups_on_one_guide_link():
     """A stone on a rocker and a slider in a slot of it: the rocker's point under the pin is drawn once."""
     m = mechanism(
-        StructuralGroup(3, ("2", "3"), ("B", "C")),
-        StructuralGroup(5, ("4", "5"), ("B",), "S", (), ("rocker",), slot=1.0),
+        StructuralGroup(RPR, ("2", "3"), ("B", "C")),
+        StructuralGroup(RPP, ("4", "5"), ("B",), "S", (), ("rocker",), slot=1.0),
         fixed={"C": -0.26j}, guides=[Guide("rocker", "3", "C", 0.4, "B")],
     )
     vel = velocity_plan(position_plan(m, np.array([0.7])))

@@ -11,6 +11,7 @@ from tests.methods.linkage import statics, truth
 from tests.methods.linkage.mechanisms import mechanism, mechanisms, value
 from tests.methods.linkage.test_forces import loaded
 from tests.methods.settings import every_kind, tried
+from tmm_sheets.mechanism.groups import RPR
 from tmm_sheets.mechanism.model import Link, LinkPoint, StructuralGroup
 from tmm_sheets.methods.linkage.forces import GearForce
 from tmm_sheets.methods.linkage.numbering import even_cycle
@@ -99,7 +100,7 @@ def test_against_the_whole_system(kinds):
 
 def test_stone_with_an_inertia_of_its_own():
     """A stone turns with its rocker: its couple works too (it hangs at the rocker's points)."""
-    m = mechanism(StructuralGroup(3, ("2", "3"), ("B", "C")), fixed={"C": -0.26j})
+    m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C")), fixed={"C": -0.26j})
     m = replace(m, links=m.links | {"2": Link("2", inertia=0.5)})
     study = Study(m, even_cycle(m, 0.7, 4), np.zeros(1), ("0",), 0.0, tuple, None)
     motion = truth.motion(m, 0.7)
@@ -110,7 +111,7 @@ def test_stone_with_an_inertia_of_its_own():
 
 def test_names_that_look_like_other_names():
     """Mechanism points called P and F beside the lever's pole, contact point and its image."""
-    m = mechanism(StructuralGroup(3, ("2", "3"), ("B", "C")), fixed={"C": -0.26j},
+    m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C")), fixed={"C": -0.26j},
                   points=[LinkPoint("P", "1", "A", "B", 0.05), LinkPoint("F", "3", "C", "B", 0.1)])
     m = replace(m, links={name: Link(name, mass=1.0, centre=at) for name, at in zip(m.links, "PBF", strict=True)})
     driver = GearForce("F1", 0.05, 0.35, 1.0)

@@ -46,7 +46,7 @@ def state(m: Mechanism, phi) -> State:
     s.points[c.pin] = s.points[c.pivot] + c.length * s.links[c.link]
     further(m, s, c.link)
     for g in m.groups:
-        KINDS[g.kind](m, s, g)
+        KINDS[g.kind.number](m, s, g)
         for link in g.links:
             further(m, s, link)
     return s
@@ -55,7 +55,7 @@ def state(m: Mechanism, phi) -> State:
 def base(m, s, link, start, towards):
     """Direction start..towards on a link; towards the pin of a stone: along the slot, also when there is an offset."""
     for g in m.groups:
-        if g.kind == 3 and link in g.links and towards == g.outer[0]:
+        if g.kind.number == 3 and link in g.links and towards == g.outer[0]:
             return s.links[link]
     return unit(s.points[towards] - s.points[start])
 

@@ -514,5 +514,5 @@ def test_ciphers_taken_at_random_assemble_as_projects(machine):
         p = Project(catalogue.read(f"transport/{machine}@{year:02d}-{SPECIALITY[machine]}-{number:03d}"))
         p.check_assembly()
         assert p.mechanism.mobility == 1
-        kinds = tuple(g.kind for g in p.mechanism.groups)
+        kinds = tuple(g.kind.number for g in p.mechanism.groups)
         assert (kinds, p.cycle.labels[p.force_index]) == WHAT[machine]

@@ -5,7 +5,6 @@ Every value is a vector from the pole, complex, m/s2. Source: manual 000, sectio
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,9 +15,8 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.positions import Positions
-from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities, plan_name, velocity_on
+from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities, plan_name
 
 NORMAL = Rule(
     "normal acceleration", lambda a, w, big_q, big_b: a - w * w * (big_b - big_q),
@@ -75,6 +73,65 @@ class Accelerations:
         """The pole π."""
         return self.plan["π"]
 
+    def name(self, point: str) -> str:
+        """Free name on the plan for a point of the mechanism."""
+        return plan_name(self.plan, point)
+
+    def guide(self, guide: str, at: str) -> tuple[Step, Step, str]:
+        """Acceleration and velocity of the guide's point coinciding with ``at``, and the guide's link."""
+        m, vel = self.positions.mechanism, self.velocities
+        g = m.guides[guide]
+        if g.link == m.frame:
+            return self.pole, vel.pole, g.link
+        assert isinstance(g.through, str)
+        return self.on(g.link, g.through, at), vel.on(g.link, g.through, at), g.link
+
+    def on(self, link: str, through: str, at: str) -> Step:
+        """Acceleration of the point of a link that coincides with ``at``, from the link's point ``through``; drawn once."""
+        here = on_link(at, link)
+        if here not in self.coincident:
+            start = self.coincident.get(on_link(through, link), self.points[through])
+            if through == at:
+                return start
+            self.coincident[here] = self.rotated(here, start, link, through, at)
+        return self.coincident[here]
+
+    def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
+        """Acceleration of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
+        z = self.positions.points
+        return self.plan.add(self.name(point), RIGID, start, self.velocities.omega[link], self.epsilon[link], z[q], z[b])
+
+    def coriolis(self, a: Step, link: str, v_from: Step, v_to: Step, symbol: str) -> Step:
+        """End of the Coriolis segment; the point itself where the carrier does not turn (a fixed guide: a^k = 0)."""
+        if link == self.positions.mechanism.frame:
+            return a
+        k = self.plan.add(_free(self.plan, "k"), CORIOLIS, a, self.velocities.omega[link], v_from, v_to)
+        self.plan.vector(f"a̅_{{{symbol}}}^к", a, k)
+        return k
+
+    def normal(self, a: Step, link: str, big_q: str, big_b: str, letters: str = "") -> Step:
+        """End of the normal acceleration of ``big_b`` round ``big_q``, laid off from ``a``."""
+        z = self.positions.points
+        n = self.plan.add(_free(self.plan, "n"), NORMAL, a, self.velocities.omega[link], z[big_q], z[big_b])
+        self.plan.vector(f"a̅_{{{letters or big_b + big_q}}}^n", a, n)
+        return n
+
+    def perpendicular(self, p: str, q: str) -> Step:
+        """Direction across the line of two points, drawn once."""
+        ray = self.positions.direction(p, q)
+        name = f"⟂{ray.name}"
+        return self.plan[name] if name in self.plan else self.plan.add(name, rules.TURN, ray)
+
+    def turning(self, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
+        """Angular acceleration of a link from the accelerations ``q`` and ``b`` of two of its points."""
+        z = self.positions.points
+        self.epsilon[link] = self.plan.add(f"ε{link}", ANGULAR_ACCELERATION, z[big_q], z[big_b], q, b)
+        self.reference[link] = (big_q, big_b, q, b)
+
+    def turns_with(self, link: str, other: str) -> None:
+        """Angular acceleration of a link that does not turn against another."""
+        self.epsilon[link] = self.plan.add(f"ε{link}", SAME, self.epsilon[other])
+
 
 def acceleration_plan(vel: Velocities, epsilon1: Any = None) -> Accelerations:
     """Record the acceleration plans of all positions; ``epsilon1`` (rad/s2, signed) defaults to the mechanism's."""
@@ -103,7 +160,7 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None) -> Accelerations:
     acc.reference[c.link] = (c.pivot, c.pin, pole, b)
     _further_points(acc, c.link)
     for g in m.groups:
-        GROUPS[g.kind](acc, g)
+        g.kind.acceleration(acc, g)
         for link in g.links:
             _further_points(acc, link)
     return acc
@@ -130,149 +187,3 @@ def _further_points(acc: Accelerations, link: str) -> None:
                              pos.points[p.start], pos.points[p.name])
         acc.plan.vector(f"a̅_{p.name}", acc.pole, a)
         acc.points[p.name] = a
-
-
-def _carrier(acc: Accelerations, guide: str, at: str) -> tuple[Step, Step, str]:
-    """Acceleration and velocity of the guide's point coinciding with ``at``, and the guide's link."""
-    pos, vel = acc.positions, acc.velocities
-    g = pos.mechanism.guides[guide]
-    if g.link == pos.mechanism.frame:
-        return acc.pole, vel.pole, g.link
-    assert isinstance(g.through, str)
-    return _on(acc, g.link, g.through, at), velocity_on(vel, g.link, g.through, at), g.link
-
-
-def _on(acc: Accelerations, link: str, through: str, at: str) -> Step:
-    """Acceleration of the point of a link that coincides with ``at``, from the link's point ``through``; drawn once."""
-    pos, vel = acc.positions, acc.velocities
-    here = on_link(at, link)
-    if here not in acc.coincident:
-        start = acc.coincident.get(on_link(through, link), acc.points[through])
-        if through == at:
-            return start
-        name = plan_name(acc.plan, here)
-        acc.coincident[here] = acc.plan.add(name, RIGID, start, vel.omega[link], acc.epsilon[link],
-                                            pos.points[through], pos.points[at])
-    return acc.coincident[here]
-
-
-def _coriolis(acc: Accelerations, a: Step, link: str, v_from: Step, v_to: Step, symbol: str) -> Step:
-    """End of the Coriolis segment; the point itself where the carrier does not turn (a fixed guide: a^k = 0)."""
-    if link == acc.positions.mechanism.frame:
-        return a
-    k = acc.plan.add(_free(acc.plan, "k"), CORIOLIS, a, acc.velocities.omega[link], v_from, v_to)
-    acc.plan.vector(f"a̅_{{{symbol}}}^к", a, k)
-    return k
-
-
-def _normal(acc: Accelerations, a: Step, link: str, big_q: str, big_b: str, letters: str = "") -> Step:
-    pos = acc.positions
-    n = acc.plan.add(_free(acc.plan, "n"), NORMAL, a, acc.velocities.omega[link], pos.points[big_q], pos.points[big_b])
-    acc.plan.vector(f"a̅_{{{letters or big_b + big_q}}}^n", a, n)
-    return n
-
-
-def _perpendicular(acc: Accelerations, p: str, q: str) -> Step:
-    ray = acc.positions.direction(p, q)
-    name = f"⟂{ray.name}"
-    return acc.plan[name] if name in acc.plan else acc.plan.add(name, rules.TURN, ray)
-
-
-def _epsilon(acc: Accelerations, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
-    pos = acc.positions
-    acc.epsilon[link] = acc.plan.add(f"ε{link}", ANGULAR_ACCELERATION, pos.points[big_q], pos.points[big_b], q, b)
-    acc.reference[link] = (big_q, big_b, q, b)
-
-
-def _rrr(acc: Accelerations, g: StructuralGroup) -> None:
-    plan = acc.plan
-    (p, q), c, (i, j) = g.outer, str(g.inner), g.links
-    n1 = _normal(acc, acc.points[p], i, p, c)
-    n2 = _normal(acc, acc.points[q], j, q, c)
-    step = plan.add(plan_name(plan, c), rules.LINE_LINE, n1, _perpendicular(acc, p, c), n2, _perpendicular(acc, q, c),
-                    *acc.positions.known_sine(g))
-    acc.points[c] = step
-    plan.vector(f"a̅_{{{c}{p}}}^τ", n1, step)
-    plan.vector(f"a̅_{{{c}{q}}}^τ", n2, step)
-    plan.vector(f"a̅_{c}", acc.pole, step)
-    _epsilon(acc, i, p, c, acc.points[p], step)
-    _epsilon(acc, j, q, c, acc.points[q], step)
-
-
-def _rrp(acc: Accelerations, g: StructuralGroup) -> None:
-    plan, pos, vel = acc.plan, acc.positions, acc.velocities
-    p, c, guide = g.outer[0], str(g.inner), g.guides[0]
-    carrier, v_carrier, link = _carrier(acc, guide, c)
-    n = _normal(acc, acc.points[p], g.links[0], p, c)
-    k = _coriolis(acc, carrier, link, v_carrier, vel.points[c], on_link(c, link))
-    step = plan.add(plan_name(plan, c), rules.LINE_LINE, n, _perpendicular(acc, p, c), k, pos.guide_directions[guide],
-                    *pos.known_sine(g))
-    acc.points[c] = acc.coincident[on_link(c, g.links[1])] = step
-    plan.vector(f"a̅_{{{c}{p}}}^τ", n, step)
-    plan.vector(f"a̅_{c}", acc.pole, step)
-    _epsilon(acc, g.links[0], p, c, acc.points[p], step)
-    acc.epsilon[g.links[1]] = plan.add(f"ε{g.links[1]}", SAME, acc.epsilon[link])
-
-
-def _rpr(acc: Accelerations, g: StructuralGroup) -> None:
-    plan, pos, vel = acc.plan, acc.positions, acc.velocities
-    (p, q), (i, j) = g.outer, g.links
-    pj = on_link(p, j)
-    k = _coriolis(acc, acc.points[p], j, vel.points[p], vel.coincident[pj], f"{pj}{p}")
-    n = _normal(acc, acc.points[q], j, q, p, f"{pj}{q}")
-    step = plan.add(plan_name(plan, pj), rules.LINE_LINE, k, pos.directions[j], n, _perpendicular(acc, q, p),
-                    *pos.known_sine(g))
-    plan.vector(f"a̅_{{{pj}{p}}}^r", k, step)
-    plan.vector(f"a̅_{{{pj}{q}}}^τ", n, step)
-    plan.vector(f"a̅_{{{pj}}}", acc.points[q], step)
-    acc.coincident[pj] = step
-    _epsilon(acc, j, q, p, acc.points[q], step)
-    acc.epsilon[i] = plan.add(f"ε{i}", SAME, acc.epsilon[j])
-    if g.offset:
-        foot = pos.feet[j]
-        acc.points[foot] = plan.add(plan_name(plan, foot), RIGID, acc.points[q], vel.omega[j], acc.epsilon[j],
-                                    pos.points[q], pos.points[foot])
-
-
-def _prp(acc: Accelerations, g: StructuralGroup) -> None:
-    plan, pos, vel = acc.plan, acc.positions, acc.velocities
-    c = str(g.inner)
-    (a1, v1, k1), (a2, v2, k2) = (_carrier(acc, name, c) for name in g.guides)
-    u1, u2 = (pos.guide_directions[name] for name in g.guides)
-    e1 = _coriolis(acc, a1, k1, v1, vel.points[c], on_link(c, k1))
-    e2 = _coriolis(acc, a2, k2, v2, vel.points[c], on_link(c, k2))
-    step = plan.add(plan_name(plan, c), rules.LINE_LINE, e1, u1, e2, u2)
-    acc.points[c] = step
-    plan.vector(f"a̅_{c}", acc.pole, step)
-    for link, k in zip(g.links, (k1, k2), strict=True):
-        acc.epsilon[link] = plan.add(f"ε{link}", SAME, acc.epsilon[k])
-        acc.coincident[on_link(c, link)] = step
-
-
-def _rpp(acc: Accelerations, g: StructuralGroup) -> None:
-    plan, pos, vel = acc.plan, acc.positions, acc.velocities
-    p, s, guide, (i, j) = g.outer[0], str(g.inner), g.guides[0], g.links
-    pj = on_link(p, j)
-    carrier, _, link = _carrier(acc, guide, s)
-    v_pin = vel.coincident[pj]
-    k1 = _coriolis(acc, acc.points[p], link, vel.points[p], v_pin, f"{pj}{p}")
-    if link == pos.mechanism.frame:
-        k2 = carrier
-    else:
-        through = str(pos.mechanism.guides[guide].through)
-        k2 = _coriolis(acc, _on(acc, link, through, p), link, velocity_on(vel, link, through, p), v_pin, on_link(pj, link))
-    step = plan.add(plan_name(plan, pj), rules.LINE_LINE, k1, pos.directions[i], k2, pos.guide_directions[guide])
-    plan.vector(f"a̅_{{{pj}{p}}}^r", k1, step)
-    plan.vector(f"a̅_{{{pj}}}", acc.pole, step)
-    acc.coincident[pj] = step
-    for k in g.links:
-        acc.epsilon[k] = plan.add(f"ε{k}", SAME, acc.epsilon[link])
-    if link == pos.mechanism.frame:
-        acc.points[s] = step
-    else:
-        acc.points[s] = plan.add(plan_name(plan, s), RIGID, step, vel.omega[link], acc.epsilon[link], pos.points[p], pos.points[s])
-    acc.coincident[on_link(s, j)] = acc.points[s]
-
-
-GROUPS: dict[int, Callable[[Accelerations, StructuralGroup], None]] = {1: _rrr, 2: _rrp, 3: _rpr, 4: _prp, 5: _rpp}
-"""Acceleration equations of each kind of group (manual 000, table 3.6)."""

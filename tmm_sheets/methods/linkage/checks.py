@@ -1,49 +1,23 @@
 """Does the mechanism assemble all the way round, and if not: where, by how much, and what would help.
 
-The conditions of assembly of each kind of group: triangle inequality (RRR), reach of the rod (RRP), pin clear of the
-pivot and of the offset (RPR), guides that are not parallel (PRP, RPP).
+The conditions of assembly are those of the kinds of groups.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from math import ceil, floor, log10
 from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.mechanism.groups.limits import SWEEP, TOUCH, AssemblyLimit
+from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import Floats
 
-SWEEP = 720
-"""Crank angles of the fine sweep; between them the narrowest places are searched for."""
-
-TOUCH = 1e-6
-"""Share of the crank length (sine of the angle between guides) below which a pin sits on a pivot (guides are parallel)."""
-
 CLOSE = 0.02
 """Share of the crank length (sine) below which a minimum between the angles of the sweep is looked at more closely."""
-
-
-@dataclass(frozen=True)
-class Limit:
-    """One condition of assembly of a group: it holds where ``margin`` (m, or the sine of an angle) is not negative.
-
-    ``unit`` is what the margin is compared with: the crank length, or 1 for a sine. ``say`` words the greatest lack, whose
-    place is named when it is ``measured``; ``hint`` words what would help, from the positions of the whole turn.
-    """
-
-    group: StructuralGroup
-    unit: float
-    margin: Callable[[Positions], Any]
-    say: Callable[[float], str]
-    hint: Callable[[Positions], str]
-    measured: bool = True
 
 
 def check_turn(mechanism: Mechanism) -> None:
@@ -60,7 +34,7 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
         naming every group that does not assemble, the positions or crank angles (world frame, counter-clockwise from the
         x axis), the lack in millimetres and what to try.
     """
-    limits = [limit for g in mechanism.groups for limit in LIMITS[g.kind](mechanism, g)]
+    limits = [limit for g in mechanism.groups for limit in g.kind.limits(mechanism, g)]
     search = _Search(mechanism, cycle, limits)
     failures = [(search.failure(i), limit) for i, limit in enumerate(limits)]
     said = [message for message, _ in failures if message]
@@ -77,7 +51,7 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
 class _Search:
     """Margins of all limits over the turn, one column per angle."""
 
-    def __init__(self, mechanism: Mechanism, cycle: Cycle, limits: list[Limit]) -> None:
+    def __init__(self, mechanism: Mechanism, cycle: Cycle, limits: list[AssemblyLimit]) -> None:
         self.mechanism = mechanism
         self.cycle = cycle
         self.limits = limits
@@ -186,112 +160,3 @@ class _Search:
             holds = m[i] < 0 if failing else self._assembles(m, i)
             a, b = np.where(holds, middle, a), np.where(holds, b, middle)
         return a
-
-
-# --- limits of each kind --------------------------------------------------------------------------------------------
-
-
-def _mm(length: float) -> str:
-    return f"{length * 1000:.4g} mm"
-
-
-def _lack(length: float) -> str:
-    return _mm(length) if length >= 1e-6 else "less than 0.001 mm"
-
-
-def _more(length: float) -> str:
-    """A length to four significant digits that is surely greater."""
-    return _rounded(length * (1 + 1e-6), ceil)
-
-
-def _less(length: float) -> str:
-    """A length to four significant digits that is surely less."""
-    return _rounded(length * (1 - 1e-6), floor)
-
-
-def _rounded(length: float, to: Callable[[float], int]) -> str:
-    if length <= 0:
-        return "0 mm"
-    unit = 10.0 ** (floor(log10(length * 1000)) - 3)
-    return f"{to(length * 1000 / unit) * unit:.6g} mm"
-
-
-def _span(pos: Positions, p: str, q: str) -> Any:
-    return np.abs(pos.points[q].value - pos.points[p].value)
-
-
-def _extremes(lengths: Any) -> tuple[float, float]:
-    """Least and greatest length over the turn; between the angles of the sweep by parabolas of the smooth squares."""
-    y = np.broadcast_to(lengths, max(np.size(lengths), SWEEP))[-SWEEP:] ** 2
-    before, after = np.roll(y, 1), np.roll(y, -1)
-    bend = before - 2 * y + after
-    with np.errstate(invalid="ignore", divide="ignore"):
-        vertex = np.where(np.abs(before - after) <= 2 * np.abs(bend), y - (after - before) ** 2 / (8 * bend), y)
-    vertex = np.where(np.isfinite(vertex), vertex, y)
-    return float(np.sqrt(max(np.nanmin(vertex), 0.0))), float(np.sqrt(np.nanmax(vertex)))
-
-
-def _rrr(m: Mechanism, g: StructuralGroup) -> list[Limit]:
-    (p, q), (l1, l2) = g.outer, g.lengths
-    first, second = f"{p}{g.inner}", f"{g.inner}{q}"
-    (long, a), (short, b) = sorted(((first, l1), (second, l2)), key=lambda x: -x[1])
-
-    def hint(pos: Positions) -> str:
-        low, high = _extremes(_span(pos, p, q))
-        for name, other in ((first, l2), (second, l1)):
-            least, most = max(high - other, other - low), other + low
-            if most > least * 1.001:
-                return f"try {name} from {_more(least)} to {_less(most)}"
-        return f"try {first} = {second} = {_more(high / 2)} or longer"
-
-    return [
-        Limit(g, m.crank.length, lambda pos: l1 + l2 - _span(pos, p, q),
-              lambda lack: f"{first} = {_mm(l1)} and {second} = {_mm(l2)} together are {_lack(lack)} too short", hint),
-        Limit(g, m.crank.length, lambda pos: _span(pos, p, q) - (a - b),
-              lambda lack: f"{long} = {_mm(a)} is {_lack(lack)} too long beside {short} = {_mm(b)}", hint),
-    ]
-
-
-def _rrp(m: Mechanism, g: StructuralGroup) -> list[Limit]:
-    p, guide, length = g.outer[0], g.guides[0], g.lengths[0]
-
-    def height(pos: Positions) -> Any:
-        return np.abs(ar.cross(pos.guide_directions[guide].value, pos.guide_points[guide].value - pos.points[p].value))
-
-    return [Limit(g, m.crank.length, lambda pos: length - height(pos),
-                  lambda lack: f"rod {p}{g.inner} = {_mm(length)} is {_lack(lack)} too short to reach the guide {guide}",
-                  lambda pos: f"try {p}{g.inner} >= {_more(_extremes(height(pos))[1])}")]
-
-
-def _rpr(m: Mechanism, g: StructuralGroup) -> list[Limit]:
-    p, q = g.outer
-    offset = abs(g.offset)
-    if not offset:
-        return [Limit(g, m.crank.length, lambda pos: _span(pos, p, q) - TOUCH * m.crank.length,
-                      lambda lack: f"{p} passes through {q}, so that the guide {q}{p} has no direction",
-                      lambda pos: f"move {q} off the path of {p}", measured=False)]
-    return [Limit(g, m.crank.length, lambda pos: _span(pos, p, q) - offset - TOUCH * m.crank.length,
-                  lambda lack: f"{p} comes {_lack(lack)} too near to {q} for the offset of {_mm(offset)}",
-                  lambda pos: f"try an offset below {_less(_extremes(_span(pos, p, q))[0])}")]
-
-
-def _prp(m: Mechanism, g: StructuralGroup) -> list[Limit]:
-    a, b = g.guides
-    return [Limit(g, 1.0, lambda pos: _sine(pos.guide_directions[a].value, pos.guide_directions[b].value) - TOUCH,
-                  lambda lack: f"the guides {a} and {b} are parallel there",
-                  lambda pos: "turn one of the guides so that they cross at every position", measured=False)]
-
-
-def _rpp(m: Mechanism, g: StructuralGroup) -> list[Limit]:
-    i, j = g.links
-    return [Limit(g, 1.0, lambda pos: _sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
-                  lambda lack: f"the slot of link {j} is parallel to its guide {g.guides[0]}",
-                  lambda pos: 'try slot = "90 deg"', measured=False)]
-
-
-def _sine(u: Any, v: Any) -> Any:
-    return np.abs(ar.cross(u, v))
-
-
-LIMITS: dict[int, Callable[[Mechanism, StructuralGroup], list[Limit]]] = {1: _rrr, 2: _rrp, 3: _rpr, 4: _prp, 5: _rpp}
-"""Conditions of assembly of each kind of group."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.positions import near_point, unit
+from tmm_sheets.methods.linkage.positions import near_point
 
 
 def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[complex, complex] | None]:
@@ -24,17 +25,17 @@ def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[complex, complex] |
     group = next((g for g in m.groups if c.pin in g.outer), None)
     if group is None:
         return None, None
-    if group.kind == 3 and not group.offset and group.outer[1] in m.fixed:
+    if group.kind.rocker(group) and not group.offset and group.outer[1] in m.fixed:
         if _lack(m, group) >= 0:
             return None, None  # the rocker turns all the way round
         return plan, _dead_rocker(m, plan, centre, group)
-    if group.kind == 2 and m.guides[group.guides[0]].link == m.frame:
+    if len(group.kind.sliders(group)) == 1 and m.guides[group.guides[0]].link == m.frame:
         guide = m.guides[group.guides[0]]
         through = plan.add(plan.free(f"{guide.name}₀"), rules.GIVEN, near_point(m, guide))
-        along = plan.add(plan.free(guide.name), rules.GIVEN_DIRECTION, unit(guide.direction))
+        along = plan.add(plan.free(guide.name), rules.GIVEN_DIRECTION, ar.unit(guide.direction))
         ends = [plan.add(f"{group.inner}{prime}", rules.ARC_LINE, centre, abs(group.lengths[0] + sign * c.length), through, along,
                          group.side) for prime, sign in (("′", 1), ("″", -1))]
-    elif group.kind == 1 and group.outer[0] == c.pin and group.outer[1] in m.fixed:
+    elif len(group.lengths) == 2 and group.outer[0] == c.pin and group.outer[1] in m.fixed:
         if not abs(m.fixed[group.outer[1]] - m.fixed[c.pivot]):
             return None, None  # rod and rocker turn about the crank's pivot with it
         pivot = plan.add(group.outer[1], rules.GIVEN, m.fixed[group.outer[1]])
@@ -68,7 +69,7 @@ def refuse_turning_rocker(m: Mechanism) -> None:
     """A cycle that begins at a dead position needs a rocker that swings."""
     c = m.crank
     for group in m.groups:
-        if group.kind == 3 and c.pin in group.outer and group.outer[1] in m.fixed and _lack(m, group) >= 0:
+        if group.kind.rocker(group) and c.pin in group.outer and group.outer[1] in m.fixed and _lack(m, group) >= 0:
             pivot, lack = group.outer[1], _lack(m, group)
             raise CannotBuild(
                 f"pivot {pivot} of rocker {group.links[1]} lies {_mm(lack)} inside the crank circle: "

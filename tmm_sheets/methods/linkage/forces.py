@@ -6,7 +6,7 @@ Source: manual 000, section 4 and table 4.1.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -17,7 +17,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.numbers import size
@@ -32,6 +32,7 @@ COUPLE = Rule("inertia couple", lambda j, e: -j * e, ("number", "number"), "numb
 GIVEN_MOMENT = Rule("given moment", lambda m: m, ("number",), "number", "Момент {name} = {value} Н·м.")
 GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {name} = {value}.")
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.")
+OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.")
 CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point"), "force",
              "Замкнём план: {name} = |{0}–{1}|·μ_F = {value}.")
 ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), "length",
@@ -45,6 +46,16 @@ def _tangential(total: Any, centre: Any, at: Any) -> Any:
 
 TANGENTIAL = Rule("component from moments", _tangential, ("number", "point", "point"), "force",
                   "Из суммы моментов относительно точки {1} найдём составляющую {name} = {value}, перпендикулярную {1}{2}.")
+
+
+def _moments(about: Any, *terms: Any) -> Any:
+    total = 0.0
+    for at, vector, couple in zip(terms[::3], terms[1::3], terms[2::3], strict=True):
+        total = total + ar.moment(about, at, vector) + couple
+    return total
+
+
+MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.")
 
 
 @dataclass(frozen=True)
@@ -73,6 +84,18 @@ class ForcePlan:
         self.sides.append((symbol, tail, head, unknown))
         self.plan.vector(symbol, tail, head)
 
+    def chain(self, start: int, tail: Step, loads: Iterable[Load]) -> Step:
+        """Lay the loads off one after another; returns the end of the chain."""
+        for n, load in enumerate(loads, start + 1):
+            head = self.plan.add(str(n), rules.SHIFT, tail, load.vector)
+            self.side(load.symbol, tail, head)
+            tail = head
+        return tail
+
+    def between(self, name: str, tail: Step, head: Step) -> Step:
+        """The force that closes the polygon from ``tail`` to ``head``."""
+        return self.plan.add(name, CLOSE, tail, head)
+
 
 @dataclass
 class Kinetostatics:
@@ -100,7 +123,7 @@ class Kinetostatics:
         return [load for loads in self.loads.values() for load in loads if load.role != "reaction"]
 
     @property
-    def tangential(self) -> list[Step]:
+    def from_moments(self) -> list[Step]:
         """Parts of outer reactions that the moment equations gave, across their links, in the order they were found."""
         return [step for step in self.plan if step.rule is TANGENTIAL]
 
@@ -117,6 +140,132 @@ class Kinetostatics:
         """Record F_jk under its name."""
         self.reactions[f"F{pair_index(j, k)}"] = vector
         return vector
+
+    def opposite(self, j: str, k: str, vector: Step) -> Step:
+        """Record F_jk, the opposite of F_kj."""
+        return self.reaction(j, k, self.plan.add(f"F{pair_index(j, k)}", OPPOSITE, vector))
+
+    def opposite_couple(self, j: str, k: str, couple: Step) -> Step:
+        """The couple on link ``j`` opposite to that on link ``k``."""
+        return self.plan.add(f"M{pair_index(j, k)}", OPPOSITE_COUPLE, couple)
+
+    @staticmethod
+    def negative(step: Step) -> Step:
+        """A number with the other sign, no step of any plan."""
+        return Step(f"−{step.name}", OPPOSITE, (step,))
+
+    @staticmethod
+    def contact(j: str, k: str, at: Step, vector: Step, couple: Step | None = None) -> Load:
+        """Reaction on link ``j`` from link ``k`` as a load."""
+        return Load(symbol(f"F{pair_index(j, k)}"), j, at, vector, "reaction", couple)
+
+    @staticmethod
+    def order(loads: list[Load], first: Role) -> list[Load]:
+        """Loads in the order they are laid off: of one role first, then weights, inertia, applied forces, reactions."""
+        rank = {"weight": 1, "inertia": 2, "applied": 3, "reaction": 4}
+        rank[first] = 0
+        return sorted(loads, key=lambda load: rank[load.role])
+
+    def moment_sum(self, name: str, about: Step, links: Iterable[str]) -> Step:
+        """Sum of moments of all recorded forces and couples of some links about a point, N m."""
+        terms: list[Any] = [about]
+        for link in links:
+            for load in self.loads[link]:
+                terms += [load.at, load.vector, 0.0 if load.couple is None else load.couple]
+            for couple in self.link_couples.get(link, ()):
+                terms += [about, 0j, couple]
+        return self.plan.add(name, MOMENTS, *terms)
+
+    def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
+        """Part of F_jk at a point across its line to the centre of the moments, from their sum."""
+        z = self.positions.points
+        return self.plan.add(f"F{pair_index(j, k)}τ", TANGENTIAL, total, z[centre], z[at])
+
+    def plan_of(self, name: str, links: tuple[str, ...]) -> ForcePlan:
+        """New force plan of a link or of a whole group."""
+        title = f"План сил звена {links[0]}" if len(links) == 1 else f"План сил группы {'–'.join(links)}"
+        fp = ForcePlan(name, links, Plan(f"force-{name}", title, "N", self.positions.plan.labels))
+        self.plans[name] = fp
+        return fp
+
+    def close(self, fp: ForcePlan, j: str, other: str, tail: Step, head: Step) -> Step:
+        """Close a polygon by the reaction on link ``j`` from link ``other``."""
+        name = f"F{pair_index(j, other)}"
+        step = fp.between(name, tail, head)
+        fp.side(symbol(name), tail, head, unknown=True)
+        return self.reaction(j, other, step)
+
+    def react(self, link: str, on: str, at: Step, vector: Step, couple: Step | None = None) -> Step:
+        """The equal and opposite force on the neighbouring link ``on`` from ``link``."""
+        step = self.opposite(on, link, vector)
+        if on != self.positions.mechanism.frame:
+            turned = None if couple is None else self.opposite_couple(on, link, couple)
+            self.loads[on].append(self.contact(on, link, at, step, turned))
+        return step
+
+    def across(self, name: str, u: Step) -> Step:
+        """Direction across another, drawn once."""
+        label = f"⟂{name}"
+        return self.plan.steps[label] if label in self.plan else self.plan.add(label, rules.TURN, u)
+
+    def sliding(self, j: str, other: str, force: Step, about: Step) -> Step:
+        """Couple of a sliding pair's reaction on link ``j`` (its force taken at ``about``) and its arm, from moments about it."""
+        name = pair_index(j, other)
+        total = self.moment_sum(f"ΣM{j}", about, [j])
+        couple = self.plan.add(f"M{name}", OPPOSITE_COUPLE, total)
+        self.couples[f"F{name}"] = couple
+        self.arms[f"h{name}"] = self.plan.add(f"h{name}", ARM, couple, force)
+        return couple
+
+    def group_polygon(self, g: StructuralGroup, first: Step | None, last: Step | None, u: Step, v: Step,
+                          carriers: tuple[str, str], sine: tuple[Step, ...] = ()) -> tuple[Step, Step, ForcePlan]:
+        """Plan of a whole group closed by two unknown forces: ``first`` .. ``last`` known parts, lines along ``u`` and ``v``.
+
+        ``sine`` of the angle between these lines, where the position plan knows it better than they do.
+
+        ``carriers`` are the links outside that the two links lean on; returns the total forces from them.
+        """
+        i, j = g.links
+        fp = self.plan_of(g.name, g.links)
+        start = fp.plan.add("2", rules.GIVEN, 0j)
+        n, tail = 2, start
+        pending = []
+
+        def lay(sign: str, vector: Step) -> None:
+            nonlocal n, tail
+            n += 1
+            head = fp.plan.add(str(n), rules.SHIFT, tail, vector)
+            pending.append((sign, tail, head))
+            tail = head
+
+        one, two = (f"F{pair_index(link, carrier)}" for link, carrier in zip(g.links, carriers, strict=True))
+        if first is not None:
+            lay(f"F̅_{{{one[1:]}}}^τ", first)
+        after_first = tail
+        for link in (i, j):
+            for load in self.order(self.loads[link], "weight"):
+                lay(load.symbol, load.vector)
+        before_last = tail
+        if last is not None:
+            lay(f"F̅_{{{two[1:]}}}^τ", last)
+        closing = fp.plan.add("1", rules.LINE_LINE, start, u, tail, v, *sine)
+        fp.side(f"F̅_{{{one[1:]}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
+        for sign, a, b in pending:
+            fp.side(sign, a, b)
+        fp.side(f"F̅_{{{two[1:]}}}" + ("^n" if last is not None else ""), tail, closing, unknown=True)
+        f_one = self.reaction(i, carriers[0], fp.between(one, closing, after_first))
+        f_two = self.reaction(j, carriers[1], fp.between(two, before_last, closing))
+        if first is not None:
+            fp.plan.vector(symbol(one), closing, after_first)
+        if last is not None:
+            fp.plan.vector(symbol(two), before_last, closing)
+        # The inner reaction closes the forces of the first link: the same drawing, one more line.
+        split = pending[(first is not None) + len(self.loads[i]) - 1][2] if len(self.loads[i]) + (first is not None) else start
+        name = f"F{pair_index(i, j)}"
+        inner = self.reaction(i, j, fp.between(name, split, closing))
+        fp.plan.vector(symbol(name), split, closing)
+        self.opposite(j, i, inner)
+        return f_one, f_two, fp
 
 
 @dataclass(frozen=True)
@@ -183,272 +332,9 @@ def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load
     work = {name: list(of_link) for name, of_link in loads.items()}
     k = Kinetostatics(pos, acc, work, sums, couples)
     for g in reversed(pos.mechanism.groups):
-        GROUPS[g.kind](k, g)
+        g.kind.force(k, g)
     _crank(k, driver)
     return k
-
-
-def moment_sum(k: Kinetostatics, name: str, about: Step, links: Iterable[str]) -> Step:
-    """Sum of moments of all recorded forces and couples of some links about a point, N m."""
-    terms: list[Any] = [about]
-    for link in links:
-        for load in k.loads[link]:
-            terms += [load.at, load.vector, 0.0 if load.couple is None else load.couple]
-        for couple in k.link_couples.get(link, ()):
-            terms += [about, 0j, couple]
-    return k.plan.add(name, MOMENTS, *terms)
-
-
-def _moments(about: Any, *terms: Any) -> Any:
-    total = 0.0
-    for at, vector, couple in zip(terms[::3], terms[1::3], terms[2::3], strict=True):
-        total = total + ar.moment(about, at, vector) + couple
-    return total
-
-
-MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.")
-
-
-def _owner(m: Mechanism, point: str) -> str:
-    return m.owner(point)
-
-
-def _force_plan(k: Kinetostatics, name: str, links: tuple[str, ...]) -> ForcePlan:
-    title = f"План сил звена {links[0]}" if len(links) == 1 else f"План сил группы {'–'.join(links)}"
-    fp = ForcePlan(name, links, Plan(f"force-{name}", title, "N", k.positions.plan.labels))
-    k.plans[name] = fp
-    return fp
-
-
-def _chain(fp: ForcePlan, start: int, tail: Step, loads: Iterable[Load]) -> Step:
-    """Lay the loads off one after another; returns the end of the chain."""
-    for n, load in enumerate(loads, start + 1):
-        head = fp.plan.add(str(n), rules.SHIFT, tail, load.vector)
-        fp.side(load.symbol, tail, head)
-        tail = head
-    return tail
-
-
-def _close(k: Kinetostatics, fp: ForcePlan, j: str, other: str, tail: Step, head: Step) -> Step:
-    """Close a polygon by the reaction on link ``j`` from link ``other``."""
-    name = f"F{pair_index(j, other)}"
-    step = fp.plan.add(name, CLOSE, tail, head)
-    fp.side(symbol(name), tail, head, unknown=True)
-    return k.reaction(j, other, step)
-
-
-def _react(k: Kinetostatics, link: str, on: str, at: Step, vector: Step, couple: Step | None = None) -> Step:
-    """The equal and opposite force on the neighbouring link ``on`` from ``link``."""
-    pair = pair_index(on, link)
-    name = f"F{pair}"
-    step = k.plan.add(name, OPPOSITE, vector)
-    k.reaction(on, link, step)
-    if on != k.positions.mechanism.frame:
-        turned = None if couple is None else k.plan.add(f"M{pair}", OPPOSITE_COUPLE, couple)
-        k.loads[on].append(Load(symbol(name), on, at, step, "reaction", turned))
-    return step
-
-
-OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.")
-
-
-def _order(loads: list[Load], first: Role) -> list[Load]:
-    rank = {"weight": 1, "inertia": 2, "applied": 3, "reaction": 4}
-    rank[first] = 0
-    return sorted(loads, key=lambda load: rank[load.role])
-
-
-def _perpendicular(k: Kinetostatics, name: str, u: Step) -> Step:
-    label = f"⟂{name}"
-    return k.plan.steps[label] if label in k.plan else k.plan.add(label, rules.TURN, u)
-
-
-def _sliding(k: Kinetostatics, j: str, other: str, force: Step, about: Step) -> Step:
-    """Couple of a sliding pair's reaction on link ``j`` (its force taken at ``about``) and its arm, from moments about it."""
-    name = pair_index(j, other)
-    total = moment_sum(k, f"ΣM{j}", about, [j])
-    couple = k.plan.add(f"M{name}", OPPOSITE_COUPLE, total)
-    k.couples[f"F{name}"] = couple
-    k.arms[f"h{name}"] = k.plan.add(f"h{name}", ARM, couple, force)
-    return couple
-
-
-def _rpp(k: Kinetostatics, g: StructuralGroup) -> None:
-    """Kind 5: the plan of the guided link first, then of the block; arms from moments (manual 000, 4 ex. 1)."""
-    pos, m = k.positions, k.positions.mechanism
-    (i, j), p, guide = g.links, g.outer[0], g.guides[0]
-    base = m.guides[guide].link
-    ij, ji = pair_index(i, j), pair_index(j, i)
-    across_slot = _perpendicular(k, pos.directions[i].name, pos.directions[i])
-    across_guide = _perpendicular(k, guide, pos.guide_directions[guide])
-    fp = _force_plan(k, j, (j,))
-    start = fp.plan.add("2", rules.GIVEN, 0j)
-    loads = _order(k.loads[j], "inertia")
-    end = start
-    pending = []  # sides are recorded in the manual's order, the first unknown one before them
-    for n, load in enumerate(loads, 3):
-        head = fp.plan.add(str(n), rules.SHIFT, end, load.vector)
-        pending.append((load.symbol, end, head))
-        end = head
-    one = fp.plan.add("1", rules.LINE_LINE, start, across_slot, end, across_guide)
-    f_ji = _close(k, fp, j, i, one, start)
-    for s, tail, head in pending:
-        fp.side(s, tail, head)
-    f_jb = _close(k, fp, j, base, end, one)
-    # Block: F_ij, its loads, closing force from the link that carries the pin.
-    f_ij = k.reaction(i, j, k.plan.add(f"F{ij}", OPPOSITE, f_ji))
-    k.loads[i].insert(0, Load(symbol(f"F{ij}"), i, pos.points[p], f_ij, "reaction"))
-    inner = _sliding(k, i, j, f_ji, pos.points[p])
-    owner = _owner(m, p)
-    block = _force_plan(k, i, (i,))
-    first = block.plan.add("1", rules.GIVEN, 0j)
-    rest = [load for load in k.loads[i] if load.role != "reaction"] + [load for load in k.loads[i][1:] if load.role == "reaction"]
-    tail = _chain(block, 1, first, [k.loads[i][0], *rest])
-    f_io = _close(k, block, i, owner, tail, first)
-    # The guided link also carries the opposite of the inner couple.
-    on_j = k.plan.add(f"M{ji}", OPPOSITE_COUPLE, inner)
-    k.loads[j].append(Load(symbol(f"F{ji}"), j, pos.points[p], f_ji, "reaction", on_j))
-    outer = _sliding(k, j, base, f_jb, pos.points[p])
-    _react(k, i, owner, pos.points[p], f_io)
-    _react(k, j, base, pos.points[p], f_jb, outer)
-
-
-def _rpr(k: Kinetostatics, g: StructuralGroup) -> None:
-    """Kind 3: tangential part from moments of the group about the pivot, then plans of block and rocker."""
-    pos, m = k.positions, k.positions.mechanism
-    (i, j), (p, q) = g.links, g.outer
-    owner, base = _owner(m, p), _owner(m, q)
-    ji, io = pair_index(j, i), pair_index(i, owner)
-    total = moment_sum(k, f"ΣM{i}–{j}", pos.points[q], [i, j])
-    tangential = k.plan.add(f"F{io}τ", TANGENTIAL, total, pos.points[q], pos.points[p])
-    radial = pos.direction(q, p)
-    across = _perpendicular(k, f"{q}{p}" if radial is pos.directions[j] else f"напр {j}", pos.directions[j])
-    block = _force_plan(k, i, (i,))
-    start = block.plan.add("2", rules.GIVEN, 0j)
-    after = block.plan.add("3", rules.SHIFT, start, tangential)
-    pending, end = [], after
-    for n, load in enumerate(_order(k.loads[i], "weight"), 4):
-        head = block.plan.add(str(n), rules.SHIFT, end, load.vector)
-        pending.append((load.symbol, end, head))
-        end = head
-    one = block.plan.add("1", rules.LINE_LINE, start, radial, end, across, *pos.known_sine(g))
-    block.plan.add(f"F{io}n", CLOSE, one, start)
-    block.side(f"F̅_{{{io}}}^n", one, start, unknown=True)
-    block.side(f"F̅_{{{io}}}^τ", start, after)
-    for s, tail, head in pending:
-        block.side(s, tail, head)
-    f_ij = _close(k, block, i, j, end, one)
-    f_io = k.reaction(i, owner, block.plan.add(f"F{io}", CLOSE, one, after))
-    block.plan.vector(symbol(f"F{io}"), one, after)
-    inner = _sliding(k, i, j, f_ij, pos.points[p])
-    f_ji = k.reaction(j, i, k.plan.add(f"F{ji}", OPPOSITE, f_ij))
-    rocker = _force_plan(k, j, (j,))
-    first = rocker.plan.add("1", rules.GIVEN, 0j)
-    on_j = k.plan.add(f"M{ji}", OPPOSITE_COUPLE, inner)
-    contact = Load(symbol(f"F{ji}"), j, pos.points[p], f_ji, "reaction", on_j)
-    tail = _chain(rocker, 1, first, [contact, *_order(k.loads[j], "weight")])
-    k.loads[j].insert(0, contact)
-    f_jb = _close(k, rocker, j, base, tail, first)
-    _react(k, i, owner, pos.points[p], f_io)
-    _react(k, j, base, pos.points[q], f_jb)
-
-
-def _group_polygon(k: Kinetostatics, g: StructuralGroup, first: Step | None, last: Step | None, u: Step, v: Step,
-                   carriers: tuple[str, str], sine: tuple[Step, ...] = ()) -> tuple[Step, Step, ForcePlan]:
-    """Plan of a whole group closed by two unknown forces: ``first`` .. ``last`` known parts, lines along ``u`` and ``v``.
-
-    ``sine`` of the angle between these lines, where the position plan knows it better than they do.
-
-    ``carriers`` are the links outside that the two links lean on; returns the total forces from them.
-    """
-    i, j = g.links
-    fp = _force_plan(k, g.name, g.links)
-    start = fp.plan.add("2", rules.GIVEN, 0j)
-    n, tail = 2, start
-    pending = []
-
-    def lay(sign: str, vector: Step) -> None:
-        nonlocal n, tail
-        n += 1
-        head = fp.plan.add(str(n), rules.SHIFT, tail, vector)
-        pending.append((sign, tail, head))
-        tail = head
-
-    one, two = (f"F{pair_index(link, carrier)}" for link, carrier in zip(g.links, carriers, strict=True))
-    if first is not None:
-        lay(f"F̅_{{{one[1:]}}}^τ", first)
-    after_first = tail
-    for link in (i, j):
-        for load in _order(k.loads[link], "weight"):
-            lay(load.symbol, load.vector)
-    before_last = tail
-    if last is not None:
-        lay(f"F̅_{{{two[1:]}}}^τ", last)
-    closing = fp.plan.add("1", rules.LINE_LINE, start, u, tail, v, *sine)
-    fp.side(f"F̅_{{{one[1:]}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
-    for sign, a, b in pending:
-        fp.side(sign, a, b)
-    fp.side(f"F̅_{{{two[1:]}}}" + ("^n" if last is not None else ""), tail, closing, unknown=True)
-    f_one = k.reaction(i, carriers[0], fp.plan.add(one, CLOSE, closing, after_first))
-    f_two = k.reaction(j, carriers[1], fp.plan.add(two, CLOSE, before_last, closing))
-    if first is not None:
-        fp.plan.vector(symbol(one), closing, after_first)
-    if last is not None:
-        fp.plan.vector(symbol(two), before_last, closing)
-    # The inner reaction closes the forces of the first link: the same drawing, one more line.
-    split = pending[(first is not None) + len(k.loads[i]) - 1][2] if len(k.loads[i]) + (first is not None) else start
-    name = f"F{pair_index(i, j)}"
-    inner = k.reaction(i, j, fp.plan.add(name, CLOSE, split, closing))
-    fp.plan.vector(symbol(name), split, closing)
-    k.reaction(j, i, k.plan.add(f"F{pair_index(j, i)}", OPPOSITE, inner))
-    return f_one, f_two, fp
-
-
-def _rrr(k: Kinetostatics, g: StructuralGroup) -> None:
-    """Kind 1: tangential parts from moments of each link about the middle hinge, normal parts from the plan."""
-    pos, m = k.positions, k.positions.mechanism
-    (i, j), (p, q), c = g.links, g.outer, str(g.inner)
-    a, b = _owner(m, p), _owner(m, q)
-    parts = []
-    for link, other, end in ((i, a, p), (j, b, q)):
-        total = moment_sum(k, f"ΣM{link}", pos.points[c], [link])
-        parts.append(k.plan.add(f"F{pair_index(link, other)}τ", TANGENTIAL, total, pos.points[c], pos.points[end]))
-    f_one, f_two, _ = _group_polygon(k, g, parts[0], parts[1], pos.direction(p, c), pos.direction(q, c), (a, b),
-                                     pos.known_sine(g))
-    _react(k, i, a, pos.points[p], f_one)
-    _react(k, j, b, pos.points[q], f_two)
-
-
-def _rrp(k: Kinetostatics, g: StructuralGroup) -> None:
-    """Kind 2: tangential part from moments of the rod about the inner hinge; the guide's reaction across it."""
-    pos, m = k.positions, k.positions.mechanism
-    (i, j), p, c, guide = g.links, g.outer[0], str(g.inner), g.guides[0]
-    a, base = _owner(m, p), m.guides[guide].link
-    total = moment_sum(k, f"ΣM{i}", pos.points[c], [i])
-    part = k.plan.add(f"F{pair_index(i, a)}τ", TANGENTIAL, total, pos.points[c], pos.points[p])
-    across = _perpendicular(k, guide, pos.guide_directions[guide])
-    # The lines of the velocities turned by 90 degrees, one of them the other way round.
-    sine = tuple(Step(f"−{s.name}", OPPOSITE, (s,)) for s in pos.known_sine(g))
-    f_one, f_two, _ = _group_polygon(k, g, part, None, pos.direction(p, c), across, (a, base), sine)
-    couple = _sliding(k, j, base, f_two, pos.points[c])
-    _react(k, i, a, pos.points[p], f_one)
-    _react(k, j, base, pos.points[c], f_two, couple)
-
-
-def _prp(k: Kinetostatics, g: StructuralGroup) -> None:
-    """Kind 4: both guides' reactions from the plan of the group, their arms from moments about the inner hinge."""
-    pos, m = k.positions, k.positions.mechanism
-    c = str(g.inner)
-    bases = m.guides[g.guides[0]].link, m.guides[g.guides[1]].link
-    u, v = (_perpendicular(k, name, pos.guide_directions[name]) for name in g.guides)
-    forces = _group_polygon(k, g, None, None, u, v, bases)
-    for link, base, force in zip(g.links, bases, forces[:2], strict=True):
-        couple = _sliding(k, link, base, force, pos.points[c])
-        _react(k, link, base, pos.points[c], force, couple)
-
-
-GROUPS: dict[int, Callable[[Kinetostatics, StructuralGroup], None]] = {1: _rrr, 2: _rrp, 3: _rpr, 4: _prp, 5: _rpp}
-"""Force analysis of each kind of group (manual 000, table 4.1)."""
 
 
 def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
@@ -456,12 +342,12 @@ def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
     pos, m = k.positions, k.positions.mechanism
     c = m.crank
     pivot = pos.points[c.pivot]
-    total = moment_sum(k, f"ΣM{c.link}", pivot, [c.link])
-    plan = _force_plan(k, c.link, (c.link,))
+    total = k.moment_sum(f"ΣM{c.link}", pivot, [c.link])
+    plan = k.plan_of(c.link, (c.link,))
     first = plan.plan.add("1", rules.GIVEN, 0j)
     reactions = [load for load in k.loads[c.link] if load.role == "reaction"]
     others = [load for load in k.loads[c.link] if load.role != "reaction"]
-    tail = _chain(plan, 1, first, reactions)
+    tail = plan.chain(1, first, reactions)
     n = 1 + len(reactions)
     if driver is None:
         k.balancing = k.plan.add("Mур", OPPOSITE_COUPLE, total)
@@ -470,10 +356,10 @@ def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
         k.balancing = k.plan.add(driver.name, DRIVING_FORCE, total, pivot, at, driver.direction(c.sense))
         load = Load(symbol(driver.name), c.link, at, k.balancing, "applied")
         k.loads[c.link].append(load)
-        tail = _chain(plan, n, tail, [load])
+        tail = plan.chain(n, tail, [load])
         n += 1
-    tail = _chain(plan, n, tail, others)
-    _close(k, plan, c.link, m.frame, tail, first)
+    tail = plan.chain(n, tail, others)
+    k.close(plan, c.link, m.frame, tail, first)
 
 
 def _driving(total: Any, centre: Any, at: Any, u: Any) -> Any:

@@ -5,25 +5,15 @@ Source: manual 000, section 3.1; manual 002, section 1.1.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
-
-import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Step
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, foot_on_guide
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.dead_centres import crossing, foot_on_guide
-
-TURNED_BY = Rule("turn a direction", lambda u, angle: u * unit(angle), ("direction", "angle"), "direction",
-                 "Под углом {1} к {0} проведём направление {name}.")
-ALONG_TANGENT = Rule(
-    "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
-    ("point", "point"), "direction", "Проведём прямую {0}{1}.", lambda a, v: (Helper("line", a[0], a[1]),),
-)
 
 
 @dataclass
@@ -58,6 +48,14 @@ class Positions:
             self.rays[p, q] = self.plan.add(self.plan.free(p + q), rules.RAY, self.points[p], self.points[q])
         return self.rays[p, q]
 
+    def crossing(self, group: StructuralGroup) -> tuple[Step, ...]:
+        """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
+        found: Crossing | None = group.kind.crossing(self.mechanism, group, self.phi)
+        if found is None:
+            return ()
+        self.sines[group.links[0]] = found.sine
+        return found.lengths
+
 
 def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",)) -> Positions:
     """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,)."""
@@ -78,7 +76,7 @@ def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",
         for name in group.guides:
             if name not in pos.guide_points:
                 _moving_guide(pos, mechanism.guides[name])
-        DYADS[group.kind](pos, group)
+        group.kind.position(pos, group)
         for link in group.links:
             _further_points(pos, link)
     return pos
@@ -88,7 +86,7 @@ def _fixed_guide(pos: Positions, guide: Guide) -> None:
     at = near_point(pos.mechanism, guide)
     point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), rules.GIVEN, at, say="Отметим точку {name} направляющей.")
     pos.guide_points[guide.name] = point
-    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.GIVEN_DIRECTION, unit(guide.direction),
+    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.GIVEN_DIRECTION, ar.unit(guide.direction),
                                                     say=f"Через точку {point.name} проведём направляющую {{name}}.")
 
 
@@ -104,7 +102,7 @@ def near_point(m: Mechanism, guide: Guide) -> complex:
     """
     assert not isinstance(guide.through, str)
     pivot = m.fixed[m.crank.pivot]
-    from_foot = (guide.through - pivot) / unit(guide.direction)
+    from_foot = (guide.through - pivot) / ar.unit(guide.direction)
     fixed = max(abs(z - pivot) for z in m.fixed.values())
     size = m.crank.length + sum(sum(g.lengths) for g in m.groups) + fixed + abs(from_foot.imag)
     return guide.through if abs(from_foot.real) <= AWAY * size else foot_on_guide(pivot, guide)
@@ -127,21 +125,13 @@ def _line_on(pos: Positions, link: str, start: str, towards: str) -> Step:
     if towards in pos.guide_directions and towards not in pos.points:
         return pos.guide_directions[towards]
     for g in pos.mechanism.groups:
-        if g.kind == 3 and g.offset and link in g.links and towards == g.outer[0]:
+        if g.kind.rocker(g) and g.offset and link in g.links and towards == g.outer[0]:
             return pos.directions[link]
     return pos.direction(start, towards)
 
 
 def _turned_by(pos: Positions, name: str, u: Step, angle: float) -> Step:
-    return u if angle == 0 else pos.plan.add(pos.plan.free(name), TURNED_BY, u, angle)
-
-
-def unit(angle: float) -> complex:
-    """Unit vector; exact for multiples of 90 degrees, where cos(pi/2) would leave 6e-17."""
-    quarter = angle / (np.pi / 2)
-    if quarter == round(quarter):
-        return (1 + 0j, 1j, -1 + 0j, -1j)[round(quarter) % 4]
-    return complex(np.cos(angle), np.sin(angle))
+    return u if angle == 0 else pos.plan.add(pos.plan.free(name), rules.TURNED_BY, u, angle)
 
 
 def _further_points(pos: Positions, link: str) -> None:
@@ -149,70 +139,3 @@ def _further_points(pos: Positions, link: str) -> None:
         if p.link == link and p.name not in pos.points:
             u = _turned_by(pos, f"{p.start}{p.name}", _line_on(pos, link, p.start, p.towards), p.angle)
             pos.points[p.name] = pos.plan.add(p.name, rules.ALONG, pos.points[p.start], u, p.distance)
-
-
-def _crossing(pos: Positions, g: StructuralGroup) -> tuple[Step, ...]:
-    """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
-    found = crossing(pos.mechanism, g, pos.phi)
-    if found is None:
-        return ()
-    pos.sines[g.links[0]] = found.sine
-    return found.lengths
-
-
-def _rrr(pos: Positions, g: StructuralGroup) -> None:
-    p, q = g.outer
-    assert g.inner is not None
-    pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_ARC, pos.points[p], g.lengths[0], pos.points[q], g.lengths[1], g.side,
-                                       *_crossing(pos, g))
-    pos.directions[g.links[0]] = pos.direction(p, g.inner)
-    pos.directions[g.links[1]] = pos.direction(q, g.inner)
-
-
-def _rrp(pos: Positions, g: StructuralGroup) -> None:
-    assert g.inner is not None
-    guide = g.guides[0]
-    pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_LINE, pos.points[g.outer[0]], g.lengths[0], pos.guide_points[guide],
-                                       pos.guide_directions[guide], g.side, *_crossing(pos, g))
-    pos.directions[g.links[0]] = pos.direction(g.outer[0], g.inner)
-    pos.directions[g.links[1]] = pos.guide_directions[guide]
-
-
-def _rpr(pos: Positions, g: StructuralGroup) -> None:
-    p, q = g.outer
-    if g.offset:
-        # The guide line passes the pivot at the offset: its foot is where the tangent from the pin touches that circle.
-        given = pos.points[p], pos.points[q], abs(g.offset), g.side
-        foot = pos.plan.add(pos.plan.free(f"{q}₁"), rules.TANGENT, *given)
-        pos.points[foot.name] = foot
-        pos.feet[g.links[1]] = foot.name
-        u = pos.plan.add(pos.plan.free(foot.name + p), ALONG_TANGENT, foot, *given, *_crossing(pos, g))
-        pos.rays[foot.name, p] = u
-    else:
-        u = pos.direction(q, p)
-    pos.directions[g.links[1]] = pos.directions[g.links[0]] = u
-
-
-def _prp(pos: Positions, g: StructuralGroup) -> None:
-    assert g.inner is not None
-    a, b = g.guides
-    pos.points[g.inner] = pos.plan.add(g.inner, rules.LINE_LINE, pos.guide_points[a], pos.guide_directions[a],
-                                       pos.guide_points[b], pos.guide_directions[b])
-    for link, guide in zip(g.links, g.guides, strict=True):
-        pos.directions[link] = pos.guide_directions[guide]
-
-
-def _rpp(pos: Positions, g: StructuralGroup) -> None:
-    assert g.inner is not None
-    guide = g.guides[0]
-    u = pos.guide_directions[guide]
-    slot = pos.plan.add(f"n{g.links[1]}–n{g.links[1]}", TURNED_BY, u, g.slot,
-                        say=f"Паз звена {g.links[1]}: под углом {{1}} к {{0}} возьмём направление {{name}}.")
-    pos.points[g.inner] = pos.plan.add(g.inner, rules.LINE_LINE, pos.points[g.outer[0]], slot, pos.guide_points[guide], u,
-                                       say="Через точку {0} параллельно {1} проведём прямую до пересечения с {3} в точке {name}.")
-    pos.directions[g.links[0]] = slot
-    pos.directions[g.links[1]] = u
-
-
-DYADS: dict[int, Callable[[Positions, StructuralGroup], None]] = {1: _rrr, 2: _rrp, 3: _rpr, 4: _prp, 5: _rpp}
-"""Construction of each kind of group."""

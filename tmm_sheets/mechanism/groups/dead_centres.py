@@ -1,0 +1,92 @@
+"""Half-chords of the crossings that a group on the crank makes, exact up to its dead positions.
+
+The half-chord of two arcs, or of an arc and a line, vanishes in a dead position, and so does a tangent. Taken from the rounded
+crank pin it loses as many digits as the gap is small; taken from the crank angle it loses none, and the sine of the angle under
+which the lines of the velocity and acceleration plans cross follows from it. Only a group between the crank and the frame has
+such a form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from typing import Any
+
+from tmm_sheets.construction.limit_angles import DIGITS, Cosine, angle_of, direction
+from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
+
+Length = Callable[[Any], Any]
+"""A length of the mechanism at crank angles, rad."""
+
+OF_ANGLE = Rule("length from the crank angle", lambda f, phi: f(phi), (), "length", "{name} = {value}.", beyond_paper=True)
+
+
+def measured(g: StructuralGroup, phi: Any, half: Length, distance: Length | None = None) -> tuple[Step, Step | None]:
+    """Half-chord of a group's crossing and distance of its centres as steps, of their functions of the crank angle."""
+    h = Step(f"h {g.name}", OF_ANGLE, (half, phi))
+    return h, None if distance is None else Step(f"d {g.name}", OF_ANGLE, (distance, phi))
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """What the crank angle knows of the crossing of a group, as steps: half of the chord (or the tangent's length), the distance
+    of the centres (none for a line), the sine between the group's lines in the plans of velocities.
+    """
+
+    half: Step
+    distance: Step | None
+    sine: Step
+
+    @property
+    def lengths(self) -> tuple[Step, ...]:
+        """Further arguments of the rule that makes the crossing."""
+        return (self.half,) if self.distance is None else (self.half, self.distance)
+
+
+def on_crank(m: Mechanism, point: str) -> tuple[Decimal, Decimal] | None:
+    """Radius of a point on the crank and its angle ahead of the crank; None when it is elsewhere."""
+    c = m.crank
+    if point == c.pin:
+        return Decimal(c.length), Decimal(0)
+    for p in m.points:
+        if p.name == point and p.link == c.link and p.start == c.pivot and p.towards == c.pin and p.distance > 0:
+            return Decimal(p.distance), direction(p.angle)[0]
+    return None
+
+
+def span_from_crank(m: Mechanism, g: StructuralGroup) -> Callable[[Decimal], Cosine] | None:
+    """Square of a length less the square of the distance between the group's outer hinges, one of them on the crank, one fixed.
+
+    d^2 = l0^2 + l1^2 - 2 l0 l1 cos(phi - phi0).
+    """
+    p, q = g.outer
+    pin = on_crank(m, p) or on_crank(m, q)
+    fixed = m.fixed.get(q if on_crank(m, p) else p)
+    if pin is None or fixed is None:
+        return None
+    l1, ahead = pin
+    pivot = m.fixed[m.crank.pivot]
+    x, y = Decimal(fixed.real) - Decimal(pivot.real), Decimal(fixed.imag) - Decimal(pivot.imag)
+    square = x * x + y * y
+    if not square:
+        return None  # a hinge on the crank's own pivot: nothing moves against the crank
+    start, b = angle_of(x, y) - ahead, 2 * l1 * square.sqrt()
+    base = -square - l1 * l1
+    return lambda length: Cosine(base + length * length, b, start)
+
+
+def height(at: complex, guide: Guide) -> tuple[Decimal, Decimal, Decimal]:
+    """Distance of a point from a fixed guide, positive on its left, and the guide's direction."""
+    assert not isinstance(guide.through, str)
+    _, cos, sin = direction(guide.direction)
+    x, y = Decimal(at.real) - Decimal(guide.through.real), Decimal(at.imag) - Decimal(guide.through.imag)
+    return cos * y - sin * x, cos, sin
+
+
+def foot_on_guide(at: complex, guide: Guide) -> complex:
+    """Foot of the perpendicular from a point on a fixed guide: the nearest double to it, however far away the guide's own point."""
+    with localcontext(prec=DIGITS):
+        above, cos, sin = height(at, guide)
+        return complex(float(Decimal(at.real) + above * sin), float(Decimal(at.imag) - above * cos))

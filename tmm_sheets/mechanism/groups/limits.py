@@ -1,0 +1,83 @@
+"""Conditions of assembly: their form, and the words for lengths in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil, floor, log10
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.mechanism.model import StructuralGroup
+
+SWEEP = 720
+"""Crank angles of the fine sweep; between them the narrowest places are searched for."""
+
+TOUCH = 1e-6
+"""Share of the crank length (sine of the angle between guides) below which a pin sits on a pivot (guides are parallel)."""
+
+
+@dataclass(frozen=True)
+class AssemblyLimit:
+    """One condition of assembly of a group: it holds where ``margin`` (m, or the sine of an angle) is not negative.
+
+    ``unit`` is what the margin is compared with: the crank length, or 1 for a sine. ``say`` words the greatest lack, whose
+    place is named when it is ``measured``; ``hint`` words what would help, from the positions of the whole turn.
+    """
+
+    group: StructuralGroup
+    unit: float
+    margin: Callable[[Any], Any]
+    say: Callable[[float], str]
+    hint: Callable[[Any], str]
+    measured: bool = True
+
+
+def mm(length: float) -> str:
+    """A length in words."""
+    return f"{length * 1000:.4g} mm"
+
+
+def lacking(length: float) -> str:
+    """A lack in words."""
+    return mm(length) if length >= 1e-6 else "less than 0.001 mm"
+
+
+def more(length: float) -> str:
+    """A length to four significant digits that is surely greater."""
+    return _rounded(length * (1 + 1e-6), ceil)
+
+
+def less(length: float) -> str:
+    """A length to four significant digits that is surely less."""
+    return _rounded(length * (1 - 1e-6), floor)
+
+
+def _rounded(length: float, to: Callable[[float], int]) -> str:
+    if length <= 0:
+        return "0 mm"
+    unit = 10.0 ** (floor(log10(length * 1000)) - 3)
+    return f"{to(length * 1000 / unit) * unit:.6g} mm"
+
+
+def span(pos: Any, p: str, q: str) -> Any:
+    """Distance of two points of the position plan, m."""
+    return np.abs(pos.points[q].value - pos.points[p].value)
+
+
+def extremes(lengths: Any) -> tuple[float, float]:
+    """Least and greatest length over the turn; between the angles of the sweep by parabolas of the smooth squares."""
+    y = np.broadcast_to(lengths, max(np.size(lengths), SWEEP))[-SWEEP:] ** 2
+    before, after = np.roll(y, 1), np.roll(y, -1)
+    bend = before - 2 * y + after
+    with np.errstate(invalid="ignore", divide="ignore"):
+        vertex = np.where(np.abs(before - after) <= 2 * np.abs(bend), y - (after - before) ** 2 / (8 * bend), y)
+    vertex = np.where(np.isfinite(vertex), vertex, y)
+    return float(np.sqrt(max(np.nanmin(vertex), 0.0))), float(np.sqrt(np.nanmax(vertex)))
+
+
+def sine(u: Any, v: Any) -> Any:
+    """Magnitude of the sine of the angle between two directions."""
+    return np.abs(ar.cross(u, v))

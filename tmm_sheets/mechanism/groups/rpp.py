@@ -1,0 +1,157 @@
+"""Kind 5, RPP: a block hinged to a pin in the slot of a link that slides along a guide."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.indices import on_link
+from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
+from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
+from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.linkage.accelerations import Accelerations
+    from tmm_sheets.methods.linkage.forces import Kinetostatics
+    from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.methods.linkage.velocities import Velocities
+
+
+class RPPKind(GroupKind):
+    """Kind 5: a block hinged to a pin in the slot of a link that slides along a guide."""
+
+    number, form, orders = 5, "ВПП", ("RPP", "PPR")
+
+    def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
+        p, (i, j) = g.outer[0], g.links
+        return [turning(p, m.owner(p), i), sliding(p + "′", i, j), sliding(p + "″", j, m.guides[g.guides[0]].link)]
+
+    def carried(self, g: StructuralGroup) -> dict[str, str]:
+        return {str(g.inner): g.links[1]}
+
+    def position(self, pos: Positions, g: StructuralGroup) -> None:
+        assert g.inner is not None
+        guide = g.guides[0]
+        u = pos.guide_directions[guide]
+        slot = pos.plan.add(f"n{g.links[1]}–n{g.links[1]}", rules.TURNED_BY, u, g.slot,
+                            say=f"Паз звена {g.links[1]}: под углом {{1}} к {{0}} возьмём направление {{name}}.")
+        pos.points[g.inner] = pos.plan.add(g.inner, rules.LINE_LINE, pos.points[g.outer[0]], slot, pos.guide_points[guide], u,
+                                           say="Через точку {0} параллельно {1} проведём прямую до пересечения с {3} "
+                                               "в точке {name}.")
+        pos.directions[g.links[0]] = slot
+        pos.directions[g.links[1]] = u
+
+    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
+        pos, plan = vel.positions, vel.plan
+        p, s, guide, (i, j) = g.outer[0], str(g.inner), g.guides[0], g.links
+        pj = on_link(p, j)
+        carrier, link = vel.guide(guide, s)
+        along, slot = pos.guide_directions[guide], pos.directions[i]
+        # Link j does not turn against the guide: its point at the pin and its point on the guide move alike on a fixed
+        # guide; on a turning one the point at the pin is taken first.
+        if carrier is vel.pole:
+            step = plan.add(vel.name(pj), rules.LINE_LINE, vel.points[p], slot, carrier, along)
+            plan.vector(f"V̅_{{{pj}}}", vel.pole, step)
+            plan.vector(f"V̅_{{{pj}{p}}}", vel.points[p], step)
+            vel.points[s] = step
+        else:
+            at_pin = vel.on(link, str(pos.mechanism.guides[guide].through), p)
+            step = plan.add(vel.name(pj), rules.LINE_LINE, vel.points[p], slot, at_pin, along)
+            plan.vector(f"V̅_{{{pj}}}", vel.pole, step)
+            vel.points[s] = vel.rotated(s, step, link, p, s)
+        vel.coincident[pj] = step
+        vel.coincident[on_link(s, j)] = vel.points[s]
+        for k in g.links:
+            vel.turns_with(k, link)
+
+    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
+        plan, pos, vel = acc.plan, acc.positions, acc.velocities
+        p, s, guide, (i, j) = g.outer[0], str(g.inner), g.guides[0], g.links
+        pj = on_link(p, j)
+        carrier, _, link = acc.guide(guide, s)
+        v_pin = vel.coincident[pj]
+        k1 = acc.coriolis(acc.points[p], link, vel.points[p], v_pin, f"{pj}{p}")
+        if link == pos.mechanism.frame:
+            k2 = carrier
+        else:
+            through = str(pos.mechanism.guides[guide].through)
+            k2 = acc.coriolis(acc.on(link, through, p), link, vel.on(link, through, p), v_pin, on_link(pj, link))
+        step = plan.add(acc.name(pj), rules.LINE_LINE, k1, pos.directions[i], k2, pos.guide_directions[guide])
+        plan.vector(f"a̅_{{{pj}{p}}}^r", k1, step)
+        plan.vector(f"a̅_{{{pj}}}", acc.pole, step)
+        acc.coincident[pj] = step
+        for k in g.links:
+            acc.turns_with(k, link)
+        if link == pos.mechanism.frame:
+            acc.points[s] = step
+        else:
+            acc.points[s] = acc.rotated(s, step, link, p, s)
+        acc.coincident[on_link(s, j)] = acc.points[s]
+
+    def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
+        """Kind 5: the plan of the guided link first, then of the block; arms from moments (manual 000, 4 ex. 1)."""
+        pos, m = forces.positions, forces.positions.mechanism
+        (i, j), p, guide = g.links, g.outer[0], g.guides[0]
+        base = m.guides[guide].link
+        across_slot = forces.across(pos.directions[i].name, pos.directions[i])
+        across_guide = forces.across(guide, pos.guide_directions[guide])
+        fp = forces.plan_of(j, (j,))
+        start = fp.plan.add("2", rules.GIVEN, 0j)
+        loads = forces.order(forces.loads[j], "inertia")
+        end = start
+        pending = []  # sides are recorded in the manual's order, the first unknown one before them
+        for n, load in enumerate(loads, 3):
+            head = fp.plan.add(str(n), rules.SHIFT, end, load.vector)
+            pending.append((load.symbol, end, head))
+            end = head
+        one = fp.plan.add("1", rules.LINE_LINE, start, across_slot, end, across_guide)
+        f_ji = forces.close(fp, j, i, one, start)
+        for s, tail, head in pending:
+            fp.side(s, tail, head)
+        f_jb = forces.close(fp, j, base, end, one)
+        # Block: F_ij, its loads, closing force from the link that carries the pin.
+        f_ij = forces.opposite(i, j, f_ji)
+        forces.loads[i].insert(0, forces.contact(i, j, pos.points[p], f_ij))
+        inner = forces.sliding(i, j, f_ji, pos.points[p])
+        owner = m.owner(p)
+        block = forces.plan_of(i, (i,))
+        first = block.plan.add("1", rules.GIVEN, 0j)
+        loads = forces.loads[i]
+        rest = [load for load in loads if load.role != "reaction"] + [load for load in loads[1:] if load.role == "reaction"]
+        tail = block.chain(1, first, [loads[0], *rest])
+        f_io = forces.close(block, i, owner, tail, first)
+        # The guided link also carries the opposite of the inner couple.
+        on_j = forces.opposite_couple(j, i, inner)
+        forces.loads[j].append(forces.contact(j, i, pos.points[p], f_ji, on_j))
+        outer = forces.sliding(j, base, f_jb, pos.points[p])
+        forces.react(i, owner, pos.points[p], f_io)
+        forces.react(j, base, pos.points[p], f_jb, outer)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        i, j = g.links
+        return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
+                              lambda lack: f"the slot of link {j} is parallel to its guide {g.guides[0]}",
+                              lambda pos: 'try slot = "90 deg"', measured=False)]
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        (i, j), slot = g.links, pos.directions[g.links[0]]
+        return [Outline(i, block=g.outer[0], along=slot),
+                Outline(j, block=str(g.inner), along=pos.guide_directions[g.guides[0]], slot=slot)]
+
+    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+        (i, j), p = g.links, g.outer[0]
+        return [OuterReaction(i, p), OuterReaction(j, p, g.guides[0])]
+
+    def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
+        i, j = g.links
+        return j, i
+
+    def about(self, g: StructuralGroup) -> str:
+        return g.outer[0]
+
+    def ram(self, g: StructuralGroup) -> str | None:
+        return g.links[1]
+
+
+RPP = RPPKind()

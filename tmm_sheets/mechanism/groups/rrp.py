@@ -1,0 +1,131 @@
+"""Kind 2, RRP: a rod hinged to a slider on a guide."""
+
+from __future__ import annotations
+
+from decimal import Decimal, localcontext
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.indices import on_link
+from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, direction
+from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, height, measured, on_crank
+from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
+from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
+from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.linkage.accelerations import Accelerations
+    from tmm_sheets.methods.linkage.forces import Kinetostatics
+    from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.methods.linkage.velocities import Velocities
+
+SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
+            "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.")
+
+
+class RRPKind(GroupKind):
+    """Kind 2: a rod hinged to a slider on a guide."""
+
+    number, form, orders = 2, "ВВП", ("RRP", "PRR")
+
+    def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
+        p, c, (i, j) = g.outer[0], str(g.inner), g.links
+        return [turning(p, m.owner(p), i), turning(c, i, j), sliding(c + "′", j, m.guides[g.guides[0]].link)]
+
+    def carried(self, g: StructuralGroup) -> dict[str, str]:
+        return {str(g.inner): g.links[1]}
+
+    def position(self, pos: Positions, g: StructuralGroup) -> None:
+        assert g.inner is not None
+        guide = g.guides[0]
+        pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_LINE, pos.points[g.outer[0]], g.lengths[0], pos.guide_points[guide],
+                                           pos.guide_directions[guide], g.side, *pos.crossing(g))
+        pos.directions[g.links[0]] = pos.direction(g.outer[0], g.inner)
+        pos.directions[g.links[1]] = pos.guide_directions[guide]
+
+    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
+        pos, plan = vel.positions, vel.plan
+        p, c, guide = g.outer[0], str(g.inner), g.guides[0]
+        carrier, link = vel.guide(guide, c)
+        n = vel.perpendicular(p, c)
+        step = plan.add(vel.name(c), rules.LINE_LINE, vel.points[p], n, carrier, pos.guide_directions[guide], *pos.known_sine(g))
+        vel.points[c] = step
+        plan.vector(f"V̅_{c}", vel.pole, step)
+        plan.vector(f"V̅_{c}{p}", vel.points[p], step)
+        if carrier is not vel.pole:
+            plan.vector(f"V̅_{{{c}{carrier.name.upper()}}}", carrier, step)
+        vel.turning(g.links[0], p, c, vel.points[p], step)
+        vel.turns_with(g.links[1], link)
+        vel.coincident[on_link(c, g.links[1])] = step
+
+    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
+        plan, pos, vel = acc.plan, acc.positions, acc.velocities
+        p, c, guide = g.outer[0], str(g.inner), g.guides[0]
+        carrier, v_carrier, link = acc.guide(guide, c)
+        n = acc.normal(acc.points[p], g.links[0], p, c)
+        k = acc.coriolis(carrier, link, v_carrier, vel.points[c], on_link(c, link))
+        step = plan.add(acc.name(c), rules.LINE_LINE, n, acc.perpendicular(p, c), k, pos.guide_directions[guide],
+                        *pos.known_sine(g))
+        acc.points[c] = acc.coincident[on_link(c, g.links[1])] = step
+        plan.vector(f"a̅_{{{c}{p}}}^τ", n, step)
+        plan.vector(f"a̅_{c}", acc.pole, step)
+        acc.turning(g.links[0], p, c, acc.points[p], step)
+        acc.turns_with(g.links[1], link)
+
+    def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
+        """Kind 2: tangential part from moments of the rod about the inner hinge; the guide's reaction across it."""
+        pos, m = forces.positions, forces.positions.mechanism
+        (i, j), p, c, guide = g.links, g.outer[0], str(g.inner), g.guides[0]
+        a, base = m.owner(p), m.guides[guide].link
+        total = forces.moment_sum(f"ΣM{i}", pos.points[c], [i])
+        part = forces.tangential(i, a, total, c, p)
+        across = forces.across(guide, pos.guide_directions[guide])
+        # The lines of the velocities turned by 90 degrees, one of them the other way round.
+        sine = tuple(forces.negative(s) for s in pos.known_sine(g))
+        f_one, f_two, _ = forces.group_polygon(g, part, None, pos.direction(p, c), across, (a, base), sine)
+        couple = forces.sliding(j, base, f_two, pos.points[c])
+        forces.react(i, a, pos.points[p], f_one)
+        forces.react(j, base, pos.points[c], f_two, couple)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        p, guide, length = g.outer[0], g.guides[0], g.lengths[0]
+        rod = f"{p}{g.inner}"
+
+        def away(pos: Positions) -> Any:
+            return np.abs(ar.cross(pos.guide_directions[guide].value, pos.guide_points[guide].value - pos.points[p].value))
+
+        return [AssemblyLimit(g, m.crank.length, lambda pos: length - away(pos),
+                              lambda lack: f"rod {rod} = {mm(length)} is {lacking(lack)} too short to reach the guide {guide}",
+                              lambda pos: f"try {rod} >= {more(extremes(away(pos))[1])}")]
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
+        with localcontext(prec=DIGITS):
+            guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
+            if pin is None or isinstance(guide.through, str):
+                return None
+            (l1, ahead), length = pin, Decimal(g.lengths[0])
+            e0 = height(m.fixed[m.crank.pivot], guide)[0]
+            start = direction(guide.direction)[0] - ahead
+            below, above = Cosine(length + e0, l1, start + PI / 2), Cosine(length - e0, l1, start - PI / 2)
+        half, _ = measured(g, phi, lambda phi: np.sqrt(below(phi) * above(phi)))
+        return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        (i, j), c = g.links, str(g.inner)
+        return [Outline(i, (g.outer[0], c)), Outline(j, block=c, along=pos.guide_directions[g.guides[0]], slotted=True)]
+
+    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+        plan, (i, j) = forces.plans[g.name].plan, g.links
+        return [OuterReaction(i, g.outer[0], parts=(plan["2"], plan["3"])), OuterReaction(j, str(g.inner), g.guides[0])]
+
+    def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
+        return ((g.links[1], g.guides[0]),)
+
+
+RRP = RRPKind()

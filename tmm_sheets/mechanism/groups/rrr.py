@@ -1,0 +1,130 @@
+"""Kind 1, RRR: two rods joined by a hinge, hinged to what is before them."""
+
+from __future__ import annotations
+
+from decimal import Decimal, localcontext
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.limit_angles import DIGITS
+from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
+from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
+from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, span
+from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, turning
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.linkage.accelerations import Accelerations
+    from tmm_sheets.methods.linkage.forces import Kinetostatics
+    from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.methods.linkage.velocities import Velocities
+
+SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
+            "Синус угла между звеньями {name} = {value}.")
+
+
+class RRRKind(GroupKind):
+    """Kind 1: two rods joined by a hinge, hinged to what is before them."""
+
+    number, form, orders = 1, "ВВВ", ("RRR",)
+
+    def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
+        (p, q), c, (i, j) = g.outer, str(g.inner), g.links
+        return [turning(p, m.owner(p), i), turning(c, i, j), turning(q, j, m.owner(q))]
+
+    def position(self, pos: Positions, g: StructuralGroup) -> None:
+        p, q = g.outer
+        assert g.inner is not None
+        pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_ARC, pos.points[p], g.lengths[0], pos.points[q], g.lengths[1], g.side,
+                                           *pos.crossing(g))
+        pos.directions[g.links[0]] = pos.direction(p, g.inner)
+        pos.directions[g.links[1]] = pos.direction(q, g.inner)
+
+    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
+        plan = vel.plan
+        (p, q), c = g.outer, str(g.inner)
+        n1 = vel.perpendicular(p, c)
+        n2 = vel.perpendicular(q, c)
+        step = plan.add(vel.name(c), rules.LINE_LINE, vel.points[p], n1, vel.points[q], n2, *vel.positions.known_sine(g))
+        vel.points[c] = step
+        plan.vector(f"V̅_{c}", vel.pole, step)
+        plan.vector(f"V̅_{c}{p}", vel.points[p], step)
+        if vel.points[q] is not vel.pole:
+            plan.vector(f"V̅_{c}{q}", vel.points[q], step)
+        vel.turning(g.links[0], p, c, vel.points[p], step)
+        vel.turning(g.links[1], q, c, vel.points[q], step)
+
+    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
+        plan = acc.plan
+        (p, q), c, (i, j) = g.outer, str(g.inner), g.links
+        n1 = acc.normal(acc.points[p], i, p, c)
+        n2 = acc.normal(acc.points[q], j, q, c)
+        step = plan.add(acc.name(c), rules.LINE_LINE, n1, acc.perpendicular(p, c), n2, acc.perpendicular(q, c),
+                        *acc.positions.known_sine(g))
+        acc.points[c] = step
+        plan.vector(f"a̅_{{{c}{p}}}^τ", n1, step)
+        plan.vector(f"a̅_{{{c}{q}}}^τ", n2, step)
+        plan.vector(f"a̅_{c}", acc.pole, step)
+        acc.turning(i, p, c, acc.points[p], step)
+        acc.turning(j, q, c, acc.points[q], step)
+
+    def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
+        """Kind 1: tangential parts from moments of each link about the middle hinge, normal parts from the plan."""
+        pos, m = forces.positions, forces.positions.mechanism
+        (i, j), (p, q), c = g.links, g.outer, str(g.inner)
+        a, b = m.owner(p), m.owner(q)
+        parts = []
+        for link, other, end in ((i, a, p), (j, b, q)):
+            total = forces.moment_sum(f"ΣM{link}", pos.points[c], [link])
+            parts.append(forces.tangential(link, other, total, c, end))
+        f_one, f_two, _ = forces.group_polygon(g, parts[0], parts[1], pos.direction(p, c), pos.direction(q, c), (a, b),
+                                               pos.known_sine(g))
+        forces.react(i, a, pos.points[p], f_one)
+        forces.react(j, b, pos.points[q], f_two)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        (p, q), (l1, l2) = g.outer, g.lengths
+        first, second = f"{p}{g.inner}", f"{g.inner}{q}"
+        (long, a), (short, b) = sorted(((first, l1), (second, l2)), key=lambda x: -x[1])
+
+        def hint(pos: Positions) -> str:
+            low, high = extremes(span(pos, p, q))
+            for name, other in ((first, l2), (second, l1)):
+                least, most = max(high - other, other - low), other + low
+                if most > least * 1.001:
+                    return f"try {name} from {more(least)} to {less(most)}"
+            return f"try {first} = {second} = {more(high / 2)} or longer"
+
+        return [
+            AssemblyLimit(g, m.crank.length, lambda pos: l1 + l2 - span(pos, p, q),
+                          lambda lack: f"{first} = {mm(l1)} and {second} = {mm(l2)} together are {lacking(lack)} too short", hint),
+            AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - (a - b),
+                          lambda lack: f"{long} = {mm(a)} is {lacking(lack)} too long beside {short} = {mm(b)}", hint),
+        ]
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
+        with localcontext(prec=DIGITS):
+            less = span_from_crank(m, g)
+            if less is None:
+                return None
+            l2, l3 = (Decimal(x) for x in g.lengths)
+            outer, inner, none = less(l2 + l3), less(l2 - l3), less(Decimal(0))
+        half, distance = measured(g, phi, lambda phi: np.sqrt(outer(phi) * inner(phi) / none(phi)) / 2,
+                                  lambda phi: np.sqrt(-none(phi)))
+        return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        return [Outline(link, (end, str(g.inner))) for link, end in zip(g.links, g.outer, strict=True)]
+
+    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+        plan, (i, j), (p, q) = forces.plans[g.name].plan, g.links, g.outer
+        last = max(int(n) for n in plan.steps if n.isdigit())
+        return [OuterReaction(i, p, parts=(plan["2"], plan["3"])),
+                OuterReaction(j, q, parts=(plan[str(last - 1)], plan[str(last)]))]
+
+
+RRR = RRRKind()
