@@ -96,7 +96,7 @@ def typed(text, program):
 
 def parsed(arguments):
     """Reads the arguments as the program does, without running anything."""
-    context = click.Context(cli.commands, info_name="tmm-sheets")
+    context = click.Context(cli.commands, info_name="tmm-sheets", **cli.commands.context_settings)
     name, command, rest = cli.commands.resolve_command(context, arguments)
     return command.make_context(name, rest, parent=context)
 

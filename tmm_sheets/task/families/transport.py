@@ -278,7 +278,7 @@ class Condition:
 
 
 @dataclass(frozen=True)
-class Turn:
+class TurnOfMachine:
     """Points of a machine over one turn from position 12 on (m, world frame) and its conditions in order of attachment."""
 
     points: dict[str, Any]
@@ -290,7 +290,7 @@ class Turn:
         return next((c for c in self.conditions if c.fails), None)
 
 
-def turn(machine: str, numbers: Mapping[str, float]) -> Turn:
+def turn(machine: str, numbers: Mapping[str, float]) -> TurnOfMachine:
     """Assemble a machine at :data:`SWEEP` crank angles of one turn."""
     import numpy as np
 
@@ -313,37 +313,37 @@ def _hinge(p: Any, r: float, q: complex, s: float, side: int) -> tuple[Any, Any,
     return corner, d - r - s, abs(r - s) - d
 
 
-def _turn_of_diesel(a: Any, n: Mapping[str, float]) -> Turn:
+def _turn_of_diesel(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
     b, short3 = _slider(a, n["l_AB"], _axis(90 + n["theta"] / 2))
     d = a + (b - a) / n["l_AB"] * n["l_AD"] * _axis(-n["alpha"])
     c, short5 = _slider(d, n["l_DC"], _axis(90 - n["theta"] / 2))
-    return Turn({"A": a, "B": b, "D": d, "C": c}, (
+    return TurnOfMachine({"A": a, "B": b, "D": d, "C": c}, (
         Condition("max|y_A| > l_AB (slider 3: A lies farther from the axis of cylinder 6 than AB reaches)", short3),
         Condition("max|y_D| > l_DC (slider 5: D lies farther from the axis of cylinder 7 than DC reaches)", short5)))
 
 
-def _turn_of_compressor(a: Any, n: Mapping[str, float]) -> Turn:
+def _turn_of_compressor(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
     b, short3 = _slider(a, n["l_AB"], _axis(90 - n["theta"] / 2))
     c, short5 = _slider(a, n["l_AC"], _axis(90 + n["theta"] / 2))
-    return Turn({"A": a, "B": b, "C": c}, (
+    return TurnOfMachine({"A": a, "B": b, "C": c}, (
         Condition("max|y_A| > l_AB (slider 3: A lies farther from the axis of cylinder 6 than AB reaches)", short3),
         Condition("max|y_A| > l_AC (slider 5: A lies farther from the axis of cylinder 7 than AC reaches)", short5)))
 
 
-def _turn_of_press(a: Any, n: Mapping[str, float]) -> Turn:
+def _turn_of_press(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
     d = complex(-n["X"], n["Y"])
     b, *lacks = _hinge(a, n["l_AB"], d, n["l_BD"], 1)
     c, short = _slider(b - d.real, n["l_BC"], -1j)
-    return Turn({"A": a, "B": b, "C": c + d.real}, (
+    return TurnOfMachine({"A": a, "B": b, "C": c + d.real}, (
         *_four_bar(n, d, lacks),
         Condition("max|x_B - x_D| > l_BC (slider 5: B lies farther from the guide than BC reaches)", short)))
 
 
-def _turn_of_crusher(a: Any, n: Mapping[str, float]) -> Turn:
+def _turn_of_crusher(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
     d, e = complex(n["X1"], -n["Y1"]), complex(-n["X2"], n["Y2"])
     b, *lacks = _hinge(a, n["l_AB"], d, n["l_BD"], -1)
     c, far, near = _hinge(b, n["l_BC"], e, n["l_EC"], 1)
-    return Turn({"A": a, "B": b, "C": c}, (
+    return TurnOfMachine({"A": a, "B": b, "C": c}, (
         *_four_bar(n, d, lacks),
         Condition("|BE| > l_BC + l_EC (group 4-5: B lies farther from E than BC and EC reach)", far),
         Condition("|BE| < |l_EC - l_BC| (group 4-5: B lies nearer to E than BC and EC can come)", near)))
@@ -360,7 +360,7 @@ def _four_bar(n: Mapping[str, float], d: complex, lacks: Iterable[Any]) -> tuple
                       abs(frame - rocker) - rod + crank))
 
 
-ASSEMBLED: dict[str, Callable[[Any, Mapping[str, float]], Turn]] = {
+ASSEMBLED: dict[str, Callable[[Any, Mapping[str, float]], TurnOfMachine]] = {
     "diesel": _turn_of_diesel, "press": _turn_of_press, "compressor": _turn_of_compressor, "crusher": _turn_of_crusher,
 }
 """Assembly of each machine from the crank pin A at every angle and the numbers of its table."""
