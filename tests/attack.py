@@ -17,8 +17,9 @@ import traceback
 import warnings
 from pathlib import Path
 
-from tests.test_missing_parts import FILES, HEAD
-from tests.test_odd_input import places, written
+from tests.project_files import text, toml
+from tests.test_missing_parts import FILES
+from tests.test_odd_input import places
 from tmm_sheets import protocols, resources, results, summary
 from tmm_sheets.backends import svg
 from tmm_sheets.compare.measured.collecting import measurables
@@ -31,10 +32,10 @@ TESTS = Path(__file__).parent
 WHOLE = (*(resources.variants() / "lugansk").glob("*.toml"), resources.variants() / "press.toml",
          *(TESTS / "projects").glob("*.toml"), TESTS / "methods/linkage/radial.toml")
 SOURCES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(WHOLE)}
-SMALL = {name: HEAD + text for name, (text, _, _) in FILES.items()}
+SMALL = {name: text(*parts) for name, (parts, _, _) in FILES.items()}
 GONE = object()
-NAMES = ["A_", "_A", "A B", "Ж", "B3", "1", "p", "π", "n", "K", "P", "S", "b", "B′", "O₁", "A^2", "{x}", "A{", "A\\\\", "–", "A–B",
-         "A,B", "x" * 100, "0", "🙂", "é", "F21", "G2", "Mур", "2", "10", "11", "a.b", "A/B", "-", " ", "A\\n"]
+NAMES = ["A_", "_A", "A B", "Ж", "B3", "1", "p", "π", "n", "K", "P", "S", "b", "B′", "O₁", "A^2", "{x}", "A{", "A\\", "–", "A–B",
+         "A,B", "x" * 100, "0", "🙂", "é", "F21", "G2", "Mур", "2", "10", "11", "a.b", "A/B", "-", " ", "A\n"]
 UNITS = ["0 m", "-1 m", "1 kg", "1e-12 m", "1e-6 m", "1e6 m", "1e12 m", "1e300 m", "1e-300 m", "nan m", "inf m", "m", "1", "0 deg",
          "90 deg", "180 deg", "360 deg", "1e9 deg", "-90 deg", "0 rpm", "1e9 rpm", "1e-9 rpm", "0 N", "1e12 N", "-5 N", "1e-12 N",
          "1e9 kg", "1e-9 kg", "0 kg", "1e9 kg m2", "0 mm", "1e5 mm", "1e-5 mm", "1,5 m"]
@@ -107,10 +108,6 @@ def renamed(data, old, new):
     return new if data == old else data
 
 
-def text_of(data):
-    return "".join(f'"{k}" = {written(v)}\n' for k, v in data.items())
-
-
 def case(sources, rng):
     """A changed file and what was changed."""
     file = rng.choice(sorted(sources))
@@ -135,12 +132,12 @@ def case(sources, rng):
         new = offers(data, path, value, rng)
         notes.append(f"{'.'.join(map(str, path))}: {str(value)[:60]} -> {'gone' if new is GONE else str(new)[:60]}")
         data = changed(data, path, new)
-    return f"{file}: {'; '.join(notes)}", text_of(data)
+    return f"{file}: {'; '.join(notes)}", toml(data)
 
 
-def _steps(text):
+def _steps(file):
     """What the commands do with a file, one after another on one project: name and a function without arguments."""
-    read = variant.parse(text, "my.toml")
+    read = variant.parse(file, "my.toml")
     project = Project(read)
     yield "show", lambda: summary.text(read)
     yield "check", project.check
@@ -148,16 +145,16 @@ def _steps(text):
     if len(read.sheets) < 10:
         yield "build", lambda: [svg.render(found.drawing) for found in sheet.every(project).drawn.values()]
         yield "protocol", lambda: "\n".join(protocols.lines(project, None))
-        if len(text) < 2500:
+        if len(file) < 2500:
             yield "template", lambda: measurables(project, lambda _: None)
 
 
-def fallen(text):
+def fallen(file):
     """(step, message) of every step that ends with anything but its result or a message to the user."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            for name, step in _steps(text):
+            for name, step in _steps(file):
                 try:
                     step()
                 except CannotBuild as e:
@@ -185,9 +182,9 @@ def main():
     sources = {path.stem: path.read_text(encoding="utf-8") for path in given.files} or (SMALL if given.small else SMALL | SOURCES)
     found = {}
     for n in range(given.first, given.first + given.cases):
-        what, text = case(sources, random.Random(f"{given.seed}/{n}"))
+        what, file = case(sources, random.Random(f"{given.seed}/{n}"))
         start = time.perf_counter()
-        for step, said in fallen(text):
+        for step, said in fallen(file):
             key = re.sub(r"\d", "", said.splitlines()[0].partition(" ")[0] + said[said.rfind("("):])
             if key not in found:
                 found[key] = n

@@ -1,21 +1,20 @@
 """Odd values in project files: named ones that once made a defect, and a seeded sample of :mod:`tests.attack`."""
 
+import json
 import random
 import re
+import tomllib
 
 import pytest
 
 from tests.attack import SMALL, SOURCES, case, fallen
-from tests.test_missing_parts import FLYWHEEL, FORCE, GEAR, HEAD, MASS, SLIDER, WORKING
+from tests.project_files import EVEN, FLYWHEEL, FORCE, GEAR, MASS, MOMENT, SLIDER, WORKING, project, read, shipped
 from tmm_sheets import protocols, results
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.task import variant
 
-CONVEYOR = SOURCES["conveyor"]
-SHAPER = SOURCES["shaper"]
-RUN = '[cycle]\nstart = "0 deg"\npositions = 12\n'
+CONVEYOR = tomllib.loads(SOURCES["conveyor"])
+LOADED = (SLIDER, EVEN, FORCE)
 
 
 @pytest.mark.parametrize("n", range(40))
@@ -25,49 +24,46 @@ def test_nothing_falls_over(n):
 
 
 @pytest.mark.parametrize(
-    ("text", "field", "said"),
+    ("parts", "field", "said"),
     [
-        (CONVEYOR.replace('output = "E"', 'output = "C"'), "cycle.output", "C is a fixed point"),
-        (SLIDER + RUN + 'diagrams = ["O"]\n', "cycle.diagrams[1]", "O is a fixed point"),
-        (SLIDER.replace('"A"', '"A_"'), "crank.pin", '"A_" is no name of a point: expected a letter, then letters and digits'),
-        (SLIDER.replace('"A"', '"A B"'), "crank.pin", "is no name of a point"),
-        (SLIDER.replace('"A"', '"B′"'), "crank.pin", "is no name of a point"),
-        (SLIDER.replace('"A"', '"2"'), "crank.pin", "is no name of a point"),
-        (SLIDER.replace('O = [', '"O^2" = [').replace('"O"', '"O^2"'), "points.O^2", "is no name of a point"),
-        (SLIDER.replace('["2", "3"]', '["2", "3,0"]'), "group[1].links[2]", "is no name of a link"),
-        (SLIDER.replace('link = "1"', 'link = "0"'), "crank.link", "is the frame"),
-        (SLIDER.replace('"x"', '"x_{1}"'), "guide[1].name", "is no name of a guide"),
-        (SLIDER + RUN + FORCE.replace("F3", "F_3"), "force[1].name", "is no name of a force"),
-        (SLIDER + RUN + FORCE.replace("F3", "F30"), "force[1].name", "the force on link 3 from link 0"),
-        (SLIDER + RUN + MASS + FORCE.replace("F3", "G3"), "force[1].name", "the weight of link 3"),
-        (SLIDER + RUN + FORCE + '[balancing]\nkind = "moment"\nname = "F3"\n', "balancing.name", "there already"),
-        (SLIDER + RUN + 'extra = { "a_b" = "10 deg" }\n', "cycle.extra.a_b", "is no name of a position"),
-        (SLIDER + RUN.replace("positions", "working"), "cycle", "a crank angle as start needs positions"),
-        (SLIDER.replace('"0.1 m"', '"1e13 m"'), "crank.length", "is the unit right?"),
-        (SLIDER.replace('"60 rpm"', '"1e-13 rpm"'), "crank.speed", "is the unit right?"),
-        (SLIDER + RUN.replace("12", "1000000"), "cycle.positions", "a whole number of 100000 or less"),
-        (GEAR.replace("28", "10000000"), "gear.teeth[2]", "a whole number of 100000 or less"),
-        (HEAD.replace("Механизм", "Механизм 🙂") + GEAR, "project.title", 'the drawing font has no "🙂" (U+1F642'),
+        ((CONVEYOR, {"cycle.output": "C"}), "cycle.output", "C is a fixed point"),
+        ((SLIDER, EVEN, {"cycle.diagrams": ["O"]}), "cycle.diagrams[1]", "O is a fixed point"),
+        *(((SLIDER, {"crank.pin": pin, "group[1].outer": [pin]}), "crank.pin",
+           f'"{pin}" is no name of a point: expected a letter, then letters and digits') for pin in ("A_", "A B", "B′", "2")),
+        ((SLIDER, {"points": {"O^2": ["0 m", "0 m"]}}), "points.O^2", "is no name of a point"),
+        ((SLIDER, {"group[1].links[2]": "3,0"}), "group[1].links[2]", "is no name of a link"),
+        ((SLIDER, {"crank.link": "0"}), "crank.link", "is the frame"),
+        ((SLIDER, {"guide[1].name": "x_{1}", "group[1].guide": "x_{1}"}), "guide[1].name", "is no name of a guide"),
+        ((*LOADED, {"force[1].name": "F_3"}), "force[1].name", "is no name of a force"),
+        ((*LOADED, {"force[1].name": "F30"}), "force[1].name", "the force on link 3 from link 0"),
+        ((*LOADED, MASS, {"force[1].name": "G3"}), "force[1].name", "the weight of link 3"),
+        ((*LOADED, MOMENT, {"balancing.name": "F3"}), "balancing.name", "there already"),
+        ((SLIDER, EVEN, {"cycle.extra": {"a_b": "10 deg"}}), "cycle.extra.a_b", "is no name of a position"),
+        ((SLIDER, EVEN, {"cycle.positions": None, "cycle.working": 12}), "cycle", "a crank angle as start needs positions"),
+        ((SLIDER, {"crank.length": "1e13 m"}), "crank.length", "is the unit right?"),
+        ((SLIDER, {"crank.speed": "1e-13 rpm"}), "crank.speed", "is the unit right?"),
+        ((SLIDER, EVEN, {"cycle.positions": 1000000}), "cycle.positions", "a whole number of 100000 or less"),
+        ((GEAR, {"gear.teeth[2]": 10000000}), "gear.teeth[2]", "a whole number of 100000 or less"),
+        (({"project.title": "Механизм 🙂"}, GEAR), "project.title", 'the drawing font has no "🙂" (U+1F642'),
     ],
 )  # fmt: skip
-def test_it_is_said_what_is_wrong_and_where(text, field, said):
-    text = text if "schema" in text else HEAD + text
+def test_it_is_said_what_is_wrong_and_where(parts, field, said):
     with pytest.raises(BadInput) as e:
-        variant.parse(text, "my.toml")
+        read(*parts)
     (problem,) = [p for p in e.value.problems if p.field == field]
     assert said in str(problem)
     assert problem.line
 
 
-def longer(text, factor):
-    """The file with every length in metres times a factor."""
-    return re.sub(r'"(-?[\d.]+) m"', lambda m: f'"{float(m[1]) * factor!r} m"', text)
+def longer(data, factor):
+    """A part with every length in metres times a factor."""
+    return json.loads(re.sub(r'"(-?[\d.]+) m"', lambda m: f'"{float(m[1]) * factor!r} m"', json.dumps(data)))
 
 
 @pytest.mark.parametrize("factor", [1e6, 1e-6])
 def test_a_mechanism_of_any_size(factor):
     """Similar mechanisms: same angles, all velocities times the factor; its sheet is drawn."""
-    plain, other = (Project(variant.parse(longer(HEAD + SLIDER, f), "my.toml")) for f in (1.0, factor))
+    plain, other = (project(longer(SLIDER, f)) for f in (1.0, factor))
     found, real = (results.assemble(p, None) for p in (other, plain))
     for a, b in zip(found["velocities"]["points"]["B"], real["velocities"]["points"]["B"], strict=True):
         assert a == pytest.approx([factor * x for x in b], rel=1e-12, abs=1e-12 * factor)
@@ -76,39 +72,37 @@ def test_a_mechanism_of_any_size(factor):
 
 
 def test_a_flywheel_too_large_for_any_scale():
-    project = Project(variant.parse(longer(SHAPER, 1e6), "my.toml"))
-    composed(project, 1)
+    p = project(longer(shipped("lugansk/shaper"), 1e6))
+    composed(p, 1)
     with pytest.raises(CannotBuild, match=r"do not fit in 160 mm of the sheet at any scale of GOST 2\.302[^\n]*\n.*units you mean"):
-        composed(project, 2)
+        composed(p, 2)
 
 
 def test_more_positions_than_a_sheet_can_show():
     """Numbers and protocol have them all, the sheet says why it cannot."""
-    project = Project(variant.parse(HEAD + SLIDER + RUN.replace("12", "1000"), "my.toml"))
-    assert len(results.assemble(project, None)["velocities"]["points"]["B"]) == 1000
+    p = project(SLIDER, EVEN, {"cycle.positions": 1000})
+    assert len(results.assemble(p, None)["velocities"]["points"]["B"]) == 1000
     lines: list[str] = []
-    with pytest.raises(CannotBuild, match=r"my\.toml:\d+: cycle\.positions: 1000 positions .* 72 at most"):
-        lines.extend(protocols.lines(project, None))
+    with pytest.raises(CannotBuild, match=r"own\.toml:\d+: cycle\.positions: 1000 positions .* 72 at most"):
+        lines.extend(protocols.lines(p, None))
     assert any("(velocities), положение 2" in line for line in lines)
-    done = composed(Project(variant.parse(HEAD + SLIDER + RUN.replace("12", "72"), "my.toml")), 1)
+    done = composed(project(SLIDER, EVEN, {"cycle.positions": 72}), 1)
     assert {f"Положение {n}" for n in range(72)} <= {group.text for group in done.groups}
 
 
 @pytest.mark.parametrize("method", ["wittenbauer", "mertsalov"])
 def test_more_positions_than_a_flywheel_sheet_can_show(method):
-    cycle = WORKING.replace("working = 6", "working = 600")
-    text = HEAD + SLIDER + cycle + FORCE + MASS + FLYWHEEL.format(method)
+    p = project(SLIDER, WORKING, FORCE, MASS, FLYWHEEL, {"cycle.working": 600, "flywheel.method": method})
     with pytest.raises(CannotBuild, match="606 positions of one turn"):
-        composed(Project(variant.parse(text, "my.toml")), 2)
+        composed(p, 2)
 
 
 def test_a_rocker_about_the_crank_pivot():
     """Rod and rocker turn with the crank as one triangle: the slider on the coupler point is a crank-slider."""
-    text = CONVEYOR.replace('C = ["0.42 m", "0.12 m"]', 'C = ["0 m", "0 m"]').replace('["0.4 m", "0.25 m"]', '["0.2 m", "0.25 m"]')
-    text = text.replace('"0.3 m"\nangle', '"0.1 m"\nangle').replace('"0.55 m"', '"0.9 m"')
-    project = Project(variant.parse(text, "my.toml"))
-    project.check()
-    arm = abs(project.study.positions.points["D"].value)
+    p = project(CONVEYOR, {"points.C": ["0 m", "0 m"], "group[1].lengths[1]": "0.2 m", "point[1].distance": "0.1 m",
+                           "group[2].length": "0.9 m"})
+    p.check()
+    arm = abs(p.study.positions.points["D"].value)
     assert arm == pytest.approx([arm[0]] * len(arm))
-    assert project.study.velocities.omega["3"].value == pytest.approx([project.mechanism.crank.omega] * len(arm))
-    assert project.cycle.strokes.length > 0
+    assert p.study.velocities.omega["3"].value == pytest.approx([p.mechanism.crank.omega] * len(arm))
+    assert p.cycle.strokes.length > 0

@@ -2,28 +2,16 @@
 
 import copy
 import tomllib
+from operator import delitem, setitem
 
 import pytest
 
-from tmm_sheets import resources
+from tests.project_files import shipped, toml
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
 
-DATA = tomllib.loads((resources.variants() / "lugansk" / "shaper.toml").read_text(encoding="utf-8"))
+DATA = shipped("lugansk/shaper")
 ODD = [0, -1, 0.5, True, "", "x", "1 m", [], ["A", "A"], [[]], {}, [{"name": []}]]
-
-
-def written(value):
-    """A TOML value."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return f'"{value}"'
-    if isinstance(value, list):
-        return "[" + ", ".join(map(written, value)) + "]"
-    if isinstance(value, dict):
-        return "{" + ", ".join(f'"{k}" = {written(v)}' for k, v in value.items()) + "}"
-    return str(value)
 
 
 def places(value, path=()):
@@ -34,13 +22,13 @@ def places(value, path=()):
         yield from places(inner, (*path, key))
 
 
-def changed(path, value):
-    data = copy.deepcopy(DATA)
-    at = data
+def changed(path, change):
+    """The sample with ``change(table or list, key)`` done at one place."""
+    data = at = copy.deepcopy(DATA)
     for key in path[:-1]:
         at = at[key]
-    at[path[-1]] = value
-    return "".join(f'"{k}" = {written(v)}\n' for k, v in data.items())
+    change(at, path[-1])
+    return toml(data)
 
 
 def answer(text):
@@ -53,22 +41,16 @@ def answer(text):
 
 
 def test_the_writer_loses_nothing():
-    assert tomllib.loads(changed(("schema",), 1)) == DATA
+    assert tomllib.loads(toml(DATA)) == DATA
 
 
 @pytest.mark.parametrize("odd", ODD, ids=repr)
 def test_odd_value_anywhere(odd):
-    answers = [answer(changed(path, odd)) for path in places(DATA)]
+    answers = [answer(changed(path, lambda at, key: setitem(at, key, odd))) for path in places(DATA)]
     assert all(p.file == "x.toml" and p.message and 1 <= p.line <= len(DATA) for problems in answers for p in problems)
     assert sum(map(bool, answers)) > 100
 
 
 def test_anything_may_be_missing():
     for path in places(DATA):
-        data = copy.deepcopy(DATA)
-        at = data
-        for key in path[:-1]:
-            at = at[key]
-        del at[path[-1]]
-        problems = answer("".join(f'"{k}" = {written(v)}\n' for k, v in data.items()))
-        assert all(p.message for p in problems)
+        assert all(p.message for p in answer(changed(path, delitem)))
