@@ -9,60 +9,29 @@ from math import acos, asin, pi
 import numpy as np
 import pytest
 
+from tests.project_files import EVEN, FORCE, SLIDER, merged, project, write
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.loads import curve_of, distinct
-from tmm_sheets.project import Project
-from tmm_sheets.task import variant
 
 R, ROD = 0.1, 0.35
 
-SLIDER = """
-schema = 1
-[project]
-name = "slider"
-title = "Кривошипно-ползунный механизм"
-sheets = ["kinematics_forces"]
-[crank]
-link = "1"
-pivot = "O"
-pin = "A"
-length = "0.1 m"
-speed = "60 rpm"
-sense = "{sense}"
-[points]
-O = ["0 m", "0 m"]
-D = ["0.3 m", "0 m"]
-[[guide]]
-name = "x"
-through = "O"
-[[group]]
-kind = 2
-links = ["2", "3"]
-outer = ["A"]
-inner = "B"
-length = "{rod} m"
-guide = "x"
-{more}
-[cycle]
-start = "{start} deg"
-positions = 12
-turns = {turns}
-"""
+BASE = merged(SLIDER, EVEN, {"group[1].length": f"{ROD} m", "points.D": ["0.3 m", "0 m"]})
+CLOCKWISE = {"crank.sense": "clockwise"}
+SHORT = {"group[1].length": "0.08 m"}
+TWO_TURNS = {"cycle.turns": 2}
 
 
-def project(more, sense="counter-clockwise", start=0, turns=1, rod=ROD):
-    return Project(variant.parse(SLIDER.format(more=more, sense=sense, start=start, turns=turns, rod=rod), "slider.toml"))
+def forced(*changes, **law):
+    return project(BASE, {"force": [{"name": "F3", "link": "3", "point": "B", "direction": "against motion"} | law]}, *changes)
 
 
-def force(law, direction='"against motion"', **kw):
-    text = f'[[force]]\nname = "F3"\nlink = "3"\npoint = "B"\ndirection = {direction}\n{law}\n'
-    return project(text, **kw).applied[0]
+def force(*changes, **law):
+    return forced(*changes, **law).applied[0]
 
 
-def moment(law, link="2", group="", direction="against motion", **kw):
-    text = f'{group}[[moment]]\nname = "M"\nlink = "{link}"\ndirection = "{direction}"\n{law}\n'
-    return project(text, **kw).applied[0]
+def moment(link, *changes, **law):
+    return project(BASE, {"moment": [{"name": "M", "link": link, "direction": "against motion"} | law]}, *changes).applied[0]
 
 
 def outward(phi):
@@ -86,7 +55,7 @@ IN = np.sin(TURN) > 0
 
 
 def test_constant_on_the_working_stroke():
-    f = force('stroke = "working"\nsense = "+x"\nvalue = "500 N"')
+    f = force(stroke="working", sense="+x", value="500 N")
     assert f.toward == 1
     np.testing.assert_array_equal(f.vector(TURN), np.where(IN, 0, -500))
     np.testing.assert_array_equal(f.magnitude(TURN), np.where(IN, 0, 500))
@@ -97,19 +66,19 @@ def test_constant_on_the_working_stroke():
 @pytest.mark.parametrize("stroke", ["working", "idle", "both"])
 @pytest.mark.parametrize(("direction", "sign"), [("against motion", -1), ("along motion", 1)])
 def test_signs_follow_the_motion(sense, stroke, direction, sign):
-    f = force(f'stroke = "{stroke}"\nsense = "{sense}"\nvalue = "500 N"', f'"{direction}"')
+    f = force(stroke=stroke, sense=sense, value="500 N", direction=direction)
     working = ~IN if sense == "+x" else IN
     acts = {"working": working, "idle": ~working, "both": working | True}[stroke]
     np.testing.assert_array_equal(f.vector(TURN), np.where(acts, sign * 500 * np.where(IN, -1, 1), 0))
 
 
 def test_fixed_direction_whatever_the_motion():
-    f = force('stroke = "both"\nsense = "+x"\nvalue = "500 N"', '"-90 deg"')
+    f = force(stroke="both", sense="+x", value="500 N", direction="-90 deg")
     np.testing.assert_array_equal(f.vector(TURN), -500j)
 
 
 def test_clockwise_and_another_beginning():
-    f = force('stroke = "working"\nsense = "+x"\nvalue = "500 N"', sense="clockwise", start=30)
+    f = force(CLOCKWISE, {"cycle.start": "30 deg"}, stroke="working", sense="+x", value="500 N")
     # Turned clockwise from 30 degrees: the crank is below from 30 to 210 degrees turned, the slider goes inwards then.
     below = np.sin(pi / 6 - TURN) < 0
     np.testing.assert_array_equal(f.magnitude(TURN), np.where(below, 0, 500))
@@ -118,7 +87,7 @@ def test_clockwise_and_another_beginning():
 
 def test_sides_of_a_dead_point():
     """A resistance has no value in a dead point itself, and its value before or after it when asked from a side."""
-    f = force('stroke = "working"\nsense = "+x"\nvalue = "500 N"')
+    f = force(stroke="working", sense="+x", value="500 N")
     at = np.array([0, pi, 2 * pi, 3 * pi])
     np.testing.assert_array_equal(f.magnitude(at), 0)
     np.testing.assert_array_equal(f.magnitude(at, -1), [500, 0, 500, 0])
@@ -126,33 +95,31 @@ def test_sides_of_a_dead_point():
 
 
 def test_sense_along_a_guide_and_unknown_sense():
-    np.testing.assert_array_equal(force('stroke = "working"\nsense = "-x"\nvalue = "1 N"').vector(TURN),
-                                  force('stroke = "idle"\nsense = "+x"\nvalue = "1 N"').vector(TURN))
+    np.testing.assert_array_equal(force(stroke="working", sense="-x", value="1 N").vector(TURN),
+                                  force(stroke="idle", sense="+x", value="1 N").vector(TURN))
     with pytest.raises(CannotBuild, match='unknown sense "\\+z"'):
-        force('sense = "+z"\nvalue = "1 N"')
+        force(sense="+z", value="1 N")
     with pytest.raises(CannotBuild, match="which way are its working strokes"):
-        force('value = "1 N"')
+        force(value="1 N")
 
 
 def test_a_force_across_the_path_has_no_strokes():
     with pytest.raises(CannotBuild, match="B does not move to and fro that way"):
-        force('sense = "+y"\nvalue = "1 N"')
+        force(sense="+y", value="1 N")
 
 
 def test_a_mechanism_that_does_not_assemble_is_named():
-    for law in ('sense = "+x"\nvalue = "1 N"', 'sense = "+x"\nstroke = "idle"\ntable = [[0, "0 N"], [1, "1 N"]]'):
+    for law in ({"value": "1 N"}, {"stroke": "idle", "table": [[0, "0 N"], [1, "1 N"]]}):
         with pytest.raises(CannotBuild, match="rod AB = 80 mm is 20 mm too short"):
-            force(law, rod=0.08)
+            force(SHORT, sense="+x", **law)
     with pytest.raises(CannotBuild, match="rod AB = 80 mm is 20 mm too short"):
-        moment('value = "1 N m"', rod=0.08)
+        moment("2", SHORT, value="1 N m")
 
 
 def test_positions_of_a_mechanism_that_does_not_assemble_need_no_loads(tmp_path, capsys):
     """Asked angle by angle, what cannot be built is null; the forces that cannot be known are not asked for."""
-    file = tmp_path / "short.toml"
-    load = '[[force]]\nname = "F3"\nlink = "3"\npoint = "B"\ndirection = "against motion"\nsense = "+x"\nvalue = "1 N"\n'
-    file.write_text(SLIDER.format(more=load, sense="clockwise", start=0, turns=1, rod=0.08), encoding="utf-8")
-    assert run(["solve", str(file), "--phi", "0,90", "--part", "positions", "--json", "-"]) == 0
+    file = write(tmp_path, BASE, FORCE, CLOCKWISE, SHORT)
+    assert run(["solve", file, "--phi", "0,90", "--part", "positions", "--json", "-"]) == 0
     assert '"B": [[0.18, 0.0], [null, null]]' in capsys.readouterr().out
 
 
@@ -160,20 +127,19 @@ def test_positions_of_a_mechanism_that_does_not_assemble_need_no_loads(tmp_path,
 
 
 def test_straight_diagram_over_the_way():
-    f = force('stroke = "working"\nsense = "+x"\ntable = [[0, "0 N"], [0.25, "100 N"], [1, "1000 N"]]')
+    f = force(stroke="working", sense="+x", table=[[0, "0 N"], [0.25, "100 N"], [1, "1000 N"]])
     expected = np.where(IN, 0, np.interp(outward(TURN), [0, 0.25, 1], [0, 100, 1000]))
     np.testing.assert_allclose(f.magnitude(TURN), expected, rtol=1e-12, atol=1e-9)
 
 
 def test_the_way_is_counted_from_where_the_working_strokes_begin():
-    f = force('sense = "-x"\ntable = [[0, "0 N"], [1, "1000 N"]]')
+    f = force(sense="-x", table=[[0, "0 N"], [1, "1000 N"]])
     np.testing.assert_allclose(f.magnitude(TURN), 1000 * (1 - outward(TURN)), rtol=1e-12, atol=1e-9)
 
 
 def test_work_of_a_diagram_is_the_area_under_it():
     """Over the working stroke of 0.2 m: 1000 N * 0.2 m * (0.25 * 0.1 / 2 + 0.75 * 1.1 / 2)."""
-    p = project('[[force]]\nname = "F3"\nlink = "3"\npoint = "B"\ndirection = "against motion"\nstroke = "working"\nsense = "+x"\n'
-                'table = [[0, "0 N"], [0.25, "100 N"], [1, "1000 N"]]')
+    p = forced(stroke="working", sense="+x", table=[[0, "0 N"], [0.25, "100 N"], [1, "1000 N"]])
     x, w = np.polynomial.legendre.leggauss(40)
     corner = 2 * pi - angle_of(0.25)
     work = sum((p.reduced.moment((a + b) / 2 + (b - a) / 2 * x) * w).sum() * (b - a) / 2
@@ -182,7 +148,7 @@ def test_work_of_a_diagram_is_the_area_under_it():
 
 
 def test_a_jump_of_the_diagram_has_two_sides_on_each_stroke():
-    f = force('sense = "+x"\ntable = [[0, "100 N"], [0.3, "100 N"], [0.3, "700 N"], [1, "700 N"]]')
+    f = force(sense="+x", table=[[0, "100 N"], [0.3, "100 N"], [0.3, "700 N"], [1, "700 N"]])
     back, forth = angle_of(0.3), 2 * pi - angle_of(0.3)
     assert f.jumps == pytest.approx((0, back, pi, forth), abs=1e-13)
     at = np.array([back, forth])
@@ -195,8 +161,7 @@ def test_a_jump_of_the_diagram_has_two_sides_on_each_stroke():
 def test_smooth_diagram_over_the_way():
     """Through its points, between its neighbours, without a corner."""
     x, y = [0, 0.2, 0.5, 1], [0, 100, 700, 1000]
-    f = force('stroke = "working"\nsense = "+x"\ncurve = "smooth"\n'
-              f'table = [{", ".join(f"[{a}, {chr(34)}{b} N{chr(34)}]" for a, b in zip(x, y, strict=True))}]')
+    f = force(stroke="working", sense="+x", curve="smooth", table=[[a, f"{b} N"] for a, b in zip(x, y, strict=True)])
     at = np.array([2 * pi - angle_of(a) for a in (0.2, 0.5)])
     np.testing.assert_allclose(f.magnitude(at), [100, 700], rtol=1e-12)
     h = 1e-5
@@ -211,7 +176,7 @@ def test_smooth_diagram_over_the_way():
 
 @pytest.mark.parametrize(("begin", "end"), [(0.2, 0.9), (0.0, 0.4), (0.6, 1.0), (0.001, 0.999), (0.0, 1.0)])
 def test_limits_of_the_action(begin, end):
-    f = force(f'sense = "+x"\nvalue = "500 N"\nfrom = {begin}\nto = {end}')
+    f = force({"force[1].from": begin, "force[1].to": end}, sense="+x", value="500 N")
     # Inwards (0 to pi) the way is passed backwards.
     inwards = [0 if end == 1 else angle_of(end), pi if begin == 0 else angle_of(begin)]
     outwards = [2 * pi - t for t in reversed(inwards)]
@@ -229,7 +194,7 @@ def test_limits_of_the_action(begin, end):
 
 def test_limits_and_a_diagram():
     """The diagram goes on counting from the beginning of the stroke, not from where the action begins."""
-    f = force('stroke = "working"\nsense = "+x"\ntable = [[0, "0 N"], [1, "1000 N"]]\nfrom = 0.5')
+    f = force({"force[1].from": 0.5}, stroke="working", sense="+x", table=[[0, "0 N"], [1, "1000 N"]])
     x = outward(TURN)
     np.testing.assert_allclose(f.magnitude(TURN), np.where(~IN & (x > 0.5), 1000 * x, 0), rtol=1e-12)
     start = 2 * pi - angle_of(0.5)
@@ -238,9 +203,9 @@ def test_limits_and_a_diagram():
 
 # --- one diagram for each stroke -------------------------------------------------------------------------------------
 
-STROKES = ('sense = "-x"\nbore = "0.1 m"\nambient = "0.1 MPa"\n'
-           'tables = [[[0, "4 MPa"], [1, "0.5 MPa"]], [[0, "0.15 MPa"], [1, "0.15 MPa"]], [], '
-           '[[0, "1.5 MPa"], [0.5, "0.3 MPa"], [1, "0.1 MPa"]]]\n')
+STROKES = {"sense": "-x", "bore": "0.1 m", "ambient": "0.1 MPa", "direction": "180 deg",
+           "tables": [[[0, "4 MPa"], [1, "0.5 MPa"]], [[0, "0.15 MPa"], [1, "0.15 MPa"]], [],
+                      [[0, "1.5 MPa"], [0.5, "0.3 MPa"], [1, "0.1 MPa"]]]}
 
 
 def pressures(turned, first=0.0):
@@ -253,7 +218,7 @@ def pressures(turned, first=0.0):
 
 @pytest.mark.parametrize("first", [0, 360])
 def test_one_diagram_for_each_stroke_of_two_turns(first):
-    f = force(STROKES + f'first = "{first} deg"', '"180 deg"', turns=2)
+    f = force(TWO_TURNS, **STROKES, first=f"{first} deg")
     turned = np.linspace(0, 4 * pi, 183) + 0.01
     np.testing.assert_allclose(f.law(turned, 0), pressures(turned, np.radians(first)), rtol=1e-11, atol=1e-8)
     assert f.toward == -1
@@ -261,7 +226,7 @@ def test_one_diagram_for_each_stroke_of_two_turns(first):
 
 
 def test_pressures_act_in_dead_points_too():
-    f = force(STROKES, '"180 deg"', turns=2)
+    f = force(TWO_TURNS, **STROKES)
     at = np.arange(5) * pi
     area = pi * 0.1**2 / 4 * 1e6
     np.testing.assert_allclose(f.law(at, 0), area * np.array([3.9, 0.05, 0, 0, 3.9]), rtol=1e-11, atol=1e-8)
@@ -270,10 +235,10 @@ def test_pressures_act_in_dead_points_too():
 
 
 def test_the_stroke_nearest_to_first_is_the_first_one():
-    near = force(STROKES + 'first = "-20 deg"', '"180 deg"', turns=2)
-    late = force(STROKES + 'first = "350 deg"', '"180 deg"', turns=2)
+    near = force(TWO_TURNS, **STROKES, first="-20 deg")
+    late = force(TWO_TURNS, **STROKES, first="350 deg")
     turned = np.linspace(0, 4 * pi, 50) + 0.01
-    np.testing.assert_array_equal(near.law(turned, 0), force(STROKES, '"180 deg"', turns=2).law(turned, 0))
+    np.testing.assert_array_equal(near.law(turned, 0), force(TWO_TURNS, **STROKES).law(turned, 0))
     np.testing.assert_allclose(late.law(turned, 0), near.law(turned + 2 * pi, 0), rtol=1e-12, atol=1e-9)
 
 
@@ -281,7 +246,7 @@ def test_the_stroke_nearest_to_first_is_the_first_one():
 
 
 def test_diagram_over_the_angle_is_periodic():
-    f = force('over = "angle"\ntable = [["30 deg", "100 N"], ["90 deg", "700 N"], ["300 deg", "40 N"]]', '"180 deg"', turns=2)
+    f = force(TWO_TURNS, over="angle", table=[["30 deg", "100 N"], ["90 deg", "700 N"], ["300 deg", "40 N"]], direction="180 deg")
     x, y = np.radians([-60 - 360, 30, 90, 300, 30 + 720]), [40, 100, 700, 40, 100]
     turned = np.linspace(0.6, 4 * pi, 100)
     np.testing.assert_allclose(f.magnitude(turned), np.interp(turned, x, y), rtol=1e-13)
@@ -291,12 +256,12 @@ def test_diagram_over_the_angle_is_periodic():
     assert f.jumps == pytest.approx(np.radians([30, 90, 300]), abs=1e-13)
 
 
-SAW = 'over = "angle"\ntable = [["0 deg", "100 N"], ["180 deg", "40 N"], ["180 deg", "70 N"], ["360 deg", "10 N"]]'
+SAW = {"over": "angle", "table": [["0 deg", "100 N"], ["180 deg", "40 N"], ["180 deg", "70 N"], ["360 deg", "10 N"]]}
 
 
 @pytest.mark.parametrize("curve", ["straight", "smooth"])
 def test_jumps_over_the_angle_have_sides(curve):
-    f = force(f'{SAW}\ncurve = "{curve}"', '"0 deg"')
+    f = force(**SAW, curve=curve, direction="0 deg")
     at = np.array([0, pi, 2 * pi])
     np.testing.assert_array_equal(f.magnitude(at, 1), [100, 70, 100])
     np.testing.assert_array_equal(f.magnitude(at, -1), [10, 40, 10])
@@ -308,16 +273,16 @@ def test_jumps_over_the_angle_have_sides(curve):
 
 
 def test_points_before_position_0_count_from_the_end():
-    f = force('over = "angle"\ntable = [["-90 deg", "100 N"], ["0 deg", "0 N"], ["90 deg", "0 N"]]', '"0 deg"')
+    f = force(over="angle", table=[["-90 deg", "100 N"], ["0 deg", "0 N"], ["90 deg", "0 N"]], direction="0 deg")
     np.testing.assert_allclose(f.magnitude(np.radians([270, 315, 0, 45, 180])), [100, 50, 0, 0, 50], rtol=1e-13, atol=1e-13)
     assert f.jumps == pytest.approx((0, pi / 2, 3 * pi / 2), abs=1e-15)
 
 
 def test_over_the_angle_needs_a_fixed_direction():
     with pytest.raises(CannotBuild, match="needs a fixed direction"):
-        force(SAW)
+        force(**SAW)
     with pytest.raises(CannotBuild, match="needs a fixed direction"):
-        moment('over = "angle"\ntable = [["0 deg", "1 N m"]]')
+        moment("2", over="angle", table=[["0 deg", "1 N m"]])
 
 
 def test_smooth_curves_keep_to_their_points():
@@ -355,11 +320,7 @@ def test_angles_that_differ_by_rounding_are_one():
 
 # --- moments ---------------------------------------------------------------------------------------------------------
 
-ROCKER = """[[group]]
-kind = 3
-links = ["4", "5"]
-outer = ["A", "D"]
-"""
+ROCKER = {"group": [{"kind": 3, "links": ["4", "5"], "outer": ["A", "D"]}]}
 """A stone on the crank pin and a rocker about D, 0.3 m from O: it swings by asin(0.1 / 0.3) to both sides."""
 
 
@@ -373,7 +334,7 @@ DEAD = acos(R / 0.3)
 
 @pytest.mark.parametrize("sense", ["clockwise", "counter-clockwise"])
 def test_moment_on_a_swinging_link(sense):
-    m = moment(f'stroke = "working"\nsense = "{sense}"\nvalue = "20 N m"', "5", ROCKER)
+    m = moment("5", ROCKER, stroke="working", sense=sense, value="20 N m")
     assert m.point is None
     turning = np.sign(np.gradient(swing(TURN), TURN))
     works = turning == (1 if sense == "counter-clockwise" else -1)
@@ -384,8 +345,8 @@ def test_moment_on_a_swinging_link(sense):
 
 @pytest.mark.parametrize(("sense", "sign"), [("clockwise", -1), ("counter-clockwise", 1)])
 def test_diagram_over_the_swing(sense, sign):
-    m = moment(f'sense = "{sense}"\ntable = [[0, "0 N m"], [0.4, "0 N m"], [0.4, "30 N m"], [1, "60 N m"]]', "5", ROCKER,
-               direction="clockwise")
+    m = moment("5", ROCKER, sense=sense, direction="clockwise",
+               table=[[0, "0 N m"], [0.4, "0 N m"], [0.4, "30 N m"], [1, "60 N m"]])
     reach = asin(R / 0.3)
     x = (sign * swing(TURN) + reach) / (2 * reach)
     np.testing.assert_allclose(m.law(TURN, 0), -np.where(x < 0.4, 0, 30 + (x - 0.4) * 50), rtol=1e-11, atol=1e-9)
@@ -401,7 +362,7 @@ def test_diagram_over_the_swing(sense, sign):
 
 def test_a_swing_across_the_negative_x_axis():
     """The rocker D..A lies about 180 degrees: the cut of the arc tangent must not be seen."""
-    m = moment('sense = "counter-clockwise"\ntable = [[0, "0 N m"], [1, "60 N m"]]', "5", ROCKER, direction="counter-clockwise")
+    m = moment("5", ROCKER, sense="counter-clockwise", table=[[0, "0 N m"], [1, "60 N m"]], direction="counter-clockwise")
     turned = np.linspace(0, 2 * pi, 2000)
     values = m.law(turned, 0)[1:-1]
     assert np.abs(np.diff(values)).max() < 1
@@ -409,33 +370,26 @@ def test_a_swing_across_the_negative_x_axis():
     assert values.min() == pytest.approx(0, abs=1e-3)
 
 
-TURNING = ROCKER.replace('"D"', '"E"')
-"""A rocker about E inside the crank circle turns all the way round."""
-
-
-def inside(law, direction, **kw):
-    text = SLIDER.replace('D = ["0.3 m", "0 m"]', 'E = ["0.04 m", "0 m"]')
-    text = text.format(more=f'{TURNING}[[moment]]\nname = "M"\nlink = "5"\ndirection = "{direction}"\n{law}\n',
-                       sense=kw.get("sense", "counter-clockwise"), start=0, turns=kw.get("turns", 1), rod=ROD)
-    return Project(variant.parse(text, "slider.toml")).applied[0]
+TURNING = ROCKER | {"points.D": ["0.04 m", "0 m"]}
+"""About D inside the crank circle it turns all the way round."""
 
 
 def test_moment_on_a_link_that_turns_all_the_way_round():
     """One endless stroke: no dead points, the moment never lets go."""
-    m = inside('sense = "counter-clockwise"\nvalue = "20 N m"', "against motion")
+    m = moment("5", TURNING, sense="counter-clockwise", value="20 N m")
     np.testing.assert_array_equal(m.law(np.append(TURN, [0, pi, 2 * pi]), 0), -20)
     assert m.jumps == ()
-    other = inside('sense = "clockwise"\nstroke = "working"\nvalue = "20 N m"', "against motion")
+    other = moment("5", TURNING, sense="clockwise", stroke="working", value="20 N m")
     np.testing.assert_array_equal(other.law(TURN, 0), 0)
-    clockwise = inside('sense = "clockwise"\nstroke = "working"\nvalue = "20 N m"', "against motion", sense="clockwise")
+    clockwise = moment("5", TURNING, CLOCKWISE, sense="clockwise", stroke="working", value="20 N m")
     np.testing.assert_array_equal(clockwise.law(TURN, 0), 20)
 
 
 @pytest.mark.parametrize("turns", [1, 2])
 def test_diagram_over_the_turn_of_a_link(turns):
     """The way of a turning link is its own turn from position 0 on."""
-    m = inside('sense = "counter-clockwise"\ntable = [[0, "10 N m"], [0.5, "10 N m"], [0.5, "50 N m"], [1, "60 N m"]]',
-               "clockwise", turns=turns)
+    m = moment("5", TURNING, {"cycle.turns": turns}, sense="counter-clockwise", direction="clockwise",
+               table=[[0, "10 N m"], [0.5, "10 N m"], [0.5, "50 N m"], [1, "60 N m"]])
     way = np.mod(np.angle(R * np.exp(1j * TURN) - 0.04), 2 * pi) / (2 * pi)
     np.testing.assert_allclose(m.law(TURN, 0), -np.where(way < 0.5, 10, 40 + 20 * way), rtol=1e-12)
     # It lies along the x axis where the crank does.
@@ -445,7 +399,7 @@ def test_diagram_over_the_turn_of_a_link(turns):
 
 
 def test_diagrams_of_two_turns_of_the_crank():
-    m = moment('sense = "counter-clockwise"\ntables = [[[0, "10 N m"]], [[0, "70 N m"]]]', "1", direction="clockwise", turns=2)
+    m = moment("1", TWO_TURNS, sense="counter-clockwise", tables=[[[0, "10 N m"]], [[0, "70 N m"]]], direction="clockwise")
     np.testing.assert_array_equal(m.law(np.array([0.1, 3, 6.2, 6.4, 12.5, 12.6]), 0), [-10, -10, -10, -70, -70, -10])
     np.testing.assert_array_equal(m.law(np.array([0, 2 * pi, 4 * pi]), -1), [-70, -10, -70])
     np.testing.assert_array_equal(m.law(np.array([0, 2 * pi, 4 * pi]), 1), [-10, -70, -10])
@@ -453,7 +407,7 @@ def test_diagrams_of_two_turns_of_the_crank():
 
 
 def test_moment_over_the_angle():
-    m = moment('over = "angle"\ntable = [["0 deg", "10 N m"], ["180 deg", "30 N m"], ["180 deg", "0 N m"], ["360 deg", "0 N m"]]',
-               "1", direction="clockwise")
+    m = moment("1", over="angle", direction="clockwise",
+               table=[["0 deg", "10 N m"], ["180 deg", "30 N m"], ["180 deg", "0 N m"], ["360 deg", "0 N m"]])
     np.testing.assert_allclose(m.law(np.radians([90, 270]), 0), [-20, 0], rtol=1e-13)
     np.testing.assert_array_equal([m.law(pi, -1), m.law(pi, 1), m.law(0.0, -1), m.law(0.0, 1)], [-30, 0, 0, -10])
