@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from tests.methods.linkage.mechanisms import mechanism
+from tests.project_files import CRANK, MOMENT, merged, project
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRR
 from tmm_sheets.mechanism.model import LinkPoint, StructuralGroup
@@ -20,7 +21,6 @@ from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.project import Project
-from tmm_sheets.task import variant
 from tmm_sheets.task.assembly import _by_run
 from tmm_sheets.task.families import transport
 
@@ -205,65 +205,21 @@ def test_a_toggle_beyond_its_straight_line(code):
 
 # --- other mechanisms ------------------------------------------------------------------------------------------------
 
-TOGGLE = """
-schema = 1
-[project]
-name = "toggle"
-title = "Колено"
-sheets = ["kinematics_forces"]
-[crank]
-link = "1"
-pivot = "O"
-pin = "A"
-length = "0.1 m"
-speed = "60 rpm"
-sense = "{sense}"
-[points]
-O = ["0 m", "0 m"]
-D = ["-{x} m", "0.3 m"]
-[[guide]]
-name = "g"
-through = "D"
-direction = "-90 deg"
-[[group]]
-kind = 1
-links = ["2", "3"]
-outer = ["A", "D"]
-inner = "B"
-lengths = ["0.5 m", "0.35 m"]
-side = 1
-[[group]]
-kind = 2
-links = ["4", "5"]
-outer = ["B"]
-inner = "C"
-length = "0.4 m"
-guide = "g"
-[[link]]
-name = "5"
-mass = "20 kg"
-centre = "C"
-[cycle]
-{cycle}
-[[force]]
-name = "F5"
-link = "5"
-point = "C"
-direction = "{direction}"
-stroke = "{stroke}"
-value = "700 N"
-sense = "{working}"
-[balancing]
-kind = "moment"
-name = "M1"
-"""
+TOGGLE = merged(CRANK, MOMENT, {
+    "crank.sense": "clockwise",
+    "guide": [{"name": "g", "through": "D", "direction": "-90 deg"}],
+    "group": [{"kind": 1, "links": ["2", "3"], "outer": ["A", "D"], "inner": "B", "lengths": ["0.5 m", "0.35 m"], "side": 1},
+              {"kind": 2, "links": ["4", "5"], "outer": ["B"], "inner": "C", "length": "0.4 m", "guide": "g"}],
+    "link": [{"name": "5", "mass": "20 kg", "centre": "C"}],
+})
 """A press whose toggle swings through its straight line; with x = 0.47 evenly, nearly: two strokes in a turn."""
-EVEN = 'start = "90 deg"\npositions = 12'
+EVEN = {"start": "90 deg", "positions": 12}
 
 
-def toggle(sense="clockwise", direction="against motion", stroke="both", working="-y", cycle=EVEN, x=0.55):
-    text = TOGGLE.format(sense=sense, direction=direction, stroke=stroke, working=working, cycle=cycle, x=x)
-    return Project(variant.parse(text, "toggle.toml"))
+def toggle(*changes, cycle=EVEN, x=0.55, **load):
+    """The press with D at -x and a force of 700 N against the motion of its slider, ``load`` about it otherwise."""
+    force = {"name": "F5", "link": "5", "point": "C", "direction": "against motion", "value": "700 N", "sense": "-y"} | load
+    return project(TOGGLE, {"points.D": [f"{-x!r} m", "0.3 m"], "cycle": cycle, "force": [force]}, *changes)
 
 
 def working_angles(p, turned, axis):
@@ -279,8 +235,8 @@ def working_angles(p, turned, axis):
     return (last[at] == -1) & (following[at] == 1)
 
 
-CYCLES = {"even": EVEN, "dead": 'start = "dead"\nworking = 7\nidle = 5\noutput = "C"\nworking_sense = "-y"',
-          "output": EVEN + '\noutput = "C"\nworking_sense = "-y"'}
+DOWN = {"output": "C", "working_sense": "-y"}
+CYCLES = {"even": EVEN, "dead": {"start": "dead", "working": 7, "idle": 5} | DOWN, "output": EVEN | DOWN}
 
 
 @pytest.mark.parametrize("x", [0.45, 0.52])
@@ -291,7 +247,7 @@ CYCLES = {"even": EVEN, "dead": 'start = "dead"\nworking = 7\nidle = 5\noutput =
 def test_own_toggles(x, sense, stroke, working, direction, sign):
     """Four reversals in a turn; the way ends at two places that are equally low, and its second top is lower than the first."""
     for cycle in CYCLES.values():
-        p = toggle(sense, direction, stroke, working, cycle, x)
+        p = toggle({"crank.sense": sense}, cycle=cycle, x=x, direction=direction, stroke=stroke, sense=working)
         turned = TURN + 0.0123
         force, speed = slider_load(p, turned)
         power = sign * (force * np.conj(speed)).real
@@ -306,7 +262,7 @@ def test_an_output_that_begins_in_an_extreme():
     """Position 0 in each of the four reversals in turn: no force there, the right one a hair on either side."""
     for r in toggle().applied[0].motion.runs:
         start = np.degrees(toggle().cycle.world(r.begin))
-        p = toggle(cycle=f'start = "{float(start)!r} deg"\npositions = 12')
+        p = toggle({"cycle.start": f"{float(start)!r} deg"})
         assert p.applied[0].jumps[0] == pytest.approx(0, abs=1e-12)
         hair = np.array([-1e-6, 1e-6])
         force, speed = slider_load(p, hair)
@@ -321,12 +277,12 @@ def test_two_whole_strokes_in_a_turn():
     low, high = 0.49, 0.50
     for _ in range(60):
         middle = (low + high) / 2
-        p = toggle(x=repr(middle))
+        p = toggle(x=middle)
         t = np.array([r.begin for r in p.applied[0].motion.runs])
         at = position_plan(p.mechanism, p.cycle.world(t)).points["B"].value.real + middle
         # The one dead position of the rocker is as far to the left as the other to the right.
         low, high = (middle, high) if at.min() + at.max() < 0 else (low, middle)
-    p = toggle(x=repr(low), stroke="working", cycle=CYCLES["dead"])
+    p = toggle(x=low, stroke="working", cycle=CYCLES["dead"])
     assert [r.working for r in p.applied[0].motion.runs] == [True, False, True, False]
     force, speed = slider_load(p, TURN + 0.0123)
     np.testing.assert_allclose(force, np.where(speed.imag < 0, 700j, 0), atol=1e-6)
@@ -334,9 +290,9 @@ def test_two_whole_strokes_in_a_turn():
 
 def test_an_output_that_does_not_move_its_way():
     with pytest.raises(CannotBuild, match="does not move to and fro that way"):
-        _ = toggle(working="+x").applied
+        _ = toggle(sense="+x").applied
     with pytest.raises(CannotBuild, match="never turns back"):
-        _ = toggle(cycle=CYCLES["output"].replace('"-y"', '"+x"')).cycle
+        _ = toggle(cycle=CYCLES["output"] | {"working_sense": "+x"}).cycle
 
 
 # --- turning links ---------------------------------------------------------------------------------------------------
