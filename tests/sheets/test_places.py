@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.project_files import EVEN, FOUR_BAR, MOMENT, SLIDER, merged, project, write
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.box import Box
@@ -17,95 +18,36 @@ from tmm_sheets.sheets import sheet as sheets
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.places import BESIDE, TOUCH, leaving
 from tmm_sheets.sheets.sheet import INSIDE, TITLE_BLOCK, composed
-from tmm_sheets.task import variant
 
-MECHANISM = """schema = 1
-[project]
-name = "own"
-title = "Свой механизм"
-sheets = ["kinematics_forces_wide"]
-[crank]
-link = "1"
-pivot = "A"
-pin = "B"
-length = "0.1 m"
-speed = "60 rpm"
-sense = "counter-clockwise"
-[cycle]
-start = "0 deg"
-positions = 12
-force_position = "{position}"
-[balancing]
-kind = "moment"
-name = "Mур"
-[[link]]
-name = "1"
-mass = "4 kg"
-centre = "A"
-inertia = "0.05 kg m2"
-[[link]]
-name = "2"
-mass = "9 kg"
-centre = "M"
-inertia = "0.14 kg m2"
-[[link]]
-name = "3"
-mass = "5 kg"
-centre = "C"
-[[point]]
-name = "M"
-link = "2"
-from = "B"
-towards = "C"
-distance = "{distance} m"
-angle = "{angle} deg"
-"""
-FOUR_BAR = """[points]
-A = ["0 m", "0 m"]
-D = ["0.42 m", "0.05 m"]
-[[group]]
-kind = 1
-links = ["2", "3"]
-outer = ["B", "D"]
-inner = "C"
-lengths = ["0.4 m", "0.25 m"]
-"""
-SLIDER = """[points]
-A = ["0 m", "0 m"]
-[[guide]]
-name = "g"
-through = ["0 m", "{height} m"]
-direction = "{turn} deg"
-[[group]]
-kind = 2
-links = ["2", "3"]
-outer = ["B"]
-inner = "C"
-length = "{rod} m"
-guide = "g"
-"""
+
+def masses(distance, angle):
+    """Masses of the links, that of the coupler in a point M of its own."""
+    point = {"name": "M", "link": "2", "from": "A", "towards": "B", "distance": f"{distance} m", "angle": f"{angle} deg"}
+    return {"point": [point],
+            "link": [{"name": "1", "mass": "4 kg", "centre": "O", "inertia": "0.05 kg m2"},
+                     {"name": "2", "mass": "9 kg", "centre": "M", "inertia": "0.14 kg m2"},
+                     {"name": "3", "mass": "5 kg", "centre": "B"}]}
+
+
+def slider(height, turn, rod):
+    return merged(SLIDER, {"guide[1]": {"through": ["0 m", f"{height} m"], "direction": f"{turn} deg"}, "group[1].length": f"{rod} m"})
+
+
 SHAPES = {
     "coupler point near": (FOUR_BAR, 0.3, 25),
     "coupler point far outside": (FOUR_BAR, 0.9, 70),
     "coupler point behind": (FOUR_BAR, 0.7, -150),
-    "long and thin": (SLIDER.format(height=0.02, turn=0, rod=1.5), 0.7, 0),
-    "tall": (SLIDER.format(height=0.0, turn=90, rod=0.9), 0.4, 5),
-    "slider far away": (SLIDER.format(height=-0.3, turn=-20, rod=4.0), 2.0, 5),
+    "long and thin": (slider(height=0.02, turn=0, rod=1.5), 0.7, 0),
+    "tall": (slider(height=0.0, turn=90, rod=0.9), 0.4, 5),
+    "slider far away": (slider(height=-0.3, turn=-20, rod=4.0), 2.0, 5),
 }
 
 
-def own(tmp_path, text):
-    path = tmp_path / "own.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
 @pytest.mark.parametrize("shape", SHAPES)
-def test_mechanisms_of_every_shape_keep_their_places(tmp_path, shape):
-    text, distance, angle = SHAPES[shape]
+def test_mechanisms_of_every_shape_keep_their_places(shape):
+    mechanism, *place = SHAPES[shape]
     for position in range(0, 12, 3):
-        path = own(tmp_path, MECHANISM.format(position=position, distance=distance, angle=angle) + text)
-        done = composed(Project(variant.read(path)), 1)
+        done = composed(project(mechanism, EVEN, MOMENT, masses(*place), {"cycle.force_position": str(position)}), 1)
         assert not done.leaving
         assert not done.crowded
         view = next(v for v in arrangement("kinematics_forces_wide").views if v.draw == "kinetics.lever")
@@ -128,8 +70,8 @@ def test_shipped_sheets_keep_their_places(name, n):
 
 
 def at_position(name, position):
-    project = catalogue.read(name)
-    return Project(project.model_copy(update={"cycle": project.cycle.model_copy(update={"force_position": position})}))
+    task = catalogue.read(name)
+    return Project(task.model_copy(update={"cycle": task.cycle.model_copy(update={"force_position": position})}))
 
 
 def test_a_steep_tangent_stays_within_its_graph():
@@ -213,12 +155,12 @@ def test_labels_have_the_distance_between_views():
 
 def test_build_says_so_and_is_done(tmp_path, capsys, monkeypatch):
     """A lever in a place of 25 mm: the sheet is made, and what is wrong with it told."""
-    path = own(tmp_path, MECHANISM.format(position=3, distance=0.9, angle=70) + FOUR_BAR)
+    path = write(tmp_path, FOUR_BAR, EVEN, MOMENT, masses(0.9, 70), {"cycle.force_position": "3"})
     plan = arrangement("kinematics_forces_wide")
     small = tuple(replace(v, box=Box(v.box.x0, v.box.y1 - 46, v.box.x0 + 25, v.box.y1)) if v.draw == "kinetics.lever" else v
                   for v in plan.views)
     monkeypatch.setattr(sheets, "arrange", lambda name: replace(plan, views=small))
-    assert run(["build", str(path), "-o", str(tmp_path / "out"), "--format", "dxf"]) == 0
+    assert run(["build", path, "-o", str(tmp_path / "out"), "--format", "dxf"]) == 0
     told = [line for line in capsys.readouterr().err.splitlines() if "leaves its place" in line]
     assert len(told) == 1
     assert told[0].startswith('own: sheet 1: view "Рычаг Жуковского (положение 3)" leaves its place by ')
