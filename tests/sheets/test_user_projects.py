@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.project_files import EVEN, MASS, MOMENT, SLIDER, read
 from tmm_sheets import summary
 from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.labels import text_box
@@ -74,40 +75,12 @@ def test_command_line(tmp_path):
     assert sheets == ["sheet1.dxf", "sheet1.pdf", "sheet2.dxf", "sheet2.pdf"]
 
 
-MASSLESS = """schema = 1
-[project]
-name = "a"
-title = "a"
-sheets = ["kinematics_forces"]
-[crank]
-link = "1"
-pivot = "A"
-pin = "B"
-length = "0.1 m"
-speed = "60 rpm"
-sense = "clockwise"
-[points]
-A = ["0 m", "0 m"]
-[[guide]]
-name = "g"
-through = "A"
-[[group]]
-kind = 2
-links = ["2", "3"]
-outer = ["B"]
-inner = "C"
-length = "0.3 m"
-guide = "g"
-[cycle]
-start = "0 deg"
-positions = 8
-force_position = "1"
-"""
+MASSLESS = (SLIDER, EVEN, {"project.sheets": ["kinematics_forces"]})
 
 
 def test_a_mechanism_without_forces_gets_its_kinematics():
     """The same arrangement without what needs forces: no view of force plans, no heading over nothing."""
-    sheet = composed(Project(variant.parse(MASSLESS, "a.toml")), 1)
+    sheet = composed(Project(read(*MASSLESS)), 1)
     views = {part.draw for part in sheet.parts}
     assert "kinematics.acceleration_plan" in views
     assert not [name for name in views if name.startswith("kinetics")]
@@ -116,5 +89,4 @@ def test_a_mechanism_without_forces_gets_its_kinematics():
 
 
 def test_one_group_alone():
-    text = MASSLESS + '[[link]]\nname = "3"\nmass = "2 kg"\ncentre = "C"\n[balancing]\nkind = "moment"\nname = "M1"\n'
-    assert not composed(Project(variant.parse(text, "a.toml")), 1).crowded
+    assert not composed(Project(read(*MASSLESS, MASS, MOMENT)), 1).crowded
