@@ -30,7 +30,8 @@ def masses(distance, angle):
 
 
 def slider(height, turn, rod):
-    return merged(SLIDER, {"guide[1]": {"through": ["0 m", f"{height} m"], "direction": f"{turn} deg"}, "group[1].length": f"{rod} m"})
+    guide = {"through": ["0 m", f"{height} m"], "direction": f"{turn} deg"}
+    return merged(SLIDER, {"guide[1]": guide, "group[1].length": f"{rod} m"})
 
 
 SHAPES = {
