@@ -2,17 +2,17 @@
 
 import pytest
 
+from tests import project_files
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
 from tmm_sheets.task.cam_keys import EXAMPLES, FOLLOWER_KEYS
 
-HEAD = 'schema = 1\n[project]\nname = "x"\ntitle = "y"\nsheets = ["cam"]\n[cam]\n'
 COMMON = {"law": '"sine"', "rise": '"100 deg"', "fall": '"70 deg"'}
 
 
 def text(follower, **keys):
     lines = {"follower": f'"{follower}"'} | COMMON | {k: EXAMPLES[k] for k in FOLLOWER_KEYS[follower][0]} | keys
-    return HEAD + "\n".join(f"{k} = {v}" for k, v in lines.items() if v is not None)
+    return project_files.text() + "[cam]\n" + "\n".join(f"{k} = {v}" for k, v in lines.items() if v is not None)
 
 
 def problems(source):
