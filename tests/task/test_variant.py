@@ -10,6 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from tests import project_files
+from tests.project_files import FOUR_BAR, written
 from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
@@ -76,8 +78,7 @@ def test_absent_section_leaves_its_sheet_out(shaper, section):
 
 
 def test_cam_alone():
-    cam = TEXT[TEXT.index("[cam]") :]
-    read = variant.parse(f'schema = 1\n[project]\nname = "cam"\ntitle = "Кулачок"\nsheets = ["cam"]\n{cam}', "x.toml")
+    read = project_files.read({"cam": tomllib.loads(TEXT)["cam"]})
     assert read.crank is None
     assert read.group == ()
     assert read.cam.stroke == 0.01
@@ -91,92 +92,24 @@ def test_byte_order_mark_and_windows_line_ends(tmp_path):
     assert read.source("crank", "length").startswith("000, 2 ex. 1")
 
 
-GROUPS = """
-schema = 1
-[project]
-name = "all kinds"
-title = "Все виды групп"
-sheets = ["cam"]
-[crank]
-link = "1"
-pivot = "O"
-pin = "A"
-length = "0.1 m"
-speed = "10 rad/s"
-sense = "counter-clockwise"
-[points]
-O = ["0 m", "0 m"]
-C = ["0.3 m", "0 m"]
-[[guide]]
-name = "x"
-through = "C"
-direction = "0 deg"
-[[guide]]
-name = "y"
-through = ["1 m", "0 m"]
-direction = "90 deg"
-[[guide]]
-name = "on rod"
-link = "2"
-through = "A"
-towards = "B"
-[[group]]
-kind = 1
-links = ["2", "3"]
-outer = ["A", "C"]
-inner = "B"
-lengths = ["0.3 m", "0.2 m"]
-side = -1
-[[group]]
-kind = 2
-links = ["4", "5"]
-outer = ["M"]
-inner = "D"
-length = "0.5 m"
-guide = "x"
-[[group]]
-kind = 3
-links = ["6", "7"]
-outer = ["D", "C"]
-offset = "-0.01 m"
-[[group]]
-kind = 4
-links = ["8", "9"]
-guides = ["on rod", "y"]
-inner = "E"
-[[group]]
-kind = 5
-links = ["10", "11"]
-outer = ["E"]
-guide = "x"
-slot = "60 deg"
-inner = "F"
-[[point]]
-name = "N"
-link = "2"
-from = "M"
-towards = "B"
-distance = "0.05 m"
-[[point]]
-name = "M"
-link = "2"
-from = "A"
-towards = "B"
-distance = "-0.1 m"
-angle = "30 deg"
-[[point]]
-name = "T"
-link = "7"
-from = "C"
-towards = "D"
-distance = "0.1 m"
-"""
+ALL_KINDS = {
+    "group[1].side": -1,
+    "guide": [{"name": "x", "through": "C", "direction": "0 deg"}, {"name": "y", "through": ["1 m", "0 m"], "direction": "90 deg"},
+              {"name": "on rod", "link": "2", "through": "A", "towards": "B"}],
+    "group": [{"kind": 2, "links": ["4", "5"], "outer": ["M"], "inner": "D", "length": "0.5 m", "guide": "x"},
+              {"kind": 3, "links": ["6", "7"], "outer": ["D", "C"], "offset": "-0.01 m"},
+              {"kind": 4, "links": ["8", "9"], "guides": ["on rod", "y"], "inner": "E"},
+              {"kind": 5, "links": ["10", "11"], "outer": ["E"], "guide": "x", "slot": "60 deg", "inner": "F"}],
+    "point": [{"name": "N", "link": "2", "from": "M", "towards": "B", "distance": "0.05 m"},
+              {"name": "M", "link": "2", "from": "A", "towards": "B", "distance": "-0.1 m", "angle": "30 deg"},
+              {"name": "T", "link": "7", "from": "C", "towards": "D", "distance": "0.1 m"}],
+}
 
 
 def test_all_kinds_of_groups():
-    read = variant.parse(GROUPS, "x.toml")
+    read = project_files.read(FOUR_BAR, ALL_KINDS)
     assert [g.kind for g in read.group] == [1, 2, 3, 4, 5]
-    assert read.group[0].lengths == (0.3, 0.2)
+    assert read.group[0].lengths == (0.4, 0.25)
     assert read.group[0].side == -1
     assert read.group[2].offset == -0.01
     assert read.point[1].angle == pytest.approx(math.radians(30), rel=1e-15)
@@ -250,21 +183,9 @@ VALUES = st.recursive(
 )
 
 
-def _written(value):
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_written, value)) + "]"
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{_written(k)} = {_written(v)}" for k, v in value.items()) + "}"
-    return str(value)
-
-
 @given(st.dictionaries(KEYS, VALUES, max_size=5))
 def test_any_toml(data):
-    text = "".join(f"{_written(k)} = {_written(v)} # {i}\n" for i, (k, v) in enumerate(data.items()))
+    text = "".join(f"{written(k)} = {written(v)} # {i}\n" for i, (k, v) in enumerate(data.items()))
     assert tomllib.loads(text) == data
     found = scan(text)
     for i, key in enumerate(data):
