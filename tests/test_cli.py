@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.project_files import EVEN, SLIDER, write
 from tmm_sheets import __version__, resources
 from tmm_sheets.__main__ import run
 from tmm_sheets.output.build_store import RECORD
@@ -229,49 +230,17 @@ def test_a_reducer_without_a_solution(tmp_path, capsys):
     assert run(["solve", name, "--part", "cam,positions"]) == 0
 
 
-SHORT_ROD = """
-schema = 1
-[project]
-name = "short rod"
-title = "Кривошипно-ползунный механизм"
-sheets = ["kinematics_forces"]
-[crank]
-link = "1"
-pivot = "O"
-pin = "A"
-length = "0.1 m"
-speed = "60 rpm"
-sense = "counter-clockwise"
-[points]
-O = ["0 m", "0 m"]
-[[guide]]
-name = "x"
-through = ["0 m", "-0.24 m"]
-[[group]]
-kind = 2
-links = ["2", "3"]
-outer = ["A"]
-inner = "B"
-length = "0.3 m"
-guide = "x"
-[cycle]
-start = "0 deg"
-positions = 12
-"""
-
-
 def test_rod_too_short_in_some_positions(tmp_path, capsys):
     """The pin rises 0.34 m over the guide, the rod reaches 0.3 m: positions with sin > 0.6 fail."""
-    file = tmp_path / "short.toml"
-    file.write_text(SHORT_ROD, encoding="utf-8")
+    file = write(tmp_path, SLIDER, EVEN, {"guide[1].through": ["0 m", "-0.24 m"], "group[1].length": "0.3 m"})
     for words in (["check"], ["build", "-o", str(tmp_path / "out")], ["solve"]):
-        assert run([words[0], str(file), *words[1:]]) == 1
+        assert run([words[0], file, *words[1:]]) == 1
         captured = capsys.readouterr()
         assert "group 2-3 does not assemble at positions 2, 3, 4: rod AB = 300 mm is 40 mm too short" in captured.err
         assert captured.out == ""
     assert not (tmp_path / "out").exists()
     # Asked for angle by angle, what cannot be assembled is null and the rest is there: B is sqrt(0.3^2 - 0.24^2) from O's foot.
-    assert run(["solve", str(file), "--phi", "90,0", "--part", "positions", "--json", "-"]) == 0
+    assert run(["solve", file, "--phi", "90,0", "--part", "positions", "--json", "-"]) == 0
     b = json.loads(capsys.readouterr().out)["positions"]["points"]["B"]
     assert b == [[None, None], pytest.approx([0.28, -0.24], rel=1e-14)]
 
