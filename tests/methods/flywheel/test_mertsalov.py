@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from tests.methods.flywheel import press_truth as truth
 from tests.methods.linkage import shaper_truth as shaper
 from tests.methods.linkage.shaper_truth import Shaper
+from tests.project_files import project, shipped
 from tmm_sheets import catalogue
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
@@ -25,7 +26,6 @@ from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov
 from tmm_sheets.methods.flywheel.running import Energy, steady
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.project import Project
-from tmm_sheets.task import variant
 
 MANUALS = Path(__file__).parents[2] / "manuals"
 
@@ -45,13 +45,8 @@ def fw(press):
     return press.flywheel
 
 
-def changed(*pairs):
-    """The press with other lines in its project file."""
-    text = catalogue.read("press").text
-    for old, new in pairs:
-        assert text.count(old) == 1
-        text = text.replace(old, new)
-    return Project(variant.parse(text, "press.toml"))
+def changed(*parts):
+    return project(shipped("press"), *parts)
 
 
 # --- truth: reduced quantities, moment of inertia, running ----------------------------------------------------------------
@@ -88,8 +83,7 @@ def test_reference_values(fw, press):
 
 
 def test_drawn_construction_tends_to_the_limit_as_the_square_of_the_interval():
-    drawn = np.array([changed(("positions = 12 ", f"positions = {n} "), ('zero = "12"', 'zero = "0"')).flywheel.J_first
-                      for n in (24, 48, 96)])
+    drawn = np.array([changed({"cycle.positions": n, "cycle.zero": "0"}).flywheel.J_first for n in (24, 48, 96)])
     goal = truth.mertsalov()
     errors = np.abs(drawn - goal)
     assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([2, 2], abs=0.05)
@@ -256,22 +250,22 @@ def test_results_do_not_depend_on_the_scales(fw):
 
 
 def test_inertia_of_the_crank_and_the_rotor_is_taken_off():
-    heavy = changed(('title = "кривошип"', 'title = "кривошип"\nmass = "20 kg"\ncentre = "A"\ninertia = "1.5 kg m2"'),
-                    ("efficiency = 0.85", 'rotor_inertia = "0.2 kg m2"\nefficiency = 0.85')).flywheel
+    heavy = changed({"link[1]": {"mass": "20 kg", "centre": "A", "inertia": "1.5 kg m2"},
+                     "flywheel.motor.rotor_inertia": "0.2 kg m2"}).flywheel
     light = changed().flywheel
     assert heavy.reduced.crank_inertia == pytest.approx(1.5 + 20 * 0.12**2, rel=1e-14)
     assert heavy.J_rotor == pytest.approx(0.2 * 6.5**2, rel=1e-12)
     np.testing.assert_allclose(heavy.J_reduced, light.J_reduced, rtol=1e-12)
     assert set(heavy.reduced.inertia_parts(np.array([0.1]))) == set(light.reduced.inertia_parts(np.array([0.1])))
     # The crank's weight changes the moments: without it the first group would be the same.
-    weightless = changed(('title = "кривошип"', 'title = "кривошип"\ninertia = "1.788 kg m2"')).flywheel
+    weightless = changed({"link[1].inertia": "1.788 kg m2"}).flywheel
     assert weightless.J_first == pytest.approx(light.J_first, rel=1e-12)
     assert weightless.J_flywheel == pytest.approx(light.J_first - 1.788, rel=1e-12)
     assert weightless.J_flywheel_converged == pytest.approx(light.J_first_converged - 1.788, rel=1e-12)
 
 
 def test_no_flywheel_is_needed():
-    p = changed(('title = "кривошип"', 'title = "кривошип"\ninertia = "400 kg m2"'))
+    p = changed({"link[1].inertia": "400 kg m2"})
     assert p.flywheel.wheel is None
     assert p.flywheel.remark == ("no flywheel is needed: 400 kg m2 turn with the crank, 301.3 are enough "
                                  "(295.2 in the limit of many positions)")
@@ -409,7 +403,7 @@ def test_printed_scalars(fw):
 def test_segment_of_the_manual_belongs_to_a_constant_force(fw):
     """Errata: the printed ab = 47.11 mm is that of 20 kN all along the way, not of the linear law of table 1.4."""
     p = printed()
-    constant = changed(('table = [[0, "0 N"], [1, "40 kN"]]', 'value = "20 kN"')).flywheel
+    constant = changed({"force[1].table": None, "force[1].value": "20 kN"}).flywheel
 
     def segment(f):
         return f.J_first_converged * 0.04 * truth.OMEGA**2 / p["mu_A"][0]
