@@ -1,30 +1,19 @@
 """Kinematic diagrams and balancing moment: what is drawn against formulas, and both sheets of six-bar tasks without crowding."""
 
-import re
-
 import numpy as np
 import pytest
 
+from tests.project_files import project, shipped
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Line, Polyline, Text
-from tmm_sheets.errors import CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import diagrams
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.task import variant
 
 BOX = Box(20.0, 10.0, 330.0, 240.0)
-
-
-def edited(name, *changes):
-    """A project with lines of its file changed."""
-    text = read(name).text
-    for pattern, by in changes:
-        text, count = re.subn(pattern, by, text, flags=re.MULTILINE)
-        assert count == 1, pattern
-    return Project(variant.parse(text, "edited.toml"))
 
 
 def curves(canvas, key):
@@ -95,16 +84,15 @@ def test_a_curved_path_is_refused():
 
 
 def test_what_the_last_group_drives_is_drawn_unless_told():
-    project = edited("sixbar/1:1", (r"^diagrams = .*\n", ""), (r"^output = .*\n", ""), (r"^working_sense = .*\n", ""),
-                     (r'^stroke = "working".*$', 'stroke = "working"\nsense = "+x"'))
-    assert project.diagrams == ("C",)
-    assert drawn(project).scales == drawn(Project(read("sixbar/1:1"))).scales
+    p = project(shipped("sixbar/1:1"), {"cycle.diagrams": None, "cycle.output": None, "cycle.working_sense": None,
+                                        "force[1].sense": "+x"})
+    assert p.diagrams == ("C",)
+    assert drawn(p).scales == drawn(Project(read("sixbar/1:1"))).scales
 
 
 def test_unknown_name_of_a_diagram():
-    text = read("sixbar/1:1").text.replace('diagrams = ["C"]', 'diagrams = ["K"]')
-    with pytest.raises(Exception, match=r"cycle\.diagrams\[1\]: unknown point or link"):
-        variant.parse(text, "edited.toml")
+    with pytest.raises(BadInput, match=r"cycle\.diagrams\[1\]: unknown point or link"):
+        project(shipped("sixbar/1:1"), {"cycle.diagrams[1]": "K"})
 
 
 def test_table_has_every_position():
