@@ -7,24 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import kinematic_frames, sheet
 from tmm_sheets.sheets.frame import joined
-from tmm_sheets.task import variant
 
 HERE = Path(__file__).parent
-CLOSE, CONVEYOR = HERE / "close.toml", HERE.parent / "projects" / "conveyor.toml"
-
-
-def changed(path, *changes):
-    text = path.read_text(encoding="utf-8")
-    for old, new in changes:
-        assert text.count(old) == 1
-        text = text.replace(old, new)
-    return Project(variant.parse(text, str(path)))
+CLOSE, CONVEYOR = str(HERE / "close.toml"), str(HERE.parent / "projects" / "conveyor.toml")
 
 
 def lettering(composed):
@@ -46,7 +38,7 @@ def plan_sizes(phi):
 
 @pytest.fixture(scope="module")
 def close():
-    return changed(CLOSE)
+    return files.project(files.shipped(CLOSE))
 
 
 @pytest.fixture(scope="module")
@@ -74,18 +66,18 @@ def test_a_plan_that_is_not_drawn_is_said(close, composed, capsys):
     assert line == f"position 0 is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large as usual"
     note = " ".join(lettering(composed))
     assert re.search(rf"План скоростей положения 0 .*{round(times)} раз больше обычного", note)
-    assert run(["check", str(CLOSE)]) == 0
+    assert run(["check", CLOSE]) == 0
     assert line in capsys.readouterr().err
 
 
 def test_build_says_it(tmp_path, capsys):
-    assert run(["build", str(CLOSE), "--format", "svg", "-o", str(tmp_path)]) == 0
+    assert run(["build", CLOSE, "--format", "svg", "-o", str(tmp_path)]) == 0
     assert "position 0 is next to a dead point" in capsys.readouterr().err
 
 
 def test_the_plans_of_the_dead_point_itself_say_what_is_too_short():
     """At the dead point the centrifugal acceleration of D, omega3^2 l, is 1e4 times that of the pin: omega3 = omega r / 0.5 mm."""
-    found = sheet.composed(changed(CLOSE, ('force_position = "4"', 'force_position = "0"')), 1)
+    found = sheet.composed(files.project(files.shipped(CLOSE), {"cycle.force_position": "0"}), 1)
     mu = found.scales["accelerations"].mu
     pin, centre = (2 * np.pi) ** 2 * 0.1, (2 * np.pi * 0.1 / 0.0005) ** 2 * 0.3
     assert centre / mu > 50
@@ -116,7 +108,7 @@ def test_points_that_share_a_dot():
 
 def test_forty_plans_are_as_large_as_their_lettering_allows():
     """With 36 working positions the letters of all plans take more than the place: every second plan is drawn, and it is said."""
-    project = changed(CONVEYOR, ("working = 8", "working = 36"))
+    project = files.project(files.shipped(CONVEYOR), {"cycle.working": 36})
     found = sheet.composed(project, 1)
     parts = [p for p in found.parts if p.title.startswith("План скоростей")]
     assert [p.title.split()[-1] for p in parts] == [str(i) for i in range(40) if i % 2 == 0 or i == 3]
