@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from shapely import LineString, Polygon, box, union_all
 
+from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.construction import condition, rules
@@ -20,19 +21,14 @@ from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Fill, Text, flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import flat_crossings, kinematic_frames, sheet
-from tmm_sheets.task import variant
 
-NEAR = Path(__file__).parent / "near.toml"
+NEAR = str(Path(__file__).parent / "near.toml")
 CRANK, COUPLER, ROCKER, FRAME = 0.1, 0.33, 0.173, 0.4
 PENCIL = 0.25
 
 
-def near(**changes):
-    text = NEAR.read_text(encoding="utf-8")
-    for old, new in changes.values():
-        assert text.count(old) == 1
-        text = text.replace(old, new)
-    return Project(variant.parse(text, str(NEAR)))
+def near(*parts):
+    return files.project(files.shipped(NEAR), *parts)
 
 
 @pytest.fixture(scope="module")
@@ -130,7 +126,7 @@ def test_the_worst_of_what_was_computed_already():
 
 
 def test_explain_has_the_worst(tmp_path, capsys):
-    assert run(["build", str(NEAR), "--explain", "--format", "svg", "-o", str(tmp_path)]) == 0
+    assert run(["build", NEAR, "--explain", "--format", "svg", "-o", str(tmp_path)]) == 0
     row = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("  positions "))
     assert row.endswith("4.38 in C")
 
@@ -185,7 +181,7 @@ def test_well_conditioned_projects_have_none_and_nothing_is_replayed(name, monke
 
 def test_the_analysed_position_may_be_in_the_second_turn():
     """Engines have cycles of two turns; the plans of the second repeat those of the first."""
-    p = near(turns=("positions = 12", "positions = 12\nturns = 2"), position=('force_position = "6"', 'force_position = "18"'))
+    p = near({"cycle.turns": 2, "cycle.force_position": "18"})
     found = sheet.composed(p, 1)
     told = " ".join(g.text for g in found.groups if g.kind == "lettering")
     assert "В положениях 5–7 засечку точки C нельзя провести точнее 2,3 мм" in told
@@ -195,7 +191,7 @@ def test_the_analysed_position_may_be_in_the_second_turn():
 
 
 def test_the_better_position_is_on_the_same_stroke():
-    p = near(strokes=("positions = 12", 'positions = 12\noutput = "E"\nworking_sense = "+x"'))
+    p = near({"cycle.output": "E", "cycle.working_sense": "+x"})
     scale, _ = kinematic_frames.scales(p, {"positions"})["mu_l"]
     (found,) = flat_crossings.find(p, p.study.positions.plan, [5], {"positions": scale})
     working = p.cycle.strokes.working(p.cycle.turned, 1)
@@ -290,7 +286,7 @@ def test_notes_go_beside_a_full_view_and_are_told_when_nothing_is_free():
 
 
 def test_check_tells(capsys):
-    assert run(["check", str(NEAR)]) == 0
+    assert run(["check", NEAR]) == 0
     told = capsys.readouterr()
     assert told.out == "near: OK\n"
     assert told.err == (
@@ -302,12 +298,12 @@ def test_check_tells(capsys):
 
 
 def test_condition_in_the_results(capsys):
-    assert run(["solve", str(NEAR), "--json", "-"]) == 0
+    assert run(["solve", NEAR, "--json", "-"]) == 0
     tree = json.loads(capsys.readouterr().out)
     assert list(tree["condition"]) == ["positions", "velocities", "accelerations", "forces"]
     angle = acos((COUPLER**2 + ROCKER**2 - (FRAME + CRANK) ** 2) / (2 * COUPLER * ROCKER))
     assert tree["condition"]["positions"][6] == pytest.approx(1 / sin(angle), rel=1e-12)
     assert tree["condition"]["forces"] == pytest.approx([tree["condition"]["velocities"][6]], rel=1e-9)
-    assert run(["solve", str(NEAR), "--json", "-", "--part", "velocities", "--positions", "7"]) == 0
+    assert run(["solve", NEAR, "--json", "-", "--part", "velocities", "--positions", "7"]) == 0
     tree = json.loads(capsys.readouterr().out)
     assert [(k, len(v)) for k, v in tree["condition"].items()] == [("velocities", 7)]
