@@ -42,7 +42,7 @@ CAM = {"cam": {"follower": "translating roller", "law": "sine", "rise": "100 deg
 
 
 def shipped(name):
-    """A shipped project as a part."""
+    """A shipped project, or a file, as a part."""
     return tomllib.loads(catalogue.read(name).text)
 
 

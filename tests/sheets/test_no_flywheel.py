@@ -11,6 +11,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from tests import project_files as files
 from tests.methods.linkage import shaper_truth
 from tmm_sheets import catalogue, protocols, results
 from tmm_sheets.__main__ import run
@@ -20,24 +21,19 @@ from tmm_sheets.methods.flywheel.flywheel import lettered
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.task import variant
 
-PLACES = {"lugansk/shaper": 'centre = "A"  ', "press": 'title = "кривошип"'}
 SHEET = {"lugansk/shaper": 2, "press": 1}
-BOTH = pytest.mark.parametrize("name", PLACES)
+BOTH = pytest.mark.parametrize("name", SHEET)
 
 
 def with_crank(name, inertia):
-    """The project with a moment of inertia of the crank, kg m2."""
-    text = catalogue.read(name).text
-    place = PLACES[name]
-    assert text.count(place) == 1
-    own = f'inertia = "{inertia!r} kg m2"\n' + ('centre = "O"\n' if name == "press" else "")
-    return text.replace(place, own + place)
+    """The project with a moment of inertia of the crank, kg m2, as parts."""
+    machine = files.shipped(name)
+    return machine, {"link[1]": {"centre": machine["crank"]["pivot"], "inertia": f"{inertia!r} kg m2"}}
 
 
 def project(name, inertia):
-    return Project(variant.parse(with_crank(name, inertia), name))
+    return files.project(*with_crank(name, inertia))
 
 
 def running(name, p, first):
@@ -121,22 +117,21 @@ def test_the_sheet_says_it_in_words_and_draws_no_wheel(name):
 
 @BOTH
 def test_results_check_protocol_and_compare(name, tmp_path, capsys):
-    file = tmp_path / "heavy.toml"
-    file.write_text(with_crank(name, 600.0), encoding="utf-8")
-    assert run(["solve", str(file), "--json", "-", "--part", "flywheel"]) == 0
+    file = files.write(tmp_path, *with_crank(name, 600.0))
+    assert run(["solve", file, "--json", "-", "--part", "flywheel"]) == 0
     found = json.loads(capsys.readouterr().out)["flywheel"]
     assert found["needed"] is False
     assert found["J_flywheel"] < 0
     assert found["J_flywheel_converged"] < 0
     assert (found["ab_mm"] < 0) == (name == "lugansk/shaper")
     assert [found[key] for key in ("form", "D", "B", "H", "m", "v")] == [None] * 6
-    assert run(["solve", str(file), "--part", "flywheel"]) == 0
+    assert run(["solve", file, "--part", "flywheel"]) == 0
     assert "needed = False" in capsys.readouterr().out
-    assert run(["check", str(file)]) == 0
+    assert run(["check", file]) == 0
     assert "no flywheel is needed: 600 kg m2 turn with the crank" in capsys.readouterr().err
-    assert run(["protocol", str(file)]) == 0
+    assert run(["protocol", file]) == 0
     assert "|ab|" not in capsys.readouterr().err
-    assert run(["compare", str(file), "--template", "-o", str(tmp_path)]) == 0
+    assert run(["compare", file, "--template", "-o", str(tmp_path)]) == 0
     capsys.readouterr()
     assert "J_flywheel" in (tmp_path / "measured.csv").read_text(encoding="utf-8")
 
@@ -161,11 +156,9 @@ def test_the_segment_is_said_with_its_sign():
 
 def digitised(points):
     """The shaper with a force given point by point over the angle."""
-    text = catalogue.read("lugansk/shaper").text
-    begin, end = text.index("[[force]]"), text.index("[balancing]")
-    table = ", ".join(f'["{a!r} deg", "{1500 + 1300 * np.sin(np.radians(a)):.1f} N"]' for a in np.linspace(0, 360, points).tolist())
-    law = f'name = "F5"\nlink = "5"\npoint = "S5"\ndirection = "180 deg"\nover = "angle"\ntable = [{table}]'
-    return Project(variant.parse(f"{text[:begin]}[[force]]\n{law}\n\n{text[end:]}", "digitised"))
+    table = [[f"{a!r} deg", f"{1500 + 1300 * np.sin(np.radians(a)):.1f} N"] for a in np.linspace(0, 360, points).tolist()]
+    force = {"name": "F5", "link": "5", "point": "S5", "direction": "180 deg", "over": "angle", "table": table}
+    return files.project(files.shipped("lugansk/shaper"), {"force": None}, {"force": [force]})
 
 
 def test_letters_of_points_between_two_numbers():
