@@ -1,6 +1,7 @@
 """Lengths from conditions: closed forms in 40 digits, and the conditions measured back from the mechanism they give."""
 
 import re
+import tomllib
 from math import pi
 from types import SimpleNamespace
 
@@ -10,16 +11,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.methods.linkage.synthesis import Synthesis
 from tmm_sheets.project import Project
-from tmm_sheets.resources import variants
-from tmm_sheets.task import variant
 
-SHAPER = (variants() / "lugansk/shaper.toml").read_text(encoding="utf-8")
-ENGINE = (variants() / "lugansk/engine.toml").read_text(encoding="utf-8")
+ENGINE = files.shipped("lugansk/engine")
 
 
 def conditions(**given):
@@ -31,13 +30,11 @@ def quick_return(k, stroke, distance, **more):
     return Synthesis(conditions(kind="quick return", coefficient=k, stroke=stroke, centre_distance=distance, **more), 1.0)
 
 
-def synthesised(text):
+def synthesised():
     """The shaper with the alternative of its own comment taken."""
-    text = re.sub(r"(?m)^#(?=[\[a-z])", "", text)
-    for number, name in (("0.08", "l_AB"), ("0.566", "l_CD"), ("0.283", "l_CS")):
-        assert f'= "{number} m"' in text
-        text = text.replace(f'= "{number} m"', f'= "synthesis {name}"')
-    return text
+    text = re.sub(r"(?m)^#(?=[\[a-z])", "", catalogue.read("lugansk/shaper").text)
+    return files.merged(tomllib.loads(text), {
+        "crank.length": "synthesis l_AB", "point[1].distance": "synthesis l_CD", "point[2].distance": "synthesis l_CS"})
 
 
 def test_shaper_of_the_manual():
@@ -67,11 +64,9 @@ def test_quick_return_against_closed_forms(k, stroke, distance):
 @given(st.floats(1.1, 2.5), st.floats(0.1, 0.6), st.floats(0.1, 0.6))
 def test_the_mechanism_has_the_conditions(k, stroke, distance):
     """Without rounding: its dead positions give K, and the ram its stroke."""
-    text = synthesised(SHAPER).replace("coefficient = 1.5\nstroke = \"0.35 m\"\ncentre_distance = \"0.26 m\"",
-                                       f"coefficient = {k!r}\nstroke = \"{stroke!r} m\"\ncentre_distance = \"{distance!r} m\"")
-    text = text.replace('round = "1 mm"', "").replace('C = ["0 m", "-0.26 m"]', 'C = ["0 m", "-synthesis l_AC"]')
-    text = text.replace('division = "nominal"', 'division = "exact"').replace('"0.33 m"]', '"2 m"]')
-    project = Project(variant.parse(text, "a.toml"))
+    project = files.project(synthesised(), {
+        "synthesis": {"coefficient": k, "stroke": f"{stroke!r} m", "centre_distance": f"{distance!r} m"}, "synthesis.round": None,
+        "points.C": ["0 m", "-synthesis l_AC"], "cycle.division": "exact", "guide[1].through[2]": "2 m"})
     cycle = project.cycle
     working = cycle.turned[6]
     assert working / (2 * pi - working) == pytest.approx(k, rel=1e-9)
@@ -80,16 +75,15 @@ def test_the_mechanism_has_the_conditions(k, stroke, distance):
 
 def test_both_ways_of_the_shaper_are_one():
     given = Project(catalogue.read("lugansk/shaper"))
-    found = Project(variant.parse(synthesised(SHAPER), "a.toml"))
+    found = files.project(synthesised())
     assert found.mechanism == given.mechanism
     assert np.array_equal(found.cycle.turned, given.cycle.turned)
 
 
 def test_both_ways_of_the_engine_are_one():
-    text = ENGINE.replace('"synthesis l_AB"', '"0.054 m"').replace('"synthesis l_BC"', '"0.192 m"')
-    text = text.replace('"0.28 synthesis l_BC"', '"0.05376 m"')
-    assert "synthesis l" not in text.replace('as "synthesis l_AB"', "")
-    given = Project(variant.parse(text, "a.toml"))
+    rods, centres = {"length": "0.192 m"}, {"distance": "0.05376 m"}
+    given = files.project(ENGINE, {"synthesis": None, "crank.length": "0.054 m", "point[1].distance": "0.054 m", "group[1]": rods,
+                                   "group[2]": rods, "point[2]": centres, "point[3]": centres})
     assert given.mechanism == Project(catalogue.read("lugansk/engine")).mechanism
 
 
@@ -106,27 +100,25 @@ def test_rounded_to_nothing():
         _ = quick_return(1.5, 0.35, 0.26, round=0.5).lengths
 
 
-@pytest.mark.parametrize(("old", "new", "said"), [
-    ('"synthesis l_BC"', '"synthesis l_CD"', 'unknown result "l_CD"'),
-    ('distance = "0.28 synthesis l_BC"', 'distance = "synthesis"', "which length of the synthesis?"),
-    ("rod_ratio = 3.56", "", "needs rod_ratio as well"),
-    ("rod_ratio = 3.56", "rod_ratio = 0.5", "expected a ratio greater than 1"),
-    ("rod_ratio = 3.56", "rod_ratio = 3.56\ncoefficient = 2", 'kind = "engine" has no coefficient'),
-    ('round = "1 mm"', 'round = "1 m"', "l_AB = 54 mm is rounded to nothing"),
-    ('"8.64 m/s"', '"8.64 mm"', "'mm' is a unit of length"),
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"group[1].length": "synthesis l_CD"}, 'unknown result "l_CD"'),
+    ({"point[2].distance": "synthesis"}, "which length of the synthesis?"),
+    ({"synthesis.rod_ratio": None}, "needs rod_ratio as well"),
+    ({"synthesis.rod_ratio": 0.5}, "expected a ratio greater than 1"),
+    ({"synthesis.coefficient": 2}, 'kind = "engine" has no coefficient'),
+    ({"synthesis.round": "1 m"}, "l_AB = 54 mm is rounded to nothing"),
+    ({"synthesis.mean_velocity": "8.64 mm"}, "'mm' is a unit of length"),
 ])  # fmt: skip
-def test_wrong_conditions(old, new, said):
-    assert old in ENGINE
+def test_wrong_conditions(changes, said):
     with pytest.raises(BadInput, match=said.replace("?", r"\?")):
-        variant.parse(ENGINE.replace(old, new), "a.toml")
+        files.read(ENGINE, changes)
 
 
 def test_no_conditions():
     with pytest.raises(BadInput, match=r"crank\.length: there is no \[synthesis\]"):
-        variant.parse(SHAPER.replace('length = "0.08 m"', 'length = "synthesis l_AB"'), "a.toml")
+        files.read(files.shipped("lugansk/shaper"), {"crank.length": "synthesis l_AB"})
 
 
 def test_natural_places_need_no_name():
-    text = re.sub(r'(?m)^length = "synthesis l_\w+"', 'length = "synthesis"', ENGINE)
-    assert text != ENGINE
-    assert Project(variant.parse(text, "a.toml")).mechanism == Project(catalogue.read("lugansk/engine")).mechanism
+    places = dict.fromkeys(("crank.length", "group[1].length", "group[2].length"), "synthesis")
+    assert files.project(ENGINE, places).mechanism == Project(catalogue.read("lugansk/engine")).mechanism
