@@ -10,13 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.project_files import EVEN, SLIDER, write
-from tmm_sheets import __version__, resources
+from tests.project_files import EVEN, SLIDER, shipped, write
+from tmm_sheets import __version__, catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.output.build_store import RECORD
 
-SHAPER = resources.variants() / "lugansk" / "shaper.toml"
-TEXT = SHAPER.read_text(encoding="utf-8")
+SHAPER = shipped("lugansk/shaper")
 ROOT = Path(__file__).parents[1]
 
 
@@ -25,22 +24,6 @@ def command(*arguments, **options):
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error"}
     options = {"capture_output": True, "text": True, "timeout": 60, "env": environment} | options
     return subprocess.run([sys.executable, "-m", "tmm_sheets", *map(str, arguments)], **options)
-
-
-@pytest.fixture
-def project(tmp_path):
-    """Write a project file: the sample with pieces replaced."""
-
-    def write(*changes):
-        text = TEXT
-        for old, new in changes:
-            assert old in text, old
-            text = text.replace(old, new, 1)
-        file = tmp_path / "my.toml"
-        file.write_text(text, encoding="utf-8")
-        return str(file)
-
-    return write
 
 
 def listing(folder):
@@ -130,9 +113,11 @@ def test_wrong_usage(arguments, said, capsys):
     assert captured.out == ""
 
 
-def test_file_with_problems(project, capsys):
-    file = project(('length = "0.08 m"', 'length = "-0.08 m"'), ("delta = 0.025", "delta = nan"))
-    assert run(["check", file]) == 2
+def test_file_with_problems(tmp_path, capsys):
+    file = tmp_path / "my.toml"
+    text = catalogue.read("lugansk/shaper").text
+    file.write_text(text.replace('"0.08 m"', '"-0.08 m"').replace("delta = 0.025", "delta = nan"), encoding="utf-8")
+    assert run(["check", str(file)]) == 2
     err = capsys.readouterr().err
     assert f'{file}:27: crank.length: expected a length greater than zero, not "-0.08 m"\n' in err
     assert "flywheel.delta: expected a number, not nan" in err
@@ -144,16 +129,16 @@ def test_file_with_problems(project, capsys):
 @pytest.mark.parametrize(
     ("changes", "said", "refused"),
     [
-        ([('C = ["0 m", "-0.26 m"]', 'C = ["0 m", "-0.07 m"]')], "inside the crank circle", {1, 2}),
-        ([('shift = [0.17647058823529413, 0.0]', "shift = [-0.5, 0.0]")], "undercut", {3}),
-        ([('shift = [0.17647058823529413, 0.0]', "shift = [1.4, 0.0]")], "its flanks meet below the tip circle", {3}),
-        ([('roller = "3.5 mm"', 'roller = "9 mm"')], "cusp", {4}),
-        ([('force_position = "2"', 'force_position = "12"')], "there is no position 12", {1}),
+        ({"points.C": ["0 m", "-0.07 m"]}, "inside the crank circle", {1, 2}),
+        ({"gear.shift": [-0.5, 0.0]}, "undercut", {3}),
+        ({"gear.shift": [1.4, 0.0]}, "its flanks meet below the tip circle", {3}),
+        ({"cam.roller": "9 mm"}, "cusp", {4}),
+        ({"cycle.force_position": "12"}, "there is no position 12", {1}),
     ],
 )  # fmt: skip
-def test_what_cannot_be_built_costs_nothing_else(changes, said, refused, project, tmp_path, monkeypatch, capsys):
+def test_what_cannot_be_built_costs_nothing_else(changes, said, refused, tmp_path, monkeypatch, capsys):
     """Every other sheet is there, byte for byte as built alone, and every other part is solved."""
-    file = project(*changes)
+    file = write(tmp_path, SHAPER, changes)
     work = tmp_path / "work"
     work.mkdir()
     monkeypatch.chdir(work)
@@ -184,10 +169,10 @@ def test_what_cannot_be_built_costs_nothing_else(changes, said, refused, project
     assert not Path("none").exists()
 
 
-def test_sheets_in_part_are_remembered_rightly(project, tmp_path, capsys):
+def test_sheets_in_part_are_remembered_rightly(tmp_path, capsys):
     """Built again, the sound sheets are unchanged and the other is still told; mended, only what depends on the change is new."""
-    bad, out = project(('roller = "3.5 mm"', 'roller = "9 mm"')), tmp_path / "out"
-    words = ["build", bad, "-o", str(out), "--format", "svg"]
+    bad, out = {"cam.roller": "9 mm"}, tmp_path / "out"
+    words = ["build", write(tmp_path, SHAPER, bad), "-o", str(out), "--format", "svg"]
     assert run(words) == 1
     first = capsys.readouterr()
     times = {p.name: p.stat().st_mtime_ns for p in out.iterdir()}
@@ -197,12 +182,14 @@ def test_sheets_in_part_are_remembered_rightly(project, tmp_path, capsys):
     assert "3 of 3 files unchanged" in again.err
     assert first.err in again.err
     assert {p.name: p.stat().st_mtime_ns for p in out.iterdir()} == times
-    assert run(["build", project(), "-o", str(out), "--format", "svg"]) == 0
+    write(tmp_path, SHAPER)
+    assert run(words) == 0
     assert {p.name for p in out.glob("*.svg")} == {f"sheet{n}.svg" for n in (1, 2, 3, 4)}
     # The file of a sheet that cannot be drawn any more is not passed off as new.
     capsys.readouterr()
     good = (out / "sheet4.svg").read_bytes()
-    assert run(["build", project(('roller = "3.5 mm"', 'roller = "9 mm"')), "-o", str(out), "--format", "svg"]) == 1
+    write(tmp_path, SHAPER, bad)
+    assert run(words) == 1
     told = capsys.readouterr()
     assert "sheet4.svg: left as they were made before" in told.err
     assert "sheet4" not in told.out
@@ -281,11 +268,11 @@ def test_full_disk(tmp_path, monkeypatch, capsys):
     assert listing(tmp_path) == []
 
 
-def test_scale_factors_of_the_project_file(project, tmp_path, capsys):
-    file = project(("[gear]", "[scales]\npositions = 0.005\n\n[gear]"))
+def test_scale_factors_of_the_project_file(tmp_path, capsys):
+    file = write(tmp_path, SHAPER, {"scales": {"positions": 0.005}})
     assert run(["protocol", file, "--plan", "positions"]) == 0
     assert "μ_l = 0,005 м/мм" in capsys.readouterr().out
-    file = project(("[gear]", "[scales]\nposition = 0.005\n\n[gear]"))
+    file = write(tmp_path, SHAPER, {"scales": {"position": 0.005}})
     assert run(["build", file, "-o", str(tmp_path / "out")]) == 2
     assert "scales.position: no sheet draws a plan of this name" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
@@ -424,15 +411,13 @@ def test_json_file(tmp_path, capsys):
     assert capsys.readouterr().out == ""
 
 
-def test_sections_left_out(project, capsys):
-    head, _, tail = TEXT.partition("\n[gear]")
-    file = Path(project())
-    file.write_text(head + "\n[cam]" + tail.partition("\n[cam]")[2], encoding="utf-8")
-    assert run(["solve", str(file), "--json", "-"]) == 0
+def test_sections_left_out(tmp_path, capsys):
+    file = write(tmp_path, SHAPER, {"gear": None})
+    assert run(["solve", file, "--json", "-"]) == 0
     assert "gear" not in json.loads(capsys.readouterr().out)
-    assert run(["solve", str(file), "--part", "gear"]) == 2
+    assert run(["solve", file, "--part", "gear"]) == 2
     assert 'has no part "gear"' in capsys.readouterr().err
-    assert run(["build", str(file), "--sheet", "4"]) == 2
+    assert run(["build", file, "--sheet", "4"]) == 2
     assert "has sheets 1 to 3" in capsys.readouterr().err
 
 
@@ -479,8 +464,6 @@ def test_reader_that_goes_away_is_no_news():
 
 
 def test_interrupt_is_quiet(monkeypatch, capsys):
-    from tmm_sheets import catalogue
-
     def interrupted(project, corrected):
         raise KeyboardInterrupt
 
@@ -490,8 +473,6 @@ def test_interrupt_is_quiet(monkeypatch, capsys):
 
 
 def test_a_defect_shows_no_traceback(monkeypatch, capsys):
-    from tmm_sheets import catalogue
-
     def broken(project, corrected):
         raise ZeroDivisionError("nobody thought of this")
 
