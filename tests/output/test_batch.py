@@ -13,7 +13,7 @@ from time import monotonic, sleep
 
 import pytest
 
-from tmm_sheets import resources
+from tests.project_files import from_file, write
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
 from tmm_sheets.output import batch, building
@@ -24,7 +24,7 @@ from tmm_sheets.progress import Bar
 from tmm_sheets.sheets import sheet
 
 ROOT = Path(__file__).parents[2]
-CAM = resources.variants() / "lugansk" / "cam_flat.toml"
+CAM = from_file("lugansk/cam_flat")
 CAMS = ("lugansk/cam_flat", "lugansk/cam_rocker")
 
 
@@ -40,20 +40,19 @@ def times(folder):
 @pytest.fixture
 def mine(tmp_path):
     """A project file of one sheet, and the command that builds it as DXF and SVG."""
-    file = tmp_path / "my.toml"
-    file.write_text(CAM.read_text(encoding="utf-8"), encoding="utf-8")
+    file = write(tmp_path, CAM)
 
     def build(*more):
-        return run(["build", str(file), "--format", "dxf,svg", "-o", str(tmp_path / "out"), *more])
+        return run(["build", file, "--format", "dxf,svg", "-o", str(tmp_path / "out"), *more])
 
-    return file, tmp_path / "out", build
+    return tmp_path / "out", build
 
 
 # --- skipping ---------------------------------------------------------------------------------------------------------
 
 
 def test_second_build_draws_nothing(mine, monkeypatch, capsys):
-    _, out, build = mine
+    out, build = mine
     assert build() == 0
     first, before, told = contents(out), times(out), capsys.readouterr()
     assert told.err == ""
@@ -72,7 +71,7 @@ def test_second_build_draws_nothing(mine, monkeypatch, capsys):
 
 @pytest.mark.parametrize("spoil", [Path.unlink, lambda p: p.write_bytes(p.read_bytes() + b" ")])
 def test_only_what_is_missing_or_not_ours_is_made(mine, spoil):
-    _, out, build = mine
+    out, build = mine
     assert build() == 0
     first, before = contents(out), times(out)
     spoil(out / "sheet1.dxf")
@@ -81,23 +80,21 @@ def test_only_what_is_missing_or_not_ours_is_made(mine, spoil):
     assert times(out)["sheet1.svg"] == before["sheet1.svg"]
 
 
-def test_a_change_of_the_project_is_seen(mine):
-    file, out, build = mine
+def test_a_change_of_the_project_is_seen(mine, tmp_path):
+    out, build = mine
     assert build() == 0
     first = contents(out)
-    text = file.read_text(encoding="utf-8")
-    assert 'stroke = "55 mm"' in text
-    file.write_text(text.replace('stroke = "55 mm"', 'stroke = "50 mm"'), encoding="utf-8")
+    write(tmp_path, CAM, {"cam.stroke": "50 mm"})
     assert build() == 0
     second = contents(out)
     assert all(second[name] != first[name] for name in first)
-    file.write_text(text, encoding="utf-8")
+    write(tmp_path, CAM)
     assert build() == 0
     assert contents(out) == first
 
 
 def test_a_change_of_the_program_is_seen(mine, monkeypatch):
-    _, out, build = mine
+    out, build = mine
     assert build() == 0
     before = times(out)
     monkeypatch.setattr(building, "program", lambda: "another")
@@ -106,7 +103,7 @@ def test_a_change_of_the_program_is_seen(mine, monkeypatch):
 
 
 def test_settings_of_a_format_concern_its_files_only(mine):
-    _, out, build = mine
+    out, build = mine
     assert build("--format", "svg,png", "--dpi", "20") == 0
     before = times(out)
     assert build("--format", "svg,png", "--dpi", "30") == 0
@@ -117,11 +114,8 @@ def test_settings_of_a_format_concern_its_files_only(mine):
 
 def test_sheets_built_one_by_one_are_still_checked_together(tmp_path, capsys):
     """A scale factor that no sheet uses shows only when all sheets are known."""
-    file = tmp_path / "my.toml"
-    text = CAM.read_text(encoding="utf-8")
-    assert 'sheets = ["cam"]' in text
-    file.write_text(text.replace('["cam"]', '["cam", "cam"]') + "\n[scales]\nvelocities = 0.02\n", encoding="utf-8")
-    arguments = ["build", str(file), "--format", "svg", "-o", str(tmp_path / "out")]
+    file = write(tmp_path, CAM, {"project.sheets": ["cam", "cam"], "scales": {"velocities": 0.02}})
+    arguments = ["build", file, "--format", "svg", "-o", str(tmp_path / "out")]
     for n in "12":
         assert run([*arguments, "--sheet", n]) == 0
     capsys.readouterr()
@@ -131,7 +125,7 @@ def test_sheets_built_one_by_one_are_still_checked_together(tmp_path, capsys):
 
 @pytest.mark.parametrize("damage", [b"", b"{}", b"[1]", b"null", b'{"schema": 1, "whole": "", "files": {"a": 1}}', b"\xff\xfe"])
 def test_a_damaged_record_is_no_record(mine, damage):
-    _, out, build = mine
+    out, build = mine
     assert BuildRecord.read(damage) == BuildRecord()
     assert build() == 0
     first = contents(out)
