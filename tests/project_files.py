@@ -41,7 +41,7 @@ CAM = {"cam": {"follower": "translating roller", "law": "sine", "rise": "100 deg
                "pressure_angle": "30 deg"}}
 
 
-def shipped(name):
+def from_file(name):
     """A shipped project, or a file, as a part."""
     return tomllib.loads(catalogue.read(name).text)
 

@@ -8,7 +8,7 @@ import tomllib
 import pytest
 
 from tests.attack import SMALL, SOURCES, case, fallen
-from tests.project_files import EVEN, FLYWHEEL, FORCE, GEAR, MASS, MOMENT, SLIDER, WORKING, project, read, shipped
+from tests.project_files import EVEN, FLYWHEEL, FORCE, GEAR, MASS, MOMENT, SLIDER, WORKING, from_file, project, read
 from tmm_sheets import protocols, results
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.sheets.sheet import composed
@@ -72,7 +72,7 @@ def test_a_mechanism_of_any_size(factor):
 
 
 def test_a_flywheel_too_large_for_any_scale():
-    p = project(longer(shipped("lugansk/shaper"), 1e6))
+    p = project(longer(from_file("lugansk/shaper"), 1e6))
     composed(p, 1)
     with pytest.raises(CannotBuild, match=r"do not fit in 160 mm of the sheet at any scale of GOST 2\.302[^\n]*\n.*units you mean"):
         composed(p, 2)

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.project_files import EVEN, SLIDER, shipped, write
+from tests.project_files import EVEN, SLIDER, from_file, write
 from tmm_sheets import __version__, catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.output.build_store import RECORD
 
-SHAPER = shipped("lugansk/shaper")
+SHAPER = from_file("lugansk/shaper")
 ROOT = Path(__file__).parents[1]
 
 

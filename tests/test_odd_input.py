@@ -6,11 +6,11 @@ from operator import delitem, setitem
 
 import pytest
 
-from tests.project_files import shipped, toml
+from tests.project_files import from_file, toml
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
 
-DATA = shipped("lugansk/shaper")
+DATA = from_file("lugansk/shaper")
 ODD = [0, -1, 0.5, True, "", "x", "1 m", [], ["A", "A"], [[]], {}, [{"name": []}]]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.project_files import project, shipped
+from tests.project_files import from_file, project
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
@@ -84,7 +84,7 @@ def test_a_curved_path_is_refused():
 
 
 def test_what_the_last_group_drives_is_drawn_unless_told():
-    p = project(shipped("sixbar/1:1"), {"cycle.diagrams": None, "cycle.output": None, "cycle.working_sense": None,
+    p = project(from_file("sixbar/1:1"), {"cycle.diagrams": None, "cycle.output": None, "cycle.working_sense": None,
                                         "force[1].sense": "+x"})
     assert p.diagrams == ("C",)
     assert drawn(p).scales == drawn(Project(read("sixbar/1:1"))).scales
@@ -92,7 +92,7 @@ def test_what_the_last_group_drives_is_drawn_unless_told():
 
 def test_unknown_name_of_a_diagram():
     with pytest.raises(BadInput, match=r"cycle\.diagrams\[1\]: unknown point or link"):
-        project(shipped("sixbar/1:1"), {"cycle.diagrams[1]": "K"})
+        project(from_file("sixbar/1:1"), {"cycle.diagrams[1]": "K"})
 
 
 def test_table_has_every_position():

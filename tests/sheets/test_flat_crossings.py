@@ -28,7 +28,7 @@ PENCIL = 0.25
 
 
 def near(*parts):
-    return files.project(files.shipped(NEAR), *parts)
+    return files.project(files.from_file(NEAR), *parts)
 
 
 @pytest.fixture(scope="module")

@@ -28,7 +28,7 @@ BOTH = pytest.mark.parametrize("name", SHEET)
 
 def with_crank(name, inertia):
     """The project with a moment of inertia of the crank, kg m2, as parts."""
-    machine = files.shipped(name)
+    machine = files.from_file(name)
     return machine, {"link[1]": {"centre": machine["crank"]["pivot"], "inertia": f"{inertia!r} kg m2"}}
 
 
@@ -158,7 +158,7 @@ def digitised(points):
     """The shaper with a force given point by point over the angle."""
     table = [[f"{a!r} deg", f"{1500 + 1300 * np.sin(np.radians(a)):.1f} N"] for a in np.linspace(0, 360, points).tolist()]
     force = {"name": "F5", "link": "5", "point": "S5", "direction": "180 deg", "over": "angle", "table": table}
-    return files.project(files.shipped("lugansk/shaper"), {"force": None}, {"force": [force]})
+    return files.project(files.from_file("lugansk/shaper"), {"force": None}, {"force": [force]})
 
 
 def test_letters_of_points_between_two_numbers():

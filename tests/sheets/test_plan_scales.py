@@ -38,7 +38,7 @@ def plan_sizes(phi):
 
 @pytest.fixture(scope="module")
 def close():
-    return files.project(files.shipped(CLOSE))
+    return files.project(files.from_file(CLOSE))
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def test_build_says_it(tmp_path, capsys):
 
 def test_the_plans_of_the_dead_point_itself_say_what_is_too_short():
     """At the dead point the centrifugal acceleration of D, omega3^2 l, is 1e4 times that of the pin: omega3 = omega r / 0.5 mm."""
-    found = sheet.composed(files.project(files.shipped(CLOSE), {"cycle.force_position": "0"}), 1)
+    found = sheet.composed(files.project(files.from_file(CLOSE), {"cycle.force_position": "0"}), 1)
     mu = found.scales["accelerations"].mu
     pin, centre = (2 * np.pi) ** 2 * 0.1, (2 * np.pi * 0.1 / 0.0005) ** 2 * 0.3
     assert centre / mu > 50
@@ -108,7 +108,7 @@ def test_points_that_share_a_dot():
 
 def test_forty_plans_are_as_large_as_their_lettering_allows():
     """With 36 working positions the letters of all plans take more than the place: every second plan is drawn, and it is said."""
-    project = files.project(files.shipped(CONVEYOR), {"cycle.working": 36})
+    project = files.project(files.from_file(CONVEYOR), {"cycle.working": 36})
     found = sheet.composed(project, 1)
     parts = [p for p in found.parts if p.title.startswith("План скоростей")]
     assert [p.title.split()[-1] for p in parts] == [str(i) for i in range(40) if i % 2 == 0 or i == 3]

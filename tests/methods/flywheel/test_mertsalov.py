@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from tests.methods.flywheel import press_truth as truth
 from tests.methods.linkage import shaper_truth as shaper
 from tests.methods.linkage.shaper_truth import Shaper
-from tests.project_files import project, shipped
+from tests.project_files import from_file, project
 from tmm_sheets import catalogue
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
@@ -46,7 +46,7 @@ def fw(press):
 
 
 def changed(*parts):
-    return project(shipped("press"), *parts)
+    return project(from_file("press"), *parts)
 
 
 # --- truth: reduced quantities, moment of inertia, running ----------------------------------------------------------------

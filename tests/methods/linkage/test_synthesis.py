@@ -18,7 +18,7 @@ from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.methods.linkage.synthesis import Synthesis
 from tmm_sheets.project import Project
 
-ENGINE = files.shipped("lugansk/engine")
+ENGINE = files.from_file("lugansk/engine")
 
 
 def conditions(**given):
@@ -116,7 +116,7 @@ def test_wrong_conditions(changes, said):
 
 def test_no_conditions():
     with pytest.raises(BadInput, match=r"crank\.length: there is no \[synthesis\]"):
-        files.read(files.shipped("lugansk/shaper"), {"crank.length": "synthesis l_AB"})
+        files.read(files.from_file("lugansk/shaper"), {"crank.length": "synthesis l_AB"})
 
 
 def test_natural_places_need_no_name():
