@@ -39,7 +39,7 @@ def times(folder):
 
 @pytest.fixture
 def mine(tmp_path):
-    """A project file of one sheet, and the command that builds it as DXF and SVG."""
+    """Where a project file of one sheet is built, and the command that builds it as DXF and SVG."""
     file = write(tmp_path, CAM)
 
     def build(*more):

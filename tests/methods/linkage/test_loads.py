@@ -385,10 +385,11 @@ def test_moment_on_a_link_that_turns_all_the_way_round():
     np.testing.assert_array_equal(clockwise.law(TURN, 0), 20)
 
 
+@pytest.mark.parametrize("sense", ["clockwise", "counter-clockwise"])
 @pytest.mark.parametrize("turns", [1, 2])
-def test_diagram_over_the_turn_of_a_link(turns):
-    """The way of a turning link is its own turn from position 0 on."""
-    m = moment("5", TURNING, {"cycle.turns": turns}, sense="counter-clockwise", direction="clockwise",
+def test_diagram_over_the_turn_of_a_link(turns, sense):
+    """The way of a turning link is its own turn from position 0 on, whichever sense is the working one."""
+    m = moment("5", TURNING, {"cycle.turns": turns}, sense=sense, direction="clockwise",
                table=[[0, "10 N m"], [0.5, "10 N m"], [0.5, "50 N m"], [1, "60 N m"]])
     way = np.mod(np.angle(R * np.exp(1j * TURN) - 0.04), 2 * pi) / (2 * pi)
     np.testing.assert_allclose(m.law(TURN, 0), -np.where(way < 0.5, 10, 40 + 20 * way), rtol=1e-12)
