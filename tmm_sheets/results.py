@@ -362,7 +362,11 @@ def _pairs(values: Any) -> list[list[float]]:
 
 
 def _plain(value: Any) -> Any:
-    """Lists, texts and numbers only; NaN and infinity become null."""
+    """Lists, texts and numbers only: values of steps, a point as [x, y]; NaN and infinity become null."""
+    if hasattr(value, "step") or hasattr(value, "rule"):  # Told, or a whole step
+        return _plain(value.value)
+    if isinstance(value, complex):
+        return [_plain(value.real), _plain(value.imag)]
     if isinstance(value, dict):
         return {key: _plain(v) for key, v in value.items()}
     if isinstance(value, list | tuple):

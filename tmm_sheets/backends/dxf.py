@@ -153,7 +153,7 @@ def _entities(marks: Iterable[Mark], owner: str, handles: Iterator[int]) -> Iter
     texts = []
     for mark in strokes(marks):
         if isinstance(mark, Line):
-            (a, b, style, _), h = mark, next(handles)
+            (a, b, style, *_), h = mark, next(handles)
             yield (
                 f"0\nLINE\n5\n{h:X}\n{head('AcDbLine', style)}10\n{a.real:.4f}\n20\n{a.imag:.4f}\n30\n0\n"
                 f"11\n{b.real:.4f}\n21\n{b.imag:.4f}\n31\n0\n"

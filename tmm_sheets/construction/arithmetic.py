@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.expression import primitive
+
 _SPLIT = 134217729.0  # 2**27 + 1, Dekker's splitting constant for doubles
 
 
@@ -23,6 +25,7 @@ def two_product(a: Any, b: Any) -> tuple[Any, Any]:
     return p, al * bl - (((p - ah * bh) - al * bh) - ah * bl)
 
 
+@primitive("difference of products")
 def difference_of_products(a: Any, b: Any, c: Any, d: Any) -> Any:
     """``a*b - c*d`` to about two units in the last place, whatever cancels."""
     p, e = two_product(a, b)
@@ -30,21 +33,25 @@ def difference_of_products(a: Any, b: Any, c: Any, d: Any) -> Any:
     return (p - q) + (e - f)
 
 
+@primitive("cross")
 def cross(u: Any, v: Any) -> Any:
     """Cross product of two plane vectors: Re u Im v - Im u Re v."""
     return difference_of_products(np.real(u), np.imag(v), np.imag(u), np.real(v))
 
 
+@primitive("dot")
 def dot(u: Any, v: Any) -> Any:
     """Scalar product of two plane vectors."""
     return difference_of_products(np.real(u), np.real(v), -np.imag(u), np.imag(v))
 
 
+@primitive("polar")
 def polar(centre: Any, radius: Any, angle: Any) -> Any:
     """Point at ``radius`` from ``centre`` under ``angle`` (rad, counter-clockwise from the x axis)."""
     return centre + radius * (np.cos(angle) + 1j * np.sin(angle))
 
 
+@primitive("ray")
 def ray(p: Any, q: Any) -> Any:
     """Unit direction from ``p`` to ``q``; NaN when they coincide."""
     e = q - p
@@ -56,6 +63,7 @@ def along(p: Any, u: Any, distance: Any) -> Any:
     return p + distance * u
 
 
+@primitive("unit")
 def unit(angle: float) -> complex:
     """Unit vector; exact for multiples of 90 degrees, where cos(pi/2) would leave 6e-17."""
     quarter = angle / (np.pi / 2)
@@ -69,6 +77,7 @@ def turned(u: Any) -> Any:
     return 1j * u
 
 
+@primitive("lines meet")
 def line_line(p: Any, u: Any, q: Any, v: Any, det: Any = None) -> Any:
     """Intersection of the line through ``p`` along ``u`` with the line through ``q`` along ``v``; NaN when parallel.
 
@@ -97,6 +106,7 @@ def difference(q: Any, p: Any) -> tuple[Any, Any]:
     return w, (q - (w - back)) - (p + back)
 
 
+@primitive("arc cuts arc")
 def arc_arc(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None) -> Any:
     """Intersection of two circles; ``side`` +1 is left of the line from ``c1`` to ``c2``, -1 right.
 
@@ -122,6 +132,7 @@ def _sorted_three(x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
     return stacked[2], stacked[1], stacked[0]
 
 
+@primitive("arc cuts line")
 def arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = None) -> Any:
     """Intersection of a circle with the line through ``p`` along ``u``; ``side`` +1 is the one further along ``u``.
 
@@ -139,6 +150,7 @@ def arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = No
     return np.where(near, p + along * u, centre + (side * half + 1j * height) * u)[()]
 
 
+@primitive("tangent")
 def tangent_point(p: Any, centre: Any, radius: Any, side: Any) -> Any:
     """Point where the tangent from ``p`` touches a circle; ``side`` +1 is left of the line from ``p`` to the centre."""
     e = p - centre
@@ -148,6 +160,7 @@ def tangent_point(p: Any, centre: Any, radius: Any, side: Any) -> Any:
     return centre + radius * (cos - 1j * side * sin) * e / d
 
 
+@primitive("tangent direction")
 def tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any = None, distance: Any = None) -> Any:
     """Direction from :func:`tangent_point` to ``p``, also where they fall together.
 
@@ -160,6 +173,7 @@ def tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any =
     return (length + 1j * side * radius) / distance * (e / d)
 
 
+@primitive("foot")
 def foot(p: Any, q: Any, u: Any) -> Any:
     """Foot of the perpendicular from ``p`` on the line through ``q`` along the unit direction ``u``."""
     return q + dot(u, p - q) * u

@@ -337,7 +337,22 @@ def _kind(step: Step, i: int, a: Any) -> str:
     """Kind of an argument: what its step gives, or what the rule takes."""
     if isinstance(a, Step):
         return a.rule.gives
-    return step.rule.takes[i] if i < len(step.rule.takes) else ""
+    takes = _takes(step)
+    return takes[i] if i < len(takes) else ""
+
+
+def _is_curve(a: Any) -> bool:
+    return isinstance(a, Step) and a.rule.gives == "curve"
+
+
+def _takes(step: Step) -> tuple[str, ...]:
+    """Kinds of the arguments, those of a curve in its place."""
+    if not any(map(_is_curve, step.args)):
+        return step.rule.takes
+    found: list[str] = []
+    for i, a in enumerate(step.args):
+        found += _takes(a) if _is_curve(a) else [step.rule.takes[i] if i < len(step.rule.takes) else ""]
+    return tuple(found)
 
 
 def _numeric(value: Any) -> bool:
@@ -351,8 +366,32 @@ def _beyond_paper(step: Step) -> bool:
 
 
 def _on_paper(step: Step) -> tuple[Any, ...]:
-    """Arguments without those that a pencil does not know; they are optional and stand last."""
-    return tuple(a for a in step.args if not (isinstance(a, Step) and _beyond_paper(a)))
+    """Arguments without those that a pencil does not know; they are optional and stand last.
+
+    In the place of a curve stand the points and slopes it was drawn through: their errors go on along it.
+    """
+    found: list[Any] = []
+    for a in step.args:
+        if _is_curve(a):
+            found += _on_paper(a)
+        elif not (isinstance(a, Step) and _beyond_paper(a)):
+            found.append(a)
+    return tuple(found)
+
+
+def _folded(step: Step, values: list[Any]) -> list[Any]:
+    """Values of the arguments as the rule takes them, from those of :func:`_on_paper`: curves drawn again."""
+    if not any(map(_is_curve, step.args)):
+        return values
+    found, rest = [], list(values)
+    for a in step.args:
+        if _is_curve(a):
+            n = len(_on_paper(a))
+            found.append(a.rule.compute(*_folded(a, rest[:n])))
+            rest = rest[n:]
+        elif not (isinstance(a, Step) and _beyond_paper(a)):
+            found.append(rest.pop(0))
+    return found
 
 
 def _derivatives(step: Step, args: tuple[Any, ...], base: Any, moves: list[tuple[int, Floats]],
@@ -420,7 +459,7 @@ def _replayed(step: Step, values: list[Any], snapped: Mapping[int, tuple[int, An
     for i, (first, distance) in snapped.items():
         away = np.asarray(values[i] - values[first])
         values[i] = values[first] + np.where(away != 0, away / np.abs(away) * distance, 0.0)
-    return step.rule.compute(*values)
+    return step.rule.compute(*_folded(step, values))
 
 
 def _all_lines(derivatives: list[Matrices]) -> Any:

@@ -52,11 +52,11 @@ class Plan:
         self.segments: list[Segment] = []
         self.reserved: frozenset[str] = frozenset()
 
-    def add(self, name: str, rule: Rule, *args: Any, say: str | None = None) -> Step:
+    def add(self, name: str, rule: Rule, *args: Any, say: str | None = None, symbol: str = "") -> Step:
         """Record a step under a name that is unique in this plan and return it; nothing is computed."""
         if name in self.steps:
             raise ValueError(f"plan {self.name!r} has a step {name!r} already")
-        step = Step(name, rule, args, say)
+        step = Step(name, rule, args, say, symbol)
         self.steps[name] = step
         return step
 

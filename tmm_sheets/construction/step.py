@@ -16,9 +16,15 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.construction.expression import Expression, trace
+from tmm_sheets.construction.given import Given
+
 Complex = npt.NDArray[np.complex128]
-Kind = Literal["point", "direction", "vector", "force", "length", "ordinate", "angle", "number", "inclination"]
-"""What a value is. A length is an opening of the compass or an arm, without sign; an ordinate is laid off to either side."""
+Kind = Literal["point", "direction", "vector", "force", "length", "ordinate", "angle", "number", "inclination", "curve"]
+"""What a value is. A length is an opening of the compass or an arm, without sign; an ordinate is laid off to either side.
+
+A curve is a value of its own (:class:`~tmm_sheets.construction.curve.Curve`): tangents, extremes and ordinates take it.
+"""
 
 
 @dataclass(frozen=True)
@@ -55,6 +61,12 @@ class Rule:
         ``helpers(args, value)`` at one position gives the helper lines; None when the move leaves none.
     beyond_paper
         True for a number that only spares rounding: no pencil knows it, and the error analysis replays the moves without it.
+    unit
+        unit of the result where it is not that of the plan.
+    source
+        manual and section a formula is taken from.
+
+    The arithmetic of a rule is read off ``compute`` itself, see :mod:`~tmm_sheets.construction.expression`.
     """
 
     name: str
@@ -64,6 +76,12 @@ class Rule:
     wording: str
     helpers: Callable[[tuple[Any, ...], Any], tuple[Helper, ...]] | None = None
     beyond_paper: bool = False
+    unit: str = ""
+    source: str = ""
+
+    def tree(self, count: int) -> Expression | None:
+        """The rule's arithmetic on ``count`` arguments as an expression."""
+        return trace(self.compute, count)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -71,13 +89,15 @@ class Step:
     """One step of a construction (шаг построения): a rule applied to earlier steps or given numbers.
 
     ``value`` is a scalar or an array with one entry per position, complex for points, directions and vectors.
-    ``say`` replaces the rule's sentence where the manual's wording names more than the rule can know.
+    ``say`` replaces the rule's sentence where the manual's wording names more than the rule can know; ``symbol`` is the letter of
+    its value in lettering markup, the name unless told.
     """
 
     name: str
     rule: Rule
     args: tuple[Any, ...] = field(repr=False)  # a step prints without the whole construction before it
     say: str | None = None
+    symbol: str = ""
     seconds: list[float] = field(default_factory=list, repr=False)
 
     def __repr__(self) -> str:
@@ -132,9 +152,27 @@ class Step:
                 pending += [(a, False) for a in reversed(step.args) if isinstance(a, Step)]
 
 
+@dataclass(frozen=True)
+class Told:
+    """A result that is told: a step's value, or a part of it, at the positions with these labels (all unless told)."""
+
+    step: Step
+    part: Literal["", "x", "y", "abs", "angle"] = ""
+    at: tuple[str, ...] = ()
+
+    @property
+    def value(self) -> Any:
+        """The number or numbers, of all positions."""
+        value = self.step.value
+        return _PARTS[self.part](value) if self.part else value
+
+
+_PARTS: dict[str, Callable[[Any], Any]] = {"x": np.real, "y": np.imag, "abs": np.abs, "angle": np.angle}
+
+
 def value_of(x: Any) -> Any:
-    """Value of a step, or the given number itself."""
-    return x.value if isinstance(x, Step) else x
+    """Value of a step or of a given row, or the given number itself."""
+    return x.value if isinstance(x, Step | Given) else x
 
 
 def value_at(x: Any, k: int) -> Any:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
+from functools import wraps
 from math import ceil, cos, pi, sin
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
 
 from tmm_sheets.drawing.lettering import Lettering, letter
-from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, PlacedFrame, Points, Polyline, Role, Text, Trace
 
 Align = Literal["left", "centre", "right"]
 ARROW = (5.0, 0.85)
@@ -26,7 +28,7 @@ class Label:
 
     ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
     with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
-    ``of`` and ``part`` (its number) are those of the canvas when the label was asked for.
+    ``of``, ``part`` (its number) and ``by`` (the step it names) are those of the canvas when the label was asked for.
     """
 
     anchor: complex
@@ -37,6 +39,7 @@ class Label:
     leader: bool = True
     of: str = ""
     part: int = -1
+    by: Trace | None = None
 
 
 @dataclass(frozen=True)
@@ -80,11 +83,28 @@ class MarkGroup(NamedTuple):
     anchor: complex | None = None
 
 
+Drawn = TypeVar("Drawn", bound=Callable[..., Any])
+
+
+def _in_role(role: Role) -> Callable[[Drawn], Drawn]:
+    """Decorator of what draws marks of one role, whatever they are drawn for."""
+    def made(draw: Drawn) -> Drawn:
+        @wraps(draw)
+        def drawn(canvas: Canvas, *args: Any, **options: Any) -> Any:
+            with canvas.as_role(role):
+                return draw(canvas, *args, **options)
+
+        return cast("Drawn", drawn)
+
+    return made
+
+
 @dataclass
 class Canvas:
     """Collects the marks of a sheet.
 
     ``of`` names the construction step or view the following marks belong to; it ends up on each mark.
+    ``by`` tells the step that leaves them (see :meth:`traced`), ``frames`` where plans were placed.
     ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results; ``chosen``
     are the names of those that a project file may set.
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again.
@@ -95,6 +115,8 @@ class Canvas:
     scales: dict[str, Any] = field(default_factory=dict)
     chosen: set[str] = field(default_factory=set)
     of: str = ""
+    by: Trace | None = None
+    frames: list[PlacedFrame] = field(default_factory=list)
     parts: list[Part] = field(default_factory=list)
     groups: list[MarkGroup] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
@@ -103,6 +125,26 @@ class Canvas:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
         self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box, len(self.scales)))
 
+    @contextmanager
+    def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1) -> Iterator[None]:
+        """The marks drawn inside have this role and come from that step."""
+        before, self.by = self.by, Trace(role, step, position, frame)
+        try:
+            yield
+        finally:
+            self.by = before
+
+    def as_role(self, role: Role) -> AbstractContextManager[None]:
+        """The marks drawn inside have this role and come from the same step as those round them."""
+        return self.traced(role, *(self.by[1:] if self.by is not None else ()))
+
+    def placed(self, plan: str, position: str, origin: complex, mu: float | tuple[float, float], turn: float = 0.0,
+               mirror: bool = False) -> int:
+        """Note where a plan lies on the sheet; returns the number of the frame."""
+        both = mu if isinstance(mu, tuple) else (mu, mu)
+        self.frames.append(PlacedFrame(len(self.parts) - 1, plan, position, complex(origin), both, turn, mirror))
+        return len(self.frames) - 1
+
     def _one(self, kind: Literal["arrow", "dot", "hatch", "lettering"], first: int, text: str = "") -> None:
         if len(self.marks) > first:
             self.groups.append(MarkGroup(kind, first, len(self.marks), text))
@@ -110,7 +152,7 @@ class Canvas:
     def line(self, a: complex, b: complex, style: str = "thin") -> None:
         """Straight stroke; nothing is drawn for a zero length or a NaN end."""
         if abs(b - a) > 1e-6:
-            self.marks.append(Line(complex(a), complex(b), style, self.of))
+            self.marks.append(Line(complex(a), complex(b), style, self.of, self.by))
 
     def ray_line(self, a: complex, b: complex, style: str = "thin", over: float = 3.0, before: float = 0.0) -> None:
         """Line through ``a`` and ``b`` produced by ``over`` mm beyond ``b`` and ``before`` mm before ``a``."""
@@ -121,12 +163,12 @@ class Canvas:
     def circle(self, centre: complex, radius: float, style: str = "thin") -> None:
         """Full circle."""
         if radius > 1e-6:
-            self.marks.append(Arc(complex(centre), float(radius), 0.0, 2 * pi, style, self.of))
+            self.marks.append(Arc(complex(centre), float(radius), 0.0, 2 * pi, style, self.of, self.by))
 
     def arc(self, centre: complex, radius: float, start: float, end: float, style: str = "thin") -> None:
         """Arc from angle ``start`` counter-clockwise to ``end``, rad."""
         if radius > 1e-6 and end - start > 1e-9:
-            self.marks.append(Arc(complex(centre), float(radius), float(start), float(end), style, self.of))
+            self.marks.append(Arc(complex(centre), float(radius), float(start), float(end), style, self.of, self.by))
 
     def arc_mark(self, centre: complex, at: complex, half: float = 3.0, style: str = "construction") -> None:
         """Short arc about ``centre`` through ``at``, ``half`` mm to both sides: the cut of a pair of compasses."""
@@ -143,13 +185,13 @@ class Canvas:
             for part in np.split(p, np.flatnonzero(bad)):
                 good = part[~np.isnan(part)]
                 if len(good) > 1:
-                    self.marks.append(Polyline(good, style, False, self.of))
+                    self.marks.append(Polyline(good, style, False, self.of, self.by))
         elif len(p) > 1:
-            self.marks.append(Polyline(p, style, closed, self.of))
+            self.marks.append(Polyline(p, style, closed, self.of, self.by))
 
     def fill(self, points: Iterable[complex], style: str = "main") -> None:
         """Filled polygon."""
-        self.marks.append(Fill(np.array(list(points), dtype=complex), style, self.of))
+        self.marks.append(Fill(np.array(list(points), dtype=complex), style, self.of, self.by))
 
     def dot(self, at: complex, radius: float = 0.7, style: str = "main") -> None:
         """Filled dot."""
@@ -184,6 +226,7 @@ class Canvas:
         self.fill((tip, tip - head * u + 1j * half * u, tip - head * u - 1j * half * u), style)
         self._one("arrow", first)
 
+    @_in_role("hatch")
     def hatch(self, a: complex, b: complex, side: int = 1, depth: float = 2.5, step: float = 2.5) -> None:
         """Short strokes at 45 degrees along ``a`` .. ``b``, on its left (``side`` +1) or right: a fixed surface."""
         length = abs(b - a)
@@ -207,13 +250,14 @@ class Canvas:
     def put(self, laid: Lettering, at: complex, angle: float = 0.0, markup: str = "") -> None:
         """Set laid out lettering with the left end of its baseline at ``at``."""
         u, first = rect(1, angle), len(self.marks)
+        by = Trace("text", *self.by[1:]) if self.by is not None else Trace("text")
         # Programs that read a PDF back know upright rectangles only: those of slanting letters and indices overlap sooner.
         loose = LOOSE if abs(sin(2 * angle)) > 1e-6 else 0.0
         for run in laid.runs:
             shift = loose if run.at.imag else 0.0
-            self.marks.append(Text(at + u * (run.at + shift), run.text, run.height, angle, self.of))
+            self.marks.append(Text(at + u * (run.at + shift), run.text, run.height, angle, self.of, by))
         for bar in laid.bars:
-            self.marks.append(Line(at + u * bar.a, at + u * bar.b, "text", self.of))
+            self.marks.append(Line(at + u * bar.a, at + u * bar.b, "text", self.of, by))
         self._one("lettering", first, markup)
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
@@ -221,7 +265,7 @@ class Canvas:
         """Ask for lettering near a point; see :class:`Label`."""
         if anchor == anchor:
             self.labels.append(
-                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1))
+                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by))
 
     def note(self, box: Box, text: str) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
@@ -238,6 +282,7 @@ class Canvas:
             self.text(complex(x, y), factor, 3.5 if len(factor) > 60 else 5.0, "centre")
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 
+    @_in_role("dimension")
     def dimension(self, a: complex, b: complex, offset: float, markup: str, height: float = 3.5) -> None:
         """Linear dimension of ``a`` .. ``b`` with extension lines; the dimension line lies ``offset`` mm to the left."""
         if not abs(b - a) > 0:
@@ -264,6 +309,7 @@ class Canvas:
         # Indices hang below the baseline: they must clear the dimension line too.
         self.text((p + q) / 2 + 1j * u * (0.7 + letter(markup, height).descent), markup, height, "centre", angle)
 
+    @_in_role("table")
     def table(self, corner: complex, widths: Sequence[float], rows: Sequence[Sequence[str]], row: float = 7.0,
               height: float = 3.5, header: int = 1) -> Box:
         """Table with its upper left corner at ``corner``; the first ``header`` rows are ruled off with a main line."""
@@ -286,6 +332,7 @@ class Canvas:
                 x += w
         return Box(x0, y0, x0 + total, y1)
 
+    @_in_role("dimension")
     def angle_mark(self, vertex: complex, start: float, end: float, radius: float, markup: str, height: float = 3.5,
                    share: float = 0.5) -> None:
         """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its sign at ``share`` of it."""
@@ -301,6 +348,7 @@ class Canvas:
         self.label(vertex + radius * mid, markup, mid, height)
 
 
+@_in_role("hatch")
 def hatch_polygon(canvas: Canvas, outline: Points, step: float = 3.0, angle: float = pi / 4) -> None:
     """Hatch a polygon, clipped exactly (shapely)."""
     from shapely import LineString, MultiLineString, Polygon, intersection

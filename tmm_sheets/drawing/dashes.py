@@ -82,4 +82,4 @@ def strokes(marks: Iterable[Mark]) -> Iterator[Mark]:
         else:
             points = np.append(mark.points, mark.points[:1]) if mark.closed else mark.points
             for part in _along(points, pattern, mark.closed):
-                yield Polyline(part, mark.style, False, mark.of)
+                yield Polyline(part, mark.style, False, mark.of, mark.by)

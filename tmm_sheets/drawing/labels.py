@@ -178,9 +178,10 @@ def _set(canvas: Canvas, grid: Grid, label: Label) -> bool:
         centre = centres[int(np.argmin(return_cost))]
     lower_left = centre - complex(w / 2, h / 2)
     canvas.of, first = label.of, len(canvas.marks)
-    canvas.put(laid, lower_left + 1j * laid.descent, 0.0, label.text)
-    grid.boxes = np.vstack((grid.boxes, (lower_left.real, lower_left.imag, lower_left.real + w, lower_left.imag + h)))
-    _leader(canvas, label, lower_left, w, h)
+    with canvas.traced("text", *(label.by[1:] if label.by is not None else ())):
+        canvas.put(laid, lower_left + 1j * laid.descent, 0.0, label.text)
+        grid.boxes = np.vstack((grid.boxes, (lower_left.real, lower_left.imag, lower_left.real + w, lower_left.imag + h)))
+        _leader(canvas, label, lower_left, w, h)
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,44 @@ from tmm_sheets.box import Box as Box
 Points = npt.NDArray[np.complex128]
 
 
+Role = Literal["vector", "construction", "point", "curve", "axis", "link", "symbol", "dimension", "hatch", "text", "table", "frame"]
+"""What a mark is on the sheet."""
+
+
+class Trace(NamedTuple):
+    """Where a mark comes from.
+
+    ``step`` is "plan/name" of the construction step that left it, ``position`` the label of the position, ``frame`` the number of
+    the :class:`PlacedFrame` it was drawn in (-1: none).
+    """
+
+    role: Role
+    step: str = ""
+    position: str = ""
+    frame: int = -1
+
+
+class PlacedFrame(NamedTuple):
+    """Place of a plan on the sheet: a point z of the plan lies at origin + turned(mirrored(z/mu)), mm.
+
+    ``mu`` along both axes, unit of the plan per mm; ``turn`` counter-clockwise, rad; ``mirror``: the plan's y axis is turned over
+    first.
+    """
+
+    view: int
+    plan: str
+    position: str
+    origin: complex
+    mu: tuple[float, float]
+    turn: float = 0.0
+    mirror: bool = False
+
+    def __call__(self, z: Any) -> Any:
+        """Point of the sheet of a point of the plan, mm."""
+        w = np.real(z) / self.mu[0] + 1j * np.imag(z) / self.mu[1]
+        return self.origin + complex(np.exp(1j * self.turn)) * (np.conj(w) if self.mirror else w)
+
+
 class Line(NamedTuple):
     """A straight stroke."""
 
@@ -24,6 +62,7 @@ class Line(NamedTuple):
     b: complex
     style: str
     of: str = ""
+    by: Trace | None = None
 
 
 class Arc(NamedTuple):
@@ -35,6 +74,7 @@ class Arc(NamedTuple):
     end: float
     style: str
     of: str = ""
+    by: Trace | None = None
 
 
 class Polyline(NamedTuple):
@@ -44,6 +84,7 @@ class Polyline(NamedTuple):
     style: str
     closed: bool = False
     of: str = ""
+    by: Trace | None = None
 
 
 class Text(NamedTuple):
@@ -54,6 +95,7 @@ class Text(NamedTuple):
     height: float
     angle: float = 0.0
     of: str = ""
+    by: Trace | None = None
 
 
 class Fill(NamedTuple):
@@ -62,6 +104,7 @@ class Fill(NamedTuple):
     points: Points
     style: str
     of: str = ""
+    by: Trace | None = None
 
 
 Mark = Line | Arc | Polyline | Text | Fill

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, MarkGroup, Part
 from tmm_sheets.drawing.labels import Crowded, place
-from tmm_sheets.drawing.marks import Drawing
+from tmm_sheets.drawing.marks import Drawing, PlacedFrame
 from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
@@ -36,7 +36,8 @@ class Composed:
     """A finished sheet with what is worth telling about it.
 
     ``parts`` are the views, from the mark each begins with, the last one stands for all labels; ``groups`` the marks that are one
-    thing (arrows, lettering). ``leaving`` are the views that do not keep their places.
+    thing (arrows, lettering). ``leaving`` are the views that do not keep their places,
+    ``frames`` say where each plan lies.
     """
 
     drawing: Drawing
@@ -45,6 +46,7 @@ class Composed:
     parts: tuple[Part, ...] = ()
     groups: tuple[MarkGroup, ...] = ()
     leaving: tuple[places.Leaving, ...] = ()
+    frames: tuple[PlacedFrame, ...] = ()
 
 
 @contextmanager
@@ -146,4 +148,5 @@ def composed(project: Project, n: int) -> Composed:
     title = f"{project.variant.project.title}. {plan.title}"
     drawing = Drawing(WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets")
     left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
-    return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left))
+    return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
+                    tuple(canvas.frames))

@@ -1,0 +1,232 @@
+"""Expressions (формулы): the arithmetic of a rule as a tree, read off the rule's own function.
+
+A rule's ``compute`` is called once with symbols instead of numbers; every operation that numpy knows as a ufunc notes itself. So
+there is one definition of each formula: what is computed is what is typeset, told in the record and differentiated. A function
+that branches, loops until something converges or compares values cannot be read off: it is a :func:`primitive` of the construction.
+
+The tree is ``Argument`` (by its number), ``Constant`` or ``Operation`` (name and operands); :func:`evaluate` computes it,
+:func:`as_json` and :func:`from_json` carry it, :func:`latex` writes it with any texts in the places of the arguments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, reduce, wraps
+from math import pi
+from types import ModuleType
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+_SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "power": "^", "negative": "-", "positive": "+",
+          "absolute": "abs", "conjugate": "conj", "arctan2": "atan2", "arctan": "atan", "arcsin": "asin",
+          "arccos": "acos"}
+"""Names in the record of numpy's functions, where they differ."""
+_UFUNCS = {sign: name for name, sign in _SIGNS.items() if sign not in ("-", "+")}
+_KNOWN = {*_SIGNS, "sqrt", "square", "cbrt", "reciprocal", "sin", "cos", "tan", "exp", "log", "hypot", "sign", "maximum", "minimum"}
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def primitive(name: str) -> Callable[[Function], Function]:
+    """Decorator: the function stands in a tree as one operation of that name, its inside is not looked into."""
+    def made(function: Function) -> Function:
+        @wraps(function)
+        def called(*operands: Any, **known: Any) -> Any:
+            for x in operands:
+                if isinstance(x, Expression):
+                    return Operation(name, tuple(map(_node, (*operands, *known.values()))), function)
+            return function(*operands, **known)
+
+        called.__dict__["primitive"] = name
+        return cast("Function", called)
+
+    return made
+
+
+def primitives(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
+    """The primitives that some modules define, by their names in the record."""
+    return {f.primitive: f for m in modules for f in vars(m).values() if hasattr(f, "primitive") and f.__module__ == m.__name__}
+
+
+class Expression(np.lib.mixins.NDArrayOperatorsMixin):
+    """A node of the tree; takes part in arithmetic as a number would."""
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *operands: Any, **options: Any) -> Any:
+        """Note the operation instead of carrying it out."""
+        if method != "__call__" or options or ufunc.__name__ not in _KNOWN:
+            return NotImplemented
+        parts = tuple(map(_node, operands))
+        if ufunc.__name__ == "square":
+            return Operation("^", (parts[0], Constant(2.0)))
+        if ufunc.__name__ == "reciprocal":
+            return Operation("/", (Constant(1.0), parts[0]))
+        return Operation(_SIGNS.get(ufunc.__name__, ufunc.__name__), parts)
+
+    @property
+    def real(self) -> Expression:
+        """Real part."""
+        return Operation("re", (self,))
+
+    @property
+    def imag(self) -> Expression:
+        """Imaginary part."""
+        return Operation("im", (self,))
+
+    def conjugate(self) -> Expression:
+        """Conjugate number."""
+        return Operation("conj", (self,))
+
+    def __bool__(self) -> bool:
+        """Symbols have no truth: a function that branches is no formula."""
+        raise TypeError("an expression is neither true nor false")
+
+    __hash__ = object.__hash__
+
+
+@dataclass(frozen=True, eq=False)
+class Argument(Expression):
+    """The argument with that number."""
+
+    index: int
+
+
+@dataclass(frozen=True, eq=False)
+class Constant(Expression):
+    """A number of the formula itself: 2, pi, the imaginary unit."""
+
+    value: float | complex
+
+
+@dataclass(frozen=True, eq=False)
+class Operation(Expression):
+    """A named operation on parts: + - * / ^ abs conj re im sqrt sin ..., or a primitive with its function."""
+
+    name: str
+    parts: tuple[Expression, ...]
+    function: Callable[..., Any] | None = None
+
+
+def _node(x: Any) -> Expression:
+    if isinstance(x, Expression):
+        return x
+    if isinstance(x, int | float | np.number | complex):
+        return Constant(complex(x) if isinstance(x, complex | np.complexfloating) else float(x))
+    raise TypeError(f"{x!r} is no part of a formula")
+
+
+@cache
+def trace(compute: Callable[..., Any], count: int) -> Expression | None:
+    """Tree of a function of ``count`` numbers; None for one that is no formula (a primitive of the construction)."""
+    try:
+        found = compute(*(Argument(i) for i in range(count)))
+        return _node(found)
+    except (TypeError, AttributeError, ValueError, IndexError):
+        return None
+
+
+def evaluate(tree: Expression, arguments: Sequence[Any]) -> Any:
+    """Value of a tree for some arguments: numbers, or arrays of one shape."""
+    if isinstance(tree, Argument):
+        return arguments[tree.index]
+    if isinstance(tree, Constant):
+        return tree.value
+    assert isinstance(tree, Operation)
+    values = [evaluate(part, arguments) for part in tree.parts]
+    if tree.name == "re":
+        return np.real(values[0])
+    if tree.name == "im":
+        return np.imag(values[0])
+    if tree.function is not None:
+        return tree.function(*values)
+    if tree.name in "+-":
+        if len(values) == 1:
+            return values[0] if tree.name == "+" else np.negative(values[0])
+        return reduce(np.add if tree.name == "+" else np.subtract, values)
+    return getattr(np, _UFUNCS.get(tree.name, tree.name))(*values)
+
+
+def as_json(tree: Expression) -> Any:
+    """The tree for JSON: {"arg": 0}, a number, {"complex": [x, y]} or {"*": [...]}."""
+    if isinstance(tree, Argument):
+        return {"arg": tree.index}
+    if isinstance(tree, Constant):
+        value = tree.value
+        return {"complex": [value.real, value.imag]} if isinstance(value, complex) else value
+    assert isinstance(tree, Operation)
+    return {tree.name: [as_json(part) for part in tree.parts]}
+
+
+def from_json(data: Any, known: Mapping[str, Callable[..., Any]]) -> Expression:
+    """The tree that :func:`as_json` wrote, with the ``known`` primitives."""
+    if isinstance(data, int | float):
+        return Constant(float(data))
+    ((name, of),) = data.items()
+    if name == "arg":
+        return Argument(of)
+    return Constant(complex(*of)) if name == "complex" else Operation(name, tuple(from_json(x, known) for x in of), known.get(name))
+
+
+# --- typesetting --------------------------------------------------------------------------------------------------
+
+_BINDING = {"+": 1, "-": 1, "*": 2, "/": 4, "^": 3}
+_ATOM = 4
+
+
+def latex(tree: Expression, texts: Sequence[str]) -> str:
+    """LaTeX of a tree, the texts in the places of the arguments, in the order in which the formula has them.
+
+    A text that begins with a minus sign or holds a sum stands in parentheses where it is multiplied, raised or subtracted.
+    """
+    return _latex(tree, texts)[0]
+
+
+def _latex(tree: Expression, texts: Sequence[str]) -> tuple[str, int]:
+    """LaTeX, and how tightly it binds: 1 a sum, 2 a product, 3 a power, 4 what needs no parentheses."""
+    if isinstance(tree, Argument):
+        text = texts[tree.index]
+        return text, 1 if text.startswith(("-", "−")) else _ATOM
+    if isinstance(tree, Constant):
+        return _constant(tree.value)
+    assert isinstance(tree, Operation)
+    parts = [_latex(part, texts) for part in tree.parts]
+    name = tree.name
+    if name == "/":
+        return f"\\frac{{{parts[0][0]}}}{{{parts[1][0]}}}", _ATOM
+    if name == "^":
+        return f"{_held(parts[0], _ATOM)}^{{{parts[1][0]}}}", 3
+    if name == "*":
+        return " \\cdot ".join(_held(p, 2) for p in parts), 2
+    if name in "+-":
+        if len(parts) == 1:
+            return f"-{_held(parts[0], 2)}", 1
+        return f"{parts[0][0]} {name} {_held(parts[1], 2)}", 1
+    if name == "sqrt":
+        return f"\\sqrt{{{parts[0][0]}}}", _ATOM
+    if name == "abs":
+        return f"\\left|{parts[0][0]}\\right|", _ATOM
+    if name == "conj":
+        return f"\\overline{{{parts[0][0]}}}", _ATOM
+    if name == "cross":
+        return f"{_held(parts[0], 2)} \\times {_held(parts[1], 2)}", 2
+    shown = {"re": "\\mathrm{Re}", "im": "\\mathrm{Im}", "atan": "\\mathrm{arctg}", "tan": "\\mathrm{tg}",
+             "atan2": "\\mathrm{arctg}", "asin": "\\arcsin", "acos": "\\arccos"}.get(name, f"\\{name}")  # fmt: skip
+    return f"{shown}\\left({', '.join(p[0] for p in parts)}\\right)", 3
+
+
+def _held(part: tuple[str, int], least: int) -> str:
+    return part[0] if part[1] >= least else f"\\left({part[0]}\\right)"
+
+
+def _constant(value: float | complex) -> tuple[str, int]:
+    if isinstance(value, complex):
+        if value == 1j:
+            return "i", _ATOM
+        return f"{value:g}".replace("j", "i"), 1
+    if value == pi:
+        return "\\pi", _ATOM
+    if value == 2 * pi:
+        return "2\\pi", 2
+    return f"{value:.12g}", 1 if value < 0 else _ATOM
