@@ -10,7 +10,7 @@ approach to least-squares estimation, IEEE Trans. Automatic Control 13 (1968) 64
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -55,7 +55,7 @@ class OwnNumbers:
         return [(self.order[k], float(parts[k])) for k in np.argsort(-np.abs(parts))]
 
 
-def _solved(lower: Floats, right: Floats) -> Floats:
+def _solved(lower: Any, right: Any) -> Floats:
     """Solution of a lower triangular system."""
     return np.asarray(np.linalg.solve(lower, right))
 
