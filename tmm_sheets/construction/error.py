@@ -39,6 +39,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_of
 
 Floats = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.intp]
 Matrices = npt.NDArray[np.float64]
 """Shape (n, 2, m): for every position a matrix with the rows x and y; n is 1 for what does not depend on the position."""
 
@@ -96,6 +97,7 @@ class Errors:
         self._known: dict[int, _Known | None] = {}
         self._numbers: dict[int, int] = {}
         self._steps: list[Step] = []
+        self._sizes: npt.NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self._links: dict[int, dict[int, Any]] = {}
 
     # --- what is asked for --------------------------------------------------------------------------------------------
@@ -156,15 +158,42 @@ class Errors:
         -------
         The error and the gradient of the quantity by every step it goes back to, in the order of drawing.
         """
-        found = [(known, k, g) for step, k, g in terms if (known := self._of(step)) is not None]
-        sources = np.unique(np.concatenate([known.sources for known, _, _ in found] or [np.zeros(0, dtype=np.intp)]))
-        row, scaled = np.zeros(2 * len(sources)), np.zeros(2 * len(sources))
-        for known, k, g in found:
-            at, j = _columns(sources, known.sources), min(k, len(known.jacobian) - 1)
-            row[at] += np.array([g.real, g.imag]) @ known.jacobian[j]
-            scaled[at] += np.array([g.real, g.imag]) @ known.scaled[j]
-        pairs = row.reshape(-1, 2)
-        return float(np.sqrt(scaled @ scaled)), [(self._steps[n], complex(*g)) for n, g in zip(sources, pairs, strict=True)]
+        _, numbers, by, shares = self.causes(terms)
+        sources, which = np.unique(numbers, return_inverse=True)
+        row, scaled = np.zeros((len(sources), 2)), np.zeros((len(sources), 2))
+        np.add.at(row, which, by)
+        np.add.at(scaled, which, shares)
+        return float(np.linalg.norm(scaled)), [(self._steps[n], complex(*g)) for n, g in zip(sources, row, strict=True)]
+
+    def causes(self, terms: Iterable[tuple[Step, int, complex]]) -> tuple[Numbers, Numbers, Floats, Floats]:
+        """Where the error of such a quantity comes from.
+
+        Returns
+        -------
+        A row for each term and source: the position (0 of what does not depend on it), the source's number, the gradient by it and
+        the share of the error, one column for each of two independent unit errors of the source; shapes (n,), (n,), (n, 2), (n, 2).
+        """
+        found = [(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros((0, 2)), np.zeros((0, 2)))]
+        for step, k, g in terms:
+            known = self._of(step)
+            if known is None:
+                continue
+            row, j = np.array([g.real, g.imag]), min(k, len(known.jacobian) - 1)
+            at = np.where(self._spread[known.sources], k, 0)
+            found.append((at, known.sources, (row @ known.jacobian[j]).reshape(-1, 2), (row @ known.scaled[j]).reshape(-1, 2)))
+        at, sources, by, shares = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        return at, sources, by, shares
+
+    @property
+    def _spread(self) -> npt.NDArray[np.bool_]:
+        """For every source, whether it has a value for each position."""
+        if len(self._sizes) < len(self._steps):
+            self._sizes = np.array([np.size(step.value) > 1 for step in self._steps])
+        return self._sizes
+
+    def source(self, step: Step) -> int:
+        """Number of a step among the sources of errors; -1 for what has none."""
+        return self._numbers.get(id(step), -1)
 
     def displaced(self, source: Step, k: int, shift: complex) -> Callable[[Step], Any]:
         """The construction drawn with one step off by ``shift`` at position ``k``: a function that gives any step's value then.

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
+from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
@@ -363,12 +364,18 @@ def _loss(r: Any) -> Any:
 def _chains(judged: list[Judged], errors: Errors) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
     sheet = _Sheet(judged, errors)
+    own = OwnNumbers(judged, errors) if judged else None
     open_ = np.array([j.verdict == "red" for j in judged])
     tried = 0
     while open_.any():
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
-        start.starts, open_[first] = True, False
+        open_[first] = False
+        assert own is not None
+        start.follows = _own_reason(judged, own, int(first))
+        if start.follows is not None:
+            continue
+        start.starts = True
         tried += 1
         mistake = _best(sheet, int(first)) if tried <= MOST else None
         if mistake is None:
@@ -389,6 +396,20 @@ def _chains(judged: list[Judged], errors: Errors) -> None:
                 open_[i] = False
                 if j.follows is None:
                     j.follows = start
+
+
+def _own_reason(judged: list[Judged], own: OwnNumbers, i: int) -> Judged | None:
+    """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
+    expected = float(own.expected[i])
+    if abs(judged[i].deviation - expected) > 2 * hypot(float(own.tolerance[i]), CURVED * expected):
+        return None
+    for k, part in own.reasons(i):
+        earlier = judged[k]
+        if earlier.starts or earlier.follows is not None:
+            return earlier.follows or earlier
+        if abs(part) < SHARE * abs(expected):
+            break
+    return None
 
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:
