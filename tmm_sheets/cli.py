@@ -342,7 +342,7 @@ def plot(
     from tmm_sheets.progress import Progress
 
     finished = project.lower().endswith(plotting.FILES)
-    if finished and (sheets or tile or bar or window or outline == "off"):
+    if finished and any((sheets, tile, bar, window, outline == "off")):
         raise click.UsageError(f"{project} is finished: it can be sent or shown, not changed")
     problem = None
     with Progress() as progress:
@@ -366,14 +366,19 @@ def plot(
             made[folder / "black.ctb"] = dxf.plot_styles()
         if not dry_run:
             files.write_all(made)
-    for path in dict.fromkeys((*jobs, *made)):
-        click.echo(path)
-        for note in jobs[path].notes if path in jobs else ():
-            click.echo(f"    {note}")
+    _tell(jobs, made)
     if printer is not None:
         _send(jobs, printer, dry_run)
     if problem is not None:
         raise problem
+
+
+def _tell(jobs: Mapping[Path, Job], made: Mapping[Path, bytes]) -> None:
+    """Names of the plots and of what goes with them, with what is to be said of each plot."""
+    for path in dict.fromkeys((*jobs, *made)):
+        click.echo(path)
+        for note in jobs[path].notes if path in jobs else ():
+            click.echo(f"    {note}")
 
 
 def _plots(opened: Project, sheets: tuple[int, ...], look: PlotLook, folder: Path, progress: Progress) -> tuple[
@@ -490,25 +495,15 @@ def compare(
 def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None,
           whole: str | None) -> None:
     """Measure every method: error against a truth of 30 digits or more, and time."""
-    from tmm_sheets import files
-    from tmm_sheets.progress import Progress
-
     if cost is not None or whole is not None:
-        if target or folder or quick or summary or peers or (cost and whole):
+        if any((target, folder, quick, summary, peers, cost and whole)):
             raise click.UsageError("--cost and --whole go alone")
-        with Progress() as progress:
-            if cost is not None:
-                from tmm_sheets.bench import costs
-
-                told = costs.table(cost, lambda what: progress.say(f"{what} ..."))
-            else:
-                from tmm_sheets.bench import whole as sheets
-
-                told = sheets.table(sheets.measure(str(whole), lambda what: progress.say(f"{what} ...")))
-        click.echo(told)
+        click.echo(_prices(cost, whole))
         return
+    from tmm_sheets import files
     from tmm_sheets.bench import records
     from tmm_sheets.bench import run as benchmark
+    from tmm_sheets.progress import Progress
 
     if folder is not None:
         files.check_folder(folder)
@@ -532,6 +527,23 @@ def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, p
 
         made |= {folder / name: data for name, data in plots.diagrams(found).items()}
     files.write_all(made)
+
+
+def _prices(cost: str | None, whole: str | None) -> str:
+    """What parts of a project cost against the whole, or the whole against plain calls of the libraries."""
+    from tmm_sheets.progress import Progress
+
+    with Progress() as progress:
+        def say(what: str) -> None:
+            progress.say(f"{what} ...")
+
+        if cost is not None:
+            from tmm_sheets.bench import costs
+
+            return costs.table(cost, say)
+        from tmm_sheets.bench import whole as sheets
+
+        return sheets.table(sheets.measure(str(whole), say))
 
 
 @commands.command()

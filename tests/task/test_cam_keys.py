@@ -32,6 +32,15 @@ def test_a_follower_needs_its_keys_only(follower):
         assert message.startswith(f'missing; follower = "{follower}" needs it, for example {key} = ')
 
 
+def test_several_things_wrong_with_a_key_are_told_in_one_order():
+    keys = ("pressure_angle", "arm", "swing", "eccentricity", "roller", "curvature_share", "rotation", "limit", "centre",
+            "follower_inertia")
+    found = problems(text("flat", **dict.fromkeys(keys, '"nonsense"')))
+    assert [field for field, _, _ in found] == [f"cam.{key}" for key in keys for _ in range(2)]
+    assert all("has no such key" in message for _, message, _ in found[1::2])
+    assert not any("has no such key" in message for _, message, _ in found[::2])
+
+
 @pytest.mark.parametrize(("follower", "key", "value"), [
     ("flat", "pressure_angle", '"30 deg"'), ("flat", "roller", '"5 mm"'), ("translating roller", "arm", '"90 mm"'),
     ("oscillating roller", "stroke", '"10 mm"'), ("oscillating roller", "eccentricity", '"1 mm"'),

@@ -81,22 +81,33 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
     if unknown := sorted(set(fields) - FIELDS):
         raise ValueError(f"title block fields unknown: {', '.join(unknown)}; known are {', '.join(sorted(FIELDS))}")
     place = block(form)
-    data = _forms()[form]
     canvas.of = "title block"
     _rectangle(canvas, PAPER.inset(line_type("thin").width / 2), "thin")  # inside the paper, or half of it is cut off
     _rectangle(canvas, FRAME, "main")
+    _rules(canvas, place, _forms()[form])
+    _fill(canvas, place, _forms()[form]["cells"], fields, _values(fields, sheet_number, sheet_count))
+    _rectangle(canvas, TURNED, "main")
+    _lines(canvas, TURNED, [fields.get("designation", "")], (7.0, 5.0, 3.5), turned=True)
+    for x, text in ((FRAME.x1 - 110, "Копировал"), (FRAME.x1 - 40, "Формат А1")):
+        canvas.text(complex(x, FRAME.y0 - 3.7), text, CAPTION)
+    canvas.of = ""
+    return place, TURNED
+
+
+def _rules(canvas: Canvas, place: Box, form: Mapping[str, Any]) -> None:
+    """The lines of a title block."""
     origin = complex(place.x0, place.y0)
-    for style, rows in (("main", data["thick"]), ("thin", data["thin"])):
+    for style, rows in (("main", form["thick"]), ("thin", form["thin"])):
         for x0, y0, x1, y1 in rows:
             canvas.line(origin + complex(x0, y0), origin + complex(x1, y1), style)
-    values = _values(fields, sheet_number, sheet_count)
-    # All names in one size: the larger only where all of them fit.
-    all_names = [letter(plain(fields.get(role, "")), 3.5) for role in ROLES.values()]
-    large = all(name.width <= NAME_WIDTH and 3.5 + 2 * _rise(name, 3.5) <= NAME_HEIGHT for name in all_names)
-    names: tuple[float, ...] = (3.5, 2.5) if large else (2.5,)
+
+
+def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str],
+          values: Mapping[str, tuple[list[str], tuple[float, ...]]]) -> None:
+    """The printed words of a title block, and what is written into its cells."""
+    names = _name_sizes(fields)
     role = ""
-    for number, kind, word, *corners in data["cells"]:
-        x0, y0, x1, y1 = corners
+    for number, kind, word, x0, y0, x1, y1 in cells:
         cell = Box(place.x0 + x0, place.y0 + y0, place.x0 + x1, place.y0 + y1)
         if kind == "caption":
             _lines(canvas, cell, [word], (CAPTION,))
@@ -106,15 +117,15 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
         elif number == "11":
             _lines(canvas, cell, [fields.get(ROLES[role], "")], names)
         elif number in values:
-            width = _left(canvas, cell, word) if word else 0.0
             lines, sizes = values[number]
-            _lines(canvas, cell.inset(width, 0, 0, 0), lines, sizes)
-    _rectangle(canvas, TURNED, "main")
-    _lines(canvas, TURNED, [fields.get("designation", "")], (7.0, 5.0, 3.5), turned=True)
-    for x, text in ((FRAME.x1 - 110, "Копировал"), (FRAME.x1 - 40, "Формат А1")):
-        canvas.text(complex(x, FRAME.y0 - 3.7), text, CAPTION)
-    canvas.of = ""
-    return place, TURNED
+            _lines(canvas, cell.inset(_left(canvas, cell, word), 0, 0, 0), lines, sizes)
+
+
+def _name_sizes(fields: Mapping[str, str]) -> tuple[float, ...]:
+    """Permitted heights of the names, all of them in one: the larger only where all of them fit."""
+    names = [letter(plain(fields.get(role, "")), 3.5) for role in ROLES.values()]
+    large = all(name.width <= NAME_WIDTH and 3.5 + 2 * _rise(name, 3.5) <= NAME_HEIGHT for name in names)
+    return (3.5, 2.5) if large else (2.5,)
 
 
 def _values(fields: Mapping[str, str], number: int, count: int) -> dict[str, tuple[list[str], tuple[float, ...]]]:
@@ -161,23 +172,26 @@ def _rise(laid: Lettering, size: float) -> float:
 
 
 def _lines(canvas: Canvas, cell: Box, parts: list[str], sizes: tuple[float, ...], turned: bool = False) -> None:
-    """Lettering in the middle of a cell: the largest size at which it fits, in up to three lines, else squeezed into it."""
-    width, height = cell.width - 2 * SIDE, cell.height - (2 * ENDS if cell.height > 5 else 0.5)
-    for size in sizes:
-        room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
-        lines = [line for part in parts for line in (_wrap(part, size, width) if room > 1 else filter(None, [part]))]
-        if not lines:
-            return
-        laid = [letter(plain(line), size) for line in lines]
-        widest = max(line.width for line in laid)
-        tall = size * (1 + PITCH * (len(lines) - 1)) + 2 * _rise(laid[0], size)
-        # Three lines need some air between the rules of their cell.
-        if widest <= width and tall <= height - (1.0 if len(lines) == 3 else 0.0) and len(lines) <= 3:
-            break
-    else:
-        size *= min(width / widest, height / tall, 1.0)
+    """Lettering in the middle of a cell."""
+    lines, size = _fitted(parts, sizes, cell.width - 2 * SIDE, cell.height - (2 * ENDS if cell.height > 5 else 0.5))
     sign, angle = (-1, pi) if turned else (1, 0.0)
     y = size * (PITCH * (len(lines) - 1) - 1) / 2
     for line in lines:
         canvas.text(cell.centre + sign * 1j * y, plain(line), size, "centre", angle)
         y -= PITCH * size
+
+
+def _fitted(parts: list[str], sizes: tuple[float, ...], width: float, height: float) -> tuple[list[str], float]:
+    """Lines and size of lettering: the largest size at which it fits, in up to three lines, else squeezed."""
+    for size in sizes:
+        room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
+        lines = [line for part in parts for line in (_wrap(part, size, width) if room > 1 else filter(None, [part]))]
+        if not lines:
+            return [], size
+        laid = [letter(plain(line), size) for line in lines]
+        widest = max(line.width for line in laid)
+        tall = size * (1 + PITCH * (len(lines) - 1)) + 2 * _rise(laid[0], size)
+        # Three lines need some air between the rules of their cell.
+        if widest <= width and tall <= height - (1.0 if len(lines) == 3 else 0.0) and len(lines) <= 3:
+            return lines, size
+    return lines, size * min(width / widest, height / tall, 1.0)

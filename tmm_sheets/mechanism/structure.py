@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup
 
@@ -16,37 +18,28 @@ def decompose(m: Mechanism) -> tuple[StructuralGroup, ...]:
     pairs = [p for p in m.pairs if set(p.links) != placed]
     names = list(dict.fromkeys(n for p in pairs for n in p.links if n not in placed))
     while names:
-        found = next(
-            ((i, j) for n, i in enumerate(names) for j in names[n + 1:] if _is_group(i, j, pairs, placed)), None)
-        if found is None:
+        group = next(filter(None, (_group(i, j, pairs, placed) for i, j in combinations(names, 2))), None)
+        if group is None:
             raise ValueError(f"links {', '.join(names)} form no group of class II with the links before them")
-        i, j = found
-        outer_i, inner, outer_j = _group_of(i, j, pairs, placed)
-        a, b, c = ("R" if p.motion == "rotation" else "P" for p in (outer_i, inner, outer_j))
-        kind = next((k for k in KINDS.values() if a + b + c in k.orders), None)
-        if kind is None:
-            raise ValueError(f"links {i} and {j} with pairs {a}-{b}-{c} can slide without turning: no group of class II")
-        order.append(StructuralGroup(kind, (i, j), (outer_i.name, outer_j.name), inner.name))
-        placed |= {i, j}
+        order.append(group)
+        placed |= set(group.links)
         names = [n for n in names if n not in placed]
     return tuple(reversed(order))
 
 
-def _is_group(i: str, j: str, pairs: list[Pair], placed: set[str]) -> bool:
-    try:
-        _group_of(i, j, pairs, placed)
-    except LookupError:
-        return False
-    return True
+def _group(i: str, j: str, pairs: list[Pair], placed: set[str]) -> StructuralGroup | None:
+    """The group of two links, if each has one pair with the links placed and they have one with each other."""
+    joints = (_between(i, placed, pairs), _between(i, {j}, pairs), _between(j, placed, pairs))
+    if any(len(found) != 1 for found in joints):
+        return None
+    (outer_i,), (inner,), (outer_j,) = joints
+    motions = ["R" if p.motion == "rotation" else "P" for p in (outer_i, inner, outer_j)]
+    kind = next((k for k in KINDS.values() if "".join(motions) in k.orders), None)
+    if kind is None:
+        raise ValueError(f"links {i} and {j} with pairs {'-'.join(motions)} can slide without turning: no group of class II")
+    return StructuralGroup(kind, (i, j), (outer_i.name, outer_j.name), inner.name)
 
 
-def _group_of(i: str, j: str, pairs: list[Pair], placed: set[str]) -> tuple[Pair, Pair, Pair]:
-    def one(found: list[Pair]) -> Pair:
-        if len(found) != 1:
-            raise LookupError
-        return found[0]
-
-    inner = one([p for p in pairs if set(p.links) == {i, j}])
-    outer_i = one([p for p in pairs if i in p.links and set(p.links) & placed])
-    outer_j = one([p for p in pairs if j in p.links and set(p.links) & placed])
-    return outer_i, inner, outer_j
+def _between(link: str, others: set[str], pairs: list[Pair]) -> list[Pair]:
+    """Pairs of a link with any of the others."""
+    return [p for p in pairs if link in p.links and others & set(p.links)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -40,6 +40,10 @@ class Order:
     corrected: bool = False
     force: bool = False
     archive: bool = False
+
+    def files(self, numbers: Iterable[int]) -> dict[tuple[str, int], str]:
+        """Names of the files of these sheets by format and sheet."""
+        return {(form, n): f"sheet{n}.{SUFFIXES.get(form, form)}" for form in self.formats for n in numbers}
 
     def outlet(self, place: Path) -> Outlet:
         """The folder, or the archive of that name."""
@@ -88,25 +92,18 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     opened = Project(variant)
     numbers = chosen(variant, order.sheets)
     outlet.check()
-    wanted = {(form, n): f"sheet{n}.{SUFFIXES.get(form, form)}" for form in order.formats for n in numbers}
+    wanted = order.files(numbers)
     outlet.sweep(wanted.values())
     work = _work(variant, order, outlet, numbers, wanted, watch)
-
-    @contextmanager
-    def watched(n: int) -> Iterator[None]:
-        say(f"sheet {n}")
-        with watch.phase(f"sheet {n}"):
-            yield
-
-    drawn, problem = _drawn(opened, work.sheets, watched, others=len(work.sheets) < len(numbers))
+    drawn, problem = _drawn(opened, work.sheets, _watching(watch, say), others=len(work.sheets) < len(numbers))
     whole_passed = work.whole and problem is None
     if whole_passed:
-        _refuse_idle_scales(variant, {name for composed in drawn.values() for name in composed.scales})
+        _refuse_idle_scales(variant, drawn)
     failed = set(work.sheets) - set(drawn)
     if problem is not None:
         problem = _with_stale(problem, [name for (_, n), name in wanted.items() if n in failed], outlet)
     drawings = {n: composed.drawing for n, composed in drawn.items()}
-    made = _rendered(drawings, {key: name for key, name in work.due.items() if key[1] not in failed}, order, watch, say)
+    made = _rendered(drawings, work.due, order, watch, say)
     if made or whole_passed:
         with watch.phase("write files"):
             keep(outlet, work.record, made, work.made_from, work.inputs if whole_passed else None)
@@ -147,12 +144,13 @@ def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wa
 
 def _rendered(drawings: Mapping[int, Drawing], due: Mapping[tuple[str, int], str], order: Order, watch: Stopwatch,
               say: Callable[[str], None]) -> dict[str, bytes]:
-    """Contents of the files due, one format after another."""
+    """Contents of the files due of the sheets that were drawn, one format after another."""
     made: dict[str, bytes] = {}
-    for form in dict.fromkeys(form for form, _ in due):
+    to_make = [(form, n) for form, n in due if n in drawings]
+    for form in dict.fromkeys(form for form, _ in to_make):
         with watch.phase(f"import of the {form} writer"):
             render = import_module(BACKENDS[form]).render
-        for n in (n for f, n in due if f == form):
+        for n in (n for f, n in to_make if f == form):
             say(f"sheet {n} as {form}")
             with watch.phase(f"{form} of sheet {n}"):
                 made[due[form, n]] = render(drawings[n], **order.settings.get(form, {}))
@@ -167,6 +165,18 @@ def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]
 
         told += kinematic_frames.left_out(opened, drawn)
     return tuple(told)
+
+
+def _watching(watch: Stopwatch, say: Callable[[str], None]) -> Callable[[int], AbstractContextManager[None]]:
+    """What goes round the drawing of a sheet: it is told and timed."""
+
+    @contextmanager
+    def watched(n: int) -> Iterator[None]:
+        say(f"sheet {n}")
+        with watch.phase(f"sheet {n}"):
+            yield
+
+    return watched
 
 
 def _drawn(opened: Project, asked: list[int], around: Callable[[int], AbstractContextManager[None]], *, others: bool) -> tuple[
@@ -189,8 +199,9 @@ def _with_stale(problem: CannotBuild, names: list[str], outlet: Outlet) -> Canno
     return CannotBuild(str(problem), f"{', '.join(left)}: left as they were made before, from other inputs") if left else problem
 
 
-def _refuse_idle_scales(variant: Variant, used: set[str]) -> None:
+def _refuse_idle_scales(variant: Variant, drawn: Mapping[int, Composed]) -> None:
     """A scale factor for a plan that no sheet has is a slip of the pen."""
+    used = {name for composed in drawn.values() for name in composed.scales}
     hint = f"plans with a scale factor are {', '.join(sorted(used))}"
     idle = [name for name in variant.scales if name not in used]
     if idle:

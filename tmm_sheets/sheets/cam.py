@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import wraps
 from itertools import pairwise
 from math import degrees, pi
@@ -20,6 +20,7 @@ from tmm_sheets.numbers import fixed, number
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.cams.cam_closure import Spring
+    from tmm_sheets.methods.cams.cam_laws import PositionFunction
     from tmm_sheets.methods.cams.cam_motion import FollowerMotion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
 
@@ -273,29 +274,42 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
 def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S, S', S'' and the pressure angle in the numbered positions."""
     cam: Cam = project.cam
-    m, inv = cam.motion, cam.inversion
-    diagrams = tuple(zip(reversed(m.names), (m.s, m.ds, m.dds), (m.scales.s, m.scales.ds, m.scales.dds), strict=True))
-    factor, unit = (1e3, "·10^3, м") if m.law.symbol == "S" else (1.0, "")
-    columns = [["Положение", *m.law.labels], ["φ, град", *(fixed(v, 2) for v in np.degrees(inv.phi))]]
-    sides = m.law.dds_beside
-    jumps = not np.allclose(*sides, rtol=0, atol=1e-9 * float(np.abs(sides).max()))
-    for symbol, steps, scale in diagrams:
-        # Both limits where the second derivative jumps: one from each side.
-        rows = dict(zip((" (φ−0)", " (φ+0)"), sides, strict=True)) if jumps and steps is m.dds else {"": m.measured(steps, scale)}
-        for side, values in rows.items():
-            columns.append([f"y_{{{symbol}}}{side}, мм", *(fixed(v, 1) for v in scale.mm(values))])
-            head = f"{symbol}{side}{unit}" + (", рад" if symbol == "ψ" else "")
-            columns.append([head, *(fixed(v * factor, 2 if unit else 3) for v in values)])
-    if "roller" in cam.traits:
-        columns.append(["α, град", *(fixed(v, 1) for v in np.degrees(inv.angles.value))])
-    else:
-        s = m.law.at_positions(lambda p, x: p.s(x))
-        for side, values in (((" (φ−0)", sides[0]), (" (φ+0)", sides[1])) if jumps else (("", sides[0]),)):
-            columns.append([f"(S + S''){side}·10^3, м", *(fixed(v * 1e3, 2) for v in s + values)])
-    first = 32.0 if jumps else 26.0
+    second = _second_derivative(cam.motion.law)
+    columns = [["Положение", *cam.motion.law.labels], ["φ, град", *(fixed(v, 2) for v in np.degrees(cam.inversion.phi))],
+               *_diagram_rows(cam.motion, second), *_check_values(cam, second)]
+    first = 32.0 if len(second) > 1 else 26.0
     width = (box.width - first) / (len(columns[0]) - 1)
     row = min(box.height / len(columns), 8.0)
     canvas.table(complex(box.x0, box.y1), [first, *[width] * (len(columns[0]) - 1)], columns, row, 2.5)
+
+
+def _second_derivative(law: PositionFunction) -> dict[str, Any]:
+    """The second derivative at the numbered positions by the side it is taken from: both limits where it jumps."""
+    before, after = law.dds_beside
+    if np.allclose(before, after, rtol=0, atol=1e-9 * float(np.abs((before, after)).max())):
+        return {"": before}
+    return {" (φ−0)": before, " (φ+0)": after}
+
+
+def _diagram_rows(m: FollowerMotion, second: Mapping[str, Any]) -> Iterator[list[str]]:
+    """Two rows for each diagram: ordinates on paper, and what they mean."""
+    factor, unit = (1e3, "·10^3, м") if m.law.symbol == "S" else (1.0, "")
+    for symbol, steps, scale in zip(reversed(m.names), (m.s, m.ds, m.dds), (m.scales.s, m.scales.ds, m.scales.dds), strict=True):
+        rows = second if steps is m.dds and len(second) > 1 else {"": m.measured(steps, scale)}
+        for side, values in rows.items():
+            yield [f"y_{{{symbol}}}{side}, мм", *(fixed(v, 1) for v in scale.mm(values))]
+            head = f"{symbol}{side}{unit}" + (", рад" if symbol == "ψ" else "")
+            yield [head, *(fixed(v * factor, 2 if unit else 3) for v in values)]
+
+
+def _check_values(cam: Cam, second: Mapping[str, Any]) -> Iterator[list[str]]:
+    """What the dimensions of the cam rest upon: the pressure angle, under a flat follower S + S''."""
+    if "roller" in cam.traits:
+        yield ["α, град", *(fixed(v, 1) for v in np.degrees(cam.inversion.angles.value))]
+        return
+    s = cam.motion.law.at_positions(lambda p, x: p.s(x))
+    for side, values in second.items():
+        yield [f"(S + S''){side}·10^3, м", *(fixed(v * 1e3, 2) for v in s + values)]
 
 
 # --- spring ---------------------------------------------------------------------------------------------------------

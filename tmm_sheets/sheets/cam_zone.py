@@ -47,55 +47,74 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     scale = Scale("μ_S", mu, "м/мм")
     canvas.scales[z.plan.name] = scale
     canvas.title(box, "Определение основных размеров", f"μ_S = μ_S' = {number(scale.mu)} м/мм")
-    origin = room.centre - scale.mm(complex((xs.max() + xs.min()) / 2, (stroke + low.imag) / 2))
-
-    def at(p: complex) -> complex:
-        return complex(origin + scale.mm(p))
-
-    v, o, b, c = at(apex), at(axis), at(0j), at(complex(z.plan["C"].value))
-    cone = np.array([v, at(low - depth * slope), at(low + depth * slope)])
-    hatch_polygon(canvas, cone, 4.0)
+    at = Frame(scale, room.centre - scale.mm(complex((xs.max() + xs.min()) / 2, (stroke + low.imag) / 2)))
+    hatch_polygon(canvas, np.array([at(apex), at(low - depth * slope), at(low + depth * slope)]), 4.0)
     for (touch, side), top in zip(touches, tops, strict=True):
         canvas.line(at(top), at(low - depth * slope * side), "axis")
         if abs(touch) > 0:
             canvas.dot(at(touch), 0.6)
         canvas.label(at(touch), "K_1" if side == z.right else "K_2", side + 0j, 3.5, 1.0)
-    canvas.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
+    _tappet_axes(canvas, cam, at)
+    canvas.polyline(at(curve), "curve")
+    _tappet_positions(canvas, cam, at)
+    _tappet_dimensions(canvas, cam, at, apex)
+    lines_of_text(canvas, box, _tappet_lines(cam, scale))
+
+
+def _tappet_axes(canvas: Canvas, cam: TappetCam, at: Frame) -> None:
+    """The axis of S with what lies below the stroke, and that of S'."""
+    z, stroke = cam.zone, cam.law.stroke
+    canvas.arrow(at(complex(z.plan["C"].value)) - 4j, at(1j * stroke) + 9j, "axis", 3.0)
     canvas.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
-    reach = float(curve.real[np.argmax(np.abs(curve.real))])
-    canvas.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
-    canvas.label(at(complex(reach)) + 8 * z.right, "S', м", -1j, 3.5, 1.5, leader=False)
-    canvas.polyline(origin + scale.mm(curve), "curve")
-    points, labels = np.asarray(z.points.value), z.plan.labels
-    for k in range(len(points)):
-        if k and abs(points[k] - points[k - 1]) < 1e-9:
+    curve = z.curve()
+    reach = at(complex(curve.real[np.argmax(np.abs(curve.real))]))
+    canvas.arrow(at(0j), reach + 10 * z.right, "axis", 3.0)
+    canvas.label(reach + 8 * z.right, "S', м", -1j, 3.5, 1.5, leader=False)
+
+
+def _tappet_positions(canvas: Canvas, cam: TappetCam, at: Frame) -> None:
+    """The segments S' of the numbered positions; of those that fall together (no dwell between) the first."""
+    z = cam.zone
+    points = [complex(p) for p in z.points.value]
+    for k, p in enumerate(points):
+        if k and abs(p - points[k - 1]) < 1e-9:
             continue
-        canvas.line(at(1j * points[k].imag), at(points[k]), "thin")
-        canvas.dot(at(points[k]), 0.5)
-        away = points[k] - 1j * stroke / 2
-        canvas.label(at(points[k]), labels[k], complex(away), 3.5, 0.8)
+        canvas.line(at(1j * p.imag), at(p), "thin")
+        canvas.dot(at(p), 0.5)
+        canvas.label(at(p), z.plan.labels[k], p - 1j * cam.law.stroke / 2, 3.5, 0.8)
+
+
+def _tappet_dimensions(canvas: Canvas, cam: TappetCam, at: Frame, apex: complex) -> None:
+    """The axis of the cam with S0, e and r0, and the permitted angles in the zone's apex."""
+    z = cam.zone
+    axis = complex(z.apex.value)
+    v, o, b, c = at(apex), at(axis), at(0j), at(complex(z.plan["C"].value))
     canvas.line(o, b, "main")
     canvas.line(c, o, "thin")
-    canvas.line(v, v + 1j * scale.mm(0.75 * z.s0), "centre")
+    canvas.line(v, v + 1j * at.scale.mm(0.75 * z.s0), "centre")
     if abs(v - o) > 1:
         canvas.line(o - 4j, at(complex(axis.real, 0.0)), "centre")
     canvas.dot(o, 0.9)
     canvas.label(o, "O", -1j + z.right, 5.0, 1.5)
     canvas.label(b, "B", -z.right + 0j, 3.5, 1.0)
     canvas.label(c, "C", -z.right - 1j, 3.5, 0.8)
-    radius = 0.5 * scale.mm(z.s0)
+    radius = 0.5 * at.scale.mm(z.s0)
     canvas.angle_mark(v, pi / 2, pi / 2 + z.alpha, radius, "[α]")
     canvas.angle_mark(v, pi / 2 - z.alpha, pi / 2, radius, "[α]")
     canvas.dimension(c, b, 9.0 * z.right, "S_0")
     if abs(o - c) > 6:
         canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8)
     canvas.label((o + b) / 2, "r_0", z.right * 1 + 0.6j, 3.5, 0.6)
-    factor = number(scale.mu)
+
+
+def _tappet_lines(cam: TappetCam, scale: Scale) -> list[str]:
+    """Main dimensions in formulas and numbers."""
+    z, factor = cam.zone, number(scale.mu)
     measured = [f"{name} = |{segment}|·μ_S = {fixed(scale.mm(abs(value)), 2)}·{factor} = {fixed(abs(value) * 1e3, 3)}·10^{{−3}} м"
                 for name, segment, value in (("S_0", "CB", z.s0), ("e", "CO", z.e), ("r_0", "OB", z.r0))]
     if cam.data.eccentricity is not None:
         measured[1] = f"e = {number(z.e * 1e3)} мм — по заданию"
-    lines_of_text(canvas, box, measured)
+    return measured
 
 
 @for_cams

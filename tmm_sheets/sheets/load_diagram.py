@@ -32,9 +32,7 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     if not shown:
         return
     cycle = project.cycle
-    jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]
-    turned = np.unique(np.concatenate((np.linspace(0, cycle.period, SAMPLES), jumps)))
-    turned = turned[(turned >= 0) & (turned <= cycle.period)]
+    turned = _angles(shown, cycle.period)
     kind, unit = ("F", "Н") if shown[0].point is not None else ("M", "Н·м")
     inside = box.inset(10.0, 8.0, 14.0, 24.0)
     top = max(float(np.max(f.magnitude(turned))) for f in shown)
@@ -58,6 +56,13 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
         canvas.polyline(at(turned, f.magnitude(turned)), "curve")
         if len(shown) > 1:
             _sign(canvas, f, turned, at)
+
+
+def _angles(shown: list[Applied], period: float) -> Any:
+    """Angles at which the curves are drawn, both sides of every jump among them."""
+    jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]
+    turned = np.unique(np.concatenate((np.linspace(0, period, SAMPLES), jumps)))
+    return turned[(turned >= 0) & (turned <= period)]
 
 
 def _accepted(project: Project, shown: list[Applied]) -> bool:

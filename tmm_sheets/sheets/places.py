@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from cmath import rect
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import ceil, floor, pi
 
@@ -57,18 +58,12 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
         part = canvas.parts[k]
         if part.draw in ("title block", "labels"):
             continue
-        others = [other.box for other, v in zip(canvas.parts, views, strict=True)
+        beside = [other.box for other, v in zip(canvas.parts, views, strict=True)
                   if v is views[k] and other.title and _apart(other.box, part.box)]
-        worst: tuple[float, str, str] | None = None
-        for marks, slack, beside in ((lines, TOUCH, others), (labels, BESIDE, [])):
-            for mark in marks:
-                if _surely_inside(mark, part.box):
-                    continue
-                p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
-                out = _across(p, frame, title_block) or (None if _tie(mark) else _beyond(p, part.box, views[k], beside, slack))
-                worst = max(worst, out) if worst and out else worst or out
-        if worst is not None:
-            found.append(Leaving(_plain(part.title or part.draw), *worst, _scales(canvas, k)))
+        bounds = _Bounds(part.box, views[k], frame, title_block)
+        out = [*bounds.left_by(lines, TOUCH, beside), *bounds.left_by(labels, BESIDE, [])]
+        if out:
+            found.append(Leaving(_plain(part.title or part.draw), *max(out), _scales(canvas, k)))
     return found
 
 
@@ -127,28 +122,51 @@ def _outside(p: Points, box: Box) -> tuple[float, str]:
     return float(out[k]), SIDES[k]
 
 
-def _beyond(p: Points, box: Box, view: Box, beside: list[Box], slack: float) -> tuple[float, str, str] | None:
-    """How far a mark leaves its view, or comes into the part beside its own."""
-    by, side = _outside(p, view)
-    if by > slack:
-        return by, side, ""
-    by, side = _outside(p, box)
-    if by > slack and any(polyline_inside(other.inset(slack), p) for other in beside):
-        return by, side, ", into the one beside it"
-    return None
+Departure = tuple[float, str, str]
+"""How far a mark leaves its place, mm, on which side, and what it comes over there."""
 
 
-def _across(p: Points, frame: Box, title_block: Box) -> tuple[float, str, str] | None:
-    """How far a mark crosses the frame, or comes into the title block."""
-    by, side = _outside(p, frame)
-    if by > 0:
-        return by, side, ", over the frame"
-    inside = polyline_inside(title_block, p)
-    if inside:
-        depth = max(min(float(q.real.max()) - title_block.x0, title_block.y1 - float(q.imag.min())) for q in inside)
-        if depth > 0:
-            return depth, "at the bottom", ", into the title block"
-    return None
+@dataclass(frozen=True)
+class _Bounds:
+    """What the marks of a part are to stay in, and the title block they are to stay out of."""
+
+    box: Box
+    view: Box
+    frame: Box
+    title_block: Box
+
+    def left_by(self, marks: Iterable[Mark], slack: float, beside: list[Box]) -> Iterator[Departure]:
+        """Departures of those marks that do not keep their place."""
+        for mark in marks:
+            if _surely_inside(mark, self.box):
+                continue
+            p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
+            out = self._across(p) or (None if _tie(mark) else self._beyond(p, slack, beside))
+            if out is not None:
+                yield out
+
+    def _beyond(self, p: Points, slack: float, beside: list[Box]) -> Departure | None:
+        """How far a mark leaves its view, or comes into the part beside its own."""
+        by, side = _outside(p, self.view)
+        if by > slack:
+            return by, side, ""
+        by, side = _outside(p, self.box)
+        if by > slack and any(polyline_inside(other.inset(slack), p) for other in beside):
+            return by, side, ", into the one beside it"
+        return None
+
+    def _across(self, p: Points) -> Departure | None:
+        """How far a mark crosses the frame, or comes into the title block."""
+        by, side = _outside(p, self.frame)
+        if by > 0:
+            return by, side, ", over the frame"
+        block = self.title_block
+        inside = polyline_inside(block, p)
+        if inside:
+            depth = max(min(float(q.real.max()) - block.x0, block.y1 - float(q.imag.min())) for q in inside)
+            if depth > 0:
+                return depth, "at the bottom", ", into the title block"
+        return None
 
 
 def _scales(canvas: Canvas, k: int) -> tuple[tuple[str, float], ...]:

@@ -104,13 +104,21 @@ class Draft:
 
     def guide(self, near: complex, besides: tuple[str, ...] = (), moving: bool | None = None) -> tuple[str, complex, complex, str]:
         """A fixed or moving guide somewhere near a point: its name, point, direction and link."""
-        name = f"g{len(self.guides)}"
         lines = [(link, a, b) for link, a, b in self.lines() if link not in besides]
         if (self.coin() if moving is None else moving) and lines:
-            link, a, b = lines[int(self.rng.integers(len(lines)))]
-            turn = 0.0 if self.coin() else self.angle()
-            self.guides[name] = Guide(name, link, a, turn, b)
-            return name, self.at[a], self.base(link, a, b) * rect(1, turn), link
+            return self.moving_guide(*lines[int(self.rng.integers(len(lines)))])
+        return self.fixed_guide(near)
+
+    def moving_guide(self, link: str, a: str, b: str) -> tuple[str, complex, complex, str]:
+        """A guide on a link, through its point ``a``: along the line to ``b``, or anyhow to it."""
+        name = f"g{len(self.guides)}"
+        turn = 0.0 if self.coin() else self.angle()
+        self.guides[name] = Guide(name, link, a, turn, b)
+        return name, self.at[a], self.base(link, a, b) * rect(1, turn), link
+
+    def fixed_guide(self, near: complex) -> tuple[str, complex, complex, str]:
+        """A guide in the frame, as the case wants it."""
+        name = f"g{len(self.guides)}"
         u = float(self.rng.choice((0.0, pi / 2, pi, -pi / 2))) if self.coin() or self.hard == "square" else self.angle()
         through = near + rect(self.length(), self.angle())
         if self.hard in ("square", "coincident"):

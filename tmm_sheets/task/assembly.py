@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import cos, pi, sin
 
 from tmm_sheets.errors import CannotBuild
@@ -18,7 +18,7 @@ from tmm_sheets.methods.linkage.loads import (
     stroke_law,
     turning_motion,
 )
-from tmm_sheets.task.schema import ForceTable, GroupTable, MomentTable
+from tmm_sheets.task.schema import ForceTable, GroupTable, GuideTable, MomentTable
 from tmm_sheets.task.variant import Variant
 
 
@@ -31,18 +31,21 @@ def mechanism_of(variant: Variant) -> Mechanism:
     acceleration = c.angular_acceleration if isinstance(c.angular_acceleration, float) else 0.0
     crank = Crank(c.link, c.pivot, c.pin, c.length, c.speed, -1 if c.sense == "clockwise" else 1, acceleration)
     fixed = {name: complex(x, y) for name, (x, y) in variant.points.items()}
-    guides = {}
-    for g in variant.guide:
-        through = g.through if isinstance(g.through, str) else complex(*g.through)
-        if g.link is None and isinstance(through, str):
-            through = fixed[through]
-        guides[g.name] = Guide(g.name, g.link or "0", through, g.direction, g.towards)
+    guides = {g.name: _guide(g, fixed) for g in variant.guide}
     points = tuple(LinkPoint(p.name, p.link, p.from_, p.towards, p.distance, p.angle) for p in variant.point)
     listed = {p.name: Link(p.name, p.title, p.mass, p.centre, p.inertia, p.pivot_inertia) for p in variant.link}
     groups = tuple(_group(g) for g in variant.group)
     names = [crank.link, *(name for g in groups for name in g.links)]
     links = {name: listed.get(name, Link(name)) for name in names}
     return Mechanism(crank, fixed, guides, groups, points, links)
+
+
+def _guide(g: GuideTable, fixed: Mapping[str, complex]) -> Guide:
+    """A guide; what a fixed one goes through is known by its coordinates."""
+    through = g.through if isinstance(g.through, str) else complex(*g.through)
+    if g.link is None and isinstance(through, str):
+        through = fixed[through]
+    return Guide(g.name, g.link or "0", through, g.direction, g.towards)
 
 
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}

@@ -33,16 +33,24 @@ def check_cam(data: dict[str, Any]) -> Iterator[Found]:
         return
     follower = cam.get("follower")
     if isinstance(follower, str) and follower in FOLLOWER_KEYS:
-        must, may = FOLLOWER_KEYS[follower]
-        for key in must:
-            if key not in cam:
-                yield ("cam", key), f'missing; follower = "{follower}" needs it, for example {key} = {EXAMPLES[key]}', ""
-        own = {key for keys in FOLLOWER_KEYS.values() for key in (*keys[0], *keys[1])}
-        for key in cam:
-            if key in own and key not in (*must, *may):
-                yield ("cam", key), f'follower = "{follower}" has no such key', f"its own keys are {', '.join((*must, *may))}"
-        if follower == "flat" and cam.get("closure") == "geometric":
-            yield ("cam", "closure"), 'expected "force": the second disc of a geometric closure needs a roller', ""
+        yield from _of_follower(cam, follower)
+    yield from _of_laws(cam)
+
+
+def _of_follower(cam: dict[str, Any], follower: str) -> Iterator[Found]:
+    must, may = FOLLOWER_KEYS[follower]
+    for key in must:
+        if key not in cam:
+            yield ("cam", key), f'missing; follower = "{follower}" needs it, for example {key} = {EXAMPLES[key]}', ""
+    others = {key for keys in FOLLOWER_KEYS.values() for key in (*keys[0], *keys[1])} - {*must, *may}
+    for key in cam:
+        if key in others:
+            yield ("cam", key), f'follower = "{follower}" has no such key', f"its own keys are {', '.join((*must, *may))}"
+    if follower == "flat" and cam.get("closure") == "geometric":
+        yield ("cam", "closure"), 'expected "force": the second disc of a geometric closure needs a roller', ""
+
+
+def _of_laws(cam: dict[str, Any]) -> Iterator[Found]:
     for law, table in (("law", "table"), ("fall_law", "fall_table")):
         if cam.get(law) == "table" and table not in cam:
             yield ("cam", table), f'missing; {law} = "table" needs it, for example {table} = {EXAMPLES[table]}', ""

@@ -223,15 +223,20 @@ class CycleTable(Table):
     """points (S, V, a) and links (ψ, ω, ε) whose kinematic diagrams are drawn; left out: the output"""
 
     @model_validator(mode="after")
+    def _start_has_its_keys(self) -> Self:
+        if self.start != "dead":
+            if self.positions is None:
+                raise ValueError("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12")
+            return self
+        absent = [k for k in ("output", "working_sense", "working", "idle") if getattr(self, k) is None]
+        if absent:
+            raise ValueError(f'start = "dead" needs {", ".join(absent)} as well')
+        if self.division == "nominal" and self.coefficient is None:
+            raise ValueError('division = "nominal" needs the coefficient K, for example coefficient = 1.5')
+        return self
+
+    @model_validator(mode="after")
     def _whole_turn(self) -> Self:
-        if self.start != "dead" and self.positions is None:
-            raise ValueError("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12")
-        if self.start == "dead":
-            absent = [k for k in ("output", "working_sense", "working", "idle") if getattr(self, k) is None]
-            if absent:
-                raise ValueError(f'start = "dead" needs {", ".join(absent)} as well')
-            if self.division == "nominal" and self.coefficient is None:
-                raise ValueError('division = "nominal" needs the coefficient K, for example coefficient = 1.5')
         count = self.positions if self.positions is not None else (self.working or 0) + (self.idle or 0)
         if count < 4:
             raise ValueError("expected 4 positions or more: positions, or working and idle together")

@@ -199,7 +199,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
         problems.append(_problem(file, lines, ("project",), "there is nothing to draw",
                                  "add [crank] and [[group]] for a mechanism, [gear], [reducer] or [cam]"))
     if problems or variant is None:
-        raise BadInput(sorted(set(problems), key=lambda p: (p.line or 0, p.field)))
+        raise BadInput(sorted(dict.fromkeys(problems), key=lambda p: (p.line or 0, p.field)))
     variant._file = file
     variant._lines = lines
     variant._data = data

@@ -10,6 +10,7 @@ import logging
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from io import BytesIO, StringIO
 from itertools import chain, pairwise
@@ -52,7 +53,12 @@ BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
 CURVES = {"ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
 """Entities flattened by themselves: as paths they would become Bezier curves, off by 0.03 % of the radius."""
 PRIMITIVE = {"LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"}
+AS_DXF = "save the drawing as DXF (AutoCAD: DXFOUT or Save as; KOMPAS: Сохранить как, DXF)"
 SMALLER = "save only the sheet itself: without other drawings, unused blocks purged, arrays and dense hatchings removed"
+BINARY = b"AutoCAD Binary DXF"
+"""How a binary DXF file begins."""
+OTHERS = {b"%PDF": "PDF", b"\x89PNG": "PNG", b"\xff\xd8\xff": "JPEG", b"PK\x03\x04": "ZIP", b"KF\x1a": "KOMPAS"}
+"""How files of other kinds begin that are taken for drawings."""
 SILENT = {"POINT", "VIEWPORT", "ATTDEF", "RAY", "XLINE", "LIGHT", "SUN"}
 
 
@@ -86,47 +92,26 @@ def read(path: Path) -> CadInk:
 
 
 def _open(path: Path) -> tuple[Document, list[str]]:
+    """The document, mended where it is damaged, and what is to be told of that."""
     from ezdxf import recover
     from ezdxf.filemanagement import readfile
     from ezdxf.lldxf.const import DXFError
 
-    hint = "save the drawing as DXF (AutoCAD: DXFOUT or Save as; KOMPAS: Сохранить как, DXF)"
-    try:
-        size = path.stat().st_size
-        if size > LARGEST:
-            raise CannotBuild(f"{path}: {size / 1e6:.0f} MB are more than can be handled ({LARGEST / 1e6:.0f})", SMALLER)
-        with path.open("rb") as file:
-            head = file.read(1 << 16)
-    except OSError as e:
-        raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path))) from None
-    if not head:
-        raise BadInput(Problem("the file is empty", str(path), hint=hint))
-    if head.startswith(b"AC10"):
-        raise BadInput(Problem("this is a DWG file, only DXF can be read", str(path), hint=hint))
-    other = {b"%PDF": "PDF", b"\x89PNG": "PNG", b"\xff\xd8\xff": "JPEG", b"PK\x03\x04": "ZIP", b"KF\x1a": "KOMPAS"}
-    for mark, name in other.items():
-        if head.startswith(mark):
-            also = "; photographs and scans are compared with --image" if name in ("PDF", "PNG", "JPEG") else ""
-            raise BadInput(Problem(f"this is a {name} file, not DXF", str(path), hint=hint + also))
-    if b"SECTION" not in head:
-        raise BadInput(Problem("this is not a DXF file", str(path), hint=hint))
-    # The library tells its log of every small repair; what matters is told in the notes.
-    log = logging.getLogger("ezdxf")
-    before = log.level
-    log.setLevel(logging.CRITICAL)
-    try:
-        try:  # most files need no repair, and binary ones cannot be repaired
-            return readfile(path), []
-        except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError):
-            if head.startswith(b"AutoCAD Binary DXF"):
-                raise
-        whole = _completed(path.read_bytes())
-        document, auditor = recover.readfile(path) if whole is None else recover.read(BytesIO(whole))
-    except (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError) as e:
-        raise BadInput(Problem(f"this is not a DXF file or it is damaged beyond repair ({e or type(e).__name__})", str(path),
-                               hint=hint)) from None
-    finally:
-        log.setLevel(before)
+    head = _head(path)
+    _refuse_others(path, head)
+    damage = (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError)
+    with _silent_library():
+        try:
+            try:  # most files need no repair, and binary ones cannot be repaired
+                return readfile(path), []
+            except damage:
+                if head.startswith(BINARY):
+                    raise
+            whole = _completed(path.read_bytes())
+            document, auditor = recover.readfile(path) if whole is None else recover.read(BytesIO(whole))
+        except (*damage, RecursionError) as e:
+            raise BadInput(Problem(f"this is not a DXF file or it is damaged beyond repair ({e or type(e).__name__})", str(path),
+                                   hint=AS_DXF)) from None
     # Nearly every program writes something this library mends; only what was lost is worth a word.
     if whole is not None:
         return document, ["the file ends in the middle: what there is of it was compared"]
@@ -135,9 +120,47 @@ def _open(path: Path) -> tuple[Document, list[str]]:
     return document, [told if lost else "the file was damaged and was mended"]
 
 
+def _head(path: Path) -> bytes:
+    """How a file begins, if it is not too large."""
+    try:
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise CannotBuild(f"{path}: {size / 1e6:.0f} MB are more than can be handled ({LARGEST / 1e6:.0f})", SMALLER)
+        with path.open("rb") as file:
+            return file.read(1 << 16)
+    except OSError as e:
+        raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path))) from None
+
+
+def _refuse_others(path: Path, head: bytes) -> None:
+    """Say of a file that is no DXF what it is."""
+    if not head:
+        raise BadInput(Problem("the file is empty", str(path), hint=AS_DXF))
+    if head.startswith(b"AC10"):
+        raise BadInput(Problem("this is a DWG file, only DXF can be read", str(path), hint=AS_DXF))
+    for mark, name in OTHERS.items():
+        if head.startswith(mark):
+            also = "; photographs and scans are compared with --image" if name in ("PDF", "PNG", "JPEG") else ""
+            raise BadInput(Problem(f"this is a {name} file, not DXF", str(path), hint=AS_DXF + also))
+    if b"SECTION" not in head:
+        raise BadInput(Problem("this is not a DXF file", str(path), hint=AS_DXF))
+
+
+@contextmanager
+def _silent_library() -> Iterator[None]:
+    """The library tells its log of every small repair; what matters is told in the notes."""
+    log = logging.getLogger("ezdxf")
+    before = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        log.setLevel(before)
+
+
 def _completed(data: bytes) -> bytes | None:
     """A text file that was cut off, up to its last whole entity; None when it has its end."""
-    if data.startswith(b"AutoCAD Binary DXF") or b"EOF" in data[-200:]:
+    if data.startswith(BINARY) or b"EOF" in data[-200:]:
         return None
     begins = [m.start() for m in re.finditer(rb"\n[ \t]*0[ \t]*\r?\n(?=[A-Z])", data)]
     return data[: begins[-1]] + b"\n  0\nENDSEC\n  0\nEOF\n" if begins else None

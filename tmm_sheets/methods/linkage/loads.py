@@ -273,44 +273,66 @@ def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequ
     A table over the travelled fraction (None: no force) and a sign for each run. A resistance has no value at a dead point
     itself; a pressure acts ``always``, there with the stroke that begins.
     """
-    runs = motion.runs
-    curves = [None if table is None else curve_of(table, smooth) for table in tables]
-    over_way = any(table is not None and len(table[0]) > 1 for table in tables)
-    # Where the same goes on from one run to the next: an end that is no exception.
-    same = np.zeros((len(runs), len(runs)), dtype=bool)
-    for i in range(len(runs)):
-        same[i - 1, i] = motion.follows(i) and tables[i] is tables[i - 1] and signs[i] == signs[i - 1]
+    law = _StrokeLaw(motion, tables, signs, smooth, always)
+    jumps = [t for i in range(len(motion.runs)) for t in (*law.jumps_before(i), *law.jumps_within(i))]
+    return law, distinct((float(np.mod(t, motion.period)) for t in jumps), motion.period)
 
-    def law(turned: Any, side: int = 0) -> Any:
+
+class _StrokeLaw:
+    """The law of :func:`stroke_law` over the angle turned."""
+
+    def __init__(self, motion: OutputMotion, tables: Sequence[Table | None], signs: Sequence[float], smooth: bool,
+                 always: bool) -> None:
+        self.motion, self.tables, self.signs, self.always = motion, tables, signs, always
+        self.curves = [None if table is None else curve_of(table, smooth) for table in tables]
+        self.over_way = any(table is not None and len(table[0]) > 1 for table in tables)
+        # Where the same goes on from one run to the next: an end that is no exception.
+        self.same = np.zeros((len(tables), len(tables)), dtype=bool)
+        for i in range(len(tables)):
+            self.same[i - 1, i] = motion.follows(i) and tables[i] is tables[i - 1] and signs[i] == signs[i - 1]
+
+    def __call__(self, turned: Any, side: int = 0) -> Any:
         t = np.asarray(turned, dtype=float)
-        i = motion.number(t, 1 if always and not side else side)
-        if runs and not side and (i < 0).any():
-            before, after = motion.number(t, -1), motion.number(t, 1)
-            i = np.where((i < 0) & (before >= 0) & (after >= 0) & same[before, after], after, i)
-        x = motion.fraction(t) if over_way else np.zeros(t.shape)
+        motion, i = self.motion, self._acting(t, side)
+        x = motion.fraction(t) if self.over_way else np.zeros(t.shape)
         value = np.zeros(t.shape)
-        for n, (run, curve) in enumerate(zip(runs, curves, strict=True)):
+        for n, (run, curve) in enumerate(zip(motion.runs, self.curves, strict=True)):
             if curve is not None:
                 ahead = (side or 1) * run.sense * motion.way
                 # The end of a turn is not the beginning of the next.
                 at = np.where(x < NEAR, 1.0, x) if motion.endless and ahead < 0 else x
-                value = np.where(i == n, signs[n] * curve(at, ahead), value)
+                value = np.where(i == n, self.signs[n] * curve(at, ahead), value)
         return value
 
-    jumps = []
-    for i, run in enumerate(runs):
-        before = runs[i - 1]
-        if not motion.follows(i):
-            jumps += [before.end, run.begin]
-        elif motion.endless:
-            jumps += [run.begin] if law(run.begin, -1) != law(run.begin, 1) else []
-        elif run.stroke != before.stroke or not same[i - 1, i]:
-            jumps.append(run.begin)
-        table = tables[i]
-        if table is not None:
-            fractions = (*jumps_of(table), *((0.0,) if motion.endless and table[1][0] != table[1][-1] else ()))
-            jumps += [at for fraction in fractions for at in motion.crossings(run, fraction)]
-    return law, distinct((float(np.mod(t, motion.period)) for t in jumps), motion.period)
+    def _acting(self, t: Floats, side: int) -> Any:
+        """Index of the run whose diagram holds at each angle, -1 for none."""
+        if side:
+            return self.motion.number(t, side)
+        i = self.motion.number(t, 1 if self.always else 0)
+        if self.motion.runs and (i < 0).any():
+            before, after = self.motion.number(t, -1), self.motion.number(t, 1)
+            i = np.where((i < 0) & (before >= 0) & (after >= 0) & self.same[before, after], after, i)
+        return i
+
+    def jumps_before(self, i: int) -> tuple[float, ...]:
+        """Angles where the law may jump between run ``i`` and the one before it."""
+        run, before = self.motion.runs[i], self.motion.runs[i - 1]
+        if not self.motion.follows(i):
+            return before.end, run.begin
+        if self.motion.endless:
+            changes = bool(self(run.begin, -1) != self(run.begin, 1))
+        else:
+            changes = run.stroke != before.stroke or not self.same[i - 1, i]
+        return (run.begin,) if changes else ()
+
+    def jumps_within(self, i: int) -> tuple[float, ...]:
+        """Angles inside run ``i`` where its diagram jumps, or where a turn of an endless link ends with another value."""
+        table = self.tables[i]
+        if table is None:
+            return ()
+        turn_ends = (0.0,) if self.motion.endless and table[1][0] != table[1][-1] else ()
+        run = self.motion.runs[i]
+        return tuple(at for fraction in (*jumps_of(table), *turn_ends) for at in self.motion.crossings(run, fraction))
 
 
 def angle_law(table: Table, period: float, smooth: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
