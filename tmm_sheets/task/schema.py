@@ -463,9 +463,9 @@ class SynthesisTable(Table):
     kind: Literal["quick return", "engine"] = Field(description='"quick return" or "engine"')
     """crank and rocker, or crank and slider"""
     coefficient: Annotated[float, si(units.NUMBER), in_range("K greater than 1", lambda x: x > 1)] | None = None
-    """quick return: K, the ratio of mean velocities"""
+    """quick return: coefficient of travel time K, the ratio of the mean velocities"""
     stroke: Length | None = None
-    """quick return: of the rocker's end"""
+    """quick return: of the rocker's end, across the line of the pivots"""
     centre_distance: Length | None = None
     """quick return: between the pivots of crank and rocker"""
     mean_velocity: Annotated[float, si(units.VELOCITY), positive("velocity")] | None = None
@@ -475,7 +475,7 @@ class SynthesisTable(Table):
     centre_ratio: PositiveNumber | None = None
     """place of the centre of mass on rocker or rod, as a share of its length"""
     round: Length | None = None
-    """found lengths are rounded to this step"""
+    """found lengths are rounded to this step; left out: not at all"""
 
     @model_validator(mode="after")
     def _conditions_of_the_kind(self) -> Self:
