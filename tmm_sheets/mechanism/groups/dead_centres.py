@@ -1,4 +1,4 @@
-"""Half-chords of the crossings that a group on the crank makes, exact up to its dead positions.
+"""Dead positions of a group on the crank, and half-chords of the crossings it makes, exact up to them.
 
 The half-chord of two arcs, or of an arc and a line, vanishes in a dead position, and so does a tangent. Taken from the rounded
 crank pin it loses as many digits as the gap is small; taken from the crank angle it loses none, and the sine of the angle under
@@ -13,6 +13,9 @@ from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from typing import Any
 
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.limit_angles import DIGITS, Cosine, angle_of, direction
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
@@ -90,3 +93,34 @@ def foot_on_guide(at: complex, guide: Guide) -> complex:
     with localcontext(prec=DIGITS):
         above, cos, sin = height(at, guide)
         return complex(float(Decimal(at.real) + above * sin), float(Decimal(at.imag) - above * cos))
+
+
+AWAY = 4.0
+"""So many times the mechanism's size away a guide's own point is not drawn."""
+
+
+def near_point(m: Mechanism, guide: Guide) -> complex:
+    """A point of a fixed guide to draw it through: its own, or the one nearest to the crank's pivot when its own is far away.
+
+    A direction is known to 1e-16 rad: about a point a thousand lengths away that shifts the guide by 1e-13 of a length, which the
+    half-chords taken from the crank angle do not share. The nearest point comes from the numbers of the guide as they are given.
+    """
+    assert not isinstance(guide.through, str)
+    pivot = m.fixed[m.crank.pivot]
+    from_foot = (guide.through - pivot) / ar.unit(guide.direction)
+    fixed = max(abs(z - pivot) for z in m.fixed.values())
+    size = m.crank.length + sum(sum(g.lengths) for g in m.groups) + fixed + abs(from_foot.imag)
+    return guide.through if abs(from_foot.real) <= AWAY * size else foot_on_guide(pivot, guide)
+
+
+def fold_and_stretch(m: Mechanism, rod: float, centre: Step, ends: tuple[Step, Step]) -> tuple[complex, complex] | None:
+    """Crank vectors, m, with crank and rod in line; ``ends`` are where the rod ends then, rod + crank and |rod - crank| from the pivot.
+
+    None where the rod's end cannot come there, or comes to the pivot itself.
+    """
+    far, near = (complex(e.value - centre.value) for e in ends)
+    if np.isnan(far) or np.isnan(near) or not abs(far) or not abs(near):
+        return None
+    length = m.crank.length
+    fold = -1 if rod > length else 1
+    return far / abs(far) * length, fold * near / abs(near) * length

@@ -65,6 +65,17 @@ class GroupKind(ABC):
         """
         return None
 
+    def dead_positions(self, m: Any, g: Any, plan: Any, centre: Any) -> tuple[complex, complex] | None:
+        """Crank vectors (m, from the crank pivot ``centre``) of the dead positions of a group on the crank pin, on ``plan``.
+
+        None where this kind knows no construction of them, or none for this mechanism.
+        """
+        return None
+
+    def check_dead_positions(self, m: Any, g: Any) -> None:
+        """Raises :class:`CannotBuild` where the group is on the crank pin and surely has no dead positions."""
+        return None
+
     @abstractmethod
     def outlines(self, pos: Any, g: Any) -> list[Any]:
         """How both links look (:class:`tmm_sheets.mechanism.groups.hints.Outline`)."""

@@ -11,8 +11,9 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.construction.limit_angles import DIGITS
-from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
@@ -150,6 +151,25 @@ class RPRKind(GroupKind):
         half, distance = measured(g, phi, lambda phi: np.sqrt(-tangent(phi)), lambda phi: np.sqrt(-none(phi)))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance)))
 
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[complex, complex] | None:
+        """Tangents from the rocker's pivot to the crank circle (manual 000, 3.1), for a rocker that swings, without an offset."""
+        c, q = m.crank, g.outer[1]
+        if g.offset or q not in m.fixed or _inside(m, q) >= 0:
+            return None
+        pivot = plan.add(q, rules.GIVEN, m.fixed[q])
+        a, b = (plan.add(f"{c.pin}{prime}", rules.TANGENT, pivot, centre, c.length, side) for prime, side in (("′", 1), ("″", -1)))
+        return complex(a.value - centre.value), complex(b.value - centre.value)
+
+    def check_dead_positions(self, m: Mechanism, g: StructuralGroup) -> None:
+        """Raises :class:`CannotBuild` where the rocker's pivot lies inside the crank circle."""
+        c, q = m.crank, g.outer[1]
+        if c.pin not in g.outer or q not in m.fixed or (lack := _inside(m, q)) < 0:
+            return
+        raise CannotBuild(
+            f"pivot {q} of rocker {g.links[1]} lies {mm(lack)} inside the crank circle: "
+            f"{c.pivot}{q} = {mm(c.length - lack)}, {c.pivot}{c.pin} = {mm(c.length)}; the rocker has no dead positions",
+            f"make {c.pivot}{q} longer than the crank, or give the crank angle of position 0 instead of start = \"dead\"")
+
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), (p, q) = g.links, g.outer
         foot = pos.feet.get(j)
@@ -170,6 +190,11 @@ class RPRKind(GroupKind):
 
     def rocker(self, g: StructuralGroup) -> str | None:
         return g.links[1]
+
+
+def _inside(m: Mechanism, pivot: str) -> float:
+    """How far a fixed pivot lies inside the crank circle, m; negative outside."""
+    return m.crank.length - abs(m.fixed[pivot] - m.fixed[m.crank.pivot])
 
 
 RPR = RPRKind()

@@ -11,8 +11,9 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, direction
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, height, measured, on_crank
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, fold_and_stretch, height, measured, near_point, on_crank
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
@@ -115,6 +116,17 @@ class RRPKind(GroupKind):
             below, above = Cosine(length + e0, l1, start + PI / 2), Cosine(length - e0, l1, start - PI / 2)
         half, _ = measured(g, phi, lambda phi: np.sqrt(below(phi) * above(phi)))
         return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
+
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[complex, complex] | None:
+        """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the guide."""
+        guide, rod = m.guides[g.guides[0]], g.lengths[0]
+        if guide.link != m.frame:
+            return None
+        through = plan.add(plan.free(f"{guide.name}₀"), rules.GIVEN, near_point(m, guide))
+        along = plan.add(plan.free(guide.name), rules.GIVEN_DIRECTION, ar.unit(guide.direction))
+        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_LINE, centre, abs(rod + sign * m.crank.length), through, along, g.side)
+                     for prime, sign in (("′", 1), ("″", -1)))
+        return fold_and_stretch(m, rod, centre, (far, near))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), c = g.links, str(g.inner)

@@ -9,8 +9,9 @@ import numpy as np
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.limit_angles import DIGITS
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
+from tmm_sheets.mechanism.groups.dead_centres import Crossing, fold_and_stretch, measured, span_from_crank
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, span
@@ -116,6 +117,18 @@ class RRRKind(GroupKind):
         half, distance = measured(g, phi, lambda phi: np.sqrt(outer(phi) * inner(phi) / none(phi)) / 2,
                                   lambda phi: np.sqrt(-none(phi)))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
+
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[complex, complex] | None:
+        """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the arc of the rocker."""
+        c, q = m.crank, g.outer[1]
+        # About the crank's own pivot rod and rocker turn with it.
+        if g.outer[0] != c.pin or q not in m.fixed or m.fixed[q] == m.fixed[c.pivot]:
+            return None
+        pivot = plan.add(q, rules.GIVEN, m.fixed[q])
+        rod, rocker = g.lengths
+        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_ARC, centre, abs(rod + sign * c.length), pivot, rocker, g.side)
+                     for prime, sign in (("′", 1), ("″", -1)))
+        return fold_and_stretch(m, rod, centre, (far, near))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         return [Outline(link, (end, str(g.inner))) for link, end in zip(g.links, g.outer, strict=True)]
