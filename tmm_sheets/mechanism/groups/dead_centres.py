@@ -114,7 +114,7 @@ def near_point(m: Mechanism, guide: Guide) -> complex:
 
 
 def fold_and_stretch(m: Mechanism, rod: float, centre: Step, ends: tuple[Step, Step]) -> tuple[complex, complex] | None:
-    """Crank vectors, m, with crank and rod in line; ``ends`` are where the rod ends then, rod + crank and |rod - crank| from the pivot.
+    """Crank vectors, m, with crank and rod in line; ``ends`` are where the rod ends, rod + crank and |rod - crank| from the pivot.
 
     None where the rod's end cannot come there, or comes to the pivot itself.
     """

@@ -58,6 +58,14 @@ class GroupKind(ABC):
     def limits(self, m: Any, g: Any) -> list[Any]:
         """Conditions of assembly (:class:`tmm_sheets.mechanism.groups.limits.AssemblyLimit`)."""
 
+    @abstractmethod
+    def condition(self, pos: Any, g: Any, size: Any) -> Any:
+        """By how much errors of what comes before the group may grow in it, shape (n,), one position each.
+
+        It is 1 over the sine of the angle under which the group's lines cross, times ``size`` of the mechanism, m, over the
+        shortest length that they are measured on.
+        """
+
     def crossing(self, m: Any, g: Any, phi: Any) -> Any:
         """What crank angles ``phi`` (rad) know of the crossing of a group between crank and frame; None without such a form.
 

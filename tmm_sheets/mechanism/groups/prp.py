@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
@@ -81,6 +81,10 @@ class PRPKind(GroupKind):
         return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.guide_directions[a].value, pos.guide_directions[b].value) - TOUCH,
                               lambda lack: f"the guides {a} and {b} are parallel there",
                               lambda pos: "turn one of the guides so that they cross at every position", measured=False)]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        a, b = (pos.guide_directions[name].value for name in g.guides)
+        return 1 / sine(a, b)
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         return [Outline(link, block=str(g.inner), along=pos.guide_directions[name]) for link, name in self.sliders(g)]

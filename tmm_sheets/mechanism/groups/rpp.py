@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
@@ -133,6 +133,9 @@ class RPPKind(GroupKind):
         return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
                               lambda lack: f"the slot of link {j} is parallel to its guide {g.guides[0]}",
                               lambda pos: 'try slot = "90 deg"', measured=False)]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        return 1 / sine(pos.guide_directions[g.guides[0]].value, pos.directions[g.links[0]].value)
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), slot = g.links, pos.directions[g.links[0]]

@@ -141,6 +141,10 @@ class RPRKind(GroupKind):
                               lambda lack: f"{p} comes {lacking(lack)} too near to {q} for the offset of {mm(offset)}",
                               lambda pos: f"try an offset below {less(extremes(span(pos, p, q))[0])}")]
 
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        r = pos.points[g.outer[0]].value - pos.points[g.outer[1]].value
+        return size / np.abs(r) / np.abs(ar.dot(pos.directions[g.links[1]].value, r) / np.abs(r))
+
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """With an offset e the tangent's length sqrt(d^2 - e^2)."""
         with localcontext(prec=DIGITS):

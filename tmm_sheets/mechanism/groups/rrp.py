@@ -104,6 +104,10 @@ class RRPKind(GroupKind):
                               lambda lack: f"rod {rod} = {mm(length)} is {lacking(lack)} too short to reach the guide {guide}",
                               lambda pos: f"try {rod} >= {more(extremes(away(pos))[1])}")]
 
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        rod = pos.points[str(g.inner)].value - pos.points[g.outer[0]].value
+        return size / g.lengths[0] / np.abs(ar.dot(pos.guide_directions[g.guides[0]].value, rod) / np.abs(rod))
+
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
         with localcontext(prec=DIGITS):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.plan import Plan
@@ -14,7 +15,7 @@ from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.dead_centres import Crossing, fold_and_stretch, measured, span_from_crank
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
-from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, span
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, sine, span
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, turning
 
 if TYPE_CHECKING:
@@ -105,6 +106,10 @@ class RRRKind(GroupKind):
             AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - (a - b),
                           lambda lack: f"{long} = {mm(a)} is {lacking(lack)} too long beside {short} = {mm(b)}", hint),
         ]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        (p, q), c = (pos.points[name].value for name in g.outer), pos.points[str(g.inner)].value
+        return size / min(g.lengths) * size / np.abs(p - q) / sine(ar.ray(p, c), ar.ray(q, c))
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
