@@ -15,8 +15,8 @@ METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.i
 
 RULES = {
     # room: (what it imports at run time, what else it names in annotations)
-    "mechanism": ("", "mechanism.groups.kind"),
-    "mechanism.groups": ("construction mechanism", "methods.linkage"),
+    "mechanism": ("", "construction mechanism.groups"),
+    "mechanism.groups": ("construction mechanism", ""),
     "mechanism.structure": ("mechanism", ""),
     "construction": ("", ""),
     "drawing": ("", ""),

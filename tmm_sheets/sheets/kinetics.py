@@ -22,8 +22,9 @@ from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, 
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
+    from tmm_sheets.mechanism.groups.force_plan import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
-    from tmm_sheets.methods.linkage.forces import ForcePlan, GearForce, Kinetostatics
+    from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 

@@ -9,7 +9,6 @@ such a form.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from typing import Any
 
@@ -30,22 +29,6 @@ def measured(g: StructuralGroup, phi: Any, half: Length, distance: Length | None
     """Half-chord of a group's crossing and distance of its centres as steps, of their functions of the crank angle."""
     h = Step(f"h {g.name}", OF_ANGLE, (half, phi))
     return h, None if distance is None else Step(f"d {g.name}", OF_ANGLE, (distance, phi))
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """What the crank angle knows of the crossing of a group, as steps: half of the chord (or the tangent's length), the distance
-    of the centres (none for a line), the sine between the group's lines in the plans of velocities.
-    """
-
-    half: Step
-    distance: Step | None
-    sine: Step
-
-    @property
-    def lengths(self) -> tuple[Step, ...]:
-        """Further arguments of the rule that makes the crossing."""
-        return (self.half,) if self.distance is None else (self.half, self.distance)
 
 
 def on_crank(m: Mechanism, point: str) -> tuple[Decimal, Decimal] | None:

@@ -1,10 +1,26 @@
-"""What a drawing asks a kind of group for: outlines of its links, reactions from outside; names and steps, no ink."""
+"""What a kind of group tells of one: how the crank angle knows its crossing, outlines of its links, reactions from outside."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from tmm_sheets.construction.step import Step
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """What the crank angle knows of the crossing of a group, as steps: half of the chord (or the tangent's length), the distance
+    of the centres (none for a line), the sine between the group's lines in the plans of velocities.
+    """
+
+    half: Step
+    distance: Step | None
+    sine: Step
+
+    @property
+    def lengths(self) -> tuple[Step, ...]:
+        """Further arguments of the rule that makes the crossing."""
+        return (self.half,) if self.distance is None else (self.half, self.distance)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.mechanism.model import StructuralGroup
+from tmm_sheets.mechanism.groups.contexts import PositionPlan
 
 SWEEP = 720
 """Crank angles of the fine sweep; between them the narrowest places are searched for."""
@@ -27,11 +27,10 @@ class AssemblyLimit:
     place is named when it is ``measured``; ``hint`` words what would help, from the positions of the whole turn.
     """
 
-    group: StructuralGroup
     unit: float
-    margin: Callable[[Any], Any]
+    margin: Callable[[PositionPlan[Any, Any]], Any]
     say: Callable[[float], str]
-    hint: Callable[[Any], str]
+    hint: Callable[[PositionPlan[Any, Any]], str]
     measured: bool = True
 
 
@@ -62,7 +61,7 @@ def _rounded(length: float, to: Callable[[float], int]) -> str:
     return f"{to(length * 1000 / unit) * unit:.6g} mm"
 
 
-def span(pos: Any, p: str, q: str) -> Any:
+def span(pos: PositionPlan[Any, Any], p: str, q: str) -> Any:
     """Distance of two points of the position plan, m."""
     return np.abs(pos.points[q].value - pos.points[p].value)
 

@@ -14,17 +14,13 @@ from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
-from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
-from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.dead_centres import measured, span_from_crank
+from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
-    from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 ALONG_TANGENT = Rule(
     "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
@@ -134,10 +130,10 @@ class RPRKind(GroupKind):
         p, q = g.outer
         offset = abs(g.offset)
         if not offset:
-            return [AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - TOUCH * m.crank.length,
+            return [AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - TOUCH * m.crank.length,
                                   lambda lack: f"{p} passes through {q}, so that the guide {q}{p} has no direction",
                                   lambda pos: f"move {q} off the path of {p}", measured=False)]
-        return [AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - offset - TOUCH * m.crank.length,
+        return [AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - offset - TOUCH * m.crank.length,
                               lambda lack: f"{p} comes {lacking(lack)} too near to {q} for the offset of {mm(offset)}",
                               lambda pos: f"try an offset below {less(extremes(span(pos, p, q))[0])}")]
 

@@ -13,17 +13,13 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, direction
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, fold_and_stretch, height, measured, near_point, on_crank
-from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
-from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.dead_centres import fold_and_stretch, height, measured, near_point, on_crank
+from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
-    from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
             "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.")
@@ -100,7 +96,7 @@ class RRPKind(GroupKind):
         def away(pos: Positions) -> Any:
             return np.abs(ar.cross(pos.guide_directions[guide].value, pos.guide_points[guide].value - pos.points[p].value))
 
-        return [AssemblyLimit(g, m.crank.length, lambda pos: length - away(pos),
+        return [AssemblyLimit(m.crank.length, lambda pos: length - away(pos),
                               lambda lack: f"rod {rod} = {mm(length)} is {lacking(lack)} too short to reach the guide {guide}",
                               lambda pos: f"try {rod} >= {more(extremes(away(pos))[1])}")]
 

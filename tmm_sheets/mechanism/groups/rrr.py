@@ -12,17 +12,13 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, fold_and_stretch, measured, span_from_crank
-from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
-from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.dead_centres import fold_and_stretch, measured, span_from_crank
+from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, sine, span
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, turning
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, turning
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
-    from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
             "Синус угла между звеньями {name} = {value}.")
@@ -101,9 +97,9 @@ class RRRKind(GroupKind):
             return f"try {first} = {second} = {more(high / 2)} or longer"
 
         return [
-            AssemblyLimit(g, m.crank.length, lambda pos: l1 + l2 - span(pos, p, q),
+            AssemblyLimit(m.crank.length, lambda pos: l1 + l2 - span(pos, p, q),
                           lambda lack: f"{first} = {mm(l1)} and {second} = {mm(l2)} together are {lacking(lack)} too short", hint),
-            AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - (a - b),
+            AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - (a - b),
                           lambda lack: f"{long} = {mm(a)} is {lacking(lack)} too long beside {short} = {mm(b)}", hint),
         ]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -17,12 +17,11 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.numbers import size
-
-Role = Literal["weight", "inertia", "applied", "reaction"]
 
 WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force", "Вес {name} = m·g = {0}·{1} = {value}, вниз.")
 INERTIA = Rule("inertia force", lambda m, a: -m * a, ("number", "point"), "force",
@@ -33,8 +32,6 @@ GIVEN_MOMENT = Rule("given moment", lambda m: m, ("number",), "number", "Мом�
 GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {name} = {value}.")
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.")
 OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.")
-CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point"), "force",
-             "Замкнём план: {name} = |{0}–{1}|·μ_F = {value}.")
 ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), "length",
            "Плечо {name} = {value} из уравнения моментов.")
 
@@ -56,45 +53,6 @@ def _moments(about: Any, *terms: Any) -> Any:
 
 
 MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.")
-
-
-@dataclass(frozen=True)
-class Load:
-    """A force on a link: symbol in sheet markup, the link, its point, the vector, and a couple carried with it (N m)."""
-
-    symbol: str
-    link: str
-    at: Step
-    vector: Step
-    role: Role
-    couple: Step | None = None
-
-
-@dataclass
-class ForcePlan:
-    """Force plan of one link or of a whole group: polygon 1-2-...-1 of ``plan`` with its forces in order."""
-
-    name: str
-    links: tuple[str, ...]
-    plan: Plan
-    sides: list[tuple[str, Step, Step, bool]] = field(default_factory=list)
-
-    def side(self, symbol: str, tail: Step, head: Step, unknown: bool = False) -> None:
-        """Record a side of the polygon; ``unknown`` sides are found by closing it."""
-        self.sides.append((symbol, tail, head, unknown))
-        self.plan.vector(symbol, tail, head)
-
-    def chain(self, start: int, tail: Step, loads: Iterable[Load]) -> Step:
-        """Lay the loads off one after another; returns the end of the chain."""
-        for n, load in enumerate(loads, start + 1):
-            head = self.plan.add(str(n), rules.SHIFT, tail, load.vector)
-            self.side(load.symbol, tail, head)
-            tail = head
-        return tail
-
-    def between(self, name: str, tail: Step, head: Step) -> Step:
-        """The force that closes the polygon from ``tail`` to ``head``."""
-        return self.plan.add(name, CLOSE, tail, head)
 
 
 @dataclass

@@ -12,7 +12,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, near_point
+from tmm_sheets.mechanism.groups.dead_centres import near_point
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
 
@@ -50,7 +50,7 @@ class Positions:
 
     def crossing(self, group: StructuralGroup) -> tuple[Step, ...]:
         """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
-        found: Crossing | None = group.kind.crossing(self.mechanism, group, self.phi)
+        found = group.kind.crossing(self.mechanism, group, self.phi)
         if found is None:
             return ()
         self.sines[group.links[0]] = found.sine
