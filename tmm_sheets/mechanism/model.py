@@ -146,7 +146,7 @@ class GroupKind(ABC):
         """How both links look."""
 
     @abstractmethod
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
         """Reactions from outside, in order of the links."""
 
     def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:

@@ -102,10 +102,9 @@ class AccelerationPlan(MotionPlan[M, G], Protocol[M, G]):
 
 
 class ForcePlans(Protocol[M, G]):
-    """Loads of the links, N and N m, and the force plans made of them so far; ``F_jk`` acts on link j from link k."""
+    """Loads of the links, N and N m, and the force plans made of them; ``F_jk`` acts on link j from link k."""
 
     loads: dict[str, list[Load]]
-    plans: dict[str, ForcePlan]
 
     @property
     def positions(self) -> PositionPlan[M, G]:

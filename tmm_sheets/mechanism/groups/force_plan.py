@@ -18,7 +18,10 @@ CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point
 
 @dataclass(frozen=True)
 class Load:
-    """A force on a link: symbol in sheet markup, the link, its point, the vector, and a couple carried with it (N m)."""
+    """A force on a link: symbol in sheet markup, the link, its point, the vector (N), and a couple carried with it (N m).
+
+    ``source`` is the link a reaction comes from.
+    """
 
     symbol: str
     link: str
@@ -26,6 +29,18 @@ class Load:
     vector: Step
     role: Role
     couple: Step | None = None
+    source: str | None = None
+
+
+@dataclass(frozen=True)
+class TangentialPart:
+    """Part of the reaction on ``link`` from ``source`` in the hinge ``at``, N, that the moments about ``centre`` gave."""
+
+    link: str
+    source: str
+    at: str
+    centre: str
+    vector: Step
 
 
 @dataclass

@@ -43,12 +43,8 @@ class Outline:
 
 @dataclass(frozen=True)
 class OuterReaction:
-    """Reaction on a link from outside its group: in the hinge at ``point``, or from ``guide``, balancing moments about ``point``.
-
-    ``parts`` are the ends of its tangential part on the force plan, where the method splits it.
-    """
+    """Reaction on a link from outside its group: in the hinge ``point``, or from ``guide``, balancing moments about ``point``."""
 
     link: str
     point: str
     guide: str | None = None
-    parts: tuple[Step, Step] | None = None

@@ -85,7 +85,7 @@ class PRPKind(GroupKind):
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         return [Outline(link, block=str(g.inner), along=pos.guide_directions[name]) for link, name in self.sliders(g)]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
         return [OuterReaction(link, str(g.inner), name) for link, name in self.sliders(g)]
 
     def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:

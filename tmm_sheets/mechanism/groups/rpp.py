@@ -138,7 +138,7 @@ class RPPKind(GroupKind):
         return [Outline(i, block=g.outer[0], along=slot),
                 Outline(j, block=str(g.inner), along=pos.guide_directions[g.guides[0]], slot=slot)]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
         (i, j), p = g.links, g.outer[0]
         return [OuterReaction(i, p), OuterReaction(j, p, g.guides[0])]
 

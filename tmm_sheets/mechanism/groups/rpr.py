@@ -177,10 +177,9 @@ class RPRKind(GroupKind):
         rocker = Outline(j, (q, p), p) if foot is None else Outline(j, (q,), p, ((q, foot), (foot, p)))
         return [Outline(i, block=p, along=pos.directions[j]), rocker]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
         (i, j), (p, q) = g.links, g.outer
-        plan = forces.plans[i].plan
-        return [OuterReaction(i, p, parts=(plan["2"], plan["3"])), OuterReaction(j, q)]
+        return [OuterReaction(i, p), OuterReaction(j, q)]
 
     def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
         return g.links

@@ -132,9 +132,9 @@ class RRPKind(GroupKind):
         (i, j), c = g.links, str(g.inner)
         return [Outline(i, (g.outer[0], c)), Outline(j, block=c, along=pos.guide_directions[g.guides[0]], slotted=True)]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
-        plan, (i, j) = forces.plans[g.name].plan, g.links
-        return [OuterReaction(i, g.outer[0], parts=(plan["2"], plan["3"])), OuterReaction(j, str(g.inner), g.guides[0])]
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
+        i, j = g.links
+        return [OuterReaction(i, g.outer[0]), OuterReaction(j, str(g.inner), g.guides[0])]
 
     def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
         return ((g.links[1], g.guides[0]),)

@@ -134,11 +134,8 @@ class RRRKind(GroupKind):
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         return [Outline(link, (end, str(g.inner))) for link, end in zip(g.links, g.outer, strict=True)]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
-        plan, (i, j), (p, q) = forces.plans[g.name].plan, g.links, g.outer
-        last = max(int(n) for n in plan.steps if n.isdigit())
-        return [OuterReaction(i, p, parts=(plan["2"], plan["3"])),
-                OuterReaction(j, q, parts=(plan[str(last - 1)], plan[str(last)]))]
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
+        return [OuterReaction(link, hinge) for link, hinge in zip(g.links, g.outer, strict=True)]
 
 
 RRR = RRRKind()

@@ -17,7 +17,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role
+from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role, TangentialPart
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
@@ -61,7 +61,7 @@ class Kinetostatics:
 
     ``loads`` are all forces on each link, reactions included, as they were used; ``reactions`` by name ("F54", "F11,10");
     ``couples`` and ``arms`` of sliding pairs by name ("h50"); ``link_couples`` are inertia couples and applied
-    moments of each link.
+    moments of each link; ``from_moments`` are the parts of reactions that moment equations gave, in the order they were found.
     """
 
     positions: Positions
@@ -73,6 +73,7 @@ class Kinetostatics:
     couples: dict[str, Step] = field(default_factory=dict)
     arms: dict[str, Step] = field(default_factory=dict)
     plans: dict[str, ForcePlan] = field(default_factory=dict)
+    from_moments: list[TangentialPart] = field(default_factory=list)
     balancing: Step | None = None
 
     @property
@@ -80,10 +81,9 @@ class Kinetostatics:
         """Weights, inertia forces and applied forces of all links, without reactions."""
         return [load for loads in self.loads.values() for load in loads if load.role != "reaction"]
 
-    @property
-    def from_moments(self) -> list[Step]:
-        """Parts of outer reactions that the moment equations gave, across their links, in the order they were found."""
-        return [step for step in self.plan if step.rule is TANGENTIAL]
+    def tangential_part(self, link: str, at: str) -> Step | None:
+        """Part of the reaction on a link in a hinge that a moment equation gave, N; None where the reaction is not split."""
+        return next((part.vector for part in self.from_moments if (part.link, part.at) == (link, at)), None)
 
     def force_size(self, k: int) -> float:
         """Size of the forces at position ``k``, N: beside it a force is something or nothing."""
@@ -115,7 +115,7 @@ class Kinetostatics:
     @staticmethod
     def contact(j: str, k: str, at: Step, vector: Step, couple: Step | None = None) -> Load:
         """Reaction on link ``j`` from link ``k`` as a load."""
-        return Load(symbol(f"F{pair_index(j, k)}"), j, at, vector, "reaction", couple)
+        return Load(symbol(f"F{pair_index(j, k)}"), j, at, vector, "reaction", couple, k)
 
     @staticmethod
     def order(loads: list[Load], first: Role) -> list[Load]:
@@ -137,7 +137,9 @@ class Kinetostatics:
     def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
         """Part of F_jk at a point across its line to the centre of the moments, from their sum."""
         z = self.positions.points
-        return self.plan.add(f"F{pair_index(j, k)}τ", TANGENTIAL, total, z[centre], z[at])
+        step = self.plan.add(f"F{pair_index(j, k)}τ", TANGENTIAL, total, z[centre], z[at])
+        self.from_moments.append(TangentialPart(j, k, at, centre, step))
+        return step
 
     def plan_of(self, name: str, links: tuple[str, ...]) -> ForcePlan:
         """New force plan of a link or of a whole group."""
@@ -196,27 +198,27 @@ class Kinetostatics:
             pending.append((sign, tail, head))
             tail = head
 
-        one, two = (f"F{pair_index(link, carrier)}" for link, carrier in zip(g.links, carriers, strict=True))
+        one, two = (pair_index(link, carrier) for link, carrier in zip(g.links, carriers, strict=True))
         if first is not None:
-            lay(f"F̅_{{{one[1:]}}}^τ", first)
+            lay(f"F̅_{{{one}}}^τ", first)
         after_first = tail
         for link in (i, j):
             for load in self.order(self.loads[link], "weight"):
                 lay(load.symbol, load.vector)
         before_last = tail
         if last is not None:
-            lay(f"F̅_{{{two[1:]}}}^τ", last)
+            lay(f"F̅_{{{two}}}^τ", last)
         closing = fp.plan.add("1", rules.LINE_LINE, start, u, tail, v, *sine)
-        fp.side(f"F̅_{{{one[1:]}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
+        fp.side(f"F̅_{{{one}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
         for sign, a, b in pending:
             fp.side(sign, a, b)
-        fp.side(f"F̅_{{{two[1:]}}}" + ("^n" if last is not None else ""), tail, closing, unknown=True)
-        f_one = self.reaction(i, carriers[0], fp.between(one, closing, after_first))
-        f_two = self.reaction(j, carriers[1], fp.between(two, before_last, closing))
+        fp.side(f"F̅_{{{two}}}" + ("^n" if last is not None else ""), tail, closing, unknown=True)
+        f_one = self.reaction(i, carriers[0], fp.between(f"F{one}", closing, after_first))
+        f_two = self.reaction(j, carriers[1], fp.between(f"F{two}", before_last, closing))
         if first is not None:
-            fp.plan.vector(symbol(one), closing, after_first)
+            fp.plan.vector(symbol(f"F{one}"), closing, after_first)
         if last is not None:
-            fp.plan.vector(symbol(two), before_last, closing)
+            fp.plan.vector(symbol(f"F{two}"), before_last, closing)
         # The inner reaction closes the forces of the first link: the same drawing, one more line.
         split = pending[(first is not None) + len(self.loads[i]) - 1][2] if len(self.loads[i]) + (first is not None) else start
         name = f"F{pair_index(i, j)}"
