@@ -138,7 +138,13 @@ class GroupKind(ABC):
         return None
 
     def check_dead_positions(self, m: Mechanism, g: StructuralGroup) -> None:
-        """Raises :class:`CannotBuild` where the group is on the crank pin and surely has no dead positions."""
+        """A cycle that begins at a dead position needs a group on the crank pin that has some.
+
+        Raises
+        ------
+        CannotBuild
+            when the group surely has none.
+        """
         return None
 
     @abstractmethod
@@ -251,7 +257,13 @@ class Mechanism:
         return tuple(pairs)
 
     def owner(self, point: str) -> str:
-        """Link on which a point is fixed; the frame for fixed points, the first to carry it for hinges, the slider for its pin."""
+        """Link on which a point is fixed; the frame for fixed points, the first to carry it for hinges, the slider for its pin.
+
+        Raises
+        ------
+        KeyError
+            when no link has a point of this name.
+        """
         if point in self.fixed:
             return self.frame
         if point == self.crank.pin:

@@ -161,7 +161,13 @@ class RPRKind(GroupKind):
         return complex(a.value - centre.value), complex(b.value - centre.value)
 
     def check_dead_positions(self, m: Mechanism, g: StructuralGroup) -> None:
-        """Raises :class:`CannotBuild` where the rocker's pivot lies inside the crank circle."""
+        """A cycle that begins at a dead position needs a rocker that swings.
+
+        Raises
+        ------
+        CannotBuild
+            when the rocker's pivot lies inside the crank circle.
+        """
         c, q = m.crank, g.outer[1]
         if c.pin not in g.outer or q not in m.fixed or (lack := _inside(m, q)) < 0:
             return

@@ -318,7 +318,13 @@ class RollerCam(Cam):
 
     @cached_property
     def roller(self) -> float:
-        """Radius of the roller, m: the given one, or by both rules, rounded down to 0.5 mm."""
+        """Radius of the roller, m: the given one, or by both rules, rounded down to 0.5 mm.
+
+        Raises
+        ------
+        CannotBuild
+            when the given one is too large for the profile.
+        """
         given = self.data.roller
         if given is None:
             # Where another part of the profile is in the way, it limits the roller as a radius of curvature does.

@@ -148,7 +148,13 @@ Pair = TypeVar("Pair", bound=PairGeometry)
 
 
 def pair_geometry(data: MeshingPair, kind: type[Pair]) -> Pair:
-    """Geometry of the pair as an instance of ``kind``; raises :class:`CannotBuild` with all that forbids it."""
+    """Geometry of the pair as an instance of ``kind``.
+
+    Raises
+    ------
+    CannotBuild
+        with everything that forbids it.
+    """
     m, alpha, ha, c = data.module, data.pressure_angle, data.addendum, data.clearance
     z1, z2 = data.teeth
     x1, x2 = data.shift

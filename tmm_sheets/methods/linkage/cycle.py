@@ -74,7 +74,13 @@ class Cycle:
         return self.start + self.sense * np.asarray(turned)
 
     def index(self, label: str) -> int:
-        """Number of the position with this label."""
+        """Number of the position with this label.
+
+        Raises
+        ------
+        CannotBuild
+            when no position has it.
+        """
         try:
             return self.labels.index(label)
         except ValueError:

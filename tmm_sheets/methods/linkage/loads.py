@@ -109,7 +109,10 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
                     first: float = 0.0) -> OutputMotion:
     """Strokes of a point that moves to and fro; working strokes go along the unit vector ``sense``.
 
-    Raises :class:`CannotBuild` when the mechanism does not assemble all the way round or the point does not move that way.
+    Raises
+    ------
+    CannotBuild
+        when the mechanism does not assemble all the way round or the point does not move that way.
     """
 
     def along(turned: Floats) -> Any:
@@ -131,7 +134,13 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
 
 
 def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: float = 0.0) -> OutputMotion:
-    """Strokes of a link that swings, or of a link that turns all the way round, which may go back for a while as well."""
+    """Strokes of a link that swings, or of a link that turns all the way round, which may go back for a while as well.
+
+    Raises
+    ------
+    CannotBuild
+        when the mechanism does not assemble all the way round or the link does not turn.
+    """
 
     def speed(turned: Floats) -> Any:
         w = velocity_plan(position_plan(m, cycle.world(turned))).omega[link].value

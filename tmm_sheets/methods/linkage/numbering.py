@@ -29,6 +29,11 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
 
     With ``coefficient`` K the working stroke is laid off as 180 (1 + (K-1)/(K+1)) degrees, symmetric between the dead
     positions, as the manual does with rounded lengths; without it the exact dead positions are divided.
+
+    Raises
+    ------
+    CannotBuild
+        when the mechanism does not assemble all the way round, or the output never turns back, or not along its working sense.
     """
     check_dead_positions(m)
     plan, first, runs = _dead_of(m, output, SENSES[working_sense])
@@ -53,6 +58,11 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
 
     ``zero`` is the label of the position at the beginning (manual 003 calls it 12: a second turn then begins with 24),
     ``extra`` further positions by label and angle turned (rad), sorted in among the others.
+
+    Raises
+    ------
+    CannotBuild
+        when a further position has the label of another one.
     """
     count = positions * turns
     late = positions if zero == str(positions) else 0

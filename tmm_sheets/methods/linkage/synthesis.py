@@ -71,7 +71,13 @@ class Synthesis:
 
     @cached_property
     def lengths(self) -> dict[str, float]:
-        """Lengths as they are used, m: given ones as they are, found ones rounded."""
+        """Lengths as they are used, m: given ones as they are, found ones rounded.
+
+        Raises
+        ------
+        CannotBuild
+            when no length follows from the conditions, or one is rounded to nothing.
+        """
         found = {}
         for name, exact in self.exact.items():
             found[name] = float(self.plan[f"{name}′"].value) if f"{name}′" in self.plan else exact

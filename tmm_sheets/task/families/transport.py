@@ -147,7 +147,13 @@ def read(name: str, corrected: bool = False) -> Variant:
 
 
 def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ...]]:
-    """Text of the project file of a machine and a cipher, and what is doubtful in it."""
+    """Text of the project file of a machine and a cipher, and what is doubtful in it.
+
+    Raises
+    ------
+    BadInput
+        when the machine is unknown or there is no cipher.
+    """
     machine, at, code = name.removeprefix("transport/").partition("@")
     if machine not in MACHINES:
         near = get_close_matches(machine, MACHINES, n=1)
@@ -367,7 +373,13 @@ ASSEMBLED: dict[str, Callable[[Any, Mapping[str, float]], TurnOfMachine]] = {
 
 
 def refuse(machine: str, values: Mapping[str, Value]) -> None:
-    """Raise :class:`CannotBuild` naming the condition that fails, by how much, and where first in the sense of rotation."""
+    """Refuse dimensions that fail a condition.
+
+    Raises
+    ------
+    CannotBuild
+        naming the condition, by how much it fails, and where first in the sense of rotation.
+    """
     condition = turn(machine, _numbers(values)).failure
     if condition is None:
         return
