@@ -120,14 +120,14 @@ class GroupKind(ABC):
 
     @abstractmethod
     def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
-        """By how much errors of what comes before the group may grow in it, shape (n,), one position each.
+        """By how much errors of what comes before the group may grow in it, shape (n,), one number a position.
 
         It is 1 over the sine of the angle under which the group's lines cross, times ``size`` of the mechanism, m, over the
         shortest length that they are measured on.
         """
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
-        """What crank angles ``phi`` (rad) know of the crossing of a group between crank and frame; None without such a form."""
+        """Crossing of a group between crank and frame from the crank angles ``phi``, rad, shape (n,); None without such a form."""
         return None
 
     def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[complex, complex] | None:
@@ -219,7 +219,7 @@ class LinkPoint:
 
 @dataclass(frozen=True)
 class Crank:
-    """The initial link; ``sense`` is +1 for counter-clockwise, ``speed`` rad/s and ``acceleration`` rad/s2 unsigned sense."""
+    """The initial link; ``sense`` is +1 counter-clockwise, ``speed`` (rad/s) and ``acceleration`` (rad/s2) count that way."""
 
     link: str
     pivot: str

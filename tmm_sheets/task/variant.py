@@ -107,7 +107,7 @@ class Variant(Table):
         return tuple(name for name in self.project.sheets if name not in _SECTIONS or getattr(self, name) is not None)
 
     def drawable(self) -> tuple[str, ...]:
-        """The same; CannotBuild when there are none.
+        """The same where at least one sheet is needed.
 
         Raises
         ------

@@ -26,13 +26,13 @@ OF_ANGLE = Rule("length from the crank angle", lambda f, phi: f(phi), (), "lengt
 
 
 def measured(g: StructuralGroup, phi: Any, half: Length, distance: Length | None = None) -> tuple[Step, Step | None]:
-    """Half-chord of a group's crossing and distance of its centres as steps, of their functions of the crank angle."""
+    """Half-chord of a group's crossing and distance of its centres, m, as steps at crank angles ``phi``, rad, shape (n,)."""
     h = Step(f"h {g.name}", OF_ANGLE, (half, phi))
     return h, None if distance is None else Step(f"d {g.name}", OF_ANGLE, (distance, phi))
 
 
 def on_crank(m: Mechanism, point: str) -> tuple[Decimal, Decimal] | None:
-    """Radius of a point on the crank and its angle ahead of the crank; None when it is elsewhere."""
+    """Radius of a point on the crank, m, and its angle ahead of the crank, rad; None when the point is elsewhere."""
     c = m.crank
     if point == c.pin:
         return Decimal(c.length), Decimal(0)
@@ -43,7 +43,7 @@ def on_crank(m: Mechanism, point: str) -> tuple[Decimal, Decimal] | None:
 
 
 def span_from_crank(m: Mechanism, g: StructuralGroup) -> Callable[[Decimal], Cosine] | None:
-    """Square of a length less the square of the distance between the group's outer hinges, one of them on the crank, one fixed.
+    """Square of a length less that of the distance of the group's outer hinges, one of them on the crank, one fixed; m2.
 
     d^2 = l0^2 + l1^2 - 2 l0 l1 cos(phi - phi0).
     """
@@ -64,7 +64,7 @@ def span_from_crank(m: Mechanism, g: StructuralGroup) -> Callable[[Decimal], Cos
 
 
 def height(at: complex, guide: Guide) -> tuple[Decimal, Decimal, Decimal]:
-    """Distance of a point from a fixed guide, positive on its left, and the guide's direction."""
+    """Distance of a point from a fixed guide, m, positive on its left, and cosine and sine of the guide's direction."""
     assert not isinstance(guide.through, str)
     _, cos, sin = direction(guide.direction)
     x, y = Decimal(at.real) - Decimal(guide.through.real), Decimal(at.imag) - Decimal(guide.through.imag)
@@ -72,7 +72,7 @@ def height(at: complex, guide: Guide) -> tuple[Decimal, Decimal, Decimal]:
 
 
 def foot_on_guide(at: complex, guide: Guide) -> complex:
-    """Foot of the perpendicular from a point on a fixed guide: the nearest double to it, however far away the guide's own point."""
+    """Foot of the perpendicular from a point on a fixed guide: the double nearest to it, however far the guide's own point."""
     with localcontext(prec=DIGITS):
         above, cos, sin = height(at, guide)
         return complex(float(Decimal(at.real) + above * sin), float(Decimal(at.imag) - above * cos))

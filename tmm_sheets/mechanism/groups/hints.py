@@ -27,8 +27,8 @@ class Crossing:
 class Outline:
     """A link as a bar through points, or as a block at a point along a direction.
 
-    ``aim`` is a point the bar's line passes besides, ``arms`` are further lines by the names of their ends; ``slot`` is the
-    direction of the slot in a ram, ``slotted`` says that a block may carry the slot of another group's stone.
+    ``aim`` is a further point that the bar's line passes through, ``arms`` are further lines by the names of their ends;
+    ``slot`` is the direction of the slot in a ram, ``slotted`` says that a block may carry the slot of another group's stone.
     """
 
     link: str

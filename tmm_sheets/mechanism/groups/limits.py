@@ -35,22 +35,22 @@ class AssemblyLimit:
 
 
 def mm(length: float) -> str:
-    """A length in words."""
+    """A length, m, in words."""
     return f"{length * 1000:.4g} mm"
 
 
 def lacking(length: float) -> str:
-    """A lack in words."""
+    """A lack, m, in words."""
     return mm(length) if length >= 1e-6 else "less than 0.001 mm"
 
 
 def more(length: float) -> str:
-    """A length to four significant digits that is surely greater."""
+    """A length to four significant digits, surely greater than the given one, m."""
     return _rounded(length * (1 + 1e-6), ceil)
 
 
 def less(length: float) -> str:
-    """A length to four significant digits that is surely less."""
+    """A length to four significant digits, surely less than the given one, m."""
     return _rounded(length * (1 - 1e-6), floor)
 
 
@@ -62,12 +62,15 @@ def _rounded(length: float, to: Callable[[float], int]) -> str:
 
 
 def span(pos: PositionPlan[Any, Any], p: str, q: str) -> Any:
-    """Distance of two points of the position plan, m."""
+    """Distance of two points of the position plan, m, shape (n,)."""
     return np.abs(pos.points[q].value - pos.points[p].value)
 
 
 def extremes(lengths: Any) -> tuple[float, float]:
-    """Least and greatest length over the turn; between the angles of the sweep by parabolas of the smooth squares."""
+    """Least and greatest of ``lengths`` over the turn, m: a number, or shape (n,) that ends with the sweep.
+
+    Between the angles of the sweep their squares, which are smooth, are taken as parabolas.
+    """
     y = np.broadcast_to(lengths, max(np.size(lengths), SWEEP))[-SWEEP:] ** 2
     before, after = np.roll(y, 1), np.roll(y, -1)
     bend = before - 2 * y + after
@@ -78,5 +81,5 @@ def extremes(lengths: Any) -> tuple[float, float]:
 
 
 def sine(u: Any, v: Any) -> Any:
-    """Magnitude of the sine of the angle between two directions."""
+    """Magnitude of the sine of the angle between two unit directions, shape (n,)."""
     return np.abs(ar.cross(u, v))

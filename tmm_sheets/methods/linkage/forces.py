@@ -257,7 +257,9 @@ def contact_point(pos: Positions, driver: GearForce) -> Step:
 def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: Iterable[tuple[str, str, str, Any]],
                    moments: Iterable[tuple[str, str, Any]] = (), carried: float | None = None) -> tuple[
                        dict[str, list[Load]], dict[str, list[Step]], Plan]:
-    """Weights, inertia forces and couples of every link, applied forces (name, link, point, vectors) and moments.
+    """Weights and inertia forces of every link, N, its couples, N m, and the plan of both.
+
+    ``applied`` are forces (name, link, point, vectors N, shape (n,)), ``moments`` (name, link, N m, shape (n,)), ``gravity`` m/s2.
 
     ``carried`` is the moment of inertia of all that turns with the crank, kg m2, where it is more than the crank's own.
     """

@@ -62,7 +62,7 @@ class Lever:
 
 
 def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]], driver: GearForce | None) -> Lever:
-    """Record the lever from the velocity plan, the external and inertia forces and the couples."""
+    """Record the lever from the velocity plan, the external and inertia forces, N, and the couples of each link, N m."""
     pos = vel.positions
     m = pos.mechanism
     c = m.crank

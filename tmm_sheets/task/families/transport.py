@@ -285,14 +285,14 @@ class Condition:
 
 @dataclass(frozen=True)
 class TurnOfMachine:
-    """Points of a machine over one turn from position 12 on (m, world frame) and its conditions in order of attachment."""
+    """Points of a machine over one turn from position 12 on (m, world frame, shape (SWEEP,)), conditions in order of attachment."""
 
     points: dict[str, Any]
     conditions: tuple[Condition, ...]
 
     @property
     def failure(self) -> Condition | None:
-        """The first condition that fails; what is attached behind it cannot be judged."""
+        """The first condition that fails; those of the links attached after it cannot be judged."""
         return next((c for c in self.conditions if c.fails), None)
 
 
