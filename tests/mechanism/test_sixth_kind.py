@@ -24,6 +24,7 @@ from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 from tmm_sheets.sheets import linkage
+from tmm_sheets.stress.invariants import State
 
 REACH, AHEAD = 0.12, 0.7
 ROD, ROCKER, FRAME, SECOND, AT = 0.28, 0.24, 0.3, 0.35, 0.2
@@ -165,6 +166,17 @@ def test_dead_positions_are_the_kinds_own():
     plan, dead = dead_positions(replace(m, groups=(replace(m.groups[0], kind=Balanced()), *m.groups[1:])))
     assert dead == pytest.approx((0.1j, -0.1))
     assert "E′" in plan
+
+
+def test_growth_of_errors_is_the_kinds_own():
+    """1/sine under which the links cross, times size over length, of both groups: from the closed form."""
+    state = State(machine(), PHI)
+    for k, phi in enumerate(PHI):
+        z = {name: complex(value) for name, value in closed(phi).items() if name.isalpha()}
+        corner = np.sin(np.angle((z["B"] - z["C"]) / (FRAME - z["C"])))
+        first = state.size[k] ** 2 / ROCKER / abs(FRAME - z["B"]) / abs(corner)
+        second = state.size[k] / SECOND / abs((z["F"] - z["E"]).imag / SECOND)
+        assert state.condition[k] == pytest.approx(max(first, 1) * max(second, 1), rel=1e-9)
 
 
 def test_structure():
