@@ -23,7 +23,13 @@ from tmm_sheets.task.variant import Variant
 
 
 def mechanism_of(variant: Variant) -> Mechanism:
-    """Links, pairs and groups of a project file; :class:`CannotBuild` when the file has no mechanism."""
+    """Links, pairs and groups of a project file; lengths in m, angles in rad, masses in kg.
+
+    Raises
+    ------
+    CannotBuild
+        when the file has no mechanism.
+    """
     c = variant.crank
     if c is None:
         raise CannotBuild("the project has no mechanism", "add [crank], [points] and [[group]] to the project file")
@@ -52,7 +58,13 @@ SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
 def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Applied, ...]:
-    """Technological forces and moments of a project file."""
+    """Technological forces, N, and moments, N m, of a project file.
+
+    Raises
+    ------
+    CannotBuild
+        when the sense of the working strokes is not told or unknown, or a diagram over the angle has no fixed direction.
+    """
     return (*(_force(variant, f, mechanism, cycle) for f in variant.force),
             *(_moment(m, mechanism, cycle) for m in variant.moment))
 

@@ -1,4 +1,4 @@
-"""Half-chords of the crossings that a group on the crank makes, exact up to its dead positions.
+"""Dead positions of a group on the crank, and half-chords of the crossings it makes, exact up to them.
 
 The half-chord of two arcs, or of an arc and a line, vanishes in a dead position, and so does a tangent. Taken from the rounded
 crank pin it loses as many digits as the gap is small; taken from the crank angle it loses none, and the sine of the angle under
@@ -9,10 +9,12 @@ such a form.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from typing import Any
 
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.limit_angles import DIGITS, Cosine, angle_of, direction
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
@@ -24,29 +26,13 @@ OF_ANGLE = Rule("length from the crank angle", lambda f, phi: f(phi), (), "lengt
 
 
 def measured(g: StructuralGroup, phi: Any, half: Length, distance: Length | None = None) -> tuple[Step, Step | None]:
-    """Half-chord of a group's crossing and distance of its centres as steps, of their functions of the crank angle."""
+    """Half-chord of a group's crossing and distance of its centres, m, as steps at crank angles ``phi``, rad, shape (n,)."""
     h = Step(f"h {g.name}", OF_ANGLE, (half, phi))
     return h, None if distance is None else Step(f"d {g.name}", OF_ANGLE, (distance, phi))
 
 
-@dataclass(frozen=True)
-class Crossing:
-    """What the crank angle knows of the crossing of a group, as steps: half of the chord (or the tangent's length), the distance
-    of the centres (none for a line), the sine between the group's lines in the plans of velocities.
-    """
-
-    half: Step
-    distance: Step | None
-    sine: Step
-
-    @property
-    def lengths(self) -> tuple[Step, ...]:
-        """Further arguments of the rule that makes the crossing."""
-        return (self.half,) if self.distance is None else (self.half, self.distance)
-
-
 def on_crank(m: Mechanism, point: str) -> tuple[Decimal, Decimal] | None:
-    """Radius of a point on the crank and its angle ahead of the crank; None when it is elsewhere."""
+    """Radius of a point on the crank, m, and its angle ahead of the crank, rad; None when the point is elsewhere."""
     c = m.crank
     if point == c.pin:
         return Decimal(c.length), Decimal(0)
@@ -57,7 +43,7 @@ def on_crank(m: Mechanism, point: str) -> tuple[Decimal, Decimal] | None:
 
 
 def span_from_crank(m: Mechanism, g: StructuralGroup) -> Callable[[Decimal], Cosine] | None:
-    """Square of a length less the square of the distance between the group's outer hinges, one of them on the crank, one fixed.
+    """Square of a length less that of the distance of the group's outer hinges, one of them on the crank, one fixed; m2.
 
     d^2 = l0^2 + l1^2 - 2 l0 l1 cos(phi - phi0).
     """
@@ -78,7 +64,7 @@ def span_from_crank(m: Mechanism, g: StructuralGroup) -> Callable[[Decimal], Cos
 
 
 def height(at: complex, guide: Guide) -> tuple[Decimal, Decimal, Decimal]:
-    """Distance of a point from a fixed guide, positive on its left, and the guide's direction."""
+    """Distance of a point from a fixed guide, m, positive on its left, and cosine and sine of the guide's direction."""
     assert not isinstance(guide.through, str)
     _, cos, sin = direction(guide.direction)
     x, y = Decimal(at.real) - Decimal(guide.through.real), Decimal(at.imag) - Decimal(guide.through.imag)
@@ -86,7 +72,38 @@ def height(at: complex, guide: Guide) -> tuple[Decimal, Decimal, Decimal]:
 
 
 def foot_on_guide(at: complex, guide: Guide) -> complex:
-    """Foot of the perpendicular from a point on a fixed guide: the nearest double to it, however far away the guide's own point."""
+    """Foot of the perpendicular from a point on a fixed guide: the double nearest to it, however far the guide's own point."""
     with localcontext(prec=DIGITS):
         above, cos, sin = height(at, guide)
         return complex(float(Decimal(at.real) + above * sin), float(Decimal(at.imag) - above * cos))
+
+
+AWAY = 4.0
+"""So many times the mechanism's size away a guide's own point is not drawn."""
+
+
+def near_point(m: Mechanism, guide: Guide) -> complex:
+    """A point of a fixed guide to draw it through: its own, or the one nearest to the crank's pivot when its own is far away.
+
+    A direction is known to 1e-16 rad: about a point a thousand lengths away that shifts the guide by 1e-13 of a length, which the
+    half-chords taken from the crank angle do not share. The nearest point comes from the numbers of the guide as they are given.
+    """
+    assert not isinstance(guide.through, str)
+    pivot = m.fixed[m.crank.pivot]
+    from_foot = (guide.through - pivot) / ar.unit(guide.direction)
+    fixed = max(abs(z - pivot) for z in m.fixed.values())
+    size = m.crank.length + sum(sum(g.lengths) for g in m.groups) + fixed + abs(from_foot.imag)
+    return guide.through if abs(from_foot.real) <= AWAY * size else foot_on_guide(pivot, guide)
+
+
+def fold_and_stretch(m: Mechanism, rod: float, centre: Step, ends: tuple[Step, Step]) -> tuple[complex, complex] | None:
+    """Crank vectors, m, with crank and rod in line; ``ends`` are where the rod ends, rod + crank and |rod - crank| from the pivot.
+
+    None where the rod's end cannot come there, or comes to the pivot itself.
+    """
+    far, near = (complex(e.value - centre.value) for e in ends)
+    if np.isnan(far) or np.isnan(near) or not abs(far) or not abs(near):
+        return None
+    length = m.crank.length
+    fold = -1 if rod > length else 1
+    return far / abs(far) * length, fold * near / abs(near) * length

@@ -134,7 +134,10 @@ class Accelerations:
 
 
 def acceleration_plan(vel: Velocities, epsilon1: Any = None) -> Accelerations:
-    """Record the acceleration plans of all positions; ``epsilon1`` (rad/s2, signed) defaults to the mechanism's."""
+    """Record the acceleration plans of all positions; ``epsilon1`` of the crank, rad/s2, signed, is a number or of shape (n,).
+
+    Left out, it is the mechanism's.
+    """
     pos = vel.positions
     m = pos.mechanism
     plan = Plan("accelerations", "План ускорений", "m/s2", pos.plan.labels, "π")
