@@ -18,8 +18,9 @@ from pathlib import Path
 from tests.manuals.test_engine_tables import ERRATA as ENGINE_ERRATA
 from tests.manuals.test_shaper_tables import ERRATA as SHAPER_ERRATA
 from tmm_sheets import catalogue
-from tmm_sheets.compare.measured.chain import Judged, judge
+from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
+from tmm_sheets.compare.measured.judged import Judged
 from tmm_sheets.compare.measured.measurable import Measurables
 from tmm_sheets.compare.measured.measured_file import Filled, read
 from tmm_sheets.project import Project

@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets import catalogue
-from tmm_sheets.compare.measured.chain import Judged, judge
+from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
+from tmm_sheets.compare.measured.judged import Judged
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine
 from tmm_sheets.construction import error

@@ -9,17 +9,16 @@ with the numbers that are in order as witnesses. A number whose deviation explai
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import atan, degrees, hypot, isfinite, radians, tan
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
-from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import number
@@ -50,66 +49,6 @@ LONG = 10.0
 """Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
 EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
-
-Place = tuple[int, int]
-"""A step and a position."""
-
-
-@dataclass(frozen=True)
-class Mistake:
-    """A step drawn wrong at a position: its displacement, the covariance of that, how much it explains, the scale of its plan."""
-
-    place: Place
-    step: Step
-    moved: npt.NDArray[np.float64]
-    uncertain: npt.NDArray[np.float64]
-    score: float
-    mu: float
-
-
-@dataclass(eq=False)
-class Judged:
-    """A measured number with its judgement, in its own unit.
-
-    ``follows`` is the number in which its chain of errors starts, itself not included; ``starts`` is True for such a number.
-    ``tolerance`` is infinite where the construction has none to give.
-    """
-
-    line: MeasuredLine
-    exact: float
-    deviation: float
-    tolerance: float
-    rows: list[tuple[Step, complex]]
-    follows: Judged | None = None
-    starts: bool = False
-    scale: str = ""
-    mistake: Mistake | None = None
-    remark: str = ""
-    inconsistent: bool = False
-    size: float = 1.0
-    order: int = 0
-
-    @property
-    def entry(self) -> Measurable:
-        """What was measured."""
-        return self.line.entry
-
-    @property
-    def verdict(self) -> Verdict:
-        """Green, amber or red; not green where it does not follow from the student's own numbers."""
-        judged = verdict(self.deviation, self.tolerance)
-        return "amber" if judged == "green" and self.inconsistent else judged
-
-    @property
-    def percent(self) -> float | None:
-        """Deviation in per cent of the exact value; None where that is zero."""
-        return 100 * self.deviation / abs(self.exact) if abs(self.exact) > 1e-9 else None
-
-    @property
-    def at(self) -> int:
-        """Number of the position among those of the plans."""
-        return self.entry.terms[-1][1] if self.entry.terms else 0
-
 
 def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> list[Judged]:
     """Judge every filled line, in the order of the sheets."""

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.compare.measured import measured_file
-from tmm_sheets.compare.measured.chain import EXACT, MOST, Judged, Mistake, judge
+from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
+from tmm_sheets.compare.measured.judged import Judged, Mistake
 from tmm_sheets.compare.report import Report
 from tmm_sheets.construction.protocol import sentence, spoken
 from tmm_sheets.errors import BadInput, Problem

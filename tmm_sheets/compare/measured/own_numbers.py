@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from tmm_sheets.compare.measured.chain import Judged
+    from tmm_sheets.compare.measured.judged import Judged
     from tmm_sheets.construction.error import Errors
 
 Floats = npt.NDArray[np.float64]
