@@ -117,6 +117,30 @@ class VelocityLayout:
     beyond: list[tuple[int, float]]
     every: int
 
+    @property
+    def heights(self) -> list[float]:
+        """Heights of the rows with their lettering, mm."""
+        tall = (max(s.height for s in self.spans[i:i + self.per_row]) for i in range(0, len(self.spans), self.per_row))
+        return [h / self.scale.mu + HEAD for h in tall]
+
+    @property
+    def spare(self) -> float:
+        """Height that is left over for each row, mm."""
+        return (self.inside.height - sum(self.heights)) / self.rows
+
+    def places(self) -> Iterator[tuple[tuple[int, str], Box, Box]]:
+        """Index and label of each plan, its extent and its place, row upon row; what is left of a row is shared out."""
+        y = self.inside.y1
+        for r, height in enumerate(self.heights):
+            row = slice(r * self.per_row, (r + 1) * self.per_row)
+            widths = [s.width / self.scale.mu + MARGIN for s in self.spans[row]]
+            gap = (self.inside.width - sum(widths)) / len(widths)
+            x = self.inside.x0
+            for at, span, width in zip(self.shown[row], self.spans[row], widths, strict=True):
+                yield at, span, Box(x, y - height - self.spare, x + width + gap, y)
+                x += width + gap
+            y -= height + self.spare
+
 
 def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> VelocityLayout:
     """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone.

@@ -123,14 +123,14 @@ def helpers(s: Stage, step: Step) -> tuple[Helper, ...]:
 
 
 def play(s: Stage, steps: Iterable[Step | str] | None = None, style: str = "construction", cut: float = 3.0,
-         over: float = 0.0) -> None:
+         over: float = 0.0, only: str = "") -> None:
     """Draw the helper lines of steps, of all in the plan unless told, in order.
 
-    Lines are produced ``over`` mm beyond their ends, compass cuts are arcs ``cut`` mm to both sides.
+    Lines are produced ``over`` mm beyond their ends, compass cuts are arcs ``cut`` mm to both sides; ``only`` is one kind of them.
     """
     for step in map(s.step, s.plan if steps is None else steps):
         with s.of(step, "construction"):
-            for h in helpers(s, step):
+            for h in (h for h in helpers(s, step) if only in ("", h.kind)):
                 if h.kind == "line":
                     s.canvas.ray_line(s.frame(h.a), s.frame(h.b), style, over)
                 elif h.kind == "circle":

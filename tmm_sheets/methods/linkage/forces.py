@@ -55,7 +55,8 @@ def _moments(about: Any, *terms: Any) -> Any:
     return total
 
 
-MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.")
+MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.",
+               lambda a, v: tuple(h for at, force in zip(a[1::3], a[2::3], strict=True) for h in rules.arm(a[0], at, force)))
 
 
 @dataclass(frozen=True)
@@ -126,6 +127,11 @@ class Kinetostatics:
     def from_moments(self) -> list[Step]:
         """Parts of outer reactions that the moment equations gave, across their links, in the order they were found."""
         return [step for step in self.plan if step.rule is TANGENTIAL]
+
+    def sum_about(self, point: Step, force: Step) -> Step | None:
+        """The sum of moments about a point that takes a force; None when there is none."""
+        sums = (step for step in self.plan if step.rule is MOMENTS and step.args[0] is point)
+        return next((step for step in sums if any(a is force for a in step.args)), None)
 
     def force_size(self, k: int) -> float:
         """Size of the forces at position ``k``, N: beside it a force is something or nothing."""
