@@ -373,4 +373,5 @@ def _driving(total: Any, centre: Any, at: Any, u: Any) -> Any:
 
 
 DRIVING_FORCE = Rule("balancing force", _driving, ("number", "point", "point", "direction"), "force",
-                     "Из суммы моментов относительно точки {1} найдём уравновешивающую силу {name} = {value}.")
+                     "Из суммы моментов относительно точки {1} найдём уравновешивающую силу {name} = {value}.",
+                     lambda a, v: rules.arm(a[1], a[2], a[3]))
