@@ -126,7 +126,7 @@ def _hinge_numbers(project: Project, s: Stage, name: str, middle: complex) -> No
         if i != s.k:
             with here.of(name, "symbol"):
                 symbols.hinge(s.canvas, here.at(name), "thin", 0.7)
-                s.canvas.label(here.at(name), here.label, here.at(name) - middle, 2.5, 0.9, leader=False)
+            here.letters(name, project.cycle.labels[i], here.at(name) - middle, 2.5, 0.9, leader=False)
 
 
 def _upper_side(u: complex) -> complex:
@@ -156,8 +156,7 @@ def _own_path(project: Project, s: Stage, name: str, n: complex, u: complex) -> 
     for side, there in ((n, [i for i in marks if ahead[i]]), (-n, [i for i in marks if not ahead[i]])):
         for crowd in _crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
-            with s.position(crowd[0]).of(name, "point"):
-                s.canvas.label(at + 2.0 * side, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, leader=False)
+            s.position(crowd[0]).letters(name, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, at + 2.0 * side, False)
 
 
 def _crowds(marks: list[int], z: Any) -> list[list[int]]:
@@ -192,9 +191,8 @@ def _shared_path(project: Project, s: Stage, name: str, n: complex) -> None:
     for place in places:
         here = s.position(place[0])
         _path_mark(here, name, n)
-        with here.of(name, "point"):
-            text = ", ".join(project.cycle.labels[i] for i in place)
-            s.canvas.label(here.at(name) + (2.0 if s.k not in place else 5.5) * n, text, n, 2.5, 0.6, leader=False)
+        text = ", ".join(project.cycle.labels[i] for i in place)
+        here.letters(name, text, n, 2.5, 0.6, here.at(name) + (2.0 if s.k not in place else 5.5) * n, False)
 
 
 def _point_letters(project: Project, s: Stage) -> None:
@@ -204,24 +202,23 @@ def _point_letters(project: Project, s: Stage) -> None:
     own = {p.name for p in m.points if not any(p.name in g.outer for g in m.groups)}
     for name, step in project.study.positions.points.items():
         moving, letters = name not in m.fixed, linkage.indexed(name)
-        with s.of(step, "point"):
-            if name in masses and name in own:
+        if name in masses and name in own:
+            with s.of(step, "symbol"):
                 symbols.centre_of_mass(s.canvas, s.at(step))
-            text = f"{letters}({s.label})" if moving and not name[1:] else letters
-            s.canvas.label(s.at(step), text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
+        text = f"{letters}({project.cycle.labels[project.force_index]})" if moving and not name[1:] else letters
+        s.letters(step, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
 
 
 def _link_numbers(s: Stage, pos: Positions) -> None:
     """Numbers of the links beside the middles of their bars and at their blocks."""
     for shape in linkage.shapes(pos):
-        with s.of(pos.directions[shape.link], "link"):
-            if shape.bar:
-                names = linkage.along_bar(s, pos, shape)
-                a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
-                s.canvas.label(a + (0.62 if len(names) > 2 else 0.5) * (b - a), shape.link, 1j * (b - a), 5.0, 1.4)
-            elif shape.block is not None:
-                along = complex(s.value(shape.along)) if shape.along else 0j
-                s.canvas.label(s.at(pos.points[shape.block]), shape.link, along, 5.0, 6.0)
+        link = pos.directions[shape.link]
+        if shape.bar:
+            names = linkage.along_bar(s, pos, shape)
+            a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
+            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, a + (0.62 if len(names) > 2 else 0.5) * (b - a))
+        elif shape.block is not None:
+            s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(pos.points[shape.block]))
 
 
 def _rotations(project: Project, s: Stage) -> None:
@@ -385,8 +382,7 @@ def _draw_plan(s: Stage, pole: str, symbols_at: bool = False) -> list[str]:
         # A long row of letters leaves the pole's own to itself.
         rows = ([[pole], shown] if len(shown) > 2 else [[pole, *shown]]) if pole in names else [shown]
         for row in rows:
-            with s.of(names[0], "point"):
-                s.canvas.label(q, ", ".join(row), q - centre if abs(q - centre) > 1 else 0j, 3.5, 1.0)
+            s.letters(names[0], ", ".join(row), q - centre if abs(q - centre) > 1 else 0j)
     return list(dict.fromkeys(tiny.values()))
 
 
@@ -402,8 +398,7 @@ def _vectors(s: Stage, size: float, symbols_at: bool) -> dict[tuple[str, str], s
             continue
         s.vector(seg.tail, seg.head)
         if symbols_at:
-            with s.of(seg.head, "vector"):
-                s.canvas.label(s.frame(_place_of_sign(s, seg)), seg.symbol, 1j * (b - a), 3.5, 1.0)
+            s.letters(seg.head, seg.symbol, 1j * (b - a), at=s.frame(_place_of_sign(s, seg)))
     return tiny
 
 

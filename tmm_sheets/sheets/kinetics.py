@@ -226,7 +226,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
         linkage.draw_guides(s, pos, g.links)
     linkage.draw(s, pos, "main", g.links)
     for name in names:
-        _letters(s, pos.points[name], linkage.indexed(name), 1 - 0.5j if name in m.fixed else 0j)
+        s.letters(pos.points[name], linkage.indexed(name), 1 - 0.5j if name in m.fixed else 0j, gap=2.8)
     _link_numbers(s, pos, drawn)
     for name in centres:
         with s.of(pos.points[name], "symbol"):
@@ -242,12 +242,6 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
             _turning(s, s.at(centre), 7.0 + 4.0 * n, -1 + 0.2j, c)
 
 
-def _letters(s: Stage, point: Step, letters: str, away: complex = 0j, gap: float = 2.8) -> None:
-    """Letters of a point beside its symbol."""
-    with s.of(point, "point"):
-        s.canvas.label(s.at(point), letters, away, 3.5, gap)
-
-
 def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
     """Arrow of a couple."""
     with s.of(couple.step, "symbol"):
@@ -259,8 +253,7 @@ def _link_numbers(s: Stage, pos: Positions, drawn: Iterable[linkage.Shape]) -> N
     for shape in drawn:
         names = linkage.along_bar(s, pos, shape) if shape.bar else (str(shape.block),)
         a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
-        with s.of(pos.directions[shape.link], "link"):
-            s.canvas.label(a + 0.3 * (b - a), shape.link, 1 + 0.3j, 5.0, 2.0 if shape.bar else 6.5)
+        s.letters(pos.directions[shape.link], shape.link, 1 + 0.3j, 5.0, 2.0 if shape.bar else 6.5, a + 0.3 * (b - a))
 
 
 def _couples(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
@@ -395,12 +388,9 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
     for seg in extra:
         s.vector(seg.tail, seg.head)
-        with s.of(seg.head, "vector"):
-            canvas.label(frame((complex(seg.tail.at(k)) + complex(seg.head.at(k))) / 2), seg.symbol, 0j, 3.5, 1.0)
+        s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2)
     for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
-        q = frame(points[names[0]])
-        with s.of(names[0], "point"):
-            canvas.label(q, ", ".join(sorted(names, key=int)), q - frame(real.centre), 2.5, 0.8)
+        s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - frame(real.centre), 2.5, 0.8)
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
     terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
@@ -421,8 +411,7 @@ def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre:
             continue
         s.vector(tail, head)
         middle, n = (a + b) / 2, 1j * (b - a)
-        with s.of(head, "vector"):
-            s.canvas.label(middle, sign, -n if (np.conj(n) * (middle - centre)).real < 0 else n, 3.5, 1.0)
+        s.letters(head, sign, -n if (np.conj(n) * (middle - centre)).real < 0 else n, at=middle)
     return tiny
 
 
@@ -482,7 +471,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         _draw_driver(s, pos.contact, driver)
     linkage.draw(s, pos, "main", [c.link])
     for point in (centre, *pins):
-        _letters(s, point, linkage.indexed(point.name))
+        s.letters(point, linkage.indexed(point.name), gap=2.8)
     draw_arms(s, pivot, [force for force in shown if force.at != pivot])
     draw_forces(s, shown)
     with s.of(study.velocities.omega[c.link], "symbol"):
@@ -498,7 +487,7 @@ def _draw_driver(s: Stage, contact: Step, driver: GearForce) -> None:
     """Pitch circle of the wheel on the crank shaft with its pitch point."""
     play(s, [contact], "centre", only="circle")
     s.dot(contact, 0.6, "thin")
-    _letters(s, contact, "P", 1j * complex(np.exp(1j * driver.mate)), 1.5)
+    s.letters(contact, "P", 1j * complex(np.exp(1j * driver.mate)), gap=1.5)
 
 
 def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:
@@ -542,12 +531,12 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
             canvas.line(turned.at(seg.tail), turned.at(seg.head), "axis")
     s = stage(canvas, lv.plan, k, frame)
     s.dot("p", 0.9)
-    _letters(s, lv.plan["p"], "p", 0j, 1.2)
+    s.letters("p", "p", gap=1.2)
     _turned_letters(s, lv.points)
     if lv.contact is not None and project.driver is not None:
         with s.of(lv.contact, "vector"):
             canvas.line(frame(0j), s.at(lv.contact), "axis")
-        _letters(s, lv.contact, "f′", 0j, 1.2)
+        s.letters(lv.contact, "f′", gap=1.2)
     draw_arms(s, 0j, shown, points=[frame(z) for z in points])
     draw_forces(s, shown)
 
@@ -561,7 +550,7 @@ def _turned_letters(s: Stage, points: Mapping[str, Step]) -> None:
     for names in joint.values():
         first = points[names[0]]
         s.dot(first)
-        _letters(s, first, ", ".join(f"{linkage.indexed(name)}′" for name in names), s.at(first) - s.frame(0j), 1.2)
+        s.letters(first, ", ".join(f"{linkage.indexed(name)}′" for name in names), s.at(first) - s.frame(0j), gap=1.2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

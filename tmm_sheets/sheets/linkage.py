@@ -126,7 +126,7 @@ def outlines(s: Stage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
     names = shape.bar
     if len(names) == 1:
         return list(shape.arms)
-    p = {name: s.at(pos.points[name]) for name in names}
+    p = {name: complex(s.value(pos.points[name])) for name in names}
     z = list(p.values())
     size, u = max(abs(q - z[0]) for q in z), z[1] - z[0]
     if len(z) == 2 or not abs(u) or max(abs(((q - z[0]) * np.conj(u)).imag) for q in z) < 1e-6 * size * abs(u):
@@ -135,7 +135,7 @@ def outlines(s: Stage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
         return [*((names[0], name) for name in names[1:]), *shape.arms]
     middle = sum(z) / len(z)
     ring = sorted(names, key=lambda name: np.angle((p[name] - middle) / (z[0] - middle)) % (2 * np.pi))
-    sides: list[tuple[str, ...]] = [*zip(ring, [*ring[1:], ring[0]], strict=True)]
+    sides: list[tuple[str, ...]] = [*zip(ring, (*ring[1:], ring[0]), strict=True)]
     return sides + list(shape.arms)
 
 

@@ -9,42 +9,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Role
+from tmm_sheets.drawing.marks import PlacedFrame, Role
+from tmm_sheets.sheets.frame import Frame
 
-
-class Place(Protocol):
-    """Place of a plan on the sheet: a :class:`~tmm_sheets.sheets.frame.Frame`, a :class:`~tmm_sheets.drawing.marks.PlacedFrame`."""
-
-    @property
-    def origin(self) -> complex:
-        """Point of the sheet where the plan's zero lies, mm."""
-        ...
-
-    @property
-    def mu(self) -> tuple[float, float]:
-        """Unit of the plan per millimetre, along both its axes."""
-        ...
-
-    @property
-    def turn(self) -> float:
-        """Turn of the plan, counter-clockwise, rad."""
-        ...
-
-    @property
-    def mirror(self) -> bool:
-        """Whether its y axis is turned over, before it is turned."""
-        ...
-
-    def __call__(self, z: Any) -> Any:
-        """Points of the sheet of points of the plan, mm."""
-        ...
+Place = Frame | PlacedFrame
+"""Place of a plan on the sheet."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +72,12 @@ class Stage:
         with self.of(b, "vector", f"{a.name}–{b.name}"):
             self.canvas.arrow(self.at(a), self.at(b), style)
 
+    def letters(self, step: Step | str, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
+                at: complex | None = None, leader: bool = True) -> None:
+        """Ask for lettering that belongs to a step, at its point unless told; see :meth:`Canvas.label`."""
+        with self.of(step, "text"):
+            self.canvas.label(self.at(step) if at is None else at, markup, away, height, gap, leader)
+
     def dot(self, step: Step | str, radius: float = 0.6, style: str = "vector") -> None:
         """Dot at the point of a step."""
         with self.of(step, "point"):
@@ -129,11 +111,17 @@ def play(s: Stage, steps: Iterable[Step | str] | None = None, style: str = "cons
     Lines are produced ``over`` mm beyond their ends, compass cuts are arcs ``cut`` mm to both sides; ``only`` is one kind of them.
     """
     for step in map(s.step, s.plan if steps is None else steps):
-        with s.of(step, "construction"):
-            for h in (h for h in helpers(s, step) if only in ("", h.kind)):
+        for h in (h for h in helpers(s, step) if only in ("", h.kind)):
+            with s.of(step, "construction", _ends(s, step, h)):
                 if h.kind == "line":
                     s.canvas.ray_line(s.frame(h.a), s.frame(h.b), style, over)
                 elif h.kind == "circle":
                     s.canvas.circle(s.frame(h.a), abs(s.frame(h.a + h.radius) - s.frame(h.a)), style)
                 else:
                     s.canvas.arc_mark(s.frame(h.a), s.frame(h.b), cut, style)
+
+
+def _ends(s: Stage, step: Step, h: Helper) -> str:
+    """A helper line from the point of another step is called by both."""
+    starts = (a for a in step.args if isinstance(a, Step) and a.rule.gives in ("point", "vector"))
+    return next((f"{a.name}–{step.name}" for a in starts if a.at(s.k or 0) == h.a), "")
