@@ -109,14 +109,15 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     pieces = [np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
               for a, b in pairwise(edges)]
     every = np.concatenate(pieces)
-    values = _balancing_moment(project, project.study_at(every, tuple("" for _ in every)))
-    at = _balancing_moment(project, project.study)
-    assert project.study.forces.balancing is not None
+    at_angles, step = project.study_at(every, tuple("" for _ in every)), project.study.forces.balancing
+    values, at = (_balancing_moment(project, study, study.forces.balancing) for study in (at_angles, project.study))
+    assert step is not None
     angle = _angle(project, box)
     left = canvas.title(box, "График уравновешивающего момента", str(angle))
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
-    mean = project.flywheel.M_constant if project.variant.flywheel is not None else _mean(every, values, project.cycle.period)
-    moment = DiagramQuantity("graph-M", "M_{ур}", "Н·м", (Curve("", project.study.forces.balancing, every, values, at),))
+    mean = project.flywheel.M_constant if project.variant.flywheel is not None else \
+        float(np.sum(np.diff(every) * (values[1:] + values[:-1])) / 2 / project.cycle.period)
+    moment = DiagramQuantity("graph-M", "M_{ур}", "Н·м", (Curve("", step, every, values, at),))
     _graph(project, canvas, left, angle, moment, level=("M_д", mean))
 
 
@@ -124,12 +125,8 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.
     """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever, in columns side by side."""
     if project.driver is not None:
         raise CannotBuild(*_NO_MOMENT)
-    study, sense = project.study, project.mechanism.crank.sense
-    assert study.forces.balancing is not None
-    assert study.lever.balancing is not None
-    labels = project.cycle.labels
-    both = (study.forces.balancing, study.lever.balancing)
-    by_statics, by_lever = (sense * np.broadcast_to(step.value, len(labels)) for step in both)
+    labels, study = project.cycle.labels, project.study
+    by_statics, by_lever = (_balancing_moment(project, study, of) for of in (study.forces.balancing, study.lever.balancing))
     left = canvas.title(box, "Уравновешивающий момент, Н·м")
     half = (len(labels) + 1) // 2
     cells = [[label, *graphs.column([a, b, np.max(np.abs(by_statics))])[:2]]
@@ -146,13 +143,9 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.
 _NO_MOMENT = ("the diagram of the balancing moment needs a crank driven by a moment", 'write kind = "moment" in [balancing]')
 
 
-def _balancing_moment(project: Project, study: Study) -> Any:
-    assert study.forces.balancing is not None
-    return project.mechanism.crank.sense * np.broadcast_to(study.forces.balancing.value, np.shape(study.turned))
-
-
-def _mean(turned: Any, values: Any, period: float) -> float:
-    return float(np.sum(np.diff(turned) * (values[1:] + values[:-1])) / 2 / period)
+def _balancing_moment(project: Project, study: Study, step: Step | None) -> Any:
+    assert step is not None
+    return project.mechanism.crank.sense * np.broadcast_to(step.value, np.shape(study.turned))
 
 
 def _samples(project: Project) -> Any:
@@ -247,36 +240,30 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
     if level is None:
         canvas.begin(box, f"График {q.letter}")
     at = Frame(scale, o, angle)
-    steps = [(c, c.step.path, canvas.placed(c.step.plan, "", o, at.mu)) for c in q.curves]
-    with canvas.traced("axis", *_first(steps)):
+    frames = [canvas.placed(c.step.plan, "", o, at.mu) for c in q.curves]
+    axis = (q.curves[0].step.path, "", frames[0])
+    with canvas.traced("axis", *axis):
         canvas.arrow(o, o + length + graphs.OVER, "axis", 3.0)
         canvas.text(o + length + graphs.OVER - 5.5j, "φ_1", 3.5, "right")
         canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)
         canvas.text(o + 1j * (top + graphs.OVER - 3.0) - 2.0, f"{q.letter}, {q.unit}", 3.5, "right")
     canvas.text(o + length + 1j * (top + graphs.OVER - 4.0), str(scale), 3.5, "right")
-    drawn = [at(c.turned + 1j * c.values) for c in q.curves]
-    for (c, step, number), curve in zip(steps, drawn, strict=True):
-        with canvas.traced("curve", step, "", number):
+    feet, drawn = at(project.cycle.turned), [at(c.turned + 1j * c.values) for c in q.curves]
+    for c, frame, curve in zip(q.curves, frames, drawn, strict=True):
+        with canvas.traced("curve", c.step.path, "", frame):
             canvas.polyline(curve, "curve")
-        feet, heads = at(project.cycle.turned), at(project.cycle.turned + 1j * c.at)
-        for label, foot, head in zip(project.cycle.labels, feet, heads, strict=True):
-            with canvas.traced("construction", step, label, number):
-                canvas.line(foot, head, "thin")
-    with canvas.traced("axis", *_first(steps)):
+        for label, foot, y in zip(project.cycle.labels, feet, scale.mm(c.at), strict=True):
+            with canvas.traced("construction", c.step.path, label, frame):
+                canvas.line(foot, foot + 1j * y, "thin")
+    with canvas.traced("axis", *axis):
         if level is not None:
-            y = 1j * scale.mm(level[1])
-            canvas.line(o + y, o + y + length, "axis")
-            canvas.label(o + y + 0.9 * length, f"{level[0]} = {fixed(level[1], 1)} Н·м", 1j, 3.5, 0.8)
+            y = o + 1j * scale.mm(level[1])
+            canvas.line(y, y + length, "axis")
+            canvas.label(y + 0.9 * length, f"{level[0]} = {fixed(level[1], 1)} Н·м", 1j, 3.5, 0.8)
         _numbers(project, canvas, o, angle.mm(project.cycle.turned), length, q, drawn)
-    if len(q.curves) > 1:
-        for c in q.curves:
-            peak = int(np.argmax(np.abs(c.values)))
-            canvas.label(complex(at(c.turned[peak] + 1j * c.values[peak])), c.symbol, 1j * np.sign(c.values[peak]), 3.5, 0.8)
-
-
-def _first(steps: list[tuple[Curve, str, int]]) -> tuple[str, str, int]:
-    """Step and frame of the first curve, whose axes they are."""
-    return steps[0][1], "", steps[0][2]
+    for c in q.curves if len(q.curves) > 1 else ():
+        peak = int(np.argmax(np.abs(c.values)))
+        canvas.label(complex(at(c.turned[peak] + 1j * c.values[peak])), c.symbol, 1j * np.sign(c.values[peak]), 3.5, 0.8)
 
 
 def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: DiagramQuantity, curves: list[Any]) -> None:

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale
-from tmm_sheets.sheets.frame import ScaleBook, pick
+from tmm_sheets.sheets.frame import pick
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -87,14 +86,6 @@ def reach(project: Project) -> tuple[list[complex], list[complex]]:
     return z, d
 
 
-def scale_of(project: Project, canvas: ScaleBook, shown: list[Indicator]) -> Scale:
-    """One scale factor for all diagrams of a project."""
-    turned = _angles(project)
-    top = max(float(np.max(one.ordinate(turned))) for one in shown)
-    pressure = shown[0].area != 1
-    return pick(project, canvas, "indicator", "μ_p" if pressure else "μ_F", "МПа/мм" if pressure else "Н/мм", top / HEIGHT)
-
-
 def _angles(project: Project) -> Any:
     cycle = project.cycle
     turns = round(cycle.period / (2 * pi))
@@ -107,8 +98,10 @@ def draw(project: Project, s: Stage) -> None:
     if not shown:
         return
     canvas, cycle = s.canvas, project.cycle
-    scale = scale_of(project, canvas, shown)
     turned = _angles(project)
+    top = max(float(np.max(one.ordinate(turned))) for one in shown)
+    pressure = shown[0].area != 1
+    scale = pick(project, canvas, "indicator", "μ_p" if pressure else "μ_F", "МПа/мм" if pressure else "Н/мм", top / HEIGHT)
     pos = project.study_at(turned, tuple("" for _ in turned)).positions
     for one in shown:
         name, load = str(one.force.point), f"loads/{one.force.name}"

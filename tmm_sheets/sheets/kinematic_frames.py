@@ -117,29 +117,19 @@ class VelocityLayout:
     beyond: list[tuple[int, float]]
     every: int
 
-    @property
-    def heights(self) -> list[float]:
-        """Heights of the rows with their lettering, mm."""
-        tall = (max(s.height for s in self.spans[i:i + self.per_row]) for i in range(0, len(self.spans), self.per_row))
-        return [h / self.scale.mu + HEAD for h in tall]
-
-    @property
-    def spare(self) -> float:
-        """Height that is left over for each row, mm."""
-        return (self.inside.height - sum(self.heights)) / self.rows
-
-    def places(self) -> Iterator[tuple[tuple[int, str], Box, Box]]:
-        """Index and label of each plan, its extent and its place, row upon row; what is left of a row is shared out."""
+    def places(self) -> Iterator[tuple[tuple[int, str], Box, Box, float]]:
+        """Index and label of each plan, its extent, its place, and the height left over there, mm; what is left is shared out."""
+        rows = [slice(i, i + self.per_row) for i in range(0, len(self.shown), self.per_row)]
+        heights = [max(s.height for s in self.spans[row]) / self.scale.mu + HEAD for row in rows]
+        spare = (self.inside.height - sum(heights)) / self.rows
         y = self.inside.y1
-        for r, height in enumerate(self.heights):
-            row = slice(r * self.per_row, (r + 1) * self.per_row)
+        for row, height in zip(rows, heights, strict=True):
             widths = [s.width / self.scale.mu + MARGIN for s in self.spans[row]]
-            gap = (self.inside.width - sum(widths)) / len(widths)
-            x = self.inside.x0
+            gap, x = (self.inside.width - sum(widths)) / len(widths), self.inside.x0
             for at, span, width in zip(self.shown[row], self.spans[row], widths, strict=True):
-                yield at, span, Box(x, y - height - self.spare, x + width + gap, y)
+                yield at, span, Box(x, y - height - spare, x + width + gap, y), spare
                 x += width + gap
-            y -= height + self.spare
+            y -= height + spare
 
 
 def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> VelocityLayout:

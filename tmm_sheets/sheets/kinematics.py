@@ -289,7 +289,8 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     room = box.x1 - letter(str(scale), 3.5).width
     canvas.text(complex(min(right + 3.0, room), high + (0.0 if right + 3.0 <= room else 2.5)), str(scale), 3.5)
     acting = np.flatnonzero(magnitude > 0)
-    xs = np.real(s.frame(study_points(project, strokes.output, turned)))
+    path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
+    xs = np.real(s.frame(path.value))
     curve = xs[acting] + 1j * (y0 + magnitude[acting] / scale.mu)
     with canvas.traced("curve", load, "", graph):
         canvas.polyline([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)], "curve")
@@ -319,12 +320,6 @@ def _graph_angles(strokes: Strokes, force: Applied) -> Any:
     return np.sort(np.asarray(nodes))[1:-1]
 
 
-def study_points(project: Project, name: str, turned: Any) -> Any:
-    """Points of the mechanism at further crank angles."""
-    t = np.asarray(turned, dtype=float)
-    return project.study_at(t, tuple("" for _ in t)).positions.points[name].value
-
-
 def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Velocity plans of all positions with one scale factor, packed into rows."""
     plan = project.study.velocities.plan
@@ -334,7 +329,7 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
     _left_out(project, canvas, box, layout)
     tiny: dict[str, list[str]] = {}
-    for (index, label), span, place in layout.places():
+    for (index, label), span, place, spare in layout.places():
         middle = place.centre + 4.0j
         canvas.of = f"velocity plan {label}"
         if many:
@@ -342,7 +337,7 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         s = stage(canvas, plan, index, Frame(layout.scale, middle - layout.scale.mm(span.centre)))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
-        canvas.text(complex(middle.real, place.y0 + layout.spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
+        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {_with_positions(tiny) if many else ', '.join(tiny)}")

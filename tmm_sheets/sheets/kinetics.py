@@ -15,6 +15,7 @@ from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.errors import CannotBuild
@@ -213,24 +214,22 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     drawn = [shape for shape in linkage.shapes(pos) if shape.link in g.links]
     names = dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n)
     centres = [str(c) for c in (m.links[link].centre for link in g.links) if c and c not in names]
-    names |= dict.fromkeys(centres)
-    z, d = _reach([complex(pos.points[n].at(k)) for n in names] + [force.at for force in shown], shown)
+    points = {name: pos.points[name] for name in (*names, *dict.fromkeys(centres))}
     about = complex(pos.points[g.kind.about(g)].at(k))
-    feet = _feet(about, shown)
-    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", [*z, *feet], [*d, *(0j for _ in feet)],
-                      box.inset(3.0, 5.0, 3.0, 19.0))
+    frame = _loaded_frame(project, canvas, (f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм"), box.inset(3.0, 5.0, 3.0, 19.0),
+                          [*(complex(p.at(k)) for p in points.values()), *(force.at for force in shown)], shown, about)
     canvas.of = f"group {g.name}"
     canvas.title(box, f"Группа Ассура {g.name} ({g.kind.number}-й вид)", str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if g.kind.ram(g) is None:
         linkage.draw_guides(s, pos, g.links)
     linkage.draw(s, pos, "main", g.links)
-    for name in names:
-        s.letters(pos.points[name], linkage.indexed(name), 1 - 0.5j if name in m.fixed else 0j, gap=2.8)
+    for name, point in points.items():
+        s.letters(point, linkage.indexed(name), 1 - 0.5j if name in m.fixed else 0j, gap=2.8)
     _link_numbers(s, pos, drawn)
     for name in centres:
-        with s.of(pos.points[name], "symbol"):
-            symbols.centre_of_mass(canvas, s.at(pos.points[name]))
+        with s.of(name, "symbol"):
+            symbols.centre_of_mass(canvas, s.at(name))
     draw_arms(s, about, shown)
     draw_forces(s, shown)
     _from_moments(project, canvas, box, g, k, frame.scale)
@@ -240,6 +239,14 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
         centre = pos.points[m.links[shape.link].centre or shape.block or shape.bar[0]]
         for n, c in _couples(project, shape.link):
             _turning(s, s.at(centre), 7.0 + 4.0 * n, -1 + 0.2j, c)
+
+
+def _loaded_frame(project: Project, canvas: Canvas, scale: tuple[str, str, str], place: Box, points: Iterable[complex],
+                  shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = ()) -> Frame:
+    """Frame of points with forces and their arms about a point, and of ``more``: points with what reaches from them, mm."""
+    rest = [*((foot, 0j) for foot in _feet(about, shown)), *more]
+    z, d = _reach(points, shown)
+    return fit_frame(project, canvas, *scale, [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)], place)
 
 
 def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
@@ -420,16 +427,8 @@ def newtons(force: float) -> str:
     return fixed(force, 1) if force >= 10 else number(force, 4)
 
 
-def balancing_sign(project: Project) -> str:
-    """Sign of the balancing force or moment in lettering markup, from its name in the project file."""
-    name = project.balancing
-    return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
-
-
 def _equation(canvas: Canvas, at: complex, terms: list[str], width: float) -> None:
     """Vector equation of a force plan; one that would become unreadably small in its width goes on two lines."""
-    from tmm_sheets.drawing.lettering import letter
-
     if letter(" + ".join(terms) + " = 0", 2.5).width > width:
         half = (len(terms) + 1) // 2
         _fitted(canvas, at + 6.0j, " + ".join(terms[:half]) + " +", 3.5, width)
@@ -438,8 +437,6 @@ def _equation(canvas: Canvas, at: complex, terms: list[str], width: float) -> No
 
 
 def _fitted(canvas: Canvas, at: complex, text: str, height: float, width: float, align: Align = "centre") -> None:
-    from tmm_sheets.drawing.lettering import letter
-
     w = letter(text, height).width
     canvas.text(at, text, height if w <= width else max(height * width / w, 2.5), align)
 
@@ -459,12 +456,9 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     shown = acting([*shown, Shown(f"F̅_{{{from_frame}}}", pivot, complex(step.at(k)), step, step)], forces.force_size(k))
     wheel = [] if driver is None else [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
     away = _clear(pivot, ends, shown)
-    z, d = _reach([pivot, *ends, *(force.at for force in shown), *wheel], shown)
-    # The arrows of rotation, with their signs.
-    feet = _feet(pivot, shown)
-    z += [pivot, *feet]
-    d += [(18.0 if driver is not None else 32.0) * away, *(0j for _ in feet)]
-    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", "м/мм", z, d, left.inset(3.0, 3.0, 3.0, 19.0))
+    turning = (18.0 if driver is not None else 32.0) * away  # the arrows of rotation, with their signs
+    frame = _loaded_frame(project, canvas, ("scheme-crank", "μ_l", "м/мм"), left.inset(3.0, 3.0, 3.0, 19.0),
+                          [pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
     canvas.title(left, "Начальное звено", str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if driver is not None and pos.contact is not None:
@@ -478,7 +472,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         symbols.rotation_arrow(canvas, s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
-        _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
+        _turning(s, s.at(centre), 24.0, away, Couple(linkage.indexed(project.balancing), 0j, float(moment.at(k)), moment))
     _crank_couples(project, s, left, s.at(centre), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
 
@@ -505,7 +499,8 @@ def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: comp
         _turning(s, at, 34.0 + 10.0 * n, away, couple)
         said.append(f"{couple.symbol} = {number(abs(couple.value), 5)} Н·м")
     if said and project.driver is None and forces.balancing is not None:
-        said.append(f"{balancing_sign(project)} = {number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))} Н·м")
+        moment = number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))
+        said.append(f"{linkage.indexed(project.balancing)} = {moment} Н·м")
     if said:
         _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
 
@@ -516,10 +511,8 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     points = [complex(step.at(k)) for step in lv.points.values()]
     shown = acting((Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k)), h.force, h.arm) for h in lv.hung),
                    project.study.forces.force_size(k))
-    place = box.inset(2.0, 2.0, 2.0, 19.0)
-    at, around = _reach([0j, *points], shown)
-    arms = [*(force.at for force in shown), *_feet(0j, shown)]
-    frame = fit_frame(project, canvas, "lever", "μ_V", "(м/с)/мм", [*at, *arms], [*around, *(0j for _ in arms)], place)
+    frame = _loaded_frame(project, canvas, ("lever", "μ_V", "(м/с)/мм"), box.inset(2.0, 2.0, 2.0, 19.0), [0j, *points], shown, 0j,
+                          [(force.at, 0j) for force in shown])
     plain: Scale | None = canvas.scales.get("velocities")
     text = str(frame.scale)
     if plain is not None and plain.mu > frame.scale.mu * 1.01:
@@ -559,7 +552,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     forces: Kinetostatics = study.forces
     assert forces.balancing is not None
     assert study.lever.balancing is not None
-    force, sign = project.driver is not None, balancing_sign(project)
+    force, sign = project.driver is not None, linkage.indexed(project.balancing)
     kind = forces.force_size(k) if force else forces.moment_size(k)
     kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing))
     unit = "Н" if force else "Н·м"

@@ -43,13 +43,13 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     at = Frame(scale, complex(inside.x0, inside.y0), Scale("μ_φ", cycle.period / inside.width, "рад/мм"))
     if (said := _many_strokes(project, shown)) is not None:
         canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
-    frame = canvas.placed("loads", "", at.origin, at.mu)
+    frame, o = canvas.placed("loads", "", at.origin, at.mu), at.origin
     with canvas.traced("axis", f"loads/{shown[0].name}", "", frame):
-        canvas.arrow(at.origin, at.origin + 1j * (top / scale.mu + 8.0), "axis", 3.0)
-        canvas.arrow(at.origin, at.origin + inside.width + 10.0, "axis", 3.0)
+        canvas.arrow(o, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)
+        canvas.arrow(o, o + inside.width + 10.0, "axis", 3.0)
         signs = ", ".join(indexed(f.name) for f in shown)
-        canvas.label(at.origin + 1j * (top / scale.mu + 6.0), f"{signs}, {unit}", 1 + 0j, 3.5, 1.5)
-        canvas.label(at.origin + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
+        canvas.label(o + 1j * (top / scale.mu + 6.0), f"{signs}, {unit}", 1 + 0j, 3.5, 1.5)
+        canvas.label(o + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
     _positions(project, canvas, shown, at, frame)
     for f in shown:
         with canvas.traced("curve", f"loads/{f.name}", "", frame):
@@ -77,8 +77,7 @@ def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
 
 def _sign(canvas: Canvas, f: Applied, turned: Any, at: Frame) -> None:
     """Sign of one of several loads over the middle of where it is at least half its greatest."""
-    values = f.magnitude(turned)
-    acting = turned[values >= 0.5 * values.max()]
+    acting = turned[f.magnitude(turned) >= 0.5 * f.magnitude(turned).max()]
     middle = float(acting[len(acting) // 2]) if len(acting) else pi
     canvas.label(complex(at(complex(middle, np.ravel(f.magnitude(middle))[0]))), indexed(f.name), 1j, 3.5, 1.5)
 
