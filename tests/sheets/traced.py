@@ -19,6 +19,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Text
 from tmm_sheets.project import Project
+from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.sheet import Composed, every
 
 ROOMS = {
@@ -35,6 +36,8 @@ PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/8:3", "transpor
 UNCOUNTED = {"symbol", "table", "dimension", "hatch", "text", "frame"}
 EXACT = 0.001
 """mm"""
+PRODUCED = 4.0
+"""How far a helper line is drawn beyond its end at most, mm."""
 
 
 class View(NamedTuple):
@@ -58,11 +61,19 @@ def counted(view: View) -> list[Mark]:
     return [m for m in view.marks if not isinstance(m, Fill | Text) and (m.by is None or m.by.role not in UNCOUNTED)]
 
 
-def count(project: Project, rooms: Iterable[str]) -> dict[str, Counter[str]]:
+def drawn(project: Project, rooms: Iterable[str]) -> dict[int, Composed]:
+    """The sheets of a project that have views of some rooms."""
+    modules = {module for room in rooms for module in ROOMS[room]}
+    numbers = [n for n, name in enumerate(project.sheets, 1)
+               if any(view.draw.partition(".")[0] in modules for view in arrangement(name).fitted(project.parts).views)]
+    return every(project, numbers=numbers).drawn if numbers else {}
+
+
+def count(sheets: Iterable[Composed], rooms: Iterable[str]) -> dict[str, Counter[str]]:
     """Marks by the name of their view: "known", or what is known of those without a step (role or line type)."""
     modules = {module for room in rooms for module in ROOMS[room]}
     found: dict[str, Counter[str]] = defaultdict(Counter)
-    for sheet in every(project).drawn.values():
+    for sheet in sheets:
         for view in views(sheet):
             if view.draw.partition(".")[0] in modules:
                 found[view.draw].update("known" if m.by and m.by.step else _unknown(m) for m in counted(view))
@@ -86,9 +97,8 @@ def steps(project: Project) -> dict[str, Step]:
     return found
 
 
-def untrue(project: Project) -> tuple[Counter[str], list[str]]:
+def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str], list[str]]:
     """How many marks of each role were checked, and those that are not where their step says."""
-    sheets = every(project).drawn
     known, order, checked, wrong = steps(project), list(project.cycle.labels), Counter[str](), []
     for n, sheet in sheets.items():
         tips = {g.first: sheet.drawing.marks[g.end - 1] for g in sheet.groups if g.kind == "arrow"}
@@ -120,8 +130,9 @@ def distance(m: Mark, step: Step, k: int, frame: PlacedFrame, known: dict[str, S
             return _across(tip, m.a, _split(step, m.by.name, value, k, known))
         starts = {complex(frame(complex(s.at(k)))) for s in known.values() if s.plan == step.plan and _is_point(s)}
         return max(abs(tip - frame(complex(value))), min(abs(m.a - z) for z in starts))
-    drawn = [_from_helper(m, h, frame) for h in _helpers(step, k)]
-    if own and _is_point(step):
+    lines = _helpers(step, k)
+    drawn = [_from_helper(m, h, frame) for h in lines]
+    if own and _is_point(step) and (frame.plan == "positions" or not lines):  # carried over from there, or about it
         at = frame(complex(value))
         drawn += [abs(m.centre - at)] if isinstance(m, Arc) else [abs(m.a - at), abs(m.b - at)]
     if own and frame.mu[0] != frame.mu[1] and isinstance(m, Line):
@@ -160,15 +171,15 @@ def _helpers(step: Step, k: int) -> tuple[Helper, ...]:
 
 
 def _from_helper(m: Mark, h: Helper, frame: PlacedFrame) -> float:
-    """Distance of a mark from a helper line, which may be produced."""
+    """Distance of a mark from a helper line, which may be produced a little."""
     a, b = (complex(frame(z)) for z in (h.a, h.b))
     if isinstance(m, Arc):
         radius = abs(complex(frame(h.a + h.radius)) - a) if h.kind == "circle" else abs(b - a)
         return np.inf if h.kind == "line" else max(abs(m.centre - a), abs(m.radius - radius))
     if not isinstance(m, Line) or h.kind != "line" or not abs(b - a) > EXACT:
         return np.inf
-    u = (b - a) / abs(b - a)
-    return max(min(abs(m.a - a), abs(m.a - b)), *(abs(((z - a) * np.conj(u)).imag) for z in (m.a, m.b)))
+    over = (m.b - b) * np.conj(b - a) / abs(b - a)
+    return max(abs(m.a - a), abs(over.imag), -over.real, over.real - PRODUCED)
 
 
 def _ordinates(step: Step, k: int) -> list[float]:
@@ -187,21 +198,24 @@ def main() -> None:
     args = parser.parse_args()
     for name in args.projects:
         project = Project(read(name))
+        rooms = args.rooms.split(",")
+        sheets = drawn(project, rooms)
         print(name)
         total: Counter[str] = Counter()
-        for draw, found in count(project, args.rooms.split(",")).items():
+        for draw, found in count(sheets.values(), rooms).items():
             total += found
-            print(f"  {draw:32} {found['known']:5} of {found.total():5}  {found['known'] / found.total():7.1%}  {_exceptions(found)}")
+            print(_line(draw, found))
         if total:
-            print(f"  {'together':32} {total['known']:5} of {total.total():5}  {total['known'] / total.total():7.1%}")
-        checked, wrong = untrue(project)
+            print(_line("together", total))
+        checked, wrong = untrue(project, sheets)
         print(f"  where their step says: {dict(checked)}, not: {len(wrong)}")
         for line in wrong[:12]:
             print(f"    {line}")
 
 
-def _exceptions(found: Counter[str]) -> str:
-    return ", ".join(f"{n} {what}" for what, n in found.most_common() if what != "known")
+def _line(name: str, found: Counter[str]) -> str:
+    exceptions = ", ".join(f"{n} {what}" for what, n in found.most_common() if what != "known")
+    return f"  {name:32} {found['known']:5} of {found.total():5}  {found['known'] / found.total():7.1%}  {exceptions}"
 
 
 if __name__ == "__main__":
