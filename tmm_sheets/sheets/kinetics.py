@@ -488,7 +488,7 @@ def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> c
     """Direction from the crank's pivot into the widest angle between its arms, base, forces and their arms."""
     acting = [force for force in shown if abs(force.vector) > 0]
     lines = [force.vector if force.at == pivot else _foot(force, pivot) - pivot for force in acting]
-    return linkage.widest_gap([*(z - pivot for z in pins), -1j, *lines])
+    return linkage.widest_gap([*(z - pivot for z in pins), -1j, *lines], 6)
 
 
 def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: complex) -> None:
@@ -527,8 +527,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     s.letters("p", "p", gap=1.2)
     _turned_letters(s, lv.points)
     if lv.contact is not None and project.driver is not None:
-        with s.of(lv.contact, "vector"):
-            canvas.line(frame(0j), s.at(lv.contact), "axis")
+        play(s, [lv.contact], "axis")
         s.letters(lv.contact, "f′", gap=1.2)
     draw_arms(s, 0j, shown, points=[frame(z) for z in points])
     draw_forces(s, shown)

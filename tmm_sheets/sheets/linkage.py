@@ -113,9 +113,9 @@ def clear_of_crank(s: Stage, pos: Positions) -> complex:
     return widest_gap(s.at(pos.points[name]) - pivot for name in crank_pins(pos))
 
 
-def widest_gap(lines: Iterable[complex]) -> complex:
-    """Unit vector into the widest angle between lines from one point."""
-    angles = sorted({round(float(np.angle(z)), 12) for z in lines if abs(z) > 0})
+def widest_gap(lines: Iterable[complex], digits: int = 15) -> complex:
+    """Unit vector into the widest angle between lines from one point; those alike to so many digits are one."""
+    angles = sorted({round(float(np.angle(z)), digits) for z in lines if abs(z) > 0})
     gaps = [(b - a, (a + b) / 2) for a, b in zip(angles, [*angles[1:], angles[0] + 2 * np.pi], strict=True)]
     middle = max(gaps, key=lambda gap: round(gap[0], 9))[1]
     return complex(np.cos(middle), np.sin(middle))

@@ -16,7 +16,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
@@ -34,7 +34,7 @@ GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {n
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.")
 OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.")
 CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point"), "force",
-             "Замкнём план: {name} = |{0}–{1}|·μ_F = {value}.")
+             "Замкнём план: {name} = |{0}–{1}|·μ_F = {value}.", lambda a, v: (Helper("line", a[0], a[1]),))
 ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), "length",
            "Плечо {name} = {value} из уравнения моментов.")
 
