@@ -250,10 +250,10 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
     canvas.text(o + length + 1j * (top + graphs.OVER - 4.0), str(scale), 3.5, "right")
     feet, drawn = at(project.cycle.turned), [at(c.turned + 1j * c.values) for c in q.curves]
     for c, frame, curve in zip(q.curves, frames, drawn, strict=True):
-        with canvas.traced("curve", c.step.path, "", frame):
+        with canvas.traced("curve", c.step.path, "", frame, c.symbol):
             canvas.polyline(curve, "curve")
         for label, foot, y in zip(project.cycle.labels, feet, scale.mm(c.at), strict=True):
-            with canvas.traced("construction", c.step.path, label, frame):
+            with canvas.traced("construction", c.step.path, label, frame, c.symbol):
                 canvas.line(foot, foot + 1j * y, "thin")
     with canvas.traced("axis", *axis):
         if level is not None:

@@ -209,23 +209,23 @@ def acting(shown: Iterable[Shown], force_size: float) -> list[Shown]:
 
 def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int) -> None:
     """Loaded scheme of a group: its links, all forces and couples on it, the arms of its moment equations."""
-    pos, m = project.study.positions, project.mechanism
+    pos = project.study.positions
     shown, couples = _outer_forces(project, g, k)
     drawn = [shape for shape in linkage.shapes(pos) if shape.link in g.links]
     names = dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n)
-    centres = [str(c) for c in (m.links[link].centre for link in g.links) if c and c not in names]
-    points = {name: pos.points[name] for name in (*names, *dict.fromkeys(centres))}
+    centres = [str(c) for c in (project.mechanism.links[link].centre for link in g.links) if c and c not in names]
+    points = [pos.points[name] for name in (*names, *dict.fromkeys(centres))]
     about = complex(pos.points[g.kind.about(g)].at(k))
     frame = _loaded_frame(project, canvas, (f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм"), box.inset(3.0, 5.0, 3.0, 19.0),
-                          [*(complex(p.at(k)) for p in points.values()), *(force.at for force in shown)], shown, about)
+                          [*(complex(p.at(k)) for p in points), *(force.at for force in shown)], shown, about)
     canvas.of = f"group {g.name}"
     canvas.title(box, f"Группа Ассура {g.name} ({g.kind.number}-й вид)", str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if g.kind.ram(g) is None:
         linkage.draw_guides(s, pos, g.links)
     linkage.draw(s, pos, "main", g.links)
-    for name, point in points.items():
-        s.letters(point, linkage.indexed(name), 1 - 0.5j if name in m.fixed else 0j, gap=2.8)
+    for point in points:
+        s.letters(point, linkage.indexed(point.name), 1 - 0.5j if point.name in pos.mechanism.fixed else 0j, gap=2.8)
     _link_numbers(s, pos, drawn)
     for name in centres:
         with s.of(name, "symbol"):
@@ -235,10 +235,15 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     _from_moments(project, canvas, box, g, k, frame.scale)
     for c in couples:
         _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
+    _link_couples(project, s, drawn)
+
+
+def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) -> None:
+    """Couples of the links round their centres of mass, or their first points."""
     for shape in drawn:
-        centre = pos.points[m.links[shape.link].centre or shape.block or shape.bar[0]]
+        centre = project.mechanism.links[shape.link].centre or shape.block or shape.bar[0]
         for n, c in _couples(project, shape.link):
-            _turning(s, s.at(centre), 7.0 + 4.0 * n, -1 + 0.2j, c)
+            _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
 
 
 def _loaded_frame(project: Project, canvas: Canvas, scale: tuple[str, str, str], place: Box, points: Iterable[complex],
