@@ -90,6 +90,8 @@ def _unknown(m: Mark) -> str:
 def steps(project: Project) -> dict[str, Step]:
     """All steps of a project that was drawn, by plan/name; steps of the numbered positions, not of further angles."""
     found: dict[str, Step] = {}
+    if "positions" in project.parts:
+        _ = project.study.loads  # a sheet shows the law of a load without asking for its step
     for plans in explain.parts(project).values():
         for plan in plans or ():
             for step in plan:
@@ -103,12 +105,14 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
     for n, sheet in sheets.items():
         tips = {g.first: sheet.drawing.marks[g.end - 1] for g in sheet.groups if g.kind == "arrow"}
         for i, m in enumerate(sheet.drawing.marks):
-            if m.by is None or m.by.role not in ("point", "vector", "construction") or m.by.frame < 0 or not m.by.step:
-                continue
-            if isinstance(m, Text) or (isinstance(m, Fill) and m.by.role != "point"):
+            if m.by is None or not m.by.step:
                 continue
             if m.by.step not in known:
                 wrong.append(f"sheet {n}: {m.by.step} is no step")
+                continue
+            if m.by.role not in ("point", "vector", "construction") or m.by.frame < 0:
+                continue
+            if isinstance(m, Text) or (isinstance(m, Fill) and m.by.role != "point"):
                 continue
             k = order.index(m.by.position.split(", ")[0]) if m.by.position else 0
             off = distance(m, known[m.by.step], k, sheet.frames[m.by.frame], known, tips.get(i))
