@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.hints import OuterReaction
     from tmm_sheets.mechanism.model import StructuralGroup
-    from tmm_sheets.methods.linkage.forces import ForcePlan, GearForce, Kinetostatics, Load
+    from tmm_sheets.methods.linkage.forces import ForcePlan, Kinetostatics, Load
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
@@ -466,8 +466,10 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                           [pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
     canvas.title(left, "Начальное звено", str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
-    if driver is not None and pos.contact is not None:
-        _draw_driver(s, pos.contact, driver)
+    if driver is not None and pos.contact is not None:  # pitch circle of the wheel on the shaft, and its pitch point
+        play(s, [pos.contact], "centre", only="circle")
+        s.dot(pos.contact, 0.6, "thin")
+        s.letters(pos.contact, "P", 1j * complex(np.exp(1j * driver.mate)), gap=1.5)
     linkage.draw(s, pos, "main", [c.link])
     for point in (centre, *pins):
         s.letters(point, linkage.indexed(point.name), gap=2.8)
@@ -480,13 +482,6 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         _turning(s, s.at(centre), 24.0, away, Couple(linkage.indexed(project.balancing), 0j, float(moment.at(k)), moment))
     _crank_couples(project, s, left, s.at(centre), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
-
-
-def _draw_driver(s: Stage, contact: Step, driver: GearForce) -> None:
-    """Pitch circle of the wheel on the crank shaft with its pitch point."""
-    play(s, [contact], "centre", only="circle")
-    s.dot(contact, 0.6, "thin")
-    s.letters(contact, "P", 1j * complex(np.exp(1j * driver.mate)), gap=1.5)
 
 
 def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING, Any
@@ -14,7 +13,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets.frame import Frame, fit_frame
-from tmm_sheets.sheets.player import Stage, stage
+from tmm_sheets.sheets.player import stage
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -65,8 +64,9 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
     with right.of("C", "axis"):
         canvas.line(frame(c) - 6j, frame(complex(0, max(d.imag, crank))) + 4j, "centre")
     for s, prime in ((right, "′"), (left, "″")):
-        _bar(s, "C", "D", ("B", "D", "C"), prime)
-        _bar(s, "A", "B", ("B", "A"), prime)
+        for link in ("CD", "AB"):
+            with s.of(link[1], "link", f"{link[0]}–{link[1]}{prime}"):
+                symbols.bar(canvas, map(s.at, link), map(s.at, "ABCD"), "main", 1.0)
         for name, away in (("B", s.at("B") - s.at("A")), ("D", 1j)):
             with s.of(name, "symbol"):
                 symbols.hinge(canvas, s.at(name), "main", 1.0)
@@ -77,16 +77,9 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
     symbols.hinge(canvas, frame(a), "main", 1.0)
     for name in "AC":
         canvas.label(right.at(name), name, -1 + 0.5j, 3.5, 2.8)
-    swing = float(found.plan["θ"].value)
-    radius = min(0.45 * frame.scale.mm(found.exact["l_AC"]), 22.0)
-    canvas.angle_mark(frame(c), pi / 2 - swing / 2, pi / 2 + swing / 2, radius, "θ")
+    half, radius = float(found.plan["θ"].value) / 2, min(0.45 * frame.scale.mm(found.exact["l_AC"]), 22.0)
+    canvas.angle_mark(frame(c), pi / 2 - half, pi / 2 + half, radius, "θ")
     canvas.dimension(left.at("D"), right.at("D"), 5.0, "H")
-
-
-def _bar(s: Stage, a: str, b: str, hinges: Iterable[str], prime: str = "") -> None:
-    """A link between two points, interrupted at hinges."""
-    with s.of(b, "link", f"{a}–{b}{prime}"):
-        symbols.bar(s.canvas, (s.at(a), s.at(b)), map(s.at, hinges), "main", 1.0)
 
 
 def _square(canvas: Canvas, corner: complex, p: complex, q: complex, size: float = 2.5) -> None:
@@ -100,7 +93,8 @@ def _engine(project: Project, canvas: Canvas, box: Box) -> None:
     found = project.synthesis
     turn = -1j if box.width > box.height else 1.0
     crank = found.lengths["l_AB"]
-    points = [turn * complex(found.plan[name].value) for name in ("A", "B′", "C′", "B″", "C″")]
+    pins = ("B′", "C′", "B″", "C″")
+    points = [0j, *(turn * complex(found.plan[name].value) for name in pins)]
     frame = _frame(project, canvas, box, [*points, *(crank * u for u in (1, -1, 1j, -1j))], (10, -10, 9j, -9j))
     canvas.text(complex(box.x0, box.y1 - 5.0), str(frame.scale), 3.5)
     s = stage(canvas, found.plan, 0, replace(frame, turn=float(np.angle(turn))))
@@ -110,8 +104,9 @@ def _engine(project: Project, canvas: Canvas, box: Box) -> None:
     with s.of("AC", "axis"):
         canvas.line(s.at("B″") - 4 * axis, s.at("C′") + 9 * axis, "centre")
     for prime in "′″":
-        _bar(s, "A", f"B{prime}", ("B′", "C′", "B″", "C″", "A"))
-        _bar(s, f"B{prime}", f"C{prime}", ("B′", "C′", "B″", "C″"))
+        for link, hinges in ((("A", f"B{prime}"), (*pins, "A")), ((f"B{prime}", f"C{prime}"), pins)):
+            with s.of(link[1], "link", "–".join(link)):
+                symbols.bar(canvas, map(s.at, link), map(s.at, hinges), "main", 1.0)
         with s.of(f"C{prime}", "symbol"):
             symbols.block(canvas, s.at(f"C{prime}"), axis, "main", (7.0, 4.2))
         for name in (f"B{prime}", f"C{prime}"):
