@@ -110,10 +110,10 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
             if m.by.step not in known:
                 wrong.append(f"sheet {n}: {m.by.step} is no step")
                 continue
-            if m.by.role not in ("point", "vector", "construction") or m.by.frame < 0:
+            if m.by.role not in ("point", "vector", "construction", "link") or m.by.frame < 0:
                 continue
             if isinstance(m, Text) or (isinstance(m, Fill) and m.by.role != "point"):
-                continue
+                continue  # letters and heads
             k = order.index(m.by.position.split(", ")[0]) if m.by.position else 0
             off = distance(m, known[m.by.step], k, sheet.frames[m.by.frame], known, tips.get(i))
             checked[m.by.role] += 1
@@ -124,6 +124,8 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
 
 def distance(m: Mark, step: Step, k: int, frame: PlacedFrame, known: dict[str, Step], head: Mark | None) -> float:
     """How far a mark lies from where its step, or the step's helper lines, say, mm."""
+    if m.by.role == "link":
+        return _off_link(m, frame, k, known)
     value, own = step.at(k), frame.plan == step.plan
     if m.by.role == "point":
         return abs(_middle(m) - frame(complex(value)))
@@ -145,6 +147,16 @@ def distance(m: Mark, step: Step, k: int, frame: PlacedFrame, known: dict[str, S
         force = next(value_at(a, k) for a in step.args if isinstance(a, Step) and a.rule.gives == "force")
         drawn += [abs(abs(m.b - m.a) - abs(value) / frame.mu[1]), min(_across(m.b, m.a, force), _across(m.b, m.a, -force))]
     return min(drawn, default=np.inf)
+
+
+def _off_link(m: Mark, frame: PlacedFrame, k: int, known: dict[str, Step]) -> float:
+    """How far a link's line lies beside that between the points it is called by; a dead position has its prime on both."""
+    names = m.by.name.rstrip("″′").split("–")
+    primes = m.by.name[len(m.by.name.rstrip("″′")):]
+    points = [known.get(f"{frame.plan}/{name}{primes}") or known[f"{frame.plan}/{name}"] for name in names]
+    a, b = (complex(frame(complex(point.at(k)))) for point in points)
+    along = [(z - a) * np.conj(b - a) / abs(b - a) for z in (m.a, m.b)]
+    return max(*(abs(z.imag) for z in along), *(-z.real for z in along), *(z.real - abs(b - a) for z in along))
 
 
 def _is_point(step: Step) -> bool:

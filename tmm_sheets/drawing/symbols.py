@@ -49,8 +49,8 @@ def bar(canvas: Canvas, points: Iterable[complex], hinges: Iterable[complex], st
         for c in circles:
             t = ((c - a) * u.conjugate()).real
             d = abs(((c - a) * u.conjugate()).imag)
-            if d < radius:
-                half = (radius**2 - d**2) ** 0.5
+            half = (radius**2 - d**2) ** 0.5 if d < radius else 0.0
+            if half and t - half < length:  # one farther along the line is no concern of this bar
                 cuts.append((t - half, t + half))
         start = 0.0
         for lo, hi in sorted(cuts):
