@@ -107,13 +107,16 @@ def draw(project: Project, s: Stage) -> None:
         name, load = str(one.force.point), f"loads/{one.force.name}"
         path = s.frame(np.asarray(pos.points[name].value))
         canvas.of = f"indicator {one.force.name}"
-        with canvas.traced("curve", load):
+        zero = path[0] - one.along * ((path[0] - s.frame(0j)) * np.conj(one.along)).real + one.side * GAP
+        mu = (s.frame.mu[0], scale.mu * (1e6 * one.area if pressure else 1.0))  # of the force, which the plan has
+        graph = canvas.placed("loads", "", zero, mu, float(np.angle(one.along)), (one.side / one.along).imag < 0)
+        with canvas.traced("curve", load, "", graph):
             canvas.polyline(path + one.side * (GAP + one.ordinate(turned) / scale.mu), "curve")
         ways = (path * np.conj(one.along)).real
         low, high = path[int(np.argmin(ways))] + one.side * GAP, path[int(np.argmax(ways))] + one.side * GAP
         top = float(np.max(one.ordinate(turned))) / scale.mu
         outer = low if (low - s.frame(0j)).imag * one.along.imag < 0 else high
-        with canvas.traced("axis", load):
+        with canvas.traced("axis", load, "", graph):
             canvas.line(low, high, "axis")
             canvas.arrow(outer, outer + one.side * (top + 9.0), "axis", 3.0)
         away = one.along * (1 if outer == high else -1)

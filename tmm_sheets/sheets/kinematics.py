@@ -278,8 +278,8 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     left, right = sorted((a.real, b.real))
     way = linkage.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
     tip = min(right + 14.0, box.x1 - 1.5 - letter(f"{way}, м", 3.5).width)
-    load = f"loads/{force.name}"
-    graph = canvas.placed("loads", "", complex(a.real, y0), (s.frame.mu[0], scale.mu))
+    load, back = f"loads/{force.name}", a.real > b.real  # the way is counted from where the stroke begins
+    graph = canvas.placed("loads", "", complex(a.real, y0), (s.frame.mu[0], scale.mu), pi * back, back)
     with canvas.traced("axis", load, "", graph):
         canvas.arrow(complex(left, y0), complex(left, high + 9.0), "axis", 3.5)
         canvas.arrow(complex(left, y0), complex(tip, y0), "axis", 3.5)
