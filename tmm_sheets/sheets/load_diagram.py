@@ -47,8 +47,7 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     with canvas.traced("axis", f"loads/{shown[0].name}", "", frame):
         canvas.arrow(o, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)
         canvas.arrow(o, o + inside.width + 10.0, "axis", 3.0)
-        signs = ", ".join(indexed(f.name) for f in shown)
-        canvas.label(o + 1j * (top / scale.mu + 6.0), f"{signs}, {unit}", 1 + 0j, 3.5, 1.5)
+        canvas.label(o + 1j * (top / scale.mu + 6.0), f"{', '.join(indexed(f.name) for f in shown)}, {unit}", 1 + 0j, 3.5, 1.5)
         canvas.label(o + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
     _positions(project, canvas, shown, at, frame)
     for f in shown:

@@ -71,8 +71,9 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
             with s.of(name, "symbol"):
                 symbols.hinge(canvas, s.at(name), "main", 1.0)
                 canvas.label(s.at(name), name + prime, away, 3.5, 1.4)
-        with s.of("B", "symbol"):
-            _square(canvas, s.at("B"), s.at("C"), s.at("A"))
+        with s.of("B", "symbol"):  # a right angle
+            u, v = (2.5 * (s.at(end) - s.at("B")) / abs(s.at(end) - s.at("B")) for end in "CA")
+            canvas.polyline((s.at("B") + u, s.at("B") + u + v, s.at("B") + v), "thin")
     symbols.pivot(canvas, frame(c))
     symbols.hinge(canvas, frame(a), "main", 1.0)
     for name in "AC":
@@ -80,12 +81,6 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
     half, radius = float(found.plan["θ"].value) / 2, min(0.45 * frame.scale.mm(found.exact["l_AC"]), 22.0)
     canvas.angle_mark(frame(c), pi / 2 - half, pi / 2 + half, radius, "θ")
     canvas.dimension(left.at("D"), right.at("D"), 5.0, "H")
-
-
-def _square(canvas: Canvas, corner: complex, p: complex, q: complex, size: float = 2.5) -> None:
-    """Sign of a right angle."""
-    u, v = ((z - corner) / abs(z - corner) * size for z in (p, q))
-    canvas.polyline(np.array([corner + u, corner + u + v, corner + v]), "thin")
 
 
 def _engine(project: Project, canvas: Canvas, box: Box) -> None:
