@@ -20,7 +20,8 @@ def sheet_of(canvas):
     canvas.begin(PAPER, "", "labels")
     place(canvas, PAPER)
     drawing = Drawing(200, 100, "t", tuple(canvas.marks))
-    return Composed(drawing, {}, (), tuple(canvas.parts), tuple(canvas.groups))
+    return Composed(drawing, {}, (), tuple(canvas.parts), tuple(canvas.groups),
+                    frames=tuple(canvas.frames))
 
 
 def canvas_of(draw="plans"):
@@ -108,17 +109,21 @@ def test_lettering_with_its_indices_bars_and_leader_is_one_text():
     assert (label.text, len(label.pieces)) == ("S3", 1)  # nothing free near: a leader line
 
 
-def test_letters_name_lines_and_circles():
+def test_steps_name_lines_and_circles():
     canvas = canvas_of()
-    canvas.line(10 + 10j, 50 + 10j)
-    canvas.line(50 + 10j, 90 + 40j)
-    canvas.circle(90 + 40j, 1.6)
-    canvas.line(10 + 80j, 90 + 80j)
+    plans, plan = canvas.placed("positions", "", 0j, 1.0), canvas.placed("velocities", "3", 0j, 1.0)
+    with canvas.traced("link", "positions/AB", "3", plans, "A–B"):
+        canvas.line(10 + 10j, 50 + 10j)
+    with canvas.traced("symbol", "positions/S3", "3", plans):
+        canvas.circle(90 + 40j, 1.6)
+    with canvas.traced("vector", "velocities/b", "3", plan, "p–b"):
+        canvas.arrow(10 + 80j, 90 + 80j)
+        canvas.label(50 + 80j, "V̅_B")  # lettering names nothing
+    with canvas.traced("construction", "lever/h F̅_{43}"):
+        canvas.line(10 + 85j, 90 + 85j)
     canvas.of = "force-1"
     canvas.line(10 + 90j, 90 + 90j)
-    for at, name in ((10 + 10j, "A"), (50 + 10j, "B"), (90 + 40j, "S_3"), (50 + 80j, "V")):
-        canvas.label(at, name)
-    assert [e.name for e in elements(sheet_of(canvas)) if e.kind != "text"] == ["A–B", "B–S3", "S3", "V", "force-1"]
+    assert [e.name for e in elements(sheet_of(canvas)) if e.kind != "text"] == ["A–B(3)", "S3(3)", "p–b", "h F43", "force-1"]
 
 
 def test_views_have_their_titles_and_their_labels():

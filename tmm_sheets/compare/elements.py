@@ -35,8 +35,6 @@ Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
 
 STRAIGHT = 0.01
 """Points within this distance of a chord, mm, are on a straight line."""
-REACH = 2.5
-"""How far from a line's end a label's anchor may be to name it, mm (the radius of a hinge and a little more)."""
 NAMES = {"title block": "Рамка и основная надпись"}
 """Names of views that have no title on the sheet."""
 SAGITTA = 0.005
@@ -70,8 +68,9 @@ class Element:
     ----------
     number : from 1, the same for the same sheet of the same project
     view : the view it belongs to
-    name : what a report calls it: the letters at its ends ("B(3)–C(3)") or on it ("p–b"), the text itself for lettering, else the
-        construction step ("position plan 3", "force-4–5") if that says more than the view, else empty. Not unique.
+    name : what a report calls it: what the step that left it is called, with the position where the view shows several
+        ("B–C(3)", "p–b"); the text itself for lettering; without a step what drew it ("position plan 3") if that says more than the
+        view, else empty. Not unique.
     kind : "line", "arc", "circle" (also filled dots), "curve", "text", "hatch", "fill" (heads without a line, quadrants)
     points : centre line, complex, shape (n,), mm: both ends of a line (the tip of an arrow last), an arc or circle in chords
         with a sagitta of 0.005 mm, a curve's own vertices (the first again at the end if closed); text: the four corners
@@ -134,8 +133,10 @@ def elements(sheet: Composed) -> tuple[Element, ...]:
     out: list[Element] = []
     for first, end, group in _groups(marks, sheet.groups):
         part = group.part if group is not None and group.part >= 0 else int(np.searchsorted(starts, first, "right")) - 1
-        out.append(_element(len(out) + 1, found[of_part[part]], marks[first:end], group))
-    return tuple(_named(out, sheet.groups, tuple(found[k] for k in of_part)))
+        e = _element(len(out) + 1, found[of_part[part]], marks[first:end], group)
+        name = e.name or _called(e.marks, sheet, e.of if e.of != e.view.draw else "")
+        out.append(replace(e, name=name))
+    return tuple(out)
 
 
 def dashed(element: Element) -> tuple[Points, ...]:
@@ -293,41 +294,11 @@ def _rectangle(z: Points) -> Points:
     return np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1), complex(x0, y0)])
 
 
-def _named(found: list[Element], groups: Sequence[MarkGroup], view_of_part: tuple[ElementView, ...]) -> Iterator[Element]:
-    """The elements, named by the labels of the sheet: a label knows the point it was asked for."""
-    anchors: dict[ElementView, tuple[list[complex], list[str]]] = {}
-    for g in groups:
-        if g.anchor is not None:
-            places, words = anchors.setdefault(view_of_part[g.part], ([], []))
-            places.append(g.anchor)
-            words.append(said(g.text))
-    for e in found:
-        if e.kind == "text":
-            yield e
-            continue
-        places, words = anchors.get(e.view, ([], []))
-        name = _name(e, np.array(places), words) if places else ""
-        yield replace(e, name=name or (e.of if e.of != e.view.draw else ""))
-
-
-def _name(e: Element, places: Points, words: list[str]) -> str:
-    """The labels at both ends of a line or on it, or at the centre of a circle."""
-
-    def at(z: complex, reach: float) -> str:
-        off = np.abs(places - z)
-        k = int(off.argmin())
-        return words[k] if off[k] < reach else ""
-
-    if e.kind == "circle":
-        return at(e.centre, 0.5)
-    if e.kind == "line":
-        a, b = at(e.points[0], REACH), at(e.points[-1], REACH)
-        if a and b and a != b:
-            return f"{a}–{b}"
-        z, u = (places - e.points[0]), (e.points[-1] - e.points[0]) / max(e.length, 1e-9)
-        on = z * np.conj(u)
-        hit = np.flatnonzero((np.abs(on.imag) < 0.5) & (on.real > REACH) & (on.real < e.length - REACH))
-        if len(hit):
-            return words[int(hit[np.abs(on.real[hit] - e.length / 2).argmin()])]
-        return a or b
-    return ""
+def _called(marks: Sequence[Mark], sheet: Composed, of: str) -> str:
+    """Name of an element by the step that left its marks, with the position where its place is that of several."""
+    by = next((m.by for m in marks if m.by is not None and (m.by.step or m.by.name)), None)
+    if by is None:
+        return of
+    name = said(by.name or by.step.rpartition("/")[2])
+    frame = sheet.frames[by.frame].position if by.frame >= 0 else ""
+    return f"{name}({by.position})" if by.position not in ("", frame) else name

@@ -26,6 +26,14 @@ def _distance(p: Any, q: Any) -> Any:
     return np.abs(q - p)
 
 
+def arm(about: Any, at: Any, force: Any) -> tuple[Helper, ...]:
+    """The line of action of a force, from its point to the foot of the perpendicular, and the arm itself; none of no force."""
+    if not abs(force) > 0:
+        return ()
+    foot = ar.foot(about, at, force / abs(force))
+    return Helper("line", at, foot), Helper("line", about, foot)
+
+
 def _difference(p: Any, q: Any) -> Any:
     return q - p
 
@@ -84,6 +92,6 @@ FOOT = Rule("foot of a perpendicular", ar.foot, ("point", "point", "direction"),
 DISTANCE = Rule("measure a length", _distance, ("point", "point"), "length", "Измерим отрезок {0}{1} = {value}.")
 DIFFERENCE = Rule("measure a vector", _difference, ("point", "point"), "vector", "Измерим вектор {0}{1}: {value}.")
 ARM = Rule("measure an arm", ar.arm, ("point", "point", "force"), "length",
-           "Измерим плечо силы {2} относительно точки {0}: {value}.")
+           "Измерим плечо силы {2} относительно точки {0}: {value}.", lambda a, v: arm(*a))
 TURNED_BY = Rule("turn a direction", lambda u, angle: u * ar.unit(angle), ("direction", "angle"), "direction",
                  "Под углом {1} к {0} проведём направление {name}.")

@@ -16,9 +16,11 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
-from tmm_sheets.sheets.frame import pick
+from tmm_sheets.sheets.frame import Frame, pick
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.project import Project
 
 SAMPLES = 15
@@ -31,9 +33,10 @@ _LEFT, _RIGHT = 24.0, 12.0
 
 @dataclass(frozen=True)
 class Curve:
-    """A quantity over the cycle: ``symbol`` in sheet markup, its values at the sampled angles and at the positions."""
+    """A quantity over the cycle: ``symbol`` in sheet markup, its step, its values at the sampled angles and at the positions."""
 
     symbol: str
+    step: Step
     turned: Any
     values: Any
     at: Any
@@ -106,13 +109,15 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     pieces = [np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
               for a, b in pairwise(edges)]
     every = np.concatenate(pieces)
-    values = _balancing_moment(project, every)
-    at = _balancing_moment(project, project.cycle.turned)
+    at_angles, step = project.study_at(every, tuple("" for _ in every)), project.study.forces.balancing
+    values, at = (_balancing_moment(project, study, study.forces.balancing) for study in (at_angles, project.study))
+    assert step is not None
     angle = _angle(project, box)
     left = canvas.title(box, "График уравновешивающего момента", str(angle))
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
-    mean = project.flywheel.M_constant if project.variant.flywheel is not None else _mean(every, values, project.cycle.period)
-    moment = DiagramQuantity("graph-M", "M_{ур}", "Н·м", (Curve("", every, values, at),))
+    mean = project.flywheel.M_constant if project.variant.flywheel is not None else \
+        float(np.sum(np.diff(every) * (values[1:] + values[:-1])) / 2 / project.cycle.period)
+    moment = DiagramQuantity("graph-M", "M_{ур}", "Н·м", (Curve("", step, every, values, at),))
     _graph(project, canvas, left, angle, moment, level=("M_д", mean))
 
 
@@ -120,12 +125,8 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.
     """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever, in columns side by side."""
     if project.driver is not None:
         raise CannotBuild(*_NO_MOMENT)
-    study, sense = project.study, project.mechanism.crank.sense
-    assert study.forces.balancing is not None
-    assert study.lever.balancing is not None
-    labels = project.cycle.labels
-    both = (study.forces.balancing, study.lever.balancing)
-    by_statics, by_lever = (sense * np.broadcast_to(step.value, len(labels)) for step in both)
+    labels, study = project.cycle.labels, project.study
+    by_statics, by_lever = (_balancing_moment(project, study, of) for of in (study.forces.balancing, study.lever.balancing))
     left = canvas.title(box, "Уравновешивающий момент, Н·м")
     half = (len(labels) + 1) // 2
     cells = [[label, *graphs.column([a, b, np.max(np.abs(by_statics))])[:2]]
@@ -142,14 +143,9 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.
 _NO_MOMENT = ("the diagram of the balancing moment needs a crank driven by a moment", 'write kind = "moment" in [balancing]')
 
 
-def _balancing_moment(project: Project, turned: Any) -> Any:
-    study = project.study_at(turned, tuple("" for _ in turned))
-    assert study.forces.balancing is not None
-    return project.mechanism.crank.sense * np.broadcast_to(study.forces.balancing.value, np.shape(turned))
-
-
-def _mean(turned: Any, values: Any, period: float) -> float:
-    return float(np.sum(np.diff(turned) * (values[1:] + values[:-1])) / 2 / period)
+def _balancing_moment(project: Project, study: Study, step: Step | None) -> Any:
+    assert step is not None
+    return project.mechanism.crank.sense * np.broadcast_to(step.value, np.shape(study.turned))
 
 
 def _samples(project: Project) -> Any:
@@ -162,12 +158,11 @@ def _of_points(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...
     study = project.study_at(turned, tuple("" for _ in turned))
     curves: list[list[Curve]] = [[], [], []]
     for name in names:
-        p, v, a = (np.asarray(plan.points[name].value) for plan in (study.positions, study.velocities, study.accelerations))
-        way = p - p[0]
-        u = _sense(name, way)
-        index = f"{name[0]}{name[1:]}"
-        for found, sign, z in zip(curves, "SVa", (way, v, a), strict=True):
-            found.append(_curve(project, f"{sign}_{{{index}}}", turned, (z * np.conj(u)).real))
+        steps = [plan.points[name] for plan in (study.positions, study.velocities, study.accelerations)]
+        p, v, a = (np.asarray(step.value) for step in steps)
+        u = _sense(name, p - p[0])
+        for found, sign, step, z in zip(curves, "SVa", steps, (p - p[0], v, a), strict=True):
+            found.append(_curve(project, f"{sign}_{{{name}}}", step, turned, (z * np.conj(u)).real))
     units = ("м", "м/с", "м/с^2")
     return tuple(_quantity(f"graph-{s}", s, unit, c) for s, unit, c in zip("SVa", units, curves, strict=True))
 
@@ -195,22 +190,22 @@ def _of_links(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]
     curves: list[list[Curve]] = [[], [], []]
     n = len(turned) - len(project.cycle.turned)
     for name in names:
-        turn = np.unwrap(np.angle(np.broadcast_to(study.positions.directions[name].value, turned.shape))[:n])
+        steps = [study.positions.directions[name], study.velocities.omega[name], study.accelerations.epsilon[name]]
+        turn = np.unwrap(np.angle(np.broadcast_to(steps[0].value, turned.shape))[:n])
         turn = turn - turn[0]
         turn = np.concatenate((turn, np.interp(project.cycle.turned, turned[:n], turn)))
         sign = _begins(turn)
-        both = (study.velocities.omega, study.accelerations.epsilon)
-        omega, eps = (np.broadcast_to(plan[name].value, turned.shape) for plan in both)
-        for found, letter_, y in zip(curves, "ψωε", (turn, omega, eps), strict=True):
-            found.append(_curve(project, f"{letter_}_{{{name}}}", turned, sign * y))
+        omega, eps = (np.broadcast_to(step.value, turned.shape) for step in steps[1:])
+        for found, letter_, step, y in zip(curves, "ψωε", steps, (turn, omega, eps), strict=True):
+            found.append(_curve(project, f"{letter_}_{{{name}}}", step, turned, sign * y))
     units = ("рад", "с^{−1}", "с^{−2}")
     keys = ("graph-psi", "graph-omega", "graph-epsilon")
     return tuple(_quantity(key, s, unit, c) for key, s, unit, c in zip(keys, "ψωε", units, curves, strict=True))
 
 
-def _curve(project: Project, symbol: str, turned: Any, values: Any) -> Curve:
+def _curve(project: Project, symbol: str, step: Step, turned: Any, values: Any) -> Curve:
     n = len(turned) - len(project.cycle.turned)
-    return Curve(symbol, turned[:n], values[:n], values[n:])
+    return Curve(symbol, step, turned[:n], values[:n], values[n:])
 
 
 def _quantity(key: str, sign: str, unit: str, curves: list[Curve]) -> DiagramQuantity:
@@ -244,27 +239,31 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
     canvas.of = q.key
     if level is None:
         canvas.begin(box, f"График {q.letter}")
-    canvas.arrow(o, o + length + graphs.OVER, "axis", 3.0)
-    canvas.text(o + length + graphs.OVER - 5.5j, "φ_1", 3.5, "right")
-    canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)
-    canvas.text(o + 1j * (top + graphs.OVER - 3.0) - 2.0, f"{q.letter}, {q.unit}", 3.5, "right")
+    at = Frame(scale, o, angle)
+    frames = [canvas.placed(c.step.plan, "", o, at.mu) for c in q.curves]
+    axis = (q.curves[0].step.path, "", frames[0])
+    with canvas.traced("axis", *axis):
+        canvas.arrow(o, o + length + graphs.OVER, "axis", 3.0)
+        canvas.text(o + length + graphs.OVER - 5.5j, "φ_1", 3.5, "right")
+        canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)
+        canvas.text(o + 1j * (top + graphs.OVER - 3.0) - 2.0, f"{q.letter}, {q.unit}", 3.5, "right")
     canvas.text(o + length + 1j * (top + graphs.OVER - 4.0), str(scale), 3.5, "right")
-    x = angle.mm(project.cycle.turned)
-    drawn = [o + angle.mm(c.turned) + 1j * scale.mm(c.values) for c in q.curves]
-    for c, curve in zip(q.curves, drawn, strict=True):
-        canvas.polyline(curve, "curve")
-        for xi, y in zip(x, scale.mm(c.at), strict=True):
-            canvas.line(o + xi, o + xi + 1j * y, "thin")
-    if level is not None:
-        y = 1j * scale.mm(level[1])
-        canvas.line(o + y, o + y + length, "axis")
-        canvas.label(o + y + 0.9 * length, f"{level[0]} = {fixed(level[1], 1)} Н·м", 1j, 3.5, 0.8)
-    _numbers(project, canvas, o, x, length, q, drawn)
-    if len(q.curves) > 1:
-        for c in q.curves:
-            peak = int(np.argmax(np.abs(c.values)))
-            at = o + angle.mm(c.turned[peak]) + 1j * scale.mm(c.values[peak])
-            canvas.label(at, c.symbol, 1j * np.sign(c.values[peak]), 3.5, 0.8)
+    feet, drawn = at(project.cycle.turned), [at(c.turned + 1j * c.values) for c in q.curves]
+    for c, frame, curve in zip(q.curves, frames, drawn, strict=True):
+        with canvas.traced("curve", c.step.path, "", frame, c.symbol):
+            canvas.polyline(curve, "curve")
+        for label, foot, y in zip(project.cycle.labels, feet, scale.mm(c.at), strict=True):
+            with canvas.traced("construction", c.step.path, label, frame, c.symbol):
+                canvas.line(foot, foot + 1j * y, "thin")
+    with canvas.traced("axis", *axis):
+        if level is not None:
+            y = o + 1j * scale.mm(level[1])
+            canvas.line(y, y + length, "axis")
+            canvas.label(y + 0.9 * length, f"{level[0]} = {fixed(level[1], 1)} Н·м", 1j, 3.5, 0.8)
+        _numbers(project, canvas, o, angle.mm(project.cycle.turned), length, q, drawn)
+    for c in q.curves if len(q.curves) > 1 else ():
+        peak = int(np.argmax(np.abs(c.values)))
+        canvas.label(complex(at(c.turned[peak] + 1j * c.values[peak])), c.symbol, 1j * np.sign(c.values[peak]), 3.5, 0.8)
 
 
 def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: DiagramQuantity, curves: list[Any]) -> None:

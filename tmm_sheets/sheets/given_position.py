@@ -10,6 +10,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, size
+from tmm_sheets.sheets.linkage import indexed
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -50,7 +51,7 @@ def _points(project: Project) -> list[list[str]]:
     names = [name for name in study.positions.points if name not in m.fixed and name in study.velocities.points]
     speed, acceleration = study.velocities.points, study.accelerations.points
     of_speed, of_acceleration = (size((step.value for step in of.values()), k) for of in (speed, acceleration))
-    cells = [[_indexed(name), _size(speed[name], k, of_speed), _size(acceleration[name], k, of_acceleration)] for name in names]
+    cells = [[indexed(name), _size(speed[name], k, of_speed), _size(acceleration[name], k, of_acceleration)] for name in names]
     half = (len(cells) + 1) // 2
     head = ["Точка", "V, м/с", "a, м/с²"]
     return [head * 2, *([*left, *right] for left, right in zip(cells[:half], [*cells[half:], ["", "", ""]], strict=False))]
@@ -80,12 +81,8 @@ def _loads(project: Project) -> list[list[str]]:
     for load in project.applied:
         unit = "Н" if load.point is not None else "Н·м"
         value = float(np.ravel(load.magnitude(turned))[0])
-        rows.append([_indexed(load.name), f"{number(value)} {unit}", "принято" if written[load.name].accepted else "задано"])
+        rows.append([indexed(load.name), f"{number(value)} {unit}", "принято" if written[load.name].accepted else "задано"])
     return rows
-
-
-def _indexed(name: str) -> str:
-    return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
 
 
 def _size(step: Any, k: int, kind: float) -> str:

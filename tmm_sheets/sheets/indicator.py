@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale
-from tmm_sheets.sheets.frame import Frame, ScaleBook, pick
+from tmm_sheets.sheets.frame import pick
 
 if TYPE_CHECKING:
-    from tmm_sheets.drawing.canvas import Canvas
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.player import Stage
 
 GAP = 25.0
 """Distance of a diagram's abscissa from the path: room for position numbers, mm."""
@@ -87,47 +86,46 @@ def reach(project: Project) -> tuple[list[complex], list[complex]]:
     return z, d
 
 
-def scale_of(project: Project, canvas: ScaleBook, shown: list[Indicator]) -> Scale:
-    """One scale factor for all diagrams of a project."""
-    turned = _angles(project)
-    top = max(float(np.max(one.ordinate(turned))) for one in shown)
-    pressure = shown[0].area != 1
-    return pick(project, canvas, "indicator", "μ_p" if pressure else "μ_F", "МПа/мм" if pressure else "Н/мм", top / HEIGHT)
-
-
 def _angles(project: Project) -> Any:
     cycle = project.cycle
     turns = round(cycle.period / (2 * pi))
     return np.unique(np.concatenate((np.linspace(0, cycle.period, turns * (SAMPLES - 1) + 1), cycle.turned)))
 
 
-def draw(project: Project, canvas: Canvas, frame: Frame) -> None:
+def draw(project: Project, s: Stage) -> None:
     """The diagrams of a project beside the paths of its position plans."""
     shown = indicators(project)
     if not shown:
         return
-    scale = scale_of(project, canvas, shown)
+    canvas, cycle = s.canvas, project.cycle
     turned = _angles(project)
+    top = max(float(np.max(one.ordinate(turned))) for one in shown)
+    pressure = shown[0].area != 1
+    scale = pick(project, canvas, "indicator", "μ_p" if pressure else "μ_F", "МПа/мм" if pressure else "Н/мм", top / HEIGHT)
     pos = project.study_at(turned, tuple("" for _ in turned)).positions
-    cycle = project.cycle
     for one in shown:
-        name = str(one.force.point)
-        path = frame(np.asarray(pos.points[name].value))
-        curve = path + one.side * (GAP + one.ordinate(turned) / scale.mu)
+        name, load = str(one.force.point), f"loads/{one.force.name}"
+        path = s.frame(np.asarray(pos.points[name].value))
         canvas.of = f"indicator {one.force.name}"
-        canvas.polyline(curve, "curve")
+        zero = path[0] - one.along * ((path[0] - s.frame(0j)) * np.conj(one.along)).real + one.side * GAP
+        mu = (s.frame.mu[0], scale.mu * (1e6 * one.area if pressure else 1.0))  # of the force, which the plan has
+        graph = canvas.placed("loads", "", zero, mu, float(np.angle(one.along)), (one.side / one.along).imag < 0)
+        with canvas.traced("curve", load, "", graph):
+            canvas.polyline(path + one.side * (GAP + one.ordinate(turned) / scale.mu), "curve")
         ways = (path * np.conj(one.along)).real
         low, high = path[int(np.argmin(ways))] + one.side * GAP, path[int(np.argmax(ways))] + one.side * GAP
-        canvas.line(low, high, "axis")
         top = float(np.max(one.ordinate(turned))) / scale.mu
-        outer = low if (low - frame(0j)).imag * one.along.imag < 0 else high
-        canvas.arrow(outer, outer + one.side * (top + 9.0), "axis", 3.0)
+        outer = low if (low - s.frame(0j)).imag * one.along.imag < 0 else high
+        with canvas.traced("axis", load, "", graph):
+            canvas.line(low, high, "axis")
+            canvas.arrow(outer, outer + one.side * (top + 9.0), "axis", 3.0)
         away = one.along * (1 if outer == high else -1)
         canvas.label(outer + one.side * (top + 4.0), one.text, away, 3.5, 1.2, leader=False)
         if one is shown[0]:
             canvas.label(outer + one.side * (top + 4.0) + 7.0 * away, str(scale), away, 3.5, 1.2)
-        marks = frame(np.asarray(project.study.positions.points[name].value))
+        marks = s.frame(np.asarray(s.plan[name].value))
         for mark in np.unique(np.round(marks, 6)):
             here = np.flatnonzero(np.abs(marks - mark) < 1e-5)
             y = max(float(one.ordinate(cycle.turned[i])) for i in here) / scale.mu
-            canvas.line(mark, mark + one.side * (GAP + max(y, 0.0)), "thin")
+            with s.position(int(here[0])).of(name, "construction"):
+                canvas.line(mark, mark + one.side * (GAP + max(y, 0.0)), "thin")

@@ -117,6 +117,20 @@ class VelocityLayout:
     beyond: list[tuple[int, float]]
     every: int
 
+    def places(self) -> Iterator[tuple[tuple[int, str], Box, Box, float]]:
+        """Index and label of each plan, its extent, its place, and the height left over there, mm; what is left is shared out."""
+        rows = [slice(i, i + self.per_row) for i in range(0, len(self.shown), self.per_row)]
+        heights = [max(s.height for s in self.spans[row]) / self.scale.mu + HEAD for row in rows]
+        spare = (self.inside.height - sum(heights)) / self.rows
+        y = self.inside.y1
+        for row, height in zip(rows, heights, strict=True):
+            widths = [s.width / self.scale.mu + MARGIN for s in self.spans[row]]
+            gap, x = (self.inside.width - sum(widths)) / len(widths), self.inside.x0
+            for at, span, width in zip(self.shown[row], self.spans[row], widths, strict=True):
+                yield at, span, Box(x, y - height - spare, x + width + gap, y), spare
+                x += width + gap
+            y -= height + spare
+
 
 def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> VelocityLayout:
     """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Iterator
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.scale import times
-from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
@@ -21,109 +20,113 @@ from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick
+from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan, Segment
+    from tmm_sheets.construction.plan import Segment
+    from tmm_sheets.mechanism.model import Mechanism
+    from tmm_sheets.methods.linkage.cycle import Strokes
+    from tmm_sheets.methods.linkage.loads import Applied
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
 
 def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Combined position plans with path marks and the force graph over the path."""
-    study, cycle, k = project.study, project.cycle, project.force_index
-    pos = study.positions
-    m = pos.mechanism
+    cycle, k, pos = project.cycle, project.force_index, project.study.positions
     graph = kinematic_frames.graph_height(project, options)
     frame = kinematic_frames.positions(project, canvas, box, options)
-    c = m.crank
-    centre = m.fixed[c.pivot]
     canvas.title(box, "Планы положений механизма", str(frame.scale))
     flat_crossings.warn(project, canvas, box, pos.plan, (i for i, _ in cycle.drawn))
     canvas.scales["dead-positions"] = frame.scale
-    canvas.circle(frame(centre), c.length / frame.scale.mu, "thin")
-    _paths(canvas, project, frame, Box(box.x0 + 2.0, box.y0, box.x1 - 2.0, box.y1 - 18.0))
+    every = stage(canvas, pos.plan, None, frame)
+    play(every, [pos.mechanism.crank.pin], "thin", only="circle")
+    _paths(project, every, Box(box.x0 + 2.0, box.y0, box.x1 - 2.0, box.y1 - 18.0))
     of = canvas.of
     for i, label in cycle.drawn:
         if i != k:
             canvas.of = f"position plan {label}"
-            linkage.draw(canvas, pos, i, frame, "thin")
+            linkage.draw(every.position(i), pos, "thin")
     canvas.of = f"position plan {cycle.labels[k]}"
-    linkage.draw_guides(canvas, pos, k, frame)
-    linkage.draw(canvas, pos, k, frame, "main")
+    s = every.position(k)
+    linkage.draw_guides(s, pos)
+    linkage.draw(s, pos, "main")
     canvas.of = of
-    indicator.draw(project, canvas, frame)
-    _position_numbers(canvas, project, frame)
-    _letters(canvas, project, frame)
+    indicator.draw(project, every)
+    _position_numbers(project, s)
+    _point_letters(project, s)
+    _link_numbers(s, pos)
+    _rotations(project, s)
     if cycle.strokes is not None and project.variant.cycle is not None and project.variant.cycle.working:
-        _strokes(canvas, project, frame)
+        _strokes(project, s)
     if graph:
         below = kinematic_frames.graph_below(project)
         y = box.y0 if below else box.y1 - 20.0 - graph
-        _force_graph(canvas, project, frame, Box(box.x0, y, box.x1, y + graph), below)
+        _force_graph(project, every, Box(box.x0, y, box.x1, y + graph), below)
 
 
-def _paths(canvas: Canvas, project: Project, frame: Frame, room: Box) -> None:
+def _paths(project: Project, s: Stage, room: Box) -> None:
     """Paths of the hinges and of the centres of mass, thin, through many positions."""
     turned = np.linspace(0, 2 * pi, 181)
     pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
     m = pos.mechanism
-    shown = [p.name for p in m.points] + [g.inner for g in m.groups if g.inner and not g.guides]
-    for name in shown:
-        z = np.asarray(pos.points[name].value)
-        if np.ndim(z):
-            canvas.polyline(frame(z), "thin")
+    for name in [p.name for p in m.points] + [g.inner for g in m.groups if g.inner and not g.guides]:
+        if np.ndim(pos.points[name].value):
+            with s.of(pos.points[name], "curve"):
+                s.canvas.polyline(s.frame(np.asarray(pos.points[name].value)), "thin")
     for name in dict.fromkeys(name for g in m.groups if g.inner for name in g.guides):
         if m.guides[name].link == m.frame:
-            _guide_line(canvas, project, frame, name, room)
+            _guide_line(project.study.positions, s, name, room)
 
 
-def _guide_line(canvas: Canvas, project: Project, frame: Frame, name: str, room: Box) -> None:
+def _guide_line(pos: Positions, s: Stage, name: str, room: Box) -> None:
     """Centre line of a fixed guide over the path of its slider and beyond, as far as there is room: not into the title."""
-    pos = project.study.positions
-    u = complex(pos.guide_directions[name].at(0))
-    q = complex(pos.guide_points[name].at(0))
+    u, q = (complex(of[name].at(0)) for of in (pos.guide_directions, pos.guide_points))
     on = [g.inner for g in pos.mechanism.groups if name in g.guides and g.inner]
     z = np.concatenate([np.atleast_1d(pos.points[p].value) for p in on])
     t = ((z - q) * np.conj(u)).real
-    a, b = frame(q + u * np.nanmin(t)), frame(q + u * np.nanmax(t))
-    inside = segment_inside(room, a - 24.0 * u, b + 24.0 * u)
+    inside = segment_inside(room, s.frame(q + u * np.nanmin(t)) - 24.0 * u, s.frame(q + u * np.nanmax(t)) + 24.0 * u)
     if inside is not None:
-        canvas.line(*inside, "centre")
+        with s.of(pos.guide_directions[name], "axis"):
+            s.canvas.line(*inside, "centre")
 
 
-def _position_numbers(canvas: Canvas, project: Project, frame: Frame) -> None:
+def _position_numbers(project: Project, s: Stage) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
-    study = project.study
-    pos = study.positions
-    m = pos.mechanism
+    pos, m = project.study.positions, project.mechanism
     # A point on a fixed guide has its marks there; one that slides on a moving link is told by the marks of others.
     sliding = {str(g.inner): guide for g in m.groups for guide in g.guides if m.guides[guide].link == m.frame}
-    carried = {g.inner for g in m.groups if len(g.kind.sliders(g)) == 1 and m.guides[g.guides[0]].link != m.frame}
-    hinges = [m.crank.pin, *(p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))]
-    hinges += [g.inner for g in m.groups
-               if g.inner and g.inner not in sliding and g.inner not in carried and not g.kind.ram(g)]
-    for name in dict.fromkeys(hinges):
-        z = np.asarray(frame(pos.points[name].value))
-        _hinge_numbers(canvas, project, z, frame(m.fixed[m.crank.pivot]) if name == m.crank.pin else z.mean() - 40j)
+    for name in dict.fromkeys(_hinges(m, sliding)):
+        z = np.asarray(s.frame(pos.points[name].value))
+        _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j)
     on = list(sliding.values())
     for name, guide in sliding.items():
-        z = np.asarray(frame(pos.points[name].value))
         u = complex(pos.guide_directions[guide].at(0))
         n = _upper_side(u)
         if on.count(guide) > 1:
-            _shared_path(canvas, project, z, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
+            _shared_path(project, s, name, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
         else:
-            speed = (np.asarray(study.velocities.points[name].value) * np.conj(u)).real
-            _own_path(canvas, project, z, n, speed, u)
+            _own_path(project, s, name, n, u)
 
 
-def _hinge_numbers(canvas: Canvas, project: Project, z: Any, middle: complex) -> None:
-    """Small hinges at the points ``z`` (mm) of all positions but the highlighted one, their numbers away from ``middle``."""
-    cycle = project.cycle
-    for i, _ in cycle.drawn:
-        if i != project.force_index:
-            symbols.hinge(canvas, z[i], "thin", 0.7)
-            canvas.label(z[i], cycle.labels[i], z[i] - middle, 2.5, 0.9, leader=False)
+def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
+    """Points of the hinges that have their position numbers beside them."""
+    yield m.crank.pin
+    yield from (p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))
+    for g in m.groups:
+        carried = len(g.kind.sliders(g)) == 1 and m.guides[g.guides[0]].link != m.frame
+        if g.inner and g.inner not in sliding and not carried and not g.kind.ram(g):
+            yield g.inner
+
+
+def _hinge_numbers(project: Project, s: Stage, name: str, middle: complex) -> None:
+    """Small hinges at a point in all positions but the highlighted one, their numbers away from ``middle``, mm."""
+    for i, _ in project.cycle.drawn:
+        here = s.position(i)
+        if i != s.k:
+            with here.of(name, "symbol"):
+                symbols.hinge(s.canvas, here.at(name), "thin", 0.7)
+            here.letters(name, project.cycle.labels[i], here.at(name) - middle, 2.5, 0.9, leader=False)
 
 
 def _upper_side(u: complex) -> complex:
@@ -132,19 +135,28 @@ def _upper_side(u: complex) -> complex:
     return n if n.imag > 1e-9 or (n.imag > -1e-9 and u.imag < 0) else -1j * u
 
 
-def _own_path(canvas: Canvas, project: Project, z: Any, n: complex, speed: Any, u: complex) -> None:
-    """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other."""
-    cycle, k = project.cycle, project.force_index
+def _path_mark(s: Stage, name: str, n: complex) -> None:
+    """Stroke across a path at a point."""
+    with s.of(name, "point"):
+        s.canvas.line(s.at(name) - 2.0 * n, s.at(name) + 2.0 * n, "axis")
+
+
+def _own_path(project: Project, s: Stage, name: str, n: complex, u: complex) -> None:
+    """Marks of the only slider on a path along ``u``: numbers of the working stroke on side ``n`` of it, of the idle one on the
+    other.
+    """
+    cycle = project.cycle
+    z = np.asarray(s.frame(project.study.positions.points[name].value))
+    speed = (np.asarray(project.study.velocities.points[name].value) * np.conj(u)).real
     working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
-    forth = np.sign(working)
     for i, _ in cycle.drawn:
-        canvas.line(z[i] - 2.0 * n, z[i] + 2.0 * n, "axis")
-    marks = [i for i, _ in cycle.drawn if i != k]
-    ahead = speed * (forth or 1.0) > -1e-9 * np.abs(speed).max()
+        _path_mark(s.position(i), name, n)
+    marks = [i for i, _ in cycle.drawn if i != s.k]
+    ahead = speed * (np.sign(working) or 1.0) > -1e-9 * np.abs(speed).max()
     for side, there in ((n, [i for i in marks if ahead[i]]), (-n, [i for i in marks if not ahead[i]])):
         for crowd in _crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
-            canvas.label(at + 2.0 * side, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, leader=False)
+            s.position(crowd[0]).letters(name, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, at + 2.0 * side, False)
 
 
 def _crowds(marks: list[int], z: Any) -> list[list[int]]:
@@ -167,69 +179,62 @@ def _range(labels: list[str]) -> str:
     return f"{labels[0]}–{labels[-1]}" if len(labels) > 2 else ", ".join(labels)
 
 
-def _shared_path(canvas: Canvas, project: Project, z: Any, n: complex) -> None:
+def _shared_path(project: Project, s: Stage, name: str, n: complex) -> None:
     """Marks of one of several sliders on one path: all its numbers on its own side, those of one place together."""
-    cycle, k = project.cycle, project.force_index
     places: list[list[int]] = []
-    for i, _ in cycle.drawn:
-        same = next((p for p in places if abs(z[p[0]] - z[i]) < 1.0), None)
+    for i, _ in project.cycle.drawn:
+        same = next((p for p in places if abs(s.position(p[0]).at(name) - s.position(i).at(name)) < 1.0), None)
         if same is None:
             places.append([i])
         else:
             same.append(i)
     for place in places:
-        at = complex(z[place[0]])
-        canvas.line(at - 2.0 * n, at + 2.0 * n, "axis")
-        text = ", ".join(cycle.labels[i] for i in place)
-        canvas.label(at + (2.0 if k not in place else 5.5) * n, text, n, 2.5, 0.6, leader=False)
+        here = s.position(place[0])
+        _path_mark(here, name, n)
+        text = ", ".join(project.cycle.labels[i] for i in place)
+        here.letters(name, text, n, 2.5, 0.6, here.at(name) + (2.0 if s.k not in place else 5.5) * n, False)
 
 
-def _letters(canvas: Canvas, project: Project, frame: Frame) -> None:
-    """Letters of pairs, numbers of links, centres of mass and arrows of rotation at the highlighted plan."""
-    k, pos = project.force_index, project.study.positions
-    at = {name: frame(complex(p.at(k))) for name, p in pos.points.items()}
-    _point_letters(canvas, project, at)
-    _link_numbers(canvas, pos, k, frame, at)
-    _rotations(canvas, project, frame, at)
-
-
-def _point_letters(canvas: Canvas, project: Project, at: Mapping[str, complex]) -> None:
+def _point_letters(project: Project, s: Stage) -> None:
     """Letters of the points, those of moving ones with the number of the position, and symbols of the centres of mass."""
-    m, label = project.mechanism, project.cycle.labels[project.force_index]
+    m = project.mechanism
     masses = {link.centre for link in m.links.values() if link.mass}
     own = {p.name for p in m.points if not any(p.name in g.outer for g in m.groups)}
-    for name, z in at.items():
-        moving = name not in m.fixed
+    for name, step in project.study.positions.points.items():
+        moving, letters = name not in m.fixed, linkage.indexed(name)
         if name in masses and name in own:
-            symbols.centre_of_mass(canvas, z)
-        text = f"{linkage.indexed(name)}({label})" if moving and not name[1:] else linkage.indexed(name)
-        canvas.label(z, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
+            with s.of(step, "symbol"):
+                symbols.centre_of_mass(s.canvas, s.at(step))
+        text = f"{letters}({project.cycle.labels[project.force_index]})" if moving and not name[1:] else letters
+        s.letters(step, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
 
 
-def _link_numbers(canvas: Canvas, pos: Positions, k: int, frame: Frame, at: Mapping[str, complex]) -> None:
+def _link_numbers(s: Stage, pos: Positions) -> None:
     """Numbers of the links beside the middles of their bars and at their blocks."""
-    for s in linkage.shapes(pos):
-        if s.bar:
-            p = [frame(z) for z in linkage.bar_points(pos, s, k)]
-            a, b = p[0], p[1] if len(p) == 2 else p[-1]
-            mid = a + 0.62 * (b - a) if len(p) > 2 else (a + b) / 2
-            canvas.label(mid, s.link, 1j * (b - a), 5.0, 1.4)
-        elif s.block is not None:
-            canvas.label(at[s.block], s.link, complex(s.along.at(k)) if s.along else 0j, 5.0, 6.0)
+    for shape in linkage.shapes(pos):
+        link = pos.directions[shape.link]
+        if shape.bar:
+            names = linkage.along_bar(s, pos, shape)
+            a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
+            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, a + (0.62 if len(names) > 2 else 0.5) * (b - a))
+        elif shape.block is not None:
+            s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(pos.points[shape.block]))
 
 
-def _rotations(canvas: Canvas, project: Project, frame: Frame, at: Mapping[str, complex]) -> None:
+def _rotations(project: Project, s: Stage) -> None:
     """Arrows of angular velocity, and of angular acceleration, of the crank and of every bar that turns."""
     study, k, m = project.study, project.force_index, project.mechanism
     pos, c = study.positions, m.crank
-    pivot = at[c.pivot]
-    radius = c.length / frame.scale.mu
-    symbols.rotation_arrow(canvas, pivot, max(0.5 * radius, 7.0), linkage.clear_of_crank(pos, k), c.omega, f"ω_{c.link}")
-    for link, w in study.velocities.omega.items():
-        shape = next((s for s in linkage.shapes(pos) if s.link == link and s.bar), None)
-        if link in (m.frame, c.link) or shape is None or abs(w.at(k)) < 1e-9 * c.speed:
+    pivot = s.at(c.pivot)
+    radius = max(0.5 * c.length / s.frame.mu[1], 7.0)
+    with s.of(study.velocities.omega[c.link], "symbol"):
+        symbols.rotation_arrow(s.canvas, pivot, radius, linkage.clear_of_crank(s, pos), c.omega, f"ω_{c.link}")
+    for shape in linkage.shapes(pos):
+        link = shape.link
+        w, eps = (of[link] for of in (study.velocities.omega, study.accelerations.epsilon))
+        if not shape.bar or link == c.link or abs(w.at(k)) < 1e-9 * c.speed:
             continue
-        base, tip = (at[name] for name in shape.ends)
+        base, tip = (s.at(pos.points[name]) for name in shape.ends)
         u = (tip - base) / abs(tip - base)
         places = [(base, 20.0, u), (base, 28.0, u)]
         if shape.bar[0] not in m.fixed:
@@ -237,18 +242,17 @@ def _rotations(canvas: Canvas, project: Project, frame: Frame, at: Mapping[str, 
             n = 1j * u if (np.conj(1j * u) * (base - pivot)).real > 0 else -1j * u
             middle = base + 0.38 * (tip - base)
             places = [(middle, 6.0, n), (middle, 6.0, -n)]
-        eps = study.accelerations.epsilon[link].at(k)
-        symbols.rotation_arrow(canvas, *places[0], float(w.at(k)), f"ω_{link}")
-        if abs(eps) > 1e-9 * c.speed**2:
-            symbols.rotation_arrow(canvas, *places[1], float(eps), f"ε_{link}")
+        for step, sign, place, least in ((w, "ω", places[0], 0.0), (eps, "ε", places[1], 1e-9 * c.speed**2)):
+            if abs(step.at(k)) > least:
+                with s.of(step, "symbol"):
+                    symbols.rotation_arrow(s.canvas, *place, float(step.at(k)), f"{sign}_{link}")
 
 
-def _strokes(canvas: Canvas, project: Project, frame: Frame) -> None:
+def _strokes(project: Project, s: Stage) -> None:
     """Working and idle angles of the crank between its dead positions."""
-    cycle, m = project.cycle, project.mechanism
+    cycle, c = project.cycle, project.mechanism.crank
     assert cycle.strokes is not None
-    centre = frame(m.fixed[m.crank.pivot])
-    radius = m.crank.length / frame.scale.mu + 7.0
+    radius = c.length / s.frame.mu[1] + 7.0
     count = project.variant.cycle.working if project.variant.cycle else None
     first = cycle.world(cycle.turned[0])
     last = cycle.world(cycle.turned[count] if count else cycle.strokes.end)
@@ -256,93 +260,87 @@ def _strokes(canvas: Canvas, project: Project, frame: Frame) -> None:
         # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
         lo, hi = min(a, b), max(a, b)
         share = at if b > a else 1 - at
-        canvas.angle_mark(centre, lo, hi, radius, f"{text} = {number(round(degrees(hi - lo), 6))}°", 3.5, share)
+        s.canvas.angle_mark(s.at(c.pivot), lo, hi, radius, f"{text} = {number(round(degrees(hi - lo), 6))}°", 3.5, share)
 
 
-def _force_graph(canvas: Canvas, project: Project, frame: Frame, box: Box, below: bool) -> None:
+def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     """Force over the path: the path marks carried over onto the abscissa, ordinates over every mark."""
-    cycle, study = project.cycle, project.study
+    cycle, canvas = project.cycle, s.canvas
     strokes, force = cycle.strokes, kinematic_frames.graph_force(project)
     assert strokes is not None
-    inner = [j for j in force.jumps if strokes.begin < j < strokes.end]
-    nodes = [*np.linspace(strokes.begin, strokes.end, 241), *(j + s * 1e-9 for j in inner for s in (-1, 1))]
-    turned = np.sort(np.asarray(nodes))[1:-1]
-    out = np.asarray(study.positions.points[strokes.output].value)
+    turned = _graph_angles(strokes, force)
     magnitude = np.asarray(force.magnitude(turned, 0))
     top = float(magnitude.max())
     y0 = box.y0 + 5.0
     scale = pick(project, canvas, "force-graph", "μ_F", "Н/мм", top / (box.height - 18.0))
-    a, b = frame(strokes.origin), frame(strokes.origin + strokes.path * strokes.length)
+    high = y0 + top / scale.mu
+    a, b = s.frame(strokes.origin), s.frame(strokes.origin + strokes.path * strokes.length)
     left, right = sorted((a.real, b.real))
-    canvas.arrow(complex(left, y0), complex(left, y0 + top / scale.mu + 9.0), "axis", 3.5)
     way = linkage.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
     tip = min(right + 14.0, box.x1 - 1.5 - letter(f"{way}, м", 3.5).width)
-    canvas.arrow(complex(left, y0), complex(tip, y0), "axis", 3.5)
-    canvas.text(complex(left - 2.0, y0 + top / scale.mu + 5.0), f"{linkage.indexed(force.name)}, Н", 3.5, "right")
-    canvas.text(complex(tip + 1.5, y0 - 1.2), f"{way}, м", 3.5)
+    load, back = f"loads/{force.name}", a.real > b.real  # the way is counted from where the stroke begins
+    graph = canvas.placed("loads", "", complex(a.real, y0), (s.frame.mu[0], scale.mu), pi * back, back)
+    with canvas.traced("axis", load, "", graph):
+        canvas.arrow(complex(left, y0), complex(left, high + 9.0), "axis", 3.5)
+        canvas.arrow(complex(left, y0), complex(tip, y0), "axis", 3.5)
+        canvas.text(complex(left - 2.0, high + 5.0), f"{linkage.indexed(force.name)}, Н", 3.5, "right")
+        canvas.text(complex(tip + 1.5, y0 - 1.2), f"{way}, м", 3.5)
     # Beside the end of the graph, or above it where there is no room.
     room = box.x1 - letter(str(scale), 3.5).width
-    canvas.text(complex(min(right + 3.0, room), y0 + top / scale.mu + (0.0 if right + 3.0 <= room else 2.5)), str(scale), 3.5)
+    canvas.text(complex(min(right + 3.0, room), high + (0.0 if right + 3.0 <= room else 2.5)), str(scale), 3.5)
     acting = np.flatnonzero(magnitude > 0)
-    xs = np.real(frame(study_points(project, strokes.output, turned)))
+    path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
+    xs = np.real(s.frame(path.value))
     curve = xs[acting] + 1j * (y0 + magnitude[acting] / scale.mu)
-    canvas.polyline([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)], "curve")
+    with canvas.traced("curve", load, "", graph):
+        canvas.polyline([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)], "curve")
     count = project.variant.cycle.working if project.variant.cycle else None
     lettered: list[float] = []
     for i, label in cycle.drawn:
-        z = frame(complex(out[i]))
+        here = s.position(i)
+        z = here.at(strokes.output)
         acts = max(float(force.magnitude(cycle.turned[i], side)) for side in (-1, 1))
-        if acts > 0 or i in (0, count):
-            foot, head = complex(z.real, y0), complex(z.real, y0 + acts / scale.mu)
+        if not acts > 0 and i not in (0, count):
+            continue
+        foot, head = complex(z.real, y0), complex(z.real, y0 + acts / scale.mu)
+        with here.of(strokes.output, "construction"):
             canvas.line(z, foot if below else head, "thin")
-            if below:
+        if below:
+            with canvas.traced("curve", load, here.label, graph):
                 canvas.line(foot, head, "thin")
-            if all(abs(z.real - x) > 4.5 for x in lettered):
-                lettered.append(z.real)
-                canvas.text(complex(z.real + 0.8, y0 + 1.0), label, 2.5)
+        if all(abs(z.real - x) > 4.5 for x in lettered):
+            lettered.append(z.real)
+            canvas.text(complex(z.real + 0.8, y0 + 1.0), label, 2.5)
 
 
-def study_points(project: Project, name: str, turned: Any) -> Any:
-    """Points of the mechanism at further crank angles."""
-    t = np.asarray(turned, dtype=float)
-    return project.study_at(t, tuple("" for _ in t)).positions.points[name].value
+def _graph_angles(strokes: Strokes, force: Applied) -> Any:
+    """Angles of the working stroke at which the force is drawn, both sides of its jumps among them."""
+    inner = [j for j in force.jumps if strokes.begin < j < strokes.end]
+    nodes = [*np.linspace(strokes.begin, strokes.end, 241), *(j + s * 1e-9 for j in inner for s in (-1, 1))]
+    return np.sort(np.asarray(nodes))[1:-1]
 
 
 def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Velocity plans of all positions with one scale factor, packed into rows."""
-    vel = project.study.velocities
+    plan = project.study.velocities.plan
     layout = kinematic_frames.velocities(project, canvas, box, options)
-    shown, spans, rows, per_row, scale = layout.shown, layout.spans, layout.rows, layout.per_row, layout.scale
-    inside, count, margin = layout.inside, len(layout.shown), kinematic_frames.MARGIN
-    canvas.title(box, "Планы скоростей" if count > 1 else "План скоростей", str(scale))
-    flat_crossings.warn(project, canvas, box, vel.plan, (i for i, _ in shown))
+    many = len(layout.shown) > 1
+    canvas.title(box, "Планы скоростей" if many else "План скоростей", str(layout.scale))
+    flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
     _left_out(project, canvas, box, layout)
-    heights = [max(s.height for s in spans[r * per_row:(r + 1) * per_row]) / scale.mu + kinematic_frames.HEAD for r in range(rows)]
-    spare = (inside.height - sum(heights)) / rows
-    y = inside.y1
     tiny: dict[str, list[str]] = {}
-    for r in range(rows):
-        row = range(r * per_row, min((r + 1) * per_row, count))
-        used = sum(spans[i].width / scale.mu + margin for i in row)
-        gap = (inside.width - used) / len(row)
-        x = inside.x0
-        for i in row:
-            s = spans[i]
-            w = s.width / scale.mu + margin + gap
-            middle = complex(x + w / 2, y - (heights[r] + spare) / 2 + 4.0)
-            frame = Frame(scale, middle - scale.mm(s.centre))
-            index, label = shown[i]
-            canvas.of = f"velocity plan {label}"
-            if count > 1:
-                canvas.begin(Box(x, y - heights[r] - spare, x + w, y), f"План скоростей, положение {label}")
-            for name in _draw_plan(canvas, vel.plan, index, frame, "p", symbols_at=count == 1):
-                tiny.setdefault(name, []).append(label)
-            canvas.text(complex(middle.real, y - heights[r] - spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
-            x += w
-        y -= heights[r] + spare
+    for (index, label), span, place, spare in layout.places():
+        middle = place.centre + 4.0j
+        canvas.of = f"velocity plan {label}"
+        if many:
+            canvas.begin(place, f"План скоростей, положение {label}")
+        s = stage(canvas, plan, index, Frame(layout.scale, middle - layout.scale.mm(span.centre)))
+        for name in _draw_plan(s, "p", symbols_at=not many):
+            tiny.setdefault(name, []).append(label)
+        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
-        canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {_with_positions(tiny) if count > 1 else ', '.join(tiny)}")
+        canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {_with_positions(tiny) if many else ', '.join(tiny)}")
 
 
 def _with_positions(tiny: dict[str, list[str]]) -> str:
@@ -362,48 +360,47 @@ def _left_out(project: Project, canvas: Canvas, box: Box, layout: kinematic_fram
         canvas.note(box, f"Начерчены планы скоростей для каждого {layout.every}-го положения")
 
 
-def _draw_plan(canvas: Canvas, plan: Plan, i: int, frame: Frame, pole: str, symbols_at: bool = False) -> list[str]:
+def _draw_plan(s: Stage, pole: str, symbols_at: bool = False) -> list[str]:
     """One velocity or acceleration plan: helper lines, vectors with arrow heads, letters of the points.
 
     Returns the signs of the vectors that are too short to be drawn; their ends have their letters at one point.
     """
-    points = kinematic_frames.plan_points(plan, i)
-    for step in plan:
-        if step.rule.helpers is None:
-            continue
-        args = tuple(_at(a, i) for a in step.args)
-        for h in step.rule.helpers(args, complex(step.at(i))):
-            if h.kind == "line":
-                canvas.ray_line(frame(h.a), frame(h.b), "construction", over=4.0)
-    size = max(abs(z) for z in points.values())
-    tiny = {}
-    for seg in plan.segments:
-        a, b = complex(seg.tail.at(i)), complex(seg.head.at(i))
-        if is_zero(b - a, size):
-            continue
-        if frame.scale.mm(abs(b - a)) < SHORTEST:
-            tiny[seg.tail.name, seg.head.name] = seg.symbol
-            continue
-        canvas.arrow(frame(a), frame(b), "vector")
-        if symbols_at:
-            canvas.label(frame(_place_of_sign(plan, seg, i)), seg.symbol, 1j * (b - a), 3.5, 1.0)
-    centre = frame(np.mean(list(points.values())))
-    for names in joined({name: frame(z) for name, z in points.items()}, tiny):
-        z = points[names[0]]
-        q = frame(z)
-        shown = [plan_letter(n) for n in names if n != pole]
-        canvas.dot(q, 0.6, "vector")
+    assert s.k is not None
+    points = kinematic_frames.plan_points(s.plan, s.k)
+    play(s, over=4.0)
+    tiny = _vectors(s, max(abs(z) for z in points.values()), symbols_at)
+    centre = s.frame(np.mean(list(points.values())))
+    for names in joined({name: s.frame(z) for name, z in points.items()}, tiny):
+        q = s.at(names[0])
+        shown = [linkage.indexed(n) for n in names if n != pole]
+        s.dot(names[0])
         # A long row of letters leaves the pole's own to itself.
         rows = ([[pole], shown] if len(shown) > 2 else [[pole, *shown]]) if pole in names else [shown]
         for row in rows:
-            canvas.label(q, ", ".join(row), q - centre if abs(q - centre) > 1 else 0j, 3.5, 1.0)
+            s.letters(names[0], ", ".join(row), q - centre if abs(q - centre) > 1 else 0j)
     return list(dict.fromkeys(tiny.values()))
 
 
-def _place_of_sign(plan: Plan, seg: Segment, i: int) -> complex:
+def _vectors(s: Stage, size: float, symbols_at: bool) -> dict[tuple[str, str], str]:
+    """Vectors of a plan of some size, with their signs if asked; those too short to be drawn are told by their ends."""
+    tiny = {}
+    for seg in s.plan.segments:
+        a, b = complex(s.value(seg.tail)), complex(s.value(seg.head))
+        if is_zero(b - a, size):
+            continue
+        if abs(b - a) / s.frame.mu[1] < SHORTEST:
+            tiny[seg.tail.name, seg.head.name] = seg.symbol
+            continue
+        s.vector(seg.tail, seg.head)
+        if symbols_at:
+            s.letters(seg.head, seg.symbol, 1j * (b - a), at=s.frame(_place_of_sign(s, seg)))
+    return tiny
+
+
+def _place_of_sign(s: Stage, seg: Segment) -> complex:
     """Where the sign of a vector stands: where no shorter vector from the same point covers it, off the vectors it crosses."""
-    a, b = complex(seg.tail.at(i)), complex(seg.head.at(i))
-    others = [(complex(s.tail.at(i)), complex(s.head.at(i))) for s in plan.segments if s is not seg]
+    a, b = complex(s.value(seg.tail)), complex(s.value(seg.head))
+    others = [(complex(s.value(other.tail)), complex(s.value(other.head))) for other in s.plan.segments if other is not seg]
     along = [(p, q) for p, q in others if abs(((q - p) * np.conj(b - a)).imag) < 1e-6 * abs(b - a) * abs(q - p)]
     size = abs(b - a)
     covered = [q for p, q in along if abs(p - a) < 1e-9 * size and 0 < ((q - a) * np.conj(b - a)).real < 0.95 * size**2]
@@ -424,23 +421,13 @@ def _distance(z: complex, p: complex, q: complex) -> float:
     return abs(z - p - min(max(t, 0.0), 1.0) * (q - p))
 
 
-def plan_letter(name: str) -> str:
-    """Small letter of a plan point with its index: b3 -> b with index 3."""
-    return linkage.indexed(name)
-
-
-def _at(a: Any, i: int) -> Any:
-    value = a.value if isinstance(a, Step) else a
-    return value if np.ndim(value) == 0 else value[i]
-
-
 def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Acceleration plan of the chosen position with normal and Coriolis segments."""
     acc, k = project.study.accelerations, project.force_index
     frame = kinematic_frames.accelerations(project, canvas, box)
     canvas.title(box, f"План ускорений (положение {project.cycle.labels[k]})", str(frame.scale))
     flat_crossings.warn(project, canvas, box, acc.plan)
-    tiny = _draw_plan(canvas, acc.plan, k, frame, "π", symbols_at=True)
+    tiny = _draw_plan(stage(canvas, acc.plan, k, frame), "π", symbols_at=True)
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {', '.join(tiny)}")
 
@@ -478,7 +465,7 @@ def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segm
     """Captions and lengths, mm, of the segments to be measured; none (NaN) of a plan that is not drawn."""
     lengths = _lengths_on_rockers(project, canvas)
     mu = canvas.scales["velocities"].mu
-    drawn = {f"|{plan_letter(seg.tail.name)}{plan_letter(seg.head.name)}|": value / mu for seg, value in varying}
+    drawn = {f"|{linkage.indexed(seg.tail.name)}{linkage.indexed(seg.head.name)}|": value / mu for seg, value in varying}
     if not lengths and len(drawn) <= MOST_DRAWN:
         lengths = list(drawn.items())
     elif len(lengths) < COLUMNS:
@@ -499,10 +486,10 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
     for g in pos.mechanism.groups:
         if (j := g.kind.rocker(g)) is not None:
             p, q = g.outer
-            lengths.append((f"|p{plan_letter(on_link(p.lower(), j))}|", np.abs(vel.coincident[on_link(p, j)].value) / mu_v.mu))
+            lengths.append((f"|p{linkage.indexed(on_link(p.lower(), j))}|", np.abs(vel.coincident[on_link(p, j)].value) / mu_v.mu))
             lengths.append((f"{q}{p}", np.abs(pos.points[p].value - pos.points[q].value) / mu_l.mu))
             carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
-            lengths += [(f"|{q.lower()}{plan_letter(x.lower())}|", np.abs(vel.points[x].value) / mu_v.mu) for x in carried]
+            lengths += [(f"|{q.lower()}{linkage.indexed(x.lower())}|", np.abs(vel.points[x].value) / mu_v.mu) for x in carried]
     return lengths
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,18 +15,21 @@ from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, pick
+from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.mechanism.groups.force_plan import ForcePlan
+    from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load
+    from tmm_sheets.mechanism.groups.hints import OuterReaction
     from tmm_sheets.mechanism.model import StructuralGroup
-    from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics
+    from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
@@ -35,11 +40,18 @@ LONG, SHORT = 26.0, 13.0
 
 @dataclass(frozen=True)
 class Shown:
-    """A force on a scheme: sheet markup, the point in the plan's unit, the vector, N."""
+    """A force on a scheme: sheet markup, the point in the plan's unit, the vector, N, its step and that of its moment or arm."""
 
     symbol: str
     at: complex
     vector: complex
+    step: Step
+    arm: Step
+
+    @property
+    def whole(self) -> bool:
+        """Whether it is there and no part of a reaction that was split."""
+        return abs(self.vector) > 0 and "^" not in self.symbol
 
 
 GAP = 4.0
@@ -113,11 +125,12 @@ def _stacked(box: Box, plans: list[ForcePlan], k: int) -> list[Box]:
 
 @dataclass(frozen=True)
 class Couple:
-    """A couple on a scheme: sheet markup, the point it is drawn at, N m."""
+    """A couple on a scheme: sheet markup, the point it is drawn at, N m, its step."""
 
     symbol: str
     at: complex
     value: float
+    step: Step
 
 
 FAR = 0.75
@@ -126,53 +139,67 @@ FAR = 0.75
 
 def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Shown], list[Couple]]:
     """External and inertia forces of a group's links and the reactions of the links outside it."""
-    forces, pos = project.study.forces, project.study.positions
-    m = project.mechanism
-    shown: list[Shown] = []
+    forces = project.study.forces
+    about = project.study.positions.points[g.kind.about(g)]
+    shown = [_shown(forces, load, about, k) for link in g.links for load in forces.loads[link]
+             if load.source not in g.links]
     couples: list[Couple] = []
-    members = [complex(step.at(k)) for step in pos.points.values()]
-    size = max(abs(a - b) for a in members for b in members)
-    for link in g.links:
-        for load in forces.loads[link]:
-            if load.source not in g.links:
-                shown.append(Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))))
-
-    def hinge(link: str, point: str) -> None:
-        """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
-        name = pair_index(link, m.owner(point))
-        at = complex(pos.points[point].at(k))
-        total = complex(forces.reactions[f"F{name}"].at(k))
-        part = forces.tangential_part(link, point)
-        if part is None:
-            shown.append(Shown(f"F̅_{{{name}}}", at, total))
-            return
-        tangential = complex(part.at(k))
-        shown.append(Shown(f"F̅_{{{name}}}^n", at, total - tangential))
-        shown.append(Shown(f"F̅_{{{name}}}^τ", at, tangential))
-
-    def guided(link: str, guide: str, about: str) -> None:
-        """Reaction of a guide, at the point of the guide line where it balances the moments about ``about``."""
-        name = pair_index(link, m.guides[guide].link)
-        f = complex(forces.reactions[f"F{name}"].at(k))
-        u = complex(pos.guide_directions[guide].at(k))
-        foot, origin = (complex(pos.points[p].at(k)) for p in (str(g.inner), about))
-        couple = float(np.real(forces.couples[f"F{name}"].at(k)))
-        across = (np.conj(u) * f).imag
-        foot -= u * ((foot - origin) * np.conj(u)).real
-        offset = couple / across if across else 0.0
-        acts = not is_zero(f, forces.force_size(k))
-        if not is_zero(couple, forces.moment_size(k)) and (not acts or abs(offset) > FAR * size):
-            # The line of action lies off the sheet, or there is none: the force in the block and the couple of its walls.
-            couples.append(Couple(f"M_{{{name}}}", foot, couple))
-            offset = 0.0
-        shown.append(Shown(f"F̅_{{{name}}}", foot + u * offset, f if acts else 0j))
-
     for reaction in g.kind.outer_reactions(g):
         if reaction.guide is None:
-            hinge(reaction.link, reaction.point)
+            shown += _hinge(project, reaction, k)
         else:
-            guided(reaction.link, reaction.guide, reaction.point)
+            force, beside = _guided(project, str(g.inner), reaction, k)
+            shown.append(force)
+            couples += beside
     return acting(shown, forces.force_size(k)), couples
+
+
+def _shown(forces: Kinetostatics, load: Load, about: Step, k: int) -> Shown:
+    """A load as it is shown, its arm about a point."""
+    arm = forces.sum_about(about, load.vector) or load.vector
+    return Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k)), load.vector, arm)
+
+
+def _hinge(project: Project, reaction: OuterReaction, k: int) -> list[Shown]:
+    """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
+    study = project.study
+    name = pair_index(reaction.link, project.mechanism.owner(reaction.point))
+    at, step = complex(study.positions.points[reaction.point].at(k)), study.forces.reactions[f"F{name}"]
+    total = complex(step.at(k))
+    part = study.forces.tangential_part(reaction.link, reaction.point)
+    if part is None:
+        return [Shown(f"F̅_{{{name}}}", at, total, step, step)]
+    tangential = complex(part.at(k))
+    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, step),
+            Shown(f"F̅_{{{name}}}^τ", at, tangential, part, step)]
+
+
+def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tuple[Shown, list[Couple]]:
+    """Reaction of a guide at the point of its line, near ``foot``, where it balances the moments about the reaction's point.
+
+    A force and a couple where that point lies off the sheet, or where there is none.
+    """
+    pos, forces, m = project.study.positions, project.study.forces, project.mechanism
+    guide = str(reaction.guide)
+    name = pair_index(reaction.link, m.guides[guide].link)
+    step, turning = forces.reactions[f"F{name}"], forces.couples[f"F{name}"]
+    f, u, couple = complex(step.at(k)), complex(pos.guide_directions[guide].at(k)), float(np.real(turning.at(k)))
+    at, origin = (complex(pos.points[p].at(k)) for p in (foot, reaction.point))
+    at -= u * ((at - origin) * np.conj(u)).real
+    across = (np.conj(u) * f).imag
+    offset = couple / across if across else 0.0
+    acts = not is_zero(f, forces.force_size(k))
+    couples = []
+    if not is_zero(couple, forces.moment_size(k)) and (not acts or abs(offset) > FAR * _size(pos, k)):
+        couples.append(Couple(f"M_{{{name}}}", at, couple, turning))
+        offset = 0.0
+    return Shown(f"F̅_{{{name}}}", at + u * offset, f if acts else 0j, step, forces.arms[f"h{name}"]), couples
+
+
+def _size(pos: Positions, k: int) -> float:
+    """Largest distance of two points of the mechanism, m."""
+    members = [complex(step.at(k)) for step in pos.points.values()]
+    return max(abs(a - b) for a in members for b in members)
 
 
 def acting(shown: Iterable[Shown], force_size: float) -> list[Shown]:
@@ -184,55 +211,70 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     """Loaded scheme of a group: its links, all forces and couples on it, the arms of its moment equations."""
     pos = project.study.positions
     shown, couples = _outer_forces(project, g, k)
-    drawn = [s for s in linkage.shapes(pos) if s.link in g.links]
-    names = [n for s in drawn for n in (*s.bar, s.block or "") if n]
+    drawn = [shape for shape in linkage.shapes(pos) if shape.link in g.links]
+    names = dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n)
     centres = [str(c) for c in (project.mechanism.links[link].centre for link in g.links) if c and c not in names]
-    names = list(dict.fromkeys((*names, *centres)))
-    at = [complex(pos.points[n].at(k)) for n in names] + [s.at for s in shown]
-    z, d = _reach(at, shown)
-    feet = _feet(complex(pos.points[g.kind.about(g)].at(k)), shown)
-    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм", [*z, *feet], [*d, *(0j for _ in feet)],
-                      box.inset(3.0, 5.0, 3.0, 19.0))
+    points = [pos.points[name] for name in (*names, *dict.fromkeys(centres))]
+    about = complex(pos.points[g.kind.about(g)].at(k))
+    frame = _loaded_frame(project, canvas, (f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм"), box.inset(3.0, 5.0, 3.0, 19.0),
+                          [*(complex(p.at(k)) for p in points), *(force.at for force in shown)], shown, about)
     canvas.of = f"group {g.name}"
     canvas.title(box, f"Группа Ассура {g.name} ({g.kind.number}-й вид)", str(frame.scale))
+    s = stage(canvas, pos.plan, k, frame)
     if g.kind.ram(g) is None:
-        linkage.draw_guides(canvas, pos, k, frame, g.links)
-    linkage.draw(canvas, pos, k, frame, "main", g.links)
-    for name in names:
-        away = 1 - 0.5j if name in project.mechanism.fixed else 0j
-        canvas.label(frame(complex(pos.points[name].at(k))), linkage.indexed(name), away, 3.5, 2.8)
-    _link_numbers(canvas, pos, drawn, k, frame)
+        linkage.draw_guides(s, pos, g.links)
+    linkage.draw(s, pos, "main", g.links)
+    for point in points:
+        s.letters(point, linkage.indexed(point.name), 1 - 0.5j if point.name in pos.mechanism.fixed else 0j, gap=2.8)
+    _link_numbers(s, pos, drawn)
     for name in centres:
-        symbols.centre_of_mass(canvas, frame(complex(pos.points[name].at(k))))
-    _arms(canvas, project, frame, g, k, shown)
-    draw_forces(canvas, frame, shown)
+        with s.of(name, "symbol"):
+            symbols.centre_of_mass(canvas, s.at(name))
+    draw_arms(s, about, shown)
+    draw_forces(s, shown)
     _from_moments(project, canvas, box, g, k, frame.scale)
     for c in couples:
-        symbols.rotation_arrow(canvas, frame(c.at), 10.0, -1 - 0.4j, c.value, c.symbol)
-    for s in drawn:
-        centre = project.mechanism.links[s.link].centre or s.block or s.bar[0]
-        for n, sign, value in _couples(project, s.link):
-            symbols.rotation_arrow(canvas, frame(complex(pos.points[centre].at(k))), 7.0 + 4.0 * n, -1 + 0.2j, value, sign)
+        _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
+    _link_couples(project, s, drawn)
 
 
-def _link_numbers(canvas: Canvas, pos: Positions, drawn: Iterable[linkage.Shape], k: int, frame: Frame) -> None:
+def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) -> None:
+    """Couples of the links round their centres of mass, or their first points."""
+    for shape in drawn:
+        centre = project.mechanism.links[shape.link].centre or shape.block or shape.bar[0]
+        for n, c in _couples(project, shape.link):
+            _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
+
+
+def _loaded_frame(project: Project, canvas: Canvas, scale: tuple[str, str, str], place: Box, points: Iterable[complex],
+                  shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = ()) -> Frame:
+    """Frame of points with forces and their arms about a point, and of ``more``: points with what reaches from them, mm."""
+    rest = [*((foot, 0j) for foot in _feet(about, shown)), *more]
+    z, d = _reach(points, shown)
+    return fit_frame(project, canvas, *scale, [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)], place)
+
+
+def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
+    """Arrow of a couple."""
+    with s.of(couple.step, "symbol"):
+        symbols.rotation_arrow(s.canvas, at, radius, towards, couple.value, couple.symbol)
+
+
+def _link_numbers(s: Stage, pos: Positions, drawn: Iterable[linkage.Shape]) -> None:
     """Numbers of the links, near the first ends of bars: their middles are left to forces and arms."""
-    for s in drawn:
-        z = frame(complex(pos.points[s.block or s.bar[-1]].at(k)))
-        if s.bar:
-            p = linkage.bar_points(pos, s, k)
-            a, b = frame(p[0]), frame(p[-1])
-            z = a + 0.3 * (b - a)
-        canvas.label(z, s.link, 1 + 0.3j, 5.0, 2.0 if s.bar else 6.5)
+    for shape in drawn:
+        names = linkage.along_bar(s, pos, shape) if shape.bar else (str(shape.block),)
+        a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
+        s.letters(pos.directions[shape.link], shape.link, 1 + 0.3j, 5.0, 2.0 if shape.bar else 6.5, a + 0.3 * (b - a))
 
 
-def _couples(project: Project, link: str) -> Iterator[tuple[int, str, float]]:
-    """Place in the list, sheet markup and value (N m) of each couple on a link that is not zero."""
+def _couples(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
+    """Place in the list of each couple on a link that is not zero, and the couple."""
     k, forces = project.force_index, project.study.forces
-    for n, couple in enumerate(forces.link_couples.get(link, ())):
-        value = float(np.real(couple.at(k)))
+    for n, step in enumerate(forces.link_couples.get(link, ())):
+        value = float(np.real(step.at(k)))
         if not is_zero(value, forces.moment_size(k)):
-            yield n, symbol(couple.name).replace(BAR, ""), value
+            yield n, Couple(symbol(step.name).replace(BAR, ""), 0j, value, step)
 
 
 def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:
@@ -283,18 +325,13 @@ def _reach(points: Iterable[complex], shown: Iterable[Shown]) -> tuple[list[comp
     return z, d
 
 
-def draw_forces(canvas: Canvas, frame: Frame, shown: Iterable[Shown]) -> None:
+def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
     """Arrows with their tails at the points they act at."""
-    for s, arrow in _arrows(shown):
-        tail = frame(s.at)
-        canvas.arrow(tail, tail + arrow, "vector")
-        u = arrow / abs(arrow)
-        canvas.label(tail + arrow - 2.0 * u, s.symbol, u + 0.35j * u, 3.5, 2.0)
-
-
-def _arms(canvas: Canvas, project: Project, frame: Frame, g: StructuralGroup, k: int, shown: list[Shown]) -> None:
-    """Arms of the forces about the point of the moment equations."""
-    draw_arms(canvas, frame, complex(project.study.positions.points[g.kind.about(g)].at(k)), shown)
+    for force, arrow in _arrows(shown):
+        tail, u = s.frame(force.at), arrow / abs(arrow)
+        with s.of(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else ""):
+            s.canvas.arrow(tail, tail + arrow, "vector")
+            s.canvas.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
 
 
 def _foot(s: Shown, about: complex) -> complex:
@@ -305,33 +342,30 @@ def _foot(s: Shown, about: complex) -> complex:
 
 def _feet(about: complex, shown: Iterable[Shown]) -> list[complex]:
     """Feet of the arms that are drawn about a point, in the plan's unit."""
-    return [_foot(s, about) for s in shown if abs(s.vector) > 0 and "^" not in s.symbol]
+    return [_foot(s, about) for s in shown if s.whole]
 
 
-def draw_arms(canvas: Canvas, frame: Frame, about: complex, shown: Iterable[Shown], prefix: str = "h",
-              points: Iterable[complex] = ()) -> None:
+def draw_arms(s: Stage, about: complex, shown: Iterable[Shown], points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
-    shown = [s for s in shown if abs(s.vector) > 0]
-    seen: list[complex] = []
-    centre = frame(about)
-    busy = [centre, *points, *(frame(s.at) for s in shown), *(frame(_foot(s, about)) for s in shown)]
-    for s in sorted(shown, key=lambda s: -abs(s.vector)):  # forces on one line share the arm of the largest
-        u = s.vector / abs(s.vector)
-        tail = frame(s.at)
+    shown = [force for force in shown if abs(force.vector) > 0]
+    canvas, seen, centre = s.canvas, list[complex](), s.frame(about)
+    busy = [centre, *points, *(s.frame(force.at) for force in shown), *(s.frame(_foot(force, about)) for force in shown)]
+    for force in sorted(shown, key=lambda force: -abs(force.vector)):  # forces on one line share the arm of the largest
+        u = force.vector / abs(force.vector)
+        tail = s.frame(force.at)
         foot = tail + ((centre - tail) * np.conj(u)).real * u
-        if abs(foot - centre) < 1.5 or "^" in s.symbol:
-            continue
-        if any(abs(foot - f) < 0.6 for f in seen):
+        if abs(foot - centre) < 1.5 or not force.whole or any(abs(foot - f) < 0.6 for f in seen):
             continue
         seen.append(foot)
-        if abs(foot - tail) > 0.5:
-            canvas.line(tail, foot + 2.0 * (foot - tail) / abs(foot - tail), "thin")
-        canvas.line(centre, foot, "thin")
-        canvas.dot(foot, 0.35, "thin")
-        index = s.symbol.replace(BAR, "").replace("F_", "").replace("_", "").strip("{}").replace("{", "").replace("}", "")
-        places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
-        at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-        canvas.label(at, f"{prefix}_{{{index}}}", 1j * (foot - centre), 2.5, 0.8)
+        letters = re.sub("F_|[_{}]", "", force.symbol.replace(BAR, ""))
+        with s.of(force.arm, "construction", f"h{letters}"):
+            if abs(foot - tail) > 0.5:
+                canvas.ray_line(tail, foot, "thin", 2.0)
+            canvas.line(centre, foot, "thin")
+            canvas.dot(foot, 0.35, "thin")
+            places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
+            at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
+            canvas.label(at, f"h_{{{letters}}}", 1j * (foot - centre), 2.5, 0.8)
         busy.append(at)
 
 
@@ -360,45 +394,35 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     frame = Frame(scale, inside.centre - scale.mm(real.centre))
     canvas.title(box, fp.plan.title, str(scale), 5.0)
     flat_crossings.warn(project, canvas, box, fp.plan)
-    tiny = _draw_sides(canvas, fp, sides, frame, frame(real.centre), k)
-    extra = [seg for seg in fp.plan.segments if not any(seg.symbol == s[0] for s in fp.sides)]
+    s = stage(canvas, fp.plan, k, frame)
+    tiny = _draw_sides(s, sides, frame(real.centre))
+    extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
     for seg in extra:
-        canvas.arrow(frame(complex(seg.tail.at(k))), frame(complex(seg.head.at(k))), "vector")
-        canvas.label(frame((complex(seg.tail.at(k)) + complex(seg.head.at(k))) / 2), seg.symbol, 0j, 3.5, 1.0)
+        s.vector(seg.tail, seg.head)
+        s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2)
     for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
-        q = frame(points[names[0]])
-        canvas.label(q, ", ".join(sorted(names, key=int)), q - frame(real.centre), 2.5, 0.8)
+        s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - frame(real.centre), 2.5, 0.8)
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
-    vertex = _vertices(fp)
-    terms = [f"{s}({vertex[id(t)]}–{vertex[id(h)]})" for s, t, h, _ in sides]
+    terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
     _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
     asked = [(s, t, h) for s, t, h, unknown in sides if unknown] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [f"{s.replace(BAR, '')} = {newtons(clean(abs(complex(h.at(k)) - complex(t.at(k))), size))} Н" for s, t, h in asked]
     _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
 
 
-def _vertices(fp: ForcePlan) -> dict[int, str]:
-    """Number of each vertex of a force polygon by its step's identity."""
-    return {id(step): n for n, step in fp.plan.steps.items()}
-
-
-def _draw_sides(canvas: Canvas, fp: ForcePlan, sides: list[tuple[str, Step, Step, bool]], frame: Frame, centre: complex,
-                k: int) -> dict[tuple[str, str], str]:
+def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
     """Sides of a force polygon with their signs outside it; those too short to be drawn are told by their vertices."""
-    vertex, tiny = _vertices(fp), {}
+    tiny = {}
     for sign, tail, head, _ in sides:
-        a, b = frame(complex(tail.at(k))), frame(complex(head.at(k)))
+        a, b = s.at(tail), s.at(head)
         if abs(b - a) < SHORTEST:
-            value = newtons(frame.scale.real(abs(b - a)))
-            tiny[vertex[id(tail)], vertex[id(head)]] = f"{sign} = {value} Н".replace(" ", TOGETHER)
+            value = newtons(s.frame.mu[1] * abs(b - a))
+            tiny[tail.name, head.name] = f"{sign} = {value} Н".replace(" ", TOGETHER)
             continue
-        canvas.arrow(a, b, "vector")
-        middle = (a + b) / 2
-        n = 1j * (b - a)
-        if (np.conj(n) * (middle - centre)).real < 0:
-            n = -n
-        canvas.label(middle, sign, n, 3.5, 1.0)
+        s.vector(tail, head)
+        middle, n = (a + b) / 2, 1j * (b - a)
+        s.letters(head, sign, -n if (np.conj(n) * (middle - centre)).real < 0 else n, at=middle)
     return tiny
 
 
@@ -407,16 +431,8 @@ def newtons(force: float) -> str:
     return fixed(force, 1) if force >= 10 else number(force, 4)
 
 
-def balancing_sign(project: Project) -> str:
-    """Sign of the balancing force or moment in lettering markup, from its name in the project file."""
-    name = project.balancing
-    return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
-
-
 def _equation(canvas: Canvas, at: complex, terms: list[str], width: float) -> None:
     """Vector equation of a force plan; one that would become unreadably small in its width goes on two lines."""
-    from tmm_sheets.drawing.lettering import letter
-
     if letter(" + ".join(terms) + " = 0", 2.5).width > width:
         half = (len(terms) + 1) // 2
         _fitted(canvas, at + 6.0j, " + ".join(terms[:half]) + " +", 3.5, width)
@@ -425,127 +441,107 @@ def _equation(canvas: Canvas, at: complex, terms: list[str], width: float) -> No
 
 
 def _fitted(canvas: Canvas, at: complex, text: str, height: float, width: float, align: Align = "centre") -> None:
-    from tmm_sheets.drawing.lettering import letter
-
     w = letter(text, height).width
     canvas.text(at, text, height if w <= width else max(height * width / w, 2.5), align)
 
 
 def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The initial link with its forces and arms beside its force plan."""
-    k, study = project.force_index, project.study
-    forces, pos, m = study.forces, study.positions, project.mechanism
-    c = m.crank
+    k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
+    forces, pos = study.forces, study.positions
     share = float(options.get("scheme", 0.5))
     left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
     right = Box(left.x1 + 4.0, box.y0, box.x1, box.y1)
-    shown = [Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))) for load in forces.loads[c.link]]
-    from_frame = pair_index(c.link, m.frame)
-    frame_force = complex(forces.reactions[f"F{from_frame}"].at(k))
-    pivot = complex(pos.points[c.pivot].at(k))
-    shown.append(Shown(f"F̅_{{{from_frame}}}", pivot, frame_force))
-    shown = acting(shown, forces.force_size(k))
-    pins = linkage.crank_pins(pos)
-    at = [pivot, *(complex(pos.points[name].at(k)) for name in pins), *(s.at for s in shown)]
-    driver = project.driver
-    if driver is not None:
-        at += [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
-    away = _clear(pivot, [complex(pos.points[name].at(k)) for name in pins], shown)
-    z, d = _reach(at, shown)
-    # The arrows of rotation, with their signs.
-    feet = _feet(pivot, shown)
-    z += [pivot, *feet]
-    d += [(18.0 if driver is not None else 32.0) * away, *(0j for _ in feet)]
-    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", "м/мм", z, d, left.inset(3.0, 3.0, 3.0, 19.0))
+    centre, pins = pos.points[c.pivot], [pos.points[name] for name in linkage.crank_pins(pos)]
+    pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
+    from_frame = pair_index(c.link, project.mechanism.frame)
+    step = forces.reactions[f"F{from_frame}"]
+    shown = [_shown(forces, load, centre, k) for load in forces.loads[c.link]]
+    shown = acting([*shown, Shown(f"F̅_{{{from_frame}}}", pivot, complex(step.at(k)), step, step)], forces.force_size(k))
+    wheel = [] if driver is None else [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
+    away = _clear(pivot, ends, shown)
+    turning = (18.0 if driver is not None else 32.0) * away  # the arrows of rotation, with their signs
+    frame = _loaded_frame(project, canvas, ("scheme-crank", "μ_l", "м/мм"), left.inset(3.0, 3.0, 3.0, 19.0),
+                          [pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
     canvas.title(left, "Начальное звено", str(frame.scale))
-    if driver is not None:
-        _draw_driver(canvas, frame, pivot, driver)
-    linkage.draw(canvas, pos, k, frame, "main", [c.link])
-    for name in (c.pivot, *pins):
-        canvas.label(frame(complex(pos.points[name].at(k))), linkage.indexed(name), 0j, 3.5, 2.8)
-    draw_arms(canvas, frame, pivot, [s for s in shown if s.at != pivot])
-    draw_forces(canvas, frame, shown)
-    symbols.rotation_arrow(canvas, frame(pivot), 14.0, away, c.omega, f"ω_{c.link}")
-    if driver is None and forces.balancing is not None and not is_zero(forces.balancing.at(k), forces.moment_size(k)):
-        symbols.rotation_arrow(canvas, frame(pivot), 24.0, away, float(forces.balancing.at(k)), balancing_sign(project))
-    _crank_couples(project, canvas, left, frame(pivot), away)
+    s = stage(canvas, pos.plan, k, frame)
+    if driver is not None and pos.contact is not None:  # pitch circle of the wheel on the shaft, and its pitch point
+        play(s, [pos.contact], "centre", only="circle")
+        s.dot(pos.contact, 0.6, "thin")
+        s.letters(pos.contact, "P", 1j * complex(np.exp(1j * driver.mate)), gap=1.5)
+    linkage.draw(s, pos, "main", [c.link])
+    for point in (centre, *pins):
+        s.letters(point, linkage.indexed(point.name), gap=2.8)
+    draw_arms(s, pivot, [force for force in shown if force.at != pivot])
+    draw_forces(s, shown)
+    with s.of(study.velocities.omega[c.link], "symbol"):
+        symbols.rotation_arrow(canvas, s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
+    moment = None if driver is not None else forces.balancing
+    if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
+        _turning(s, s.at(centre), 24.0, away, Couple(linkage.indexed(project.balancing), 0j, float(moment.at(k)), moment))
+    _crank_couples(project, s, left, s.at(centre), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
-
-
-def _draw_driver(canvas: Canvas, frame: Frame, pivot: complex, driver: GearForce) -> None:
-    """Pitch circle of the wheel on the crank shaft with its pitch point."""
-    canvas.circle(frame(pivot), driver.radius / frame.scale.mu, "centre")
-    contact = frame(pivot + driver.radius * np.exp(1j * driver.mate))
-    canvas.dot(contact, 0.6, "thin")
-    canvas.label(contact, "P", 1j * np.exp(1j * driver.mate), 3.5, 1.5)
 
 
 def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:
     """Direction from the crank's pivot into the widest angle between its arms, base, forces and their arms."""
-    lines = [*(z - pivot for z in pins), -1j]
-    for s in shown:
-        if abs(s.vector) > 0:
-            foot = _foot(s, pivot)
-            lines.append(s.vector if s.at == pivot else foot - pivot)
-    angles = sorted({round(float(np.angle(z)), 6) for z in lines if abs(z) > 0})
-    gaps = [(b - a, (a + b) / 2) for a, b in zip(angles, [*angles[1:], angles[0] + 2 * np.pi], strict=True)]
-    middle = max(gaps, key=lambda gap: round(gap[0], 9))[1]
-    return complex(np.cos(middle), np.sin(middle))
+    acting = [force for force in shown if abs(force.vector) > 0]
+    lines = [force.vector if force.at == pivot else _foot(force, pivot) - pivot for force in acting]
+    return linkage.widest_gap([*(z - pivot for z in pins), -1j, *lines], 6)
 
 
-def _crank_couples(project: Project, canvas: Canvas, box: Box, at: complex, away: complex) -> None:
+def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: complex) -> None:
     """Couples on the crank, its inertia couple among them, as arrows and with their values."""
     k, forces = project.force_index, project.study.forces
     said = []
-    for n, sign, value in _couples(project, project.mechanism.crank.link):
-        symbols.rotation_arrow(canvas, at, 34.0 + 10.0 * n, away, value, sign)
-        said.append(f"{sign} = {number(abs(value), 5)} Н·м")
+    for n, couple in _couples(project, project.mechanism.crank.link):
+        _turning(s, at, 34.0 + 10.0 * n, away, couple)
+        said.append(f"{couple.symbol} = {number(abs(couple.value), 5)} Н·м")
     if said and project.driver is None and forces.balancing is not None:
-        said.append(f"{balancing_sign(project)} = {number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))} Н·м")
+        moment = number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))
+        said.append(f"{linkage.indexed(project.balancing)} = {moment} Н·м")
     if said:
-        _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
+        _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
 
 
 def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
     k, lv = project.force_index, project.study.lever
-    points = {name: complex(step.at(k)) for name, step in lv.points.items()}
-    size = project.study.forces.force_size(k)
-    shown = acting((Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k))) for h in lv.hung), size)
-    place = box.inset(2.0, 2.0, 2.0, 19.0)
-    at, around = _reach([0j, *points.values()], shown)
-    arms = [*(s.at for s in shown), *_feet(0j, shown)]
-    frame = fit_frame(project, canvas, "lever", "μ_V", "(м/с)/мм", [*at, *arms], [*around, *(0j for _ in arms)], place)
-    scale = frame.scale
+    points = [complex(step.at(k)) for step in lv.points.values()]
+    shown = acting((Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k)), h.force, h.arm) for h in lv.hung),
+                   project.study.forces.force_size(k))
+    frame = _loaded_frame(project, canvas, ("lever", "μ_V", "(м/с)/мм"), box.inset(2.0, 2.0, 2.0, 19.0), [0j, *points], shown, 0j,
+                          [(force.at, 0j) for force in shown])
     plain: Scale | None = canvas.scales.get("velocities")
-    text = str(scale)
-    if plain is not None and plain.mu > scale.mu * 1.01:
-        text += f" (увеличен в {times(plain.mu / scale.mu)})"
+    text = str(frame.scale)
+    if plain is not None and plain.mu > frame.scale.mu * 1.01:
+        text += f" (увеличен в {times(plain.mu / frame.scale.mu)})"
     canvas.title(box, f"Рычаг Жуковского (положение {project.cycle.labels[k]})", text)
-    pole = frame(0j)
+    turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
     for seg in lv.velocities.plan.segments:
-        a, b = (1j * complex(s.at(k)) for s in (seg.tail, seg.head))
-        canvas.line(frame(a), frame(b), "axis")
-    canvas.dot(pole, 0.9, "vector")
-    canvas.label(pole, "p", 0j, 3.5, 1.2)
-    _turned_letters(canvas, {name: frame(z) for name, z in points.items()}, pole)
+        with turned.of(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}"):
+            canvas.line(turned.at(seg.tail), turned.at(seg.head), "axis")
+    s = stage(canvas, lv.plan, k, frame)
+    s.dot("p", 0.9)
+    s.letters("p", "p", gap=1.2)
+    _turned_letters(s, lv.points)
     if lv.contact is not None and project.driver is not None:
-        z = frame(complex(lv.contact.at(k)))
-        canvas.line(pole, z, "axis")
-        canvas.label(z, "f′", 0j, 3.5, 1.2)
-    draw_arms(canvas, frame, 0j, shown, points=[frame(z) for z in points.values()])
-    draw_forces(canvas, frame, shown)
+        play(s, [lv.contact], "axis")
+        s.letters(lv.contact, "f′", gap=1.2)
+    draw_arms(s, 0j, shown, points=[frame(z) for z in points])
+    draw_forces(s, shown)
 
 
-def _turned_letters(canvas: Canvas, at: Mapping[str, complex], pole: complex) -> None:
-    """Dots of the turned plan's points, mm, and their letters with a prime; those of one place together."""
+def _turned_letters(s: Stage, points: Mapping[str, Step]) -> None:
+    """Dots of the turned plan's points and their letters with a prime; those of one place together."""
     joint: dict[tuple[int, int], list[str]] = {}
-    for name, q in at.items():
+    for name, step in points.items():
+        q = s.at(step)
         joint.setdefault((round(q.real * 2), round(q.imag * 2)), []).append(name)
     for names in joint.values():
-        q = at[names[0]]
-        canvas.dot(q, 0.6, "vector")
-        canvas.label(q, ", ".join(f"{n[0]}_{{{n[1:]}}}′" if n[1:] else f"{n}′" for n in names), q - pole, 3.5, 1.2)
+        first = points[names[0]]
+        s.dot(first)
+        s.letters(first, ", ".join(f"{linkage.indexed(name)}′" for name in names), s.at(first) - s.frame(0j), gap=1.2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -554,7 +550,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     forces: Kinetostatics = study.forces
     assert forces.balancing is not None
     assert study.lever.balancing is not None
-    force, sign = project.driver is not None, balancing_sign(project)
+    force, sign = project.driver is not None, linkage.indexed(project.balancing)
     kind = forces.force_size(k) if force else forces.moment_size(k)
     kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing))
     unit = "Н" if force else "Н·м"

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.player import Stage
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.groups.hints import Outline
@@ -83,15 +83,14 @@ def _carried(pos: Positions, link: str) -> tuple[str, Step] | None:
     return next(((str(g.inner), pos.guide_directions[name]) for name in slots for g in m.groups if name in g.guides), None)
 
 
-def bar_points(pos: Positions, shape: Shape, k: int) -> list[complex]:
+def along_bar(s: Stage, pos: Positions, shape: Shape) -> tuple[str, ...]:
     """Points of a bar in order along it (a rocker's end may lie beyond or before the block)."""
-    p = [complex(pos.points[name].at(k)) for name in (*shape.bar, *shape.over)]
-    if len(p) == 1:
-        return [complex(pos.points[name].at(k)) for name in shape.ends]
-    u = p[1] - p[0]
-    if abs(u) == 0:
-        return p
-    return sorted(p, key=lambda z: ((z - p[0]) * np.conj(u)).real)
+    names = (*shape.bar, *shape.over)
+    if len(names) == 1:
+        return shape.ends
+    p = {name: s.at(pos.points[name]) for name in names}
+    u = p[names[1]] - p[names[0]]
+    return tuple(sorted(names, key=lambda name: ((p[name] - p[names[0]]) * np.conj(u)).real)) if abs(u) > 0 else names
 
 
 _PLAIN = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
@@ -108,133 +107,129 @@ def crank_pins(pos: Positions) -> tuple[str, ...]:
     return shapes(pos)[0].bar[1:]
 
 
-def clear_of_crank(pos: Positions, k: int) -> complex:
+def clear_of_crank(s: Stage, pos: Positions) -> complex:
     """Unit vector from the crank's pivot into the widest angle between its arms, opposite a single arm."""
-    m = pos.mechanism
-    pivot = complex(pos.points[m.crank.pivot].at(k))
-    arms = sorted(float(np.angle(complex(pos.points[name].at(k)) - pivot)) for name in crank_pins(pos))
-    gaps = [(b - a, (a + b) / 2) for a, b in zip(arms, [*arms[1:], arms[0] + 2 * np.pi], strict=True)]
+    pivot = s.at(pos.points[pos.mechanism.crank.pivot])
+    return widest_gap(s.at(pos.points[name]) - pivot for name in crank_pins(pos))
+
+
+def widest_gap(lines: Iterable[complex], digits: int = 15) -> complex:
+    """Unit vector into the widest angle between lines from one point; those alike to so many digits are one."""
+    angles = sorted({round(float(np.angle(z)), digits) for z in lines if abs(z) > 0})
+    gaps = [(b - a, (a + b) / 2) for a, b in zip(angles, [*angles[1:], angles[0] + 2 * np.pi], strict=True)]
     middle = max(gaps, key=lambda gap: round(gap[0], 9))[1]
     return complex(np.cos(middle), np.sin(middle))
 
 
-def outlines(pos: Positions, shape: Shape, k: int) -> list[list[complex]]:
-    """Lines a link is drawn with: one bar, spokes of a crank with several pins, or the sides of a plate; and its arms."""
-    arms = [[complex(pos.points[name].at(k)) for name in arm] for arm in shape.arms]
-    p = [complex(pos.points[name].at(k)) for name in shape.bar]
-    if len(p) == 1:
-        return arms
-    size = max(abs(z - p[0]) for z in p)
-    u = p[1] - p[0]
-    if len(p) == 2 or not abs(u) or max(abs(((z - p[0]) * np.conj(u)).imag) for z in p) < 1e-6 * size * abs(u):
-        return [bar_points(pos, shape, k), *arms]
-    if shape.bar[0] == pos.mechanism.crank.pivot and shape.link == pos.mechanism.crank.link:
-        return [[p[0], z] for z in p[1:]] + arms
-    middle = sum(p) / len(p)
-    ring = sorted(p, key=lambda z: np.angle((z - middle) / (p[0] - middle)) % (2 * np.pi))
-    return [[a, b] for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)] + arms
+def outlines(s: Stage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
+    """Points of the lines a link is drawn with: one bar, spokes of a crank with several pins, or the sides of a plate; its arms."""
+    names = shape.bar
+    if len(names) == 1:
+        return list(shape.arms)
+    p = {name: complex(s.value(pos.points[name])) for name in names}
+    z = list(p.values())
+    size, u = max(abs(q - z[0]) for q in z), z[1] - z[0]
+    if len(z) == 2 or not abs(u) or max(abs(((q - z[0]) * np.conj(u)).imag) for q in z) < 1e-6 * size * abs(u):
+        return [along_bar(s, pos, shape), *shape.arms]
+    if names[0] == pos.mechanism.crank.pivot and shape.link == pos.mechanism.crank.link:
+        return [*((names[0], name) for name in names[1:]), *shape.arms]
+    middle = sum(z) / len(z)
+    ring = sorted(names, key=lambda name: np.angle((p[name] - middle) / (z[0] - middle)) % (2 * np.pi))
+    sides: list[tuple[str, ...]] = [*zip(ring, (*ring[1:], ring[0]), strict=True)]
+    return sides + list(shape.arms)
 
 
-def draw(canvas: Canvas, pos: Positions, k: int, frame: Frame, style: str, only: Iterable[str] | None = None) -> None:
-    """Links of the mechanism at position ``k``: with all symbols in style main, as bare lines otherwise."""
+def draw(s: Stage, pos: Positions, style: str, only: Iterable[str] | None = None) -> None:
+    """Links of the mechanism at a position: with all symbols in style main, as bare lines otherwise."""
     wanted = set(pos.mechanism.links if only is None else only)
-    drawn = [s for s in shapes(pos) if s.link in wanted]
+    drawn = [shape for shape in shapes(pos) if shape.link in wanted]
     # A dict, not a set: the order of the marks must be the same in every run.
-    names = dict.fromkeys(name for s in drawn for name in (*s.bar, s.block or "") if name)
-    at = {name: frame(complex(pos.points[name].at(k))) for name in names}
-    if style != "main":
-        _draw_bare(canvas, pos, drawn, at, frame, k, style)
-        return
-    for s in drawn:
-        if s.bar:
-            for line in outlines(pos, s, k):
-                symbols.bar(canvas, [frame(z) for z in line], at.values(), style)
-        elif s.block is not None and s.along is not None:
-            _draw_block(canvas, pos, s, frame, k, style)
-    _draw_pairs(canvas, pos, at, style, whole=only is None)
+    at = {name: s.at(pos.points[name]) for shape in drawn for name in (*shape.bar, shape.block or "") if name}
+    gaps = at if style == "main" else [name for name in at if name in pos.mechanism.fixed]
+    for shape in drawn:
+        if shape.bar:
+            _draw_bar(s, pos, shape, [at[name] for name in gaps], style)
+        elif shape.along is not None and (style == "main" or shape.slot is None):
+            _draw_block(s, pos, shape, style)
+    if style == "main":
+        _draw_pairs(s, pos, at, whole=only is None)
 
 
-def _draw_bare(canvas: Canvas, pos: Positions, drawn: Iterable[Shape], at: Mapping[str, complex], frame: Frame, k: int,
-               style: str) -> None:
-    """Bars as lines, interrupted at fixed pivots only, and small blocks; a ram's body would hide those of other positions."""
-    pivots = [z for name, z in at.items() if name in pos.mechanism.fixed]
-    for s in drawn:
-        if s.bar:
-            for line in outlines(pos, s, k):
-                p = [frame(z) for z in line]
-                symbols.bar(canvas, (p[0], p[-1]), pivots, style)
-        elif s.block is not None and s.along is not None and s.slot is None:
-            symbols.block(canvas, at[s.block], complex(s.along.at(k)), style, (4.0, 2.4))
+def _draw_bar(s: Stage, pos: Positions, shape: Shape, hinges: list[complex], style: str) -> None:
+    """A bar interrupted at hinges, in a bare plan from end to end."""
+    for line in outlines(s, pos, shape):
+        with s.of(pos.directions[shape.link], "link", f"{line[0]}–{line[-1]}"):
+            points = [s.at(pos.points[name]) for name in line]
+            symbols.bar(s.canvas, points if style == "main" else (points[0], points[-1]), hinges, style)
 
 
-def _draw_block(canvas: Canvas, pos: Positions, s: Shape, frame: Frame, k: int, style: str) -> None:
-    """A block with its slot, or a ram, and what is fastened to it."""
-    assert s.block is not None
-    assert s.along is not None
-    if s.slot is not None:
-        _ram(canvas, frame, pos, s, k, style)
-    else:
-        centre = frame(complex(pos.points[s.block].at(k)))
-        symbols.block(canvas, centre, complex(s.along.at(k)), style, block_size(pos, s, frame))
-        if s.carried is not None:
-            _slot(canvas, pos, s, frame, k, style)
-    _arms(canvas, pos, s, frame, k, style)
+def _draw_block(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
+    """A block with its slot, or a ram, and what is fastened to it; small and alone in a bare plan."""
+    block = pos.points[str(shape.block)]
+    with s.of(block, "symbol"):
+        if shape.slot is not None:
+            _ram(s, pos, shape, style)
+            half = RAM
+        else:
+            size = block_size(pos, shape, s) if style == "main" else (4.0, 2.4)
+            half = size[0] / 2
+            symbols.block(s.canvas, s.at(block), complex(s.value(pos.directions[shape.link])), style, size)
+            if shape.carried is not None and style == "main":
+                _slot(s, pos, shape, style)
+    if style == "main":
+        _arms(s, pos, shape, half)
 
 
-def _draw_pairs(canvas: Canvas, pos: Positions, at: Mapping[str, complex], style: str, *, whole: bool) -> None:
+def _draw_pairs(s: Stage, pos: Positions, at: Mapping[str, complex], *, whole: bool) -> None:
     """Hinges and fixed pivots; of single groups only those pivots that are pairs of the mechanism."""
     m = pos.mechanism
     for name, z in at.items():
-        if name in m.fixed:
-            if whole or name == m.crank.pivot or any(name in g.outer for g in m.groups):
-                symbols.pivot(canvas, z, _base_direction(pos, name))
-        elif not _is_block_of_ram(pos, name):
-            symbols.hinge(canvas, z, style)
+        with s.of(pos.points[name], "symbol"):
+            if name in m.fixed:
+                if whole or name == m.crank.pivot or any(name in g.outer for g in m.groups):
+                    symbols.pivot(s.canvas, z, _base_direction(pos, name))
+            elif not any(g.kind.ram(g) and g.inner == name for g in m.groups):
+                symbols.hinge(s.canvas, z)
 
 
 RAM = 21.0
 """Half length of the body of a kind 5 group's guided link, mm."""
 
 
-def block_size(pos: Positions, s: Shape, frame: Frame) -> tuple[float, float]:
+def block_size(pos: Positions, shape: Shape, s: Stage) -> tuple[float, float]:
     """Length along its guide and width of a block, mm: one with a slot or with a stone at its pin is larger."""
-    if s.carried is not None:
-        name, direction = s.carried
-        way = ((pos.points[name].value - pos.points[str(s.block)].value) * np.conj(direction.value)).real
-        return 18.0, 2 * (float(np.nanmax(np.abs(way))) / frame.scale.mu + symbols.BLOCK[0] / 2 + 2.0)
+    if shape.carried is not None:
+        name, direction = shape.carried
+        way = ((pos.points[name].value - pos.points[str(shape.block)].value) * np.conj(direction.value)).real
+        return 18.0, 2 * (float(np.nanmax(np.abs(way))) / s.frame.mu[1] + symbols.BLOCK[0] / 2 + 2.0)
     m = pos.mechanism
-    if any(len(sliders) > 1 and link == s.link and m.guides[guide].link == m.frame
+    if any(len(sliders) > 1 and link == shape.link and m.guides[guide].link == m.frame
            for sliders in (g.kind.sliders(g) for g in m.groups) for link, guide in sliders):
         return 1.6 * symbols.BLOCK[0], 1.7 * symbols.BLOCK[1]
     return symbols.BLOCK
 
 
-def _slot(canvas: Canvas, pos: Positions, s: Shape, frame: Frame, k: int, style: str) -> None:
+def _slot(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
     """Walls of the slot in a block, through its whole width."""
-    assert s.carried is not None
-    v = complex(s.carried[1].at(k))
-    z = frame(complex(pos.points[s.carried[0]].at(k)))
-    centre = frame(complex(pos.points[str(s.block)].at(k)))
-    z += ((centre - z) * np.conj(v)).real * v
-    half, wall = block_size(pos, s, frame)[1] / 2, symbols.BLOCK[1] / 2 * 1j * v
+    assert shape.carried is not None
+    name, direction = shape.carried
+    v = complex(s.value(direction))
+    z = s.at(pos.points[name])
+    z += ((s.at(pos.points[str(shape.block)]) - z) * np.conj(v)).real * v
+    half, wall = block_size(pos, shape, s)[1] / 2, symbols.BLOCK[1] / 2 * 1j * v
     for side in (1, -1):
-        canvas.line(z + side * wall - half * v, z + side * wall + half * v, style)
+        s.canvas.line(z + side * wall - half * v, z + side * wall + half * v, style)
 
 
-def _arms(canvas: Canvas, pos: Positions, s: Shape, frame: Frame, k: int, style: str) -> None:
+def _arms(s: Stage, pos: Positions, shape: Shape, half: float) -> None:
     """What ties a point of a block that lies along its guide beside it, its centre of mass for one, to the block."""
-    assert s.along is not None
-    z, u = frame(complex(pos.points[str(s.block)].at(k))), complex(s.along.at(k))
-    half = RAM if s.slot is not None else block_size(pos, s, frame)[0] / 2
+    z, u = s.at(pos.points[str(shape.block)]), complex(s.value(pos.directions[shape.link]))
     for p in pos.mechanism.points:
-        way = frame(complex(pos.points[p.name].at(k))) - z
+        way = s.at(pos.points[p.name]) - z
         along = (way * np.conj(u)).real
-        if p.link == s.link and abs(way - along * u) < 1e-6 and abs(along) > half:
-            canvas.line(z + np.sign(along) * half * u, z + way, style)
-
-
-def _is_block_of_ram(pos: Positions, name: str) -> bool:
-    return any(g.kind.ram(g) and g.inner == name for g in pos.mechanism.groups)
+        if p.link == shape.link and abs(way - along * u) < 1e-6 and abs(along) > half:
+            with s.of(pos.points[p.name], "link", f"{shape.block}–{p.name}"):
+                s.canvas.line(z + np.sign(along) * half * u, z + way, "main")
 
 
 def _base_direction(pos: Positions, name: str) -> complex:
@@ -244,40 +239,42 @@ def _base_direction(pos: Positions, name: str) -> complex:
     return 1j if len(ys) > 1 and mine == max(ys) and mine > min(ys) and name != pos.mechanism.crank.pivot else -1j
 
 
-def _ram(canvas: Canvas, frame: Frame, pos: Positions, s: Shape, k: int, style: str) -> None:
+def _ram(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
     """Guided link of a kind 5 group: a body on the guide with the slot in which the block slides."""
-    assert s.block is not None
-    assert s.along is not None
-    assert s.slot is not None
-    g = next(g for g in pos.mechanism.groups if s.link in g.links)
-    z, pin = frame(complex(pos.points[s.block].at(k))), frame(complex(pos.points[g.outer[0]].at(k)))
-    u, v = complex(s.along.at(k)), complex(s.slot.at(k))
+    g = next(g for g in pos.mechanism.groups if shape.link in g.links)
+    z, pin = s.at(pos.points[str(shape.block)]), s.at(pos.points[g.outer[0]])
+    assert shape.slot is not None
+    u, v = complex(s.value(pos.directions[shape.link])), complex(s.value(shape.slot))
     if ((pin - z) * np.conj(v)).real < 0:
         v = -v
     reach = max(((pin - z) * np.conj(v)).real + 9.0, 16.0)
-    half, thick, wall = RAM, 5.0, symbols.BLOCK[1] / 2
+    half, thick, wall, line = RAM, 5.0, symbols.BLOCK[1] / 2, s.canvas.line
     for side in (1, -1):
-        canvas.line(z + side * wall * u + thick * v, z + side * wall * u + reach * v, style)
-        canvas.line(z + side * wall * u + thick * v, z + side * half * u + thick * v, style)
-        canvas.line(z + side * half * u + thick * v, z + side * half * u - thick * v, style)
-    canvas.line(z - half * u - thick * v, z + half * u - thick * v, style)
+        line(z + side * wall * u + thick * v, z + side * wall * u + reach * v, style)
+        line(z + side * wall * u + thick * v, z + side * half * u + thick * v, style)
+        line(z + side * half * u + thick * v, z + side * half * u - thick * v, style)
+    line(z - half * u - thick * v, z + half * u - thick * v, style)
 
 
-def draw_guides(canvas: Canvas, pos: Positions, k: int, frame: Frame, only: Iterable[str] | None = None) -> None:
+def draw_guides(s: Stage, pos: Positions, only: Iterable[str] | None = None) -> None:
     """Fixed guides of the blocks and rams, hatched on the side away from the link."""
     m = pos.mechanism
     wanted = set(m.links if only is None else only)
     for g in m.groups:
-        if g.kind.ram(g) in wanted and m.guides[g.guides[0]].link == m.frame:
-            z, u = frame(complex(pos.points[str(g.inner)].at(k))), complex(pos.guide_directions[g.guides[0]].at(k))
-            for end, side in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-                a, b = sorted((z + end * 10.0 * u, z + end * 19.5 * u), key=lambda p: (p * np.conj(u)).real)
-                symbols.fixed_guide(canvas, a + side * 6.2j * u, b + side * 6.2j * u, side, "axis")
-        for link, name in g.kind.sliders(g):
-            if link not in wanted or m.guides[name].link != m.frame:
-                continue
-            z, u = frame(complex(pos.points[str(g.inner)].at(k))), complex(pos.guide_directions[name].at(k))
-            length, width = block_size(pos, next(s for s in shapes(pos) if s.link == link), frame)
-            half, gap = length / 2 + 6.0, width / 2 + 0.4
-            for side in (1, -1):
-                symbols.fixed_guide(canvas, z - half * u + side * gap * 1j * u, z + half * u + side * gap * 1j * u, side)
+        ram = g.kind.ram(g)
+        for link, name in (*([(ram, g.guides[0])] if ram else []), *g.kind.sliders(g)):
+            if link in wanted and m.guides[name].link == m.frame:
+                with s.of(pos.guide_directions[name], "symbol"):
+                    z, u = s.at(pos.points[str(g.inner)]), complex(s.value(pos.guide_directions[name]))
+                    if link == ram:
+                        _guide(s.canvas, z, u, ((10.0, 19.5), (-19.5, -10.0)), 6.2, "axis")
+                    else:
+                        length, width = block_size(pos, next(shape for shape in shapes(pos) if shape.link == link), s)
+                        _guide(s.canvas, z, u, ((-length / 2 - 6.0, length / 2 + 6.0),), width / 2 + 0.4, "main")
+
+
+def _guide(canvas: Canvas, z: complex, u: complex, stretches: Iterable[tuple[float, float]], gap: float, style: str) -> None:
+    """Both walls of a guide along ``u``, over stretches from ``z`` on, mm."""
+    for a, b in stretches:
+        for side in (1, -1):
+            symbols.fixed_guide(canvas, z + a * u + side * gap * 1j * u, z + b * u + side * gap * 1j * u, side, style)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import times
+from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.frame import pick
+from tmm_sheets.sheets.frame import Frame, pick
 from tmm_sheets.sheets.linkage import indexed
 
 if TYPE_CHECKING:
@@ -39,23 +38,21 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     scale = pick(project, canvas, "loads", f"μ_{kind}", f"{unit}/мм", top / inside.height)
     canvas.title(box, f"Технологическая нагрузка{' (принято)' if _accepted(project, shown) else ''}",
                  f"{scale}, μ_φ = {number(cycle.period / inside.width)} рад/мм")
-    origin = complex(inside.x0, inside.y0)
+    at = Frame(scale, complex(inside.x0, inside.y0), Scale("μ_φ", cycle.period / inside.width, "рад/мм"))
     if (said := _many_strokes(project, shown)) is not None:
         canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
-
-    def at(angle: Any, value: Any) -> Any:
-        return origin + angle / cycle.period * inside.width + 1j * value / scale.mu
-
-    canvas.arrow(origin, origin + 1j * (top / scale.mu + 8.0), "axis", 3.0)
-    canvas.arrow(origin, origin + inside.width + 10.0, "axis", 3.0)
-    signs = ", ".join(indexed(f.name) for f in shown)
-    canvas.label(origin + 1j * (top / scale.mu + 6.0), f"{signs}, {unit}", 1 + 0j, 3.5, 1.5)
-    canvas.label(origin + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
-    _positions(project, canvas, shown, at)
+    frame, o = canvas.placed("loads", "", at.origin, at.mu), at.origin
+    with canvas.traced("axis", f"loads/{shown[0].name}", "", frame):
+        canvas.arrow(o, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)
+        canvas.arrow(o, o + inside.width + 10.0, "axis", 3.0)
+        canvas.label(o + 1j * (top / scale.mu + 6.0), f"{', '.join(indexed(f.name) for f in shown)}, {unit}", 1 + 0j, 3.5, 1.5)
+        canvas.label(o + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
+    _positions(project, canvas, shown, at, frame)
     for f in shown:
-        canvas.polyline(at(turned, f.magnitude(turned)), "curve")
-        if len(shown) > 1:
-            _sign(canvas, f, turned, at)
+        with canvas.traced("curve", f"loads/{f.name}", "", frame):
+            canvas.polyline(at(turned + 1j * f.magnitude(turned)), "curve")
+            if len(shown) > 1:
+                _sign(canvas, f, turned, at)
 
 
 def _angles(shown: list[Applied], period: float) -> Any:
@@ -82,20 +79,22 @@ def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
     return f"Точка {strokes.output} меняет направление {times(len(strokes.runs))} за оборот; рабочий ход φ = {a}°…{b}°"
 
 
-def _sign(canvas: Canvas, f: Applied, turned: Any, at: Callable[[Any, Any], Any]) -> None:
+def _sign(canvas: Canvas, f: Applied, turned: Any, at: Frame) -> None:
     """Sign of one of several loads over the middle of where it is at least half its greatest."""
-    values = f.magnitude(turned)
-    acting = turned[values >= 0.5 * values.max()]
+    acting = turned[f.magnitude(turned) >= 0.5 * f.magnitude(turned).max()]
     middle = float(acting[len(acting) // 2]) if len(acting) else pi
-    canvas.label(at(middle, float(np.ravel(f.magnitude(middle))[0])), indexed(f.name), 1j, 3.5, 1.5)
+    canvas.label(complex(at(complex(middle, np.ravel(f.magnitude(middle))[0]))), indexed(f.name), 1j, 3.5, 1.5)
 
 
-def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Callable[[Any, Any], Any]) -> None:
+def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Frame, frame: int) -> None:
     """Numbers of the positions under the axis, and ordinates of the largest load over those inside the turn."""
     cycle = project.cycle
     for label, angle in (*zip(cycle.labels, cycle.turned, strict=True), (cycle.labels[0], cycle.period)):
-        value = max(float(np.ravel(f.magnitude(angle, side))[0]) for f in shown for side in (-1, 1))
-        if value > 0 and 0 < angle < cycle.period:
-            canvas.line(at(angle, 0), at(angle, value), "thin")
-        canvas.line(at(angle, 0) - 1j, at(angle, 0), "thin")
-        canvas.text(at(angle, 0) - 5.0j, label, 2.5, "centre")
+        value, largest = max((float(np.ravel(f.magnitude(angle, side))[0]), f.name) for f in shown for side in (-1, 1))
+        foot = complex(at(angle))
+        with canvas.traced("curve", f"loads/{largest}", label, frame):
+            if value > 0 and 0 < angle < cycle.period:
+                canvas.line(foot, complex(at(angle + 1j * value)), "thin")
+        with canvas.traced("axis", f"loads/{largest}", label, frame):
+            canvas.line(foot - 1j, foot, "thin")
+            canvas.text(foot - 5.0j, label, 2.5, "centre")

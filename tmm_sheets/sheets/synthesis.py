@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets.frame import Frame, fit_frame
+from tmm_sheets.sheets.player import stage
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -49,57 +51,63 @@ def _frame(project: Project, canvas: Canvas, box: Box, points: list[complex], ar
 
 def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
     """Rocker in its dead positions, the crank across it."""
-    s = project.synthesis
-    a, c, b, d = (complex(s.plan[name].value) for name in "ACBD")
-    crank = s.exact["l_AB"]
+    found = project.synthesis
+    a, c, b, d = (complex(found.plan[name].value) for name in "ACBD")
+    crank = found.exact["l_AB"]
     mirrored = [complex(-p.real, p.imag) for p in (b, d)]
     frame = _frame(project, canvas, box.inset(0, 8.0, 0, 0), [a, c, a + crank, a - crank, b, d, *mirrored], (12, -12, 11j, -9j))
     canvas.text(complex(box.x0, box.y0 + 1.5), str(frame.scale), 3.5)
-    canvas.circle(frame(a), frame.scale.mm(crank), "thin")
-    canvas.line(frame(c) - 6j, frame(complex(0, max(d.imag, crank))) + 4j, "centre")
-    for p, q, prime in ((b, d, "′"), (mirrored[0], mirrored[1], "″")):
-        symbols.bar(canvas, (frame(c), frame(q)), (frame(p), frame(q), frame(c)), "main", 1.0)
-        symbols.bar(canvas, (frame(a), frame(p)), (frame(p), frame(a)), "main", 1.0)
-        for z, name in ((p, "B"), (q, "D")):
-            symbols.hinge(canvas, frame(z), "main", 1.0)
-            canvas.label(frame(z), f"{name}{prime}", z - a if name == "B" else 1j, 3.5, 1.4)
-        _square(canvas, frame(p), frame(c), frame(a))
+    right = stage(canvas, found.plan, 0, frame)
+    left = stage(canvas, found.plan, 0, replace(frame, turn=pi, mirror=True))
+    with right.of("A", "construction", "B′–B″"):
+        canvas.circle(frame(a), frame.scale.mm(crank), "thin")
+    with right.of("C", "axis"):
+        canvas.line(frame(c) - 6j, frame(complex(0, max(d.imag, crank))) + 4j, "centre")
+    for s, prime in ((right, "′"), (left, "″")):
+        for link in ("CD", "AB"):
+            with s.of(link[1], "link", f"{link[0]}–{link[1]}{prime}"):
+                symbols.bar(canvas, map(s.at, link), map(s.at, "ABCD"), "main", 1.0)
+        for name, away in (("B", s.at("B") - s.at("A")), ("D", 1j)):
+            with s.of(name, "symbol"):
+                symbols.hinge(canvas, s.at(name), "main", 1.0)
+                canvas.label(s.at(name), name + prime, away, 3.5, 1.4)
+        with s.of("B", "symbol"):  # a right angle
+            u, v = (2.5 * (s.at(end) - s.at("B")) / abs(s.at(end) - s.at("B")) for end in "CA")
+            canvas.polyline((s.at("B") + u, s.at("B") + u + v, s.at("B") + v), "thin")
     symbols.pivot(canvas, frame(c))
     symbols.hinge(canvas, frame(a), "main", 1.0)
-    for z, name in ((a, "A"), (c, "C")):
-        canvas.label(frame(z), name, -1 + 0.5j, 3.5, 2.8)
-    swing = float(s.plan["θ"].value)
-    canvas.angle_mark(frame(c), pi / 2 - swing / 2, pi / 2 + swing / 2, min(0.45 * frame.scale.mm(s.exact["l_AC"]), 22.0), "θ")
-    canvas.dimension(frame(mirrored[1]), frame(d), 5.0, "H")
-
-
-def _square(canvas: Canvas, corner: complex, p: complex, q: complex, size: float = 2.5) -> None:
-    """Sign of a right angle."""
-    u, v = ((z - corner) / abs(z - corner) * size for z in (p, q))
-    canvas.polyline(np.array([corner + u, corner + u + v, corner + v]), "thin")
+    for name in "AC":
+        canvas.label(right.at(name), name, -1 + 0.5j, 3.5, 2.8)
+    half, radius = float(found.plan["θ"].value) / 2, min(0.45 * frame.scale.mm(found.exact["l_AC"]), 22.0)
+    canvas.angle_mark(frame(c), pi / 2 - half, pi / 2 + half, radius, "θ")
+    canvas.dimension(left.at("D"), right.at("D"), 5.0, "H")
 
 
 def _engine(project: Project, canvas: Canvas, box: Box) -> None:
     """Crank and rod in both dead positions, along the longer side of the place."""
-    s = project.synthesis
+    found = project.synthesis
     turn = -1j if box.width > box.height else 1.0
-    crank = s.lengths["l_AB"]
-    points = {name: turn * complex(s.plan[name].value) for name in ("A", "B′", "C′", "B″", "C″")}
-    frame = _frame(project, canvas, box, [*points.values(), *(crank * u for u in (1, -1, 1j, -1j))], (10, -10, 9j, -9j))
+    crank = found.lengths["l_AB"]
+    pins = ("B′", "C′", "B″", "C″")
+    points = [0j, *(turn * complex(found.plan[name].value) for name in pins)]
+    frame = _frame(project, canvas, box, [*points, *(crank * u for u in (1, -1, 1j, -1j))], (10, -10, 9j, -9j))
     canvas.text(complex(box.x0, box.y1 - 5.0), str(frame.scale), 3.5)
-    canvas.circle(frame(0j), frame.scale.mm(crank), "thin")
+    s = stage(canvas, found.plan, 0, replace(frame, turn=float(np.angle(turn))))
+    with s.of("A", "construction", "B′–B″"):
+        canvas.circle(frame(0j), frame.scale.mm(crank), "thin")
     axis = turn * 1j
-    canvas.line(frame(points["B″"]) - 4 * axis, frame(points["C′"]) + 9 * axis, "centre")
-    pins = [frame(z) for name, z in points.items() if name != "A"]
+    with s.of("AC", "axis"):
+        canvas.line(s.at("B″") - 4 * axis, s.at("C′") + 9 * axis, "centre")
     for prime in "′″":
-        b, c = frame(points[f"B{prime}"]), frame(points[f"C{prime}"])
-        symbols.bar(canvas, (frame(0j), b), (*pins, frame(0j)), "main", 1.0)
-        symbols.bar(canvas, (b, c), pins, "main", 1.0)
-        symbols.block(canvas, c, axis, "main", (7.0, 4.2))
-        for z, name in ((b, "B"), (c, "C")):
-            symbols.hinge(canvas, z, "main", 1.0)
-            canvas.label(z, f"{name}{prime}", axis * -1j, 3.5, 2.8)
+        for link, hinges in ((("A", f"B{prime}"), (*pins, "A")), ((f"B{prime}", f"C{prime}"), pins)):
+            with s.of(link[1], "link", "–".join(link)):
+                symbols.bar(canvas, map(s.at, link), map(s.at, hinges), "main", 1.0)
+        with s.of(f"C{prime}", "symbol"):
+            symbols.block(canvas, s.at(f"C{prime}"), axis, "main", (7.0, 4.2))
+        for name in (f"B{prime}", f"C{prime}"):
+            with s.of(name, "symbol"):
+                symbols.hinge(canvas, s.at(name), "main", 1.0)
+                canvas.label(s.at(name), name, axis * -1j, 3.5, 2.8)
     symbols.pivot(canvas, frame(0j))
     canvas.label(frame(0j), "A", -1 + 1j, 3.5, 2.8)
-    low, high = frame(points["C″"]), frame(points["C′"])
-    canvas.dimension(low, high, 8.0 if turn == -1j else -8.0, "H")
+    canvas.dimension(s.at("C″"), s.at("C′"), 8.0 if turn == -1j else -8.0, "H")

@@ -8,12 +8,12 @@ from typing import Literal
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Helper, Rule, Step
 
 Role = Literal["weight", "inertia", "applied", "reaction"]
 
 CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point"), "force",
-             "Замкнём план: {name} = |{0}–{1}|·μ_F = {value}.")
+             "Замкнём план: {name} = |{0}–{1}|·μ_F = {value}.", lambda a, v: (Helper("line", a[0], a[1]),))
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,8 @@ def _moments(about: Any, *terms: Any) -> Any:
     return total
 
 
-MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.")
+MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.",
+               lambda a, v: tuple(h for at, force in zip(a[1::3], a[2::3], strict=True) for h in rules.arm(a[0], at, force)))
 
 
 @dataclass
@@ -84,6 +85,11 @@ class Kinetostatics:
     def tangential_part(self, link: str, at: str) -> Step | None:
         """Part of the reaction on a link in a hinge that a moment equation gave, N; None where the reaction is not split."""
         return next((part.vector for part in self.from_moments if (part.link, part.at) == (link, at)), None)
+
+    def sum_about(self, point: Step, force: Step) -> Step | None:
+        """The sum of moments about a point that takes a force; None when there is none."""
+        sums = (step for step in self.plan if step.rule is MOMENTS and step.args[0] is point)
+        return next((step for step in sums if any(a is force for a in step.args)), None)
 
     def force_size(self, k: int) -> float:
         """Size of the forces at position ``k``, N: beside it a force is something or nothing."""
@@ -329,4 +335,5 @@ def _driving(total: Any, centre: Any, at: Any, u: Any) -> Any:
 
 
 DRIVING_FORCE = Rule("balancing force", _driving, ("number", "point", "point", "direction"), "force",
-                     "Из суммы моментов относительно точки {1} найдём уравновешивающую силу {name} = {value}.")
+                     "Из суммы моментов относительно точки {1} найдём уравновешивающую силу {name} = {value}.",
+                     lambda a, v: rules.arm(a[1], a[2], a[3]))

@@ -15,13 +15,13 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan, symbol
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import Load
 from tmm_sheets.methods.linkage.forces import GearForce, contact_point
 from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
 
 TURNED = Rule("turned plan point", lambda v: 1j * v, ("point",), "point",
-              "Повернём вектор p{0} плана скоростей на 90°: точка {name}.")
+              "Повернём вектор p{0} плана скоростей на 90°: точка {name}.", lambda a, v: (Helper("line", 0j, v),))
 COUPLE_FORCE = Rule("force of a couple", lambda m, x, y: 1j * m * ar.ray(x, y) / np.abs(y - x), ("number", "point", "point"),
                     "force", "Момент заменим парой сил {name} = M/{1}{2} = {value}, перпендикулярных {1}{2}.")
 OPPOSITE_FORCE = Rule("second force of a couple", lambda f: -f, ("force",), "force", "Вторая сила пары: {name} = −{0}.")

@@ -1,0 +1,44 @@
+"""Every line, arc and curve of a view knows the step that left it, and lies where that step says."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+
+from tests.sheets import traced
+from tmm_sheets.catalogue import read
+from tmm_sheets.drawing.marks import Fill, Text
+from tmm_sheets.project import Project
+
+
+@pytest.mark.parametrize("name", traced.PROJECTS)
+def test_marks_know_their_steps_and_lie_where_these_say(name):
+    project = Project(read(name))
+    sheets = traced.drawn(project, traced.DONE)
+    total = sum(traced.count(sheets.values(), traced.DONE).values(), Counter())
+    assert total["known"] >= 0.95 * total.total() > 200
+    checked, wrong = traced.untrue(project, sheets)
+    assert not wrong
+    assert min(checked[role] for role in ("point", "vector", "construction", "link")) > 20
+
+
+@pytest.fixture(scope="module")
+def press():
+    project = Project(read("press"))
+    return project, traced.drawn(project, ("linkage",))
+
+
+@pytest.mark.parametrize("role", ["point", "vector", "construction"])
+def test_a_mark_that_tells_a_wrong_step_is_found(press, role):
+    project, sheets = press
+    n, sheet = next(iter(sheets.items()))
+    marks = list(sheet.drawing.marks)
+    mine = [i for i, m in enumerate(marks) if m.by and m.by.role == role and m.by.frame >= 0 and not isinstance(m, Text)
+            and m.by.step.startswith("velocities/") and (role == "point") == isinstance(m, Fill)]
+    i = mine[-1]  # the pole's dot is the first
+    other = next(marks[k].by.step for k in mine if marks[k].by.step != marks[i].by.step)
+    marks[i] = marks[i]._replace(by=marks[i].by._replace(step=other))
+    changed = replace(sheet, drawing=replace(sheet.drawing, marks=tuple(marks)))
+    assert len(traced.untrue(project, {n: changed})[1]) == 1

@@ -1,0 +1,238 @@
+"""How much of a sheet knows where it comes from: marks that tell their step, and whether what they tell is true.
+
+Usage: python -m tests.sheets.traced [PROJECT ...] [--rooms linkage,flywheel,gears,cams]
+
+Counted are lines, arcs and curves inside views; symbols, tables, dimensions, hatching, lettering and the frame are what they are.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from tmm_sheets import explain
+from tmm_sheets.catalogue import read
+from tmm_sheets.construction.step import Helper, Step, value_at
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Text
+from tmm_sheets.project import Project
+from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.sheet import Composed, every
+
+ROOMS = {
+    "linkage": ("kinematics", "kinetics", "diagrams", "load_diagram", "synthesis", "given_position"),
+    "flywheel": ("flywheel", "mertsalov"),
+    "gears": ("gear", "rack", "reducer"),
+    "cams": ("cam", "cam_profile", "cam_zone"),
+}
+"""Modules of views by room."""
+DONE = ("linkage",)
+"""Rooms whose marks know their steps."""
+PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/8:3", "transport/press@07-ЭПС-718")
+"""One project of each family, and an engine."""
+UNCOUNTED = {"symbol", "table", "dimension", "hatch", "text", "frame"}
+EXACT = 0.001
+"""mm"""
+PRODUCED = 4.0
+"""How far a helper line is drawn beyond its end at most, mm."""
+
+
+class View(NamedTuple):
+    """A view of a sheet and its marks."""
+
+    draw: str
+    title: str
+    marks: tuple[Mark, ...]
+
+
+def views(sheet: Composed) -> Iterator[View]:
+    """Views and their titled parts in the order they were drawn, without the frame and the labels."""
+    ends = [*(p.first for p in sheet.parts[1:]), len(sheet.drawing.marks)]
+    for part, end in zip(sheet.parts, ends, strict=True):
+        if part.draw not in ("title block", "labels"):
+            yield View(part.draw, part.title, sheet.drawing.marks[part.first:end])
+
+
+def counted(view: View) -> list[Mark]:
+    """Marks of a view that ought to know their step."""
+    return [m for m in view.marks if not isinstance(m, Fill | Text) and (m.by is None or m.by.role not in UNCOUNTED)]
+
+
+def drawn(project: Project, rooms: Iterable[str]) -> dict[int, Composed]:
+    """The sheets of a project that have views of some rooms."""
+    modules = {module for room in rooms for module in ROOMS[room]}
+    numbers = [n for n, name in enumerate(project.sheets, 1)
+               if any(view.draw.partition(".")[0] in modules for view in arrangement(name).fitted(project.parts).views)]
+    return every(project, numbers=numbers).drawn if numbers else {}
+
+
+def count(sheets: Iterable[Composed], rooms: Iterable[str]) -> dict[str, Counter[str]]:
+    """Marks by the name of their view: "known", or what is known of those without a step (role or line type)."""
+    modules = {module for room in rooms for module in ROOMS[room]}
+    found: dict[str, Counter[str]] = defaultdict(Counter)
+    for sheet in sheets:
+        for view in views(sheet):
+            if view.draw.partition(".")[0] in modules:
+                found[view.draw].update("known" if m.by and m.by.step else _unknown(m) for m in counted(view))
+    return {draw: c for draw, c in found.items() if c}
+
+
+def _unknown(m: Mark) -> str:
+    return f"{m.by.role if m.by else 'no role'} {getattr(m, 'style', '')}"
+
+
+# --- is it true -------------------------------------------------------------------------------------------------------
+
+
+def steps(project: Project) -> dict[str, Step]:
+    """All steps of a project that was drawn, by plan/name; steps of the numbered positions, not of further angles."""
+    found: dict[str, Step] = {}
+    if "positions" in project.parts:
+        _ = project.study.loads  # a sheet shows the law of a load without asking for its step
+    for plans in explain.parts(project).values():
+        for plan in plans or ():
+            for step in plan:
+                found.setdefault(step.path, step)
+    return found
+
+
+def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str], list[str]]:
+    """How many marks of each role were checked, and those that are not where their step says."""
+    known, order, checked, wrong = steps(project), list(project.cycle.labels), Counter[str](), []
+    for n, sheet in sheets.items():
+        tips = {g.first: sheet.drawing.marks[g.end - 1] for g in sheet.groups if g.kind == "arrow"}
+        for i, m in enumerate(sheet.drawing.marks):
+            if m.by is None or not m.by.step:
+                continue
+            if m.by.step not in known:
+                wrong.append(f"sheet {n}: {m.by.step} is no step")
+                continue
+            if m.by.role not in ("point", "vector", "construction", "link") or m.by.frame < 0:
+                continue
+            if isinstance(m, Text) or (isinstance(m, Fill) and m.by.role != "point"):
+                continue  # letters and heads
+            k = order.index(m.by.position.split(", ")[0]) if m.by.position else 0
+            off = distance(m, known[m.by.step], k, sheet.frames[m.by.frame], known, tips.get(i))
+            checked[m.by.role] += 1
+            if not off <= EXACT:
+                wrong.append(f"sheet {n}: {m.by.role} {m.by.step} at {m.by.position or 'all'}: off by {off:.4f} mm")
+    return checked, wrong
+
+
+def distance(m: Mark, step: Step, k: int, frame: PlacedFrame, known: dict[str, Step], head: Mark | None) -> float:
+    """How far a mark lies from where its step, or the step's helper lines, say, mm."""
+    if m.by.role == "link":
+        return _off_link(m, frame, k, known)
+    value, own = step.at(k), frame.plan == step.plan
+    if m.by.role == "point":
+        return abs(_middle(m) - frame(complex(value)))
+    if m.by.role == "vector":
+        assert isinstance(m, Line)
+        tip = complex(head.points[0]) if isinstance(head, Fill) else m.b
+        if step.rule.gives == "force":  # of any length on a scheme: it has its direction there
+            return _across(tip, m.a, _split(step, m.by.name, value, k, known))
+        starts = {complex(frame(complex(s.at(k)))) for s in known.values() if s.plan == step.plan and _is_point(s)}
+        return max(abs(tip - frame(complex(value))), min(abs(m.a - z) for z in starts))
+    lines = _helpers(step, k)
+    drawn = [_from_helper(m, h, frame) for h in lines]
+    if own and _is_point(step) and (frame.plan == "positions" or not lines):  # carried over from there, or about it
+        at = frame(complex(value))
+        drawn += [abs(m.centre - at)] if isinstance(m, Arc) else [abs(m.a - at), abs(m.b - at)]
+    if own and frame.mu[0] != frame.mu[1] and isinstance(m, Line):
+        drawn += [abs(abs(m.b.imag - frame.origin.imag) * frame.mu[1] - y) / frame.mu[1] for y in _ordinates(step, k)]
+    if step.rule.gives == "length" and isinstance(m, Line):  # an arm, and the line of action it was measured to
+        force = next(value_at(a, k) for a in step.args if isinstance(a, Step) and a.rule.gives == "force")
+        drawn += [abs(abs(m.b - m.a) - abs(value) / frame.mu[1]), min(_across(m.b, m.a, force), _across(m.b, m.a, -force))]
+    return min(drawn, default=np.inf)
+
+
+def _off_link(m: Mark, frame: PlacedFrame, k: int, known: dict[str, Step]) -> float:
+    """How far a link's line lies beside that between the points it is called by; a dead position has its prime on both."""
+    names = m.by.name.rstrip("″′").split("–")
+    primes = m.by.name[len(m.by.name.rstrip("″′")):]
+    points = [known.get(f"{frame.plan}/{name}{primes}") or known[f"{frame.plan}/{name}"] for name in names]
+    a, b = (complex(frame(complex(point.at(k)))) for point in points)
+    along = [(z - a) * np.conj(b - a) / abs(b - a) for z in (m.a, m.b)]
+    return max(*(abs(z.imag) for z in along), *(-z.real for z in along), *(z.real - abs(b - a) for z in along))
+
+
+def _is_point(step: Step) -> bool:
+    return step.rule.gives in ("point", "vector")
+
+
+def _middle(m: Mark) -> complex:
+    if isinstance(m, Line):
+        return (m.a + m.b) / 2
+    return m.centre if isinstance(m, Arc) else complex(np.mean(m.points))
+
+
+def _across(tip: complex, tail: complex, along: complex) -> float:
+    """How far the tip lies beside the ray from the tail."""
+    w = (tip - tail) * np.conj(along) / abs(along)
+    return abs(w.imag) if w.real > 0 else abs(w)
+
+
+def _split(step: Step, name: str, value: complex, k: int, known: dict[str, Step]) -> complex:
+    """The force shown: of a reaction, when its name says so, the part along the link alone."""
+    if name == f"{step.name}n":
+        return value - known[f"moments/{step.name}τ"].at(k)
+    return value
+
+
+def _helpers(step: Step, k: int) -> tuple[Helper, ...]:
+    return step.rule.helpers(tuple(value_at(a, k) for a in step.args), step.at(k)) if step.rule.helpers else ()
+
+
+def _from_helper(m: Mark, h: Helper, frame: PlacedFrame) -> float:
+    """Distance of a mark from a helper line, which may be produced a little."""
+    a, b = (complex(frame(z)) for z in (h.a, h.b))
+    if isinstance(m, Arc):
+        radius = abs(complex(frame(h.a + h.radius)) - a) if h.kind == "circle" else abs(b - a)
+        return np.inf if h.kind == "line" else max(abs(m.centre - a), abs(m.radius - radius))
+    if not isinstance(m, Line) or h.kind != "line" or not abs(b - a) > EXACT:
+        return np.inf
+    over = (m.b - b) * np.conj(b - a) / abs(b - a)
+    return max(abs(m.a - a), abs(over.imag), -over.real, over.real - PRODUCED)
+
+
+def _ordinates(step: Step, k: int) -> list[float]:
+    """What an ordinate of a diagram over the crank angle may be: a quantity, the way or the angle from position 0 on."""
+    value, first = step.at(k), step.at(0)
+    if step.rule.gives == "direction":
+        turned = float(np.angle(value / first))
+        return [abs(turned + 2 * np.pi * n) for n in (-1, 0, 1)]
+    return [abs(value - first)] if step.plan == "positions" else [float(abs(value))]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("projects", nargs="*", default=PROJECTS)
+    parser.add_argument("--rooms", default=",".join(ROOMS))
+    args = parser.parse_args()
+    for name in args.projects:
+        project = Project(read(name))
+        rooms = args.rooms.split(",")
+        sheets = drawn(project, rooms)
+        print(name)
+        total: Counter[str] = Counter()
+        for draw, found in count(sheets.values(), rooms).items():
+            total += found
+            print(_line(draw, found))
+        if total:
+            print(_line("together", total))
+        checked, wrong = untrue(project, sheets)
+        print(f"  where their step says: {dict(checked)}, not: {len(wrong)}")
+        for line in wrong[:12]:
+            print(f"    {line}")
+
+
+def _line(name: str, found: Counter[str]) -> str:
+    exceptions = ", ".join(f"{n} {what}" for what, n in found.most_common() if what != "known")
+    return f"  {name:32} {found['known']:5} of {found.total():5}  {found['known'] / found.total():7.1%}  {exceptions}"
+
+
+if __name__ == "__main__":
+    main()
