@@ -249,8 +249,8 @@ class _GearPicture:
                 c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
             if k != parts:
                 c.label(t, f"{k}′", away=centre - t, height=2.5, gap=0.8)
-        c.polyline(self.at(self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)),
-                   "construction")
+        smooth = self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)
+        c.polyline(self.at(smooth["E"].value), "construction")
         c.of = "gear.engagement"
 
     def teeth(self, wheel: Any) -> None:
