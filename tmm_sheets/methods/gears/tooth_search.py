@@ -133,8 +133,8 @@ class _Task:
         least, most = np.ceil(self.pinion * self.span[0] - 1e-9), np.floor(self.pinion * self.span[1] + 1e-9)
         return np.arange(int(least), min(int(most), self.most) + 1)
 
-    def candidates(self, largest: int, reach: float) -> list[Ints]:
-        """All stages with wheels of at most ``largest`` teeth that meet the conditions and may come within ``reach``."""
+    def coaxial(self, largest: int) -> list[Ints]:
+        """All stages with wheels of at most ``largest`` teeth whose central wheels have one axis."""
         d, s = self.data, self.scheme.signs
         r1, r2, r3 = (np.arange(d.least_teeth, largest + 1) if g is None else np.array([g]) for g in self.given[:3])
         if self.scheme.single:
@@ -146,7 +146,12 @@ class _Task:
         ok = z4 >= d.least_teeth if self.given[3] is None else z4 == self.given[3]
         if not self.scheme.single:
             ok &= z2 != z3  # one wheel would do
-        z: list[Ints] = [v[ok] for v in (z1, z2, z3, z4)]
+        return self._only((z1, z2, z3, z4), ok)
+
+    def candidates(self, largest: int, reach: float) -> list[Ints]:
+        """All stages with wheels of at most ``largest`` teeth that meet the conditions and may come within ``reach``."""
+        d, s = self.data, self.scheme.signs
+        z = self.coaxial(largest)
         z = self._only(z, neighbours_clear(s, z, d.satellites, d.addendum))
         wheels = self.wheels()
         if not len(wheels):
@@ -155,11 +160,16 @@ class _Task:
         z = self._only(z, (total * (wheels[-1] / self.pinion) >= self.ratio * (1 - reach))
                        & (total * (wheels[0] / self.pinion) <= self.ratio * (1 + reach)))
         z = self._only(z, assembles(s, z, d.satellites))
-        if d.strict_internal:
-            for satellite, ring, sign in ((1, 0, s[0]), (2, 3, s[1])):
-                if sign < 0:
-                    least = np.array([least_ring(v, d.addendum) or 10**6 for v in range(int(z[satellite].max(initial=0)) + 1)])
-                    z = self._only(z, z[ring] >= least[z[satellite]])
+        return self.free_of_interference(z) if d.strict_internal else z
+
+    def free_of_interference(self, z: list[Ints]) -> list[Ints]:
+        """Those stages whose rings are large enough to mesh with their satellites."""
+        s = self.scheme.signs
+        for satellite, ring, sign in ((1, 0, s[0]), (2, 3, s[1])):
+            if sign < 0:
+                teeth = range(int(z[satellite].max(initial=0)) + 1)
+                least = np.array([least_ring(v, self.data.addendum) or 10**6 for v in teeth])
+                z = self._only(z, z[ring] >= least[z[satellite]])
         return z
 
     @staticmethod
