@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import pi
 from typing import Any
 
@@ -249,41 +249,45 @@ class _Scheme:
         c.line(o - reach, o + reach, "centre")
         c.line(complex(o.real, self.y(-self.bottom) - 4), complex(o.real, self.y(self.top) + 4), "centre")
         other = complex(o.real, self.y(self.offset))
-        c.line(other - mm(max(w.diameter for w in self.pair)) / 2 * 0.35, other + mm(max(w.diameter for w in self.pair)) / 2 * 0.35,
-               "centre")
+        arm = mm(max(w.diameter for w in self.pair)) / 2 * 0.35
+        c.line(other - arm, other + arm, "centre")
         for wheel in (one, four):
             c.circle(o, mm(wheel.diameter / 2), "main" if wheel is stage.fixed else "axis")
+        satellites = (two,) if stage.single else (two, three)
         count = self.reducer.data.satellites
         spokes = [rect(mm(stage.axis), pi / 2 + 2 * pi * k / count) for k in range(count)]
         for spoke in spokes:
             c.line(o, o + spoke, "main")
-            for wheel in ((two,) if stage.single else (two, three)):
+            for wheel in satellites:
                 c.circle(o + spoke, mm(wheel.diameter / 2), "axis")
             c.dot(o + spoke, 1.0)
         c.dot(o, 1.2)
         c.dot(other, 1.2)
-        driving, driven = self.pair
-        near, far = (driven, driving) if self.before else (driving, driven)
+        near, far = reversed(self.pair) if self.before else self.pair
         c.circle(o, mm(near.diameter / 2), "thin")
         c.circle(other, mm(far.diameter / 2), "axis")
         side = spokes[-1] / abs(spokes[-1])
         gap = pi / 2 - pi / count  # between two satellites
         named = [(o, one, rect(1, gap + 0.05)), (o, four, rect(1, gap - 0.12)), (o, near, rect(1, -0.45)),
                  (other, far, rect(1, 0.5 if self.before else -0.5))]
-        named += [(o + spokes[-1], wheel, side * rect(1, 0.6 + 0.9 * k))
-                  for k, wheel in enumerate((two,) if stage.single else (two, three))]
+        named += [(o + spokes[-1], wheel, side * rect(1, 0.6 + 0.9 * k)) for k, wheel in enumerate(satellites)]
         for centre, wheel, way in named:
-            here = [s.wheels[stage.wheels.index(wheel)].number for s in self.stages] if wheel in stage.wheels else [wheel.number]
-            c.label(centre + mm(wheel.diameter / 2) * way, ", ".join(here), away=way, height=3.5, gap=1.0)
+            c.label(centre + mm(wheel.diameter / 2) * way, self.numbers(wheel), away=way, height=3.5, gap=1.0)
+
+    def numbers(self, wheel: Any) -> str:
+        """Numbers of a wheel of the first stage and of those in its place in the next ones, which are like it."""
+        first = self.stages[0].wheels
+        if wheel not in first:
+            return str(wheel.number)
+        return ", ".join(s.wheels[first.index(wheel)].number for s in self.stages)
 
     # --- picture of velocities ----------------------------------------------------------------------------------
 
     def velocities(self) -> None:
         """Lines of the links over the heights of their points."""
         c, plan = self.canvas, self.reducer.velocities
-        lines = {step.name: step for step in plan if step.rule.gives == "direction"}
-        velocity = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
-        low, high = (f([v.real for v in velocity.values()]) for f in (min, max))
+        ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
+        low, high = (f([v.real for v in ends.values()]) for f in (min, max))
         mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, WIDEST)), "(м/с)/мм")
         c.scales["reducer-velocities"] = mu
         whole = mu.mm(high - low)
@@ -293,23 +297,29 @@ class _Scheme:
         def at(z: complex) -> complex:
             return complex(zero + mu.mm(z.real), self.y(z.imag))
 
-        bottom, top = (f([v.imag for v in velocity.values()]) for f in (min, max))
+        bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
         c.line(complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis")
-        self.heights(zero, {name: value.imag for name, value in velocity.items() if name[0].isupper()})
-        for name, value in velocity.items():
-            if name[0].islower():
-                point = complex(zero, self.y(value.imag))
-                c.arrow(point, at(value), "vector")
-                way = 1 if value.real > 0 else -1
-                c.label(at(value), name, away=complex(way, 0.4), height=3.5, gap=1.2)
-        for link, step in lines.items():
-            on = [complex(a.value) for a in step.args]
-            on += [complex(other.value) for other in plan if other.rule.gives == "point" and step in other.args]
-            on.sort(key=lambda z: z.imag)
-            a, b = at(on[0]), at(on[-1])
-            c.ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
-            c.label(a + 0.62 * (b - a), _link(link), away=1j * (b - a) * (-1 if (b - a).real > 0 else 1), height=5, gap=1.2)
+        self.heights(zero, {name: value.imag for name, value in ends.items() if name[0].isupper()})
+        self.vectors(at, {name: value for name, value in ends.items() if name[0].islower()})
+        self.lines(at)
 
+    def vectors(self, at: Callable[[complex], complex], ends: Mapping[str, complex]) -> None:
+        """Velocities of the points, from the line of zero velocity to their ends."""
+        for name, value in ends.items():
+            self.canvas.arrow(at(1j * value.imag), at(value), "vector")
+            way = 1 if value.real > 0 else -1
+            self.canvas.label(at(value), name, away=complex(way, 0.4), height=3.5, gap=1.2)
+
+    def lines(self, at: Callable[[complex], complex]) -> None:
+        """Line of each link through the ends of the velocities of all its points."""
+        plan = self.reducer.velocities
+        points = [step for step in plan if step.rule.gives == "point"]
+        for step in (step for step in plan if step.rule.gives == "direction"):
+            on = sorted((complex(p.value) for p in (*step.args, *(p for p in points if step in p.args))), key=lambda z: z.imag)
+            a, b = at(on[0]), at(on[-1])
+            self.canvas.ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
+            away = 1j * (b - a) * (-1 if (b - a).real > 0 else 1)
+            self.canvas.label(a + 0.62 * (b - a), _link(step.name), away=away, height=5, gap=1.2)
 
     def heights(self, zero: float, points: Mapping[str, float]) -> None:
         """Points of the scheme carried over to the line of zero velocity; those of one height have one line."""
