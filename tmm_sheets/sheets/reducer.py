@@ -384,13 +384,12 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
 def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Table of the chosen tooth set and the runners-up."""
     reducer = project.reducer
-    sets = (reducer.chosen, *reducer.runners_up)
-    names = list(reducer.teeth_of(reducer.chosen))
+    names = reducer.teeth_names
     head = ["№", *(f"z_{n[1:]}" for n in names), "u", "Δu, %", "η"]
     rows = [head]
-    for i, teeth in enumerate(sets):
-        rows.append([str(i + 1), *(str(z) for z in reducer.teeth_of(teeth).values()), fixed(teeth.ratio, 3),
-                     fixed(teeth.deviation * 100, 2), fixed(teeth.efficiency, 3)])
+    for i, found in enumerate(reducer.sets):
+        rows.append([str(i + 1), *(str(found[z].value) for z in names), fixed(found["u"].value, 3),
+                     fixed(found["du"].value * 100, 2), fixed(found["eta"].value, 3)])
     inner = canvas.title(box, "Подбор чисел зубьев (1 — принято)")
     wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
     widths = [w * box.width / sum(wide) for w in wide]
@@ -400,18 +399,17 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
 def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Split of the ratio, conditions, efficiency, speeds."""
     r = project.reducer
-    left, right = r.coaxiality
-    near, need = r.neighbourhood
+    chosen, held = ({step.name: step.value for step in plan} for plan in (r.sets[0], r.conditions))
     rows: list[tuple[str, ...]] = [
         ("Показатель", "Значение"),
-        ("Требуемое передаточное отношение", fixed(r.asked, 3)),
-        ("Простая ступень × планетарная", f"{fixed(r.simple_ratio, 3)} × {fixed(r.planetary_ratio, 3)}"),
-        ("Полученное; отклонение", f"{fixed(r.chosen.ratio, 3)}; {fixed(r.chosen.deviation * 100, 2)} %"),
-        ("Соосность, зубьев", f"{left} = {right}"),
-        (f"Сборка при q = {r.data.satellites} (целое)", number(r.assembly, 6)),
-        ("Соседство, модулей", f"{fixed(near, 2)} > {fixed(need, 2)}"),
-        ("КПД: пара; планетарная; весь", f"{number(r.data.pair_efficiency)}; {fixed(r.stage_efficiency ** r.data.stages, 3)}; "
-         f"{fixed(r.chosen.efficiency, 3)}"),
+        ("Требуемое передаточное отношение", fixed(chosen["u_asked"], 3)),
+        ("Простая ступень × планетарная", f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}"),
+        ("Полученное; отклонение", f"{fixed(chosen['u'], 3)}; {fixed(chosen['du'] * 100, 2)} %"),
+        ("Соосность, зубьев", f"{held['coaxiality_left']} = {held['coaxiality_right']}"),
+        (f"Сборка при q = {held['q']} (целое)", number(held["assembly"], 6)),
+        ("Соседство, модулей", f"{fixed(held['between'], 2)} > {fixed(held['width'], 2)}"),
+        ("КПД: пара; планетарная; весь", f"{number(chosen['eta_pair'])}; {fixed(chosen['eta_planetary'], 3)}; "
+         f"{fixed(chosen['eta'], 3)}"),
     ]
     first, second = r.simple
     rows += [("Колёса 1 и 2 картины зацепления",

@@ -71,7 +71,8 @@ def gear(project: Project, found: Measurables) -> None:
                 found.add(length(plan, found.scales, 0, plan[tail], plan[head], tail + head))
     if "gear-sliding" in found.scales:
         _sliding(pair.sliding, found)
-    for name, value in pair.results().items():
+    for name, told in pair.results().items():
+        value = told.value
         if name in GEAR_ANGLES:
             scalar(found, "Зубчатая передача", name, degrees(value), DEGREES)
         else:
@@ -98,11 +99,10 @@ def reducer(project: Project, found: Measurables) -> None:
     """Results of the reducer."""
     results: Mapping[str, Any] = project.reducer.results()
     for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", "об/мин")):
-        for name, value in results.get(group, {}).items():
-            scalar(found, "Редуктор", f"reducer-{name}", value, unit)
+        for name, told in results[group].items():
+            scalar(found, "Редуктор", f"reducer-{name}", told.value, unit)
     for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q"):
-        if name in results:
-            scalar(found, "Редуктор", f"reducer-{name}", results[name], "")
+        scalar(found, "Редуктор", f"reducer-{name}", results[name].value, "")
 
 
 def cam(project: Project, found: Measurables) -> None:

@@ -21,12 +21,11 @@ from tmm_sheets.methods.gears.planetary import (
     inner_ratio,
     least_ring,
     neighbours_clear,
-    stage_efficiency,
     stage_ratio,
 )
 
 Ints = npt.NDArray[np.int64]
-Given = tuple[int | None, int | None, int | None, int | None]
+Known = tuple[int | None, int | None, int | None, int | None]
 
 TIERS = (0.01, 0.02)
 """Deviations of the ratio that are preferred to any larger one, before the permitted one itself."""
@@ -96,7 +95,6 @@ class ToothSet:
     ratio: float
     deviation: float
     height: float
-    efficiency: float
 
 
 @dataclass(frozen=True)
@@ -107,7 +105,7 @@ class _Task:
     driver: Driver
     stages: int
     ratio: float
-    given: Given
+    given: Known
     pinion: int
     wheel: int | None
     span: tuple[float, float]
@@ -218,10 +216,8 @@ class _Task:
     def set_of(self, z: Sequence[Ints], i: int, j: int, ratio: float, height: float) -> ToothSet:
         """One set of the search as plain numbers."""
         one, two, three, four = (int(v[i]) for v in z)
-        pair = self.data.pair_efficiency
-        stage = stage_efficiency(inner_ratio(self.scheme.signs, (one, two, three, four)), self.driver, pair**2)
         return ToothSet((one, two, three, four), self.pinion, int(self.wheels()[j]), float(ratio), float(ratio) / self.ratio - 1,
-                        float(height), float(stage) ** self.stages * pair)
+                        float(height))
 
 
 def _sets(task: _Task) -> list[ToothSet]:
@@ -296,7 +292,7 @@ def search(data: ReducerData) -> list[ToothSet]:
         f"gives {nearest.ratio:.4g} ({nearest.deviation * 100:+.1f} %)", hint)
 
 
-def _given(data: ReducerData) -> tuple[Given, tuple[int, int | None]]:
+def _given(data: ReducerData) -> tuple[Known, tuple[int, int | None]]:
     """Given tooth numbers of wheels 1 to 4, of the pinion and of its wheel."""
     names = [f"z{n}" for n in stage_numbers(data, 0)]
     pair = [f"z{n}" for n in simple_numbers(data)]
