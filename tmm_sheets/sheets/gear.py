@@ -13,12 +13,11 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.numbers import fixed, number
+from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.gear_marks import (
     CIRCLES,
     arrow_head,
     hatch_between,
-    in_degrees,
     ratio,
     ruled_table,
     spread,
@@ -184,7 +183,7 @@ class _GearPicture:
             c.line(corner + 3 * inward, foot + 3 * inward, "thin")
             c.dot(foot, 0.8)
             c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
-        alpha = f"α_w = {in_degrees(self.gear.alpha_w)}"
+        alpha = f"α_w = {degrees_and_minutes(self.gear.alpha_w)}"
         radius = (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2
         start, end = (pi, pi + self.gear.alpha_w) if h < 0 else (-self.gear.alpha_w, 0.0)
         c.angle_mark(pole, start, end, radius, "α_w")
@@ -546,11 +545,11 @@ def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         ("Параметр", "Знак", "Колесо 1", "Колесо 2"),
         ("Число зубьев", "z", str(one.teeth), str(two.teeth)),
         ("Модуль, мм", "m", number(gear.m * 1e3)),
-        ("Угол профиля исходного контура", "α", in_degrees(gear.alpha)),
+        ("Угол профиля исходного контура", "α", degrees_and_minutes(gear.alpha)),
         ("Коэффициент высоты головки", "h_a^{*}", number(gear.addendum)),
         ("Коэффициент радиального зазора", "c^{*}", number(gear.clearance)),
         ("Коэффициент смещения", "x", number(one.shift), number(two.shift)),
-        ("Угол зацепления", "α_w", in_degrees(gear.alpha_w)),
+        ("Угол зацепления", "α_w", degrees_and_minutes(gear.alpha_w)),
         ("Межосевое расстояние, мм", "a_w", fixed(gear.a_w * 1e3, 2)),
         ("Коэф. воспринимаемого смещения", "y", fixed(gear.y, 4)),
         ("Коэф. уравнительного смещения", "Δy", fixed(gear.dy, 4)),
@@ -564,7 +563,7 @@ def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         ("Толщина зуба у вершины, мм", "s_a", *both("sa")),
         ("Шаг делительный, мм", "p", fixed(gear.p * 1e3, 2)),
         ("Шаг по хорде, мм", "p̅", *both("p_chord")),
-        ("Угловой шаг", "τ", in_degrees(one.tau), in_degrees(two.tau)),
+        ("Угловой шаг", "τ", degrees_and_minutes(one.tau), degrees_and_minutes(two.tau)),
         ("Радиус переходной кривой, мм", "ρ_f", *both("fillet")) if gear.profile == "fillet" else (
             "Радиус закругления рейки, мм", "ρ_f", fixed(one.fillet * 1e3, 2)),
     ]

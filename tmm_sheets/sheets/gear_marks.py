@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import degrees
 from typing import Any
 
 import numpy as np
@@ -84,9 +83,3 @@ def ratio(scale: Scale) -> str:
     """A GOST 2.302 scale as it is written: 4:1, 1:2,5."""
     real = scale.mu * 1e3
     return f"{number(1 / real)}:1" if real <= 1 else f"1:{number(real)}"
-
-
-def in_degrees(angle: float) -> str:
-    """Degrees and minutes of an angle in rad."""
-    minutes = round(degrees(angle) * 60)
-    return f"{minutes // 60}°{minutes % 60:02d}′" if minutes % 60 else f"{minutes // 60}°"

@@ -12,8 +12,8 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.gear_marks import CIRCLES, arrow_head, in_degrees, ratio, spread, standard
+from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets.gear_marks import CIRCLES, arrow_head, ratio, spread, standard
 
 MARGIN = 16.0
 """Room for the names of the circles beside the window, mm."""
@@ -132,7 +132,7 @@ class _RackPicture:
                 c.dot(point, 0.8)
                 c.label(point, name, away=way, height=5, gap=1.5)
         radius = min(0.42 * w.width, 60.0)
-        c.angle_mark(self.pole, -rack.alpha, 0.0, radius, f"α = {in_degrees(rack.alpha)}")
+        c.angle_mark(self.pole, -rack.alpha, 0.0, radius, f"α = {degrees_and_minutes(rack.alpha)}")
 
     def positions(self) -> None:
         """Positions of the rack's flank relative to the wheel, and the points in which they touch the tooth."""

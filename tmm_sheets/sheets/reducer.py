@@ -389,7 +389,7 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     rows = [head]
     for i, found in enumerate(reducer.sets):
         rows.append([str(i + 1), *(str(found[z].value) for z in names), fixed(found["u"].value, 3),
-                     fixed(found["du"].value * 100, 2), fixed(found["eta"].value, 3)])
+                     fixed(found["u_deviation"].value * 100, 2), fixed(found["eta"].value, 3)])
     inner = canvas.title(box, "Подбор чисел зубьев (1 — принято)")
     wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
     widths = [w * box.width / sum(wide) for w in wide]
@@ -404,7 +404,7 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         ("Показатель", "Значение"),
         ("Требуемое передаточное отношение", fixed(chosen["u_asked"], 3)),
         ("Простая ступень × планетарная", f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}"),
-        ("Полученное; отклонение", f"{fixed(chosen['u'], 3)}; {fixed(chosen['du'] * 100, 2)} %"),
+        ("Полученное; отклонение", f"{fixed(chosen['u'], 3)}; {fixed(chosen['u_deviation'] * 100, 2)} %"),
         ("Соосность, зубьев", f"{held['coaxiality_left']} = {held['coaxiality_right']}"),
         (f"Сборка при q = {held['q']} (целое)", number(held["assembly"], 6)),
         ("Соседство, модулей", f"{fixed(held['between'], 2)} > {fixed(held['width'], 2)}"),

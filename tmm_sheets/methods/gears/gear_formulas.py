@@ -135,8 +135,7 @@ THICKNESS = _formula("tooth thickness", lambda m, x, a: m * (pi / 2 + 2 * x * np
                      "Толщина зуба по делительной окружности s = m(π/2 + 2x·tg α): "
                      "{name} = {0} × (π/2 + 2 × {1} × tg {2}) = {value} мм.")
 CHORD = _formula("chord of an arc", lambda r, arc: 2 * r * np.sin(arc / (2 * r)), (N, N),
-                 "Хорда дуги {1} мм делительной окружности, 2r·sin(s/2r): "
-                 "{name} = 2 × {0} × sin({1}/(2 × {0})) = {value} мм.")
+                 "2r·sin(дуга/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} мм.")
 PITCH = _formula("pitch", lambda m: pi * m, (N,), "Шаг по делительной окружности p = πm: {name} = π × {0} = {value} мм.")
 BASE_PITCH = _formula("base pitch", lambda m, a: pi * m * np.cos(a), (N, A),
                       "Основной шаг p_b = πm·cos α: {name} = π × {0} × cos {1} = {value} мм.", source="ГОСТ 16532-70")
@@ -292,8 +291,8 @@ def _wheel(plan: Plan, i: str) -> None:
     plan.add(f"ra{i}", TIP_RADIUS, m, z, h, x, plan["dy"], symbol=f"r_{{a{i}}}")
     plan.add(f"rf{i}", ROOT_RADIUS, m, z, h, c, x, symbol=f"r_{{f{i}}}")
     s = plan.add(f"s{i}", THICKNESS, m, x, alpha, symbol=f"s_{i}")
-    plan.add(f"s_chord{i}", CHORD, r, s, symbol=f"s̅_{i}")
-    plan.add(f"p_chord{i}", CHORD, r, plan["p"], symbol=f"p̅_{i}")
+    plan.add(f"s_chord{i}", CHORD, r, s, symbol=f"s̅_{i}", say=f"Толщина зуба по хорде делительной окружности, {CHORD.wording}")
+    plan.add(f"p_chord{i}", CHORD, r, plan["p"], symbol=f"p̅_{i}", say=f"Шаг по хорде делительной окружности, {CHORD.wording}")
 
 
 def _quality(plan: Plan) -> None:

@@ -51,7 +51,8 @@ class Reducer:
     def sets(self) -> tuple[Plan, ...]:
         """Tooth numbers, ratio and efficiency of the chosen set and of the runners-up."""
         criterion = criterion_of(self.data, (self.chosen, *self.runners_up))
-        return tuple(ratio_plan(self.data, t, k, criterion) for k, t in enumerate((self.chosen, *self.runners_up)))
+        chosen = ratio_plan(self.data, self.chosen, 0, criterion)
+        return chosen, *(ratio_plan(self.data, t, k, criterion, chosen) for k, t in enumerate(self.runners_up, 1))
 
     @cached_property
     def kinematics(self) -> Plan:
@@ -153,7 +154,7 @@ class Reducer:
         first = {n: of for k in range(self.data.stages)
                  for n, of in zip(stage_numbers(self.data, k), stage_numbers(self.data, 0), strict=True)}
         return {
-            "ratio_asked": Told(chosen["u_asked"]), "ratio": Told(chosen["u"]), "deviation": Told(chosen["du"]),
+            "ratio_asked": Told(chosen["u_asked"]), "ratio": Told(chosen["u"]), "deviation": Told(chosen["u_deviation"]),
             "ratio_planetary": Told(chosen["u_planetary"]), "ratio_simple": Told(chosen["u_simple"]),
             "teeth": {f"z{w.number}": Told(chosen[f"z{first.get(w.number, w.number)}"]) for w in self.wheels},
             "q": Told(conditions["q"]),
@@ -163,7 +164,7 @@ class Reducer:
             "conditions": {name: Told(conditions[name]) for name in ("coaxiality", "assembly", "neighbourhood")},
             "runners_up": [
                 {"teeth": {name: Told(plan[name]) for name in self.teeth_names}, "ratio": Told(plan["u"]),
-                 "deviation": Told(plan["du"]), "efficiency": Told(plan["eta"])}
+                 "deviation": Told(plan["u_deviation"]), "efficiency": Told(plan["eta"])}
                 for plan in self.sets[1:]
             ],
         }
