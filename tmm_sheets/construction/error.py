@@ -212,8 +212,8 @@ class Errors:
     def _analysed(self, step: Step) -> _Known | None:
         """None for what has no error: given numbers and directions, what no pencil draws, and values that are no numbers."""
         self._note_lengths(step)
-        if not _numeric(step.value) or _beyond_paper(step):
-            return None
+        if not _numeric(step.value) or _beyond_paper(step) or np.asarray(step.value).dtype.kind == "i":
+            return None  # numbers of teeth have no error either
         args = _on_paper(step)
         base = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {}))
         if base.shape != (np.size(step.value),):
