@@ -2,19 +2,87 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from cmath import rect
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale, fit_standard
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import Canvas, in_role
+from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
+from tmm_sheets.sheets.player import Stage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
            ("rf", "r_{f%d}", "thin"))
 """Circles of a wheel: attribute, symbol, line type."""
+
+
+class Circle(NamedTuple):
+    """A circle of a wheel as it is named, and its arcs that are seen, rad."""
+
+    symbol: str
+    centre: complex
+    radius: float
+    spans: list[tuple[float, float]]
+
+
+class Window:
+    """A picture that is cut to a part of the sheet, ``box``; what of a line is inside is drawn."""
+
+    def __init__(self, canvas: Canvas, box: Box) -> None:
+        self.canvas, self.box = canvas, box
+
+    def line(self, a: complex, b: complex, style: str = "thin") -> None:
+        """Straight stroke."""
+        inside = segment_inside(self.box, a, b)
+        if inside:
+            self.canvas.line(*inside, style)
+
+    def curve(self, points: Any, style: str) -> None:
+        """Curve through points."""
+        for part in polyline_inside(self.box, np.asarray(points)):
+            self.canvas.polyline(part, style)
+
+    def edge(self) -> None:
+        """The edge of the picture."""
+        x0, y0, x1, y1 = self.box
+        with self.canvas.as_role("frame"):
+            self.canvas.polyline((complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)), "thin", closed=True)
+
+    def circles(self, s: Stage, wheel: Any, leave: tuple[str, ...] = ()) -> list[Circle]:
+        """Draw what is seen of the circles of a wheel, but for some."""
+        found = []
+        for key, symbol, style in CIRCLES:
+            if key in leave:
+                continue
+            centre = s.at(f"O{wheel.number}")
+            radius = abs(complex(s.frame(getattr(wheel, key))) - complex(s.frame(0)))
+            spans = arcs_inside(self.box, centre, radius)
+            with s.of(f"{key}{wheel.number}", "construction"):
+                for start, end in spans:
+                    self.canvas.arc(centre, radius, start, end, style)
+            found.append(Circle(symbol % wheel.number, centre, radius, spans))
+        return found
+
+    def name_circles(self, circles: Iterable[Circle], share: float) -> None:
+        """Names of circles beside the right edge, spread to keep apart; inside, at a ``share`` of the longest arc, for others."""
+        c, ends = self.canvas, []
+        for symbol, centre, radius, spans in circles:
+            tips = [centre + rect(radius, angle) for span in spans for angle in span]
+            at_edge = [p.imag for p in tips if abs(p.real - self.box.x1) < 1e-6]
+            ends += [(y, symbol) for y in at_edge]
+            if spans and not at_edge:
+                start, end = max(spans, key=lambda span: span[1] - span[0])
+                middle = rect(1, start + share * (end - start))
+                c.label(centre + radius * middle, symbol, away=-middle)
+        ends.sort()
+        for (y, symbol), at in zip(ends, spread([y for y, _ in ends], 6.0), strict=True):
+            with c.as_role("dimension"):
+                c.line(complex(self.box.x1, y), complex(self.box.x1 + 4, at), "thin")
+            c.text(complex(self.box.x1 + 5, at - 1.75), symbol, 3.5)
 
 
 def arrow_head(canvas: Canvas, tip: complex, u: complex, size: float = 3.5) -> None:
@@ -23,6 +91,7 @@ def arrow_head(canvas: Canvas, tip: complex, u: complex, size: float = 3.5) -> N
     canvas.fill((tip, tip - size * u + 1j * half * u, tip - size * u - 1j * half * u), "thin")
 
 
+@in_role("hatch")
 def hatch_between(canvas: Canvas, edge: Any, inner: Any, step: float = 1.3) -> None:
     """Slanted strokes at even distances between two curves that run side by side."""
     along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(edge)))))
@@ -32,6 +101,7 @@ def hatch_between(canvas: Canvas, edge: Any, inner: Any, step: float = 1.3) -> N
         canvas.line(complex(a), complex(b), "hatch")
 
 
+@in_role("table")
 def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], widths: Sequence[float], tallest: float) -> float:
     """Ruled table across the box with the names left; a row with one value spans the value columns. Returns its bottom."""
     row = min(tallest, box.height / len(rows))
