@@ -114,11 +114,13 @@ class _RackPicture:
         reach = 1.15 * max(abs(foot - self.pole), abs(limit - self.pole))
         with s.of("K", "axis"):
             self.window.line(self.pole - reach * n, self.pole + reach * n, "thin")
-        c.dot(self.pole, 1.0)
+        with c.as_role("symbol"):
+            c.dot(self.pole, 1.0)
         c.label(self.pole, "P_0", away=-1 - 1j, height=5, gap=1.5)
         for point, name, way in ((foot, "N", n * 1j), (limit, "B_l", n * -1j)):
             if w.contains(point, -2):
-                c.dot(point, 0.8)
+                with c.as_role("symbol"):
+                    c.dot(point, 0.8)
                 c.label(point, name, away=way, height=5, gap=1.5)
         radius = min(0.42 * w.width, 60.0)
         with s.of("flank", "dimension"):
