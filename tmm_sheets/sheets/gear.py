@@ -437,10 +437,11 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     first = one.t_pole / scale.mu
     upper = canvas.title(box, "Графики скоростей", f"М {ratio(scale)}")
     left = (box.x0 + box.x1 - whole) / 2
-    y1, y2 = plan["yV1"].value, plan["yV2"].value
+    # rounded: where letters stand must not hang on the last digit
+    y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
     highest = float(max(y1.max(), y2.max()))
     share = np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value)) / scale.mu
-    xs = left + first + share
+    xs = np.round(left + first + share, 9)
     axis = upper.y1 - highest - 8
     s = _along(canvas, gear, plan, complex(left + first, axis), scale)
     _axis_line(s, gear, complex(left, axis), whole, first, scale)
