@@ -22,6 +22,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.cams.cam_motion import ACROSS, ORDINATE
+from tmm_sheets.methods.gears.rack import TAKEN
 from tmm_sheets.methods.integration import CHORD
 
 if TYPE_CHECKING:
@@ -53,8 +54,9 @@ def others(project: Project, found: Measurables) -> None:
 
 def _lengths(plan: Plan, found: Measurables, key: str) -> None:
     """All lengths and angles of a plan that were measured or drawn as circles; not those taken from numbers."""
+    taken = (rules.GIVEN_LENGTH, TAKEN)
     for step in plan:
-        if step.rule.gives in ("length", "ordinate", "angle", "inclination") and step.rule is not rules.GIVEN_LENGTH and step.args:
+        if step.rule.gives in ("length", "ordinate", "angle", "inclination") and step.rule not in taken and step.args:
             for k in range(np.size(step.value)):
                 found.add(measured_step(plan, found.scales, k, step, key=key))
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import (
@@ -42,9 +43,9 @@ def hand(pair: PairGeometry) -> int:
     return motion if pair.driver == 1 else -motion
 
 
+@primitive("angle at a point")
 def _angle(p: Any, o: Any, q: Any) -> Any:
-    turned = (p - o) * np.conj(q - o)
-    return np.abs(np.arctan2(np.imag(turned), np.real(turned)))
+    return np.abs(np.angle((p - o) * np.conj(q - o)))
 
 
 def turn_of(o: Any, foot: Any, travel: Any) -> Any:
@@ -53,10 +54,12 @@ def turn_of(o: Any, foot: Any, travel: Any) -> Any:
     return np.exp(1j * ar.cross(arm, travel) / (np.real(arm) ** 2 + np.imag(arm) ** 2))
 
 
+@primitive("profile in contact")
 def _rolled(p: Any, o: Any, foot: Any, contact: Any) -> Any:
     return o + (p - o) * turn_of(o, foot, contact - p)
 
 
+@primitive("point of the profile")
 def unrolled(o: Any, foot: Any, pole: Any, length: Any) -> Any:
     """Point of the profile through ``pole`` where the unrolled tangent of the base circle has this length."""
     string = pole - foot
@@ -65,6 +68,7 @@ def unrolled(o: Any, foot: Any, pole: Any, length: Any) -> Any:
     return o + ((foot - o) + string / whole * length) * turn
 
 
+@primitive("profile cuts a circle")
 def _profile_on_circle(o: Any, foot: Any, pole: Any, radius: Any) -> Any:
     base = np.abs(foot - o)
     return unrolled(o, foot, pole, np.sqrt((radius - base) * (radius + base)))
@@ -74,10 +78,12 @@ def _divide(p: Any, q: Any, k: Any, parts: Any) -> Any:
     return p + (q - p) * (k / parts)
 
 
+@primitive("lay off an arc")
 def _lay_arc(o: Any, foot: Any, pole: Any, k: Any, parts: Any) -> Any:
     return o + (foot - o) * turn_of(o, foot, (pole - foot) * (1 - k / parts))
 
 
+@primitive("end of the unrolled tangent")
 def _end_of_tangent(o: Any, foot: Any, pole: Any, at: Any, length: Any) -> Any:
     # The tangent at the pole's foot turned together with the radius: a right angle to the radius, on the tooth's side.
     return at + ar.ray(foot, pole) * ar.ray(o, at) * np.conj(ar.ray(o, foot)) * length
@@ -98,10 +104,12 @@ def _middle(p: Any, q: Any) -> Any:
     return (p + q) / 2
 
 
+@primitive("fillet on a radial piece")
 def _radial_fillet(o: Any, start: Any, rho: Any, root: Any, side: Any) -> Any:
     return o + ar.ray(o, start) * (np.sqrt(root * (root + 2 * rho)) + 1j * side * rho)
 
 
+@primitive("fillet on the involute")
 def on_normal(o: Any, foot: Any, pole: Any, touch: Any, length: Any, rho: Any) -> Any:
     """Point at ``rho`` from the profile's point ``touch`` (unrolled ``length``) along its normal, out of the tooth."""
     string = pole - foot
