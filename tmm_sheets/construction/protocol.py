@@ -121,7 +121,7 @@ def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of
     if np.ndim(value) or (isinstance(value, complex | np.complexfloating) and kind in ("point", "direction")):
         return ""
     if kind in ("length", "ordinate", "vector", "force", "angle", "inclination", "number") and not np.isfinite(value):
-        return "∞" if np.isinf(value) else "—"
+        return "—" if np.isnan(value) else "−∞" if np.real(value) < 0 else "∞"
     if kind in ("length", "ordinate", "vector"):
         real = to_mm(float(value) if kind == "ordinate" else abs(value))
         return f"{fixed(real, 1)} мм" if unit == "мм" else f"{number(real, kind=to_mm(of_sort))} {unit}"

@@ -181,18 +181,18 @@ def engagement_plan(pair: PairGeometry) -> Plan:
     """
     plan = Plan("gear-engagement", "Картина зацепления", "m")
     one = pair.wheels[0]
-    down = plan.add("O1O2", GIVEN_DIRECTION, -1j, say="Проведём линию центров.")
-    plan.add("O1", CENTRE, one.step("rw"))
-    distance = plan.add("aw", TAKEN, pair.step("a_w"))
-    plan.add("O2", ALONG, plan["O1"], down, distance)
+    down = plan.add("O1O2", GIVEN_DIRECTION, -1j, say="Проведём линию центров.", symbol="O_1O_2")
+    plan.add("O1", CENTRE, one.step("rw"), symbol="O_1")
+    distance = plan.add("aw", TAKEN, pair.step("a_w"), symbol="a_w")
+    plan.add("O2", ALONG, plan["O1"], down, distance, symbol="O_2")
     for w in pair.wheels:
         for name in ("rw", "r", "rb", "ra", "rf"):
-            plan.add(f"{name}{w.number}", CIRCLE, plan[f"O{w.number}"], w.step(name))
-    pole = plan.add("Pw", ALONG, plan["O1"], down, plan["rw1"])
+            plan.add(f"{name}{w.number}", CIRCLE, plan[f"O{w.number}"], w.step(name), symbol=w.step(name).symbol)
+    pole = plan.add("Pw", ALONG, plan["O1"], down, plan["rw1"], symbol="P_w")
     side = hand(pair)
     for w in pair.wheels:
-        plan.add(f"N{w.number}", TANGENT, pole, plan[f"O{w.number}"], plan[f"rb{w.number}"], side)
-    line = plan.add("N1N2", RAY, plan["N1"], plan["N2"])
+        plan.add(f"N{w.number}", TANGENT, pole, plan[f"O{w.number}"], plan[f"rb{w.number}"], side, symbol=f"N_{w.number}")
+    line = plan.add("N1N2", RAY, plan["N1"], plan["N2"], symbol="N_1N_2")
     ends = ((plan["O2"], plan["ra2"], -1), (plan["O1"], plan["ra1"], 1))
     for name, (centre, radius, way) in zip("AB", ends if pair.driver == 1 else ends[::-1], strict=True):
         plan.add(name, ARC_LINE, centre, radius, pole, line, way)
@@ -200,9 +200,10 @@ def engagement_plan(pair: PairGeometry) -> Plan:
     for w in pair.wheels:
         i = w.number
         for contact in "AB":
-            plan.add(f"{contact.lower()}{i}", ROLLED, pole, plan[f"O{i}"], plan[f"N{i}"], plan[contact])
-        plan.add(f"phi{i}", ANGLE, plan[f"a{i}"], plan[f"O{i}"], plan[f"b{i}"])
-        plan.add(f"eps{i}", RATIO, plan[f"phi{i}"], w.step("tau"))
+            plan.add(f"{contact.lower()}{i}", ROLLED, pole, plan[f"O{i}"], plan[f"N{i}"], plan[contact],
+                     symbol=f"{contact.lower()}_{i}")
+        plan.add(f"phi{i}", ANGLE, plan[f"a{i}"], plan[f"O{i}"], plan[f"b{i}"], symbol=f"φ_{{α{i}}}")
+        plan.add(f"eps{i}", RATIO, plan[f"phi{i}"], w.step("tau"), symbol="ε_α")
     return plan
 
 
@@ -243,7 +244,7 @@ def _unroll(plan: Plan, wheel: GearWheel, engagement: Plan, k: Any, parts: Any, 
     centre, foot, pole = engagement[f"O{wheel.number}"], engagement[f"N{wheel.number}"], engagement["Pw"]
     division = plan.add(names[0], DIVIDE, pole, foot, k, parts)
     base = plan.add(names[1], LAY_ARC, centre, foot, pole, k, parts)
-    length = plan.add(names[2], DISTANCE, pole, division)
+    length = plan.add(names[2], DISTANCE, pole, division, symbol=f"P_w{names[0]}")
     return plan.add(names[3], END_OF_TANGENT, centre, foot, pole, base, length)
 
 
@@ -266,7 +267,7 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
     plan.add("H", ON_CIRCLE, centre, foot, pole, engagement[f"ra{i}"])
     if pair.profile == "rack":
         return plan  # the fillet comes from the positions of the rack
-    rho = plan.add("rho", TAKEN, wheel.step("rho_f"))
+    rho = plan.add("rho", TAKEN, wheel.step("rho_f"), symbol="ρ_f")
     root = engagement[f"rf{i}"]
     if wheel.t_fillet > 0:
         length = plan.add("t", TAKEN, wheel.step("t_f"))
@@ -275,9 +276,9 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
     else:
         begin = plan.add("G", UNROLLED, centre, foot, pole, 0.0, say="Эвольвента начинается на основной окружности в точке {name}.")
         fillet = plan.add("C", RADIAL_FILLET, centre, begin, rho, root, side)
-        radial = plan.add(f"O{i}G", RAY, centre, begin)
+        radial = plan.add(f"O{i}G", RAY, centre, begin, symbol=f"O_{i}G")
         touch = plan.add("Q", _FOOT_ON_RADIUS, centre, radial, fillet)
-    ray = plan.add(f"O{i}C", RAY, centre, fillet)
+    ray = plan.add(f"O{i}C", RAY, centre, fillet, symbol=f"O_{i}C")
     plan.add("R", ALONG, centre, ray, root)
     return plan
 

@@ -227,8 +227,11 @@ def drawn_positions(sizes: Plan, radius: Step, alpha: Step, parts: int) -> Plan:
     plan.add("φ", EVEN, sizes["phi_first"], sizes["phi_last"], Given(np.arange(parts + 1.0), "gear.rack.positions"),
              Given(parts, "gear.rack.parts", over="none", choice="столько положений рейки показано на листе"))
     plan.add("r", TAKEN, radius)
-    for name in ("xm", "a", "u", "y", "h"):
-        plan.add(name, TAKEN_ORDINATE, sizes[name])
+    for name, what in (("xm", "смещение рейки"), ("a", "половину толщины зуба рейки"),
+                       ("u", "расстояние центра закругления рейки от оси её зуба"),
+                       ("y", "расстояние центра закругления от делительной прямой"),
+                       ("h", "длину прямолинейной части боковой стороны ниже делительной прямой")):
+        plan.add(name, TAKEN_ORDINATE, sizes[name], say=f"Возьмём {what} {{name}} = {{value}}.")
     _place(plan, alpha)
     _touch(plan, plan["h"])
     return plan
