@@ -21,7 +21,11 @@ from tmm_sheets.sheets.gear_marks import (
     CIRCLES,
     Window,
     arrow_head,
+    curve,
+    dot,
+    gap,
     hatch_between,
+    line,
     ratio,
     ruled_table,
     standard,
@@ -87,27 +91,24 @@ class _GearPicture:
         """+1 when the wheel's far side is up."""
         return 1 if wheel.number == 1 else -1
 
-    def spoke(self, wheel: Any, end: complex, style: str) -> None:
+    def spoke(self, wheel: Any, step: str, end: complex, style: str) -> None:
         """Line from a wheel's centre, interrupted where the dimensions of its teeth are written."""
         centre = self.of(f"O{wheel.number}")
         u = (end - centre) / abs(end - centre)
         root = self.mm(wheel.rf)
-        self.window.line(centre, centre + u * (root - DIMENSION - 9), style)
-        self.window.line(centre + u * (root - 1), end, style)
+        self.window.line(self.stage, step, centre, centre + u * (root - DIMENSION - 9), style)
+        self.window.line(self.stage, step, centre + u * (root - 1), end, style)
 
     def circles(self) -> None:
-        top, bottom = self.of("O1"), self.of("O2")
-        reach = [self.mm(w.ra) + 6 for w in self.gear.wheels]
-        with self.stage.of("O1O2", "axis"):
-            self.window.line(top + 1j * reach[0], top, "centre")
-            self.window.line(bottom - 1j * reach[1], bottom, "centre")
-            self.spoke(self.gear.wheels[0], self.pole, "centre")
-            self.spoke(self.gear.wheels[1], self.pole, "centre")
         for wheel in self.gear.wheels:
             centre = self.of(f"O{wheel.number}")
-            self.window.circles(self.stage, wheel)
-            with self.stage.of(f"O{wheel.number}", "axis"):
-                self.window.line(centre - 12, centre + 12, "centre")
+            self.window.line(self.stage, "O1O2", centre + 1j * self.away(wheel) * (self.mm(wheel.ra) + 6), centre, "centre")
+        for wheel in self.gear.wheels:
+            self.spoke(wheel, "O1O2", self.pole, "centre")
+        for wheel in self.gear.wheels:
+            centre = self.of(f"O{wheel.number}")
+            self.window.circles(self.stage, [wheel])
+            self.window.line(self.stage, f"O{wheel.number}", centre - 12, centre + 12, "centre")
             with self.stage.of(f"O{wheel.number}", "symbol"):
                 self.canvas.circle(centre, 2.0, "main")
             self.canvas.label(centre, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
@@ -163,28 +164,25 @@ class _GearPicture:
         u = complex(s.plan["N1N2"].value)
         reach = 1.25 * max(abs(n1 - pole), abs(n2 - pole))
         h = self.gear.hand
-        with s.of("N1N2", "axis"):
-            self.window.line(pole - h * reach, pole + h * reach, "thin")
+        self.window.line(s, "N1N2", pole - h * reach, pole + h * reach, "thin")
         for end in (pole - h * reach, pole + h * reach):
             c.label(end, "t", away=end - pole, height=5, leader=False)
-        with s.of("B", "curve"):
-            c.line(a, b, "main")
+        line(s, "B", a, b, "main", "curve")
         for name, point in (("A", a), ("B", b)):
-            self.dot(s, name, 0.9)
+            dot(s, name, 0.9)
             c.label(point, name, away=1j * u, height=5, gap=1.5)
-        self.dot(s, "Pw", 0.9)
+        dot(s, "Pw", 0.9)
         self.pole_letter(u)
         for i, foot in ((1, n1), (2, n2)):
             centre = self.of(f"O{i}")
             away = (foot - centre) / abs(foot - centre)
             inward = (pole - foot) / abs(pole - foot)
-            with s.of(f"N{i}", "axis"):
-                c.line(centre, foot, "thin")
+            line(s, f"N{i}", centre, foot, "thin")
             corner = foot - 3 * away
             with s.of(f"N{i}", "symbol"):
                 c.line(corner, corner + 3 * inward, "thin")
                 c.line(corner + 3 * inward, foot + 3 * inward, "thin")
-            self.dot(s, f"N{i}", 0.8)
+            dot(s, f"N{i}", 0.8)
             c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
         alpha = f"α_w = {degrees_and_minutes(self.gear.alpha_w)}"
         radius = (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2
@@ -194,10 +192,6 @@ class _GearPicture:
             o1 = self.of("O1")
             self.angle(o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
         self.dimension_of_centres()
-
-    def dot(self, s: Stage, name: str, radius: float, style: str = "main") -> None:
-        with s.of(name, "point"):
-            self.canvas.dot(s.at(name), radius, style)
 
     def pole_letter(self, action: complex) -> None:
         """Letter of the pole beyond the root circle of wheel 1, its leader on the free side of the line of centres."""
@@ -210,8 +204,7 @@ class _GearPicture:
         along = (np.conj(way) * foot).real
         inside = max((self.mm(self.gear.wheels[0].rf) - 1.5) ** 2 - (abs(foot) ** 2 - along**2), 0.0)
         end = self.pole - (along + inside**0.5) * way
-        with self.stage.of("Pw", "text"):
-            self.canvas.line(self.pole, end, "thin")
+        line(self.stage, "Pw", self.pole, end, "thin", "text")
         self.canvas.label(end, "P_w", away=way, height=5, gap=0.5, leader=False)
 
     def angle(self, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
@@ -243,43 +236,36 @@ class _GearPicture:
         numbers = self.gear.divisions(wheel, self.mu)
         centre, foot, pole = self.of(f"O{wheel.number}"), self.of(f"N{wheel.number}"), self.pole
         u = (foot - pole) / abs(foot - pole)
-        with s.of(str(numbers[-1]), "axis"):
-            self.window.line(pole, s.at(str(numbers[-1])) + 4 * u)
+        self.window.line(s, str(numbers[-1]), pole, s.at(str(numbers[-1])) + 4 * u)
         for k in numbers:
             d, t = s.at(str(k)), s.at(f"{k}′")
             if k:
-                with s.of(str(k), "point"):
-                    c.line(d - 1.2j * u, d + 1.2j * u, "thin")
+                line(s, str(k), d - 1.2j * u, d + 1.2j * u, "thin", "point")
             if k != parts:
                 play(s, [f"E{k}"])
                 out = (t - centre) / abs(t - centre)
-                with s.of(f"{k}′", "axis"):
-                    c.line(t - 10 * out, t, "construction")
-            self.dot(s, f"E{k}", 0.5, "thin")
+                line(s, f"{k}′", t - 10 * out, t, "construction")
+            dot(s, f"E{k}", 0.5, "thin")
             if 0 < k != parts:
                 c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
             if k != parts:
                 c.label(t, f"{k}′", away=centre - t, height=2.5, gap=0.8)
         smooth = self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)
-        with stage(c, smooth, 0, self.at).of("E", "curve"):
-            c.polyline(self.at(smooth["E"].value), "construction")
+        curve(stage(c, smooth, 0, self.at), "E", self.at(smooth["E"].value), "construction")
         c.of = "gear.engagement"
 
     def teeth(self, wheel: Any) -> None:
         c, s = self.canvas, self.tooth[wheel.number]
         shape = self.gear.shape(wheel)
-        with s.of("E", "curve"):
-            c.polyline(self.at(shape.outline(step=self.mu.mu)), "main")
+        curve(s, "E", self.at(shape.outline(step=self.mu.mu)), "main")
         centre = self.of(f"O{wheel.number}")
         for k in (-1, 0, 1):
             axis = shape.axis_of(k)
-            with s.of("axis", "axis"):
-                c.line(centre + axis * (self.mm(wheel.rf) - 3), centre + axis * (self.mm(wheel.ra) + 5), "centre")
+            line(s, "axis", centre + axis * (self.mm(wheel.rf) - 3), centre + axis * (self.mm(wheel.ra) + 5), "centre")
         k = self.strip_tooth(wheel)
         outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
         half = len(outline) // 2
-        with s.of("E", "curve"):
-            c.polyline(outline[half:], "thin")
+        curve(s, "E", outline[half:], "thin")
         hatch_between(c, outline[:half], outline[half:][::-1])
         ends = outline[0], outline[half - 1]
         names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
@@ -292,17 +278,15 @@ class _GearPicture:
 
     def overlap(self, wheel: Any) -> None:
         """The wheel's profile in contact at A and at B, and the angle between."""
-        c, i = self.canvas, wheel.number
+        i = wheel.number
         centre, flank = self.of(f"O{i}"), self.gear.shape(wheel).flank
         u = self.gear.engagement["N1N2"].value
         ends = []
         for name in "ab":
             travel = (np.conj(u) * self.gear.engagement[name.upper()].value).real
             p = self.of(f"{name}{i}")
-            with self.stage.of(f"{name}{i}", "curve"):
-                c.polyline(self.at(self.gear.rolled(wheel, flank, travel)), "thin")
-            with self.stage.of(f"{name}{i}", "axis"):
-                self.spoke(wheel, p, "construction")
+            curve(self.stage, f"{name}{i}", self.at(self.gear.rolled(wheel, flank, travel)), "thin")
+            self.spoke(wheel, f"{name}{i}", p, "construction")
             ends.append(phase(p - centre))
         if i == 1:
             ends.reverse()
@@ -366,20 +350,15 @@ class _Detail:
     def draw(self) -> None:
         c, gear, s, w = self.canvas, self.gear, self.stage, self.window
         u, reach = complex(s.plan["N1N2"].value), w.box.width
-        with s.of("O1O2", "axis"):
-            w.line(s.at("O1"), s.at("O2"), "centre")
-        with s.of("Pw", "axis"):
-            w.line(self.pole - reach, self.pole + reach, "thin")
-        with s.of("N1N2", "axis"):
-            w.line(self.pole - reach * u, self.pole + reach * u, "thin")
-        with s.of("B", "curve"):
-            w.line(s.at("A"), s.at("B"), "axis")
+        self.window.line(s, "O1O2", s.at("O1"), s.at("O2"), "centre")
+        self.window.line(s, "Pw", self.pole - reach, self.pole + reach, "thin")
+        self.window.line(s, "N1N2", self.pole - reach * u, self.pole + reach * u, "thin")
+        self.window.line(s, "B", s.at("A"), s.at("B"), "axis", "curve")
         w.edge()
-        w.name_circles([circle for wheel in gear.wheels for circle in w.circles(s, wheel)], 0.5)
+        w.circles(s, gear.wheels, 0.5)
         for wheel in gear.wheels:
             self.teeth(wheel)
-        with s.of("Pw", "point"):
-            c.dot(self.pole, 1.0)
+        dot(s, "Pw", 1.0)
         c.label(self.pole, "P_w", away=complex(-gear.hand, 1), height=5, gap=1.5)
         start, end = (pi, pi + gear.alpha_w) if gear.hand < 0 else (-gear.alpha_w, 0.0)
         with s.of("alpha_w", "dimension"):
@@ -390,13 +369,11 @@ class _Detail:
     def teeth(self, wheel: Any) -> None:
         """Teeth in mesh, and the radius of their fillets."""
         c, s = self.canvas, stage(self.canvas, self.gear.tooth(wheel), 0, self.at)
-        with s.of("E", "curve"):
-            self.window.curve(self.at(self.gear.shape(wheel).outline(-2, 2, step=0.5 * self.at.scale.mu)), "main")
+        self.window.curve(s, "E", self.at(self.gear.shape(wheel).outline(-2, 2, step=0.5 * self.at.scale.mu)), "main")
         if self.gear.profile == "rack":
             return  # a trochoid has no radius to show
         fillet, touch = s.at("C"), s.at("R")
-        with s.of("C", "point"):
-            c.dot(fillet, 0.5, "thin")
+        dot(s, "C", 0.5, "thin")
         with s.of("rho", "dimension"):
             c.line(fillet, touch, "thin")
             arrow_head(c, touch, (touch - fillet) / abs(touch - fillet), 2.5)
@@ -415,11 +392,7 @@ class _Detail:
             if abs(high - low) < 1e-9:
                 continue
             a, b = (self.pole + 1j * v / self.at.scale.mu for v in sorted((low, high)))
-            for tip, way in ((a, 1j), (b, -1j)):
-                arrow_head(c, tip, way, 2.5)
-                c.line(tip, tip - 6 * way, "thin")
-            c.line(a, b, "thin")
-            c.label((a + b) / 2, text, away=complex(side, 0), gap=4)
+            gap(c, a, b, text, complex(side, 0), 4)
 
 
 def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -446,10 +419,8 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     s = _along(canvas, gear, plan, complex(left + first, axis), scale)
     _axis_line(s, gear, complex(left, axis), whole, first, scale)
     ordinate = float(y1[np.argmin(np.abs(share))])
-    with s.of("yV1", "curve"):
-        canvas.line(complex(left, axis), complex(left + whole, axis + y1[-1]), "curve")
-    with s.of("yV2", "curve"):
-        canvas.line(complex(left, axis + y2[0]), complex(left + whole, axis), "curve")
+    line(s, "yV1", complex(left, axis), complex(left + whole, axis + y1[-1]), "curve", "curve")
+    line(s, "yV2", complex(left, axis + y2[0]), complex(left + whole, axis), "curve", "curve")
     canvas.label(complex(left + whole, axis + y1[-1]), "V_1", away=-1 + 0.3j, height=5)
     canvas.label(complex(left, axis + y2[0]), "V_2", away=1 + 0.5j, height=5)
 
@@ -462,8 +433,7 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     origin = complex(left, zero)
     t = _along(canvas, gear, plan, origin + first, scale)
     _theta(_along(canvas, gear, gear.smooth_sliding, origin + first, scale), zero, mu, deepest)
-    with t.of("K", "axis"):
-        canvas.line(origin - 6, origin + whole + 8, "axis")
+    line(t, "K", origin - 6, origin + whole + 8, "axis")
     with t.of("theta1", "axis"):
         canvas.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
         for theta in range(1, -int(deepest * mu.mu) - 1, -1):
@@ -476,10 +446,8 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         values = [plan[f"theta{i}"].value[k] for i in (1, 2)]
         low = min([v for v in values if np.isfinite(v) and v > -deepest * mu.mu] or [0.0])
         # Projection lines leave the title between the graphs free.
-        with replace(s, k=k).of("K", "axis"):
-            canvas.line(complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
-        with replace(t, k=k).of("K", "axis"):
-            canvas.line(complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
+        line(replace(s, k=k), "K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
+        line(replace(t, k=k), "K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
     canvas.label(complex(left + first, axis + ordinate), f"{number(ordinate)} мм", away=1 - 0.2j, height=3.5)
     canvas.of = ""
@@ -495,17 +463,14 @@ def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale) -
 def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, first: float, scale: Scale) -> None:
     """The line of action as an abscissa with its points."""
     canvas = s.canvas
-    with s.of("K", "axis"):
-        canvas.line(origin - 6, origin + whole + 8, "axis")
+    line(s, "K", origin - 6, origin + whole + 8, "axis")
     one, two = gear.wheels
     ends = [first + (one.t_low - one.t_pole) / scale.mu, first + (two.t_pole - two.t_low) / scale.mu]
     names = ("A", "B") if gear.driver == 1 else ("B", "A")
     e = _along(canvas, gear, gear.engagement, origin + first, scale)
-    with e.of("B", "curve"):
-        canvas.line(origin + ends[0], origin + ends[1], "main")
+    line(e, "B", origin + ends[0], origin + ends[1], "main", "curve")
     for name, x in (("N_1", 0.0), ("P_w", first), ("N_2", whole), *zip(names, ends, strict=True)):
-        with e.of(name.replace("_", ""), "point"):
-            canvas.dot(origin + x, 0.8)
+        dot(e, name.replace("_", ""))
         canvas.label(origin + x, name, away=-1j, height=3.5)
 
 
@@ -528,8 +493,7 @@ def _theta(s: Stage, zero: float, mu: Scale, deepest: float) -> None:
             t = (-deepest - y[k]) / (y[beyond] - y[k])
             cut = x[k] + t * (x[beyond] - x[k])
             px, py = (np.append(cut, px), np.append(-deepest, py)) if i == 1 else (np.append(px, cut), np.append(py, -deepest))
-        with s.of(f"theta{i}", "curve"):
-            s.canvas.polyline(px + 1j * (zero + py), "curve")
+        curve(s, f"theta{i}", px + 1j * (zero + py), "curve")
         end = 0 if i == 1 else -1
         s.canvas.label(complex(px[end], zero + 0.6 * py[end]), f"θ_{i}", away=complex(1 if i == 1 else -1, 0), height=5, gap=3)
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale, fit_standard
+from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Role
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.player import Stage
 
@@ -20,13 +21,31 @@ CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "
 """Circles of a wheel: attribute, symbol, line type."""
 
 
-class Circle(NamedTuple):
-    """A circle of a wheel as it is named, and its arcs that are seen, rad."""
+def line(s: Stage, step: Step | str, a: complex, b: complex, style: str = "thin", role: Role = "axis") -> None:
+    """Straight stroke that belongs to a step."""
+    with s.of(step, role):
+        s.canvas.line(a, b, style)
 
-    symbol: str
-    centre: complex
-    radius: float
-    spans: list[tuple[float, float]]
+
+def curve(s: Stage, step: Step | str, points: Any, style: str) -> None:
+    """Curve of a step through points."""
+    with s.of(step, "curve"):
+        s.canvas.polyline(points, style)
+
+
+def dot(s: Stage, step: Step | str, radius: float = 0.8, style: str = "main") -> None:
+    """Dot at the point of a step."""
+    with s.of(step, "point"):
+        s.canvas.dot(s.at(step), radius, style)
+
+
+def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float) -> None:
+    """A small upright distance, its arrows outside, lettering beside it."""
+    for tip, way in ((a, 1j), (b, -1j)):
+        arrow_head(canvas, tip, way, 2.5)
+        canvas.line(tip, tip - 6 * way, "thin")
+    canvas.line(a, b, "thin")
+    canvas.label((a + b) / 2, text, away=away, gap=space)
 
 
 class Window:
@@ -35,16 +54,16 @@ class Window:
     def __init__(self, canvas: Canvas, box: Box) -> None:
         self.canvas, self.box = canvas, box
 
-    def line(self, a: complex, b: complex, style: str = "thin") -> None:
-        """Straight stroke."""
+    def line(self, s: Stage, step: Step | str, a: complex, b: complex, style: str = "thin", role: Role = "axis") -> None:
+        """Straight stroke that belongs to a step."""
         inside = segment_inside(self.box, a, b)
         if inside:
-            self.canvas.line(*inside, style)
+            line(s, step, *inside, style, role)
 
-    def curve(self, points: Any, style: str) -> None:
-        """Curve through points."""
+    def curve(self, s: Stage, step: Step | str, points: Any, style: str) -> None:
+        """Curve of a step through points."""
         for part in polyline_inside(self.box, np.asarray(points)):
-            self.canvas.polyline(part, style)
+            curve(s, step, part, style)
 
     def edge(self) -> None:
         """The edge of the picture."""
@@ -52,37 +71,34 @@ class Window:
         with self.canvas.as_role("frame"):
             self.canvas.polyline((complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)), "thin", closed=True)
 
-    def circles(self, s: Stage, wheel: Any, leave: tuple[str, ...] = ()) -> list[Circle]:
-        """Draw what is seen of the circles of a wheel, but for some."""
-        found = []
-        for key, symbol, style in CIRCLES:
-            if key in leave:
-                continue
-            centre = s.at(f"O{wheel.number}")
+    def circles(self, s: Stage, wheels: Iterable[Any], share: float | None = None, leave: tuple[str, ...] = ()) -> None:
+        """What is seen of the circles of some wheels, but for those to ``leave``.
+
+        With a ``share`` they are named beside the right edge, the names spread to keep apart; others at that share of their
+        longest arc.
+        """
+        c, ends = self.canvas, []
+        for wheel, (key, symbol, style) in ((w, circle) for w in wheels for circle in CIRCLES if circle[0] not in leave):
+            centre, name = s.at(f"O{wheel.number}"), symbol % wheel.number
             radius = abs(complex(s.frame(getattr(wheel, key))) - complex(s.frame(0)))
             spans = arcs_inside(self.box, centre, radius)
             with s.of(f"{key}{wheel.number}", "construction"):
                 for start, end in spans:
-                    self.canvas.arc(centre, radius, start, end, style)
-            found.append(Circle(symbol % wheel.number, centre, radius, spans))
-        return found
-
-    def name_circles(self, circles: Iterable[Circle], share: float) -> None:
-        """Names of circles beside the right edge, spread to keep apart; inside, at a ``share`` of the longest arc, for others."""
-        c, ends = self.canvas, []
-        for symbol, centre, radius, spans in circles:
+                    c.arc(centre, radius, start, end, style)
+            if share is None or not spans:
+                continue
             tips = [centre + rect(radius, angle) for span in spans for angle in span]
             at_edge = [p.imag for p in tips if abs(p.real - self.box.x1) < 1e-6]
-            ends += [(y, symbol) for y in at_edge]
-            if spans and not at_edge:
+            ends += [(y, name) for y in at_edge]
+            if not at_edge:
                 start, end = max(spans, key=lambda span: span[1] - span[0])
                 middle = rect(1, start + share * (end - start))
-                c.label(centre + radius * middle, symbol, away=-middle)
+                c.label(centre + radius * middle, name, away=-middle)
         ends.sort()
-        for (y, symbol), at in zip(ends, spread([y for y, _ in ends], 6.0), strict=True):
+        for (y, name), at in zip(ends, spread([y for y, _ in ends], 6.0), strict=True):
             with c.as_role("dimension"):
                 c.line(complex(self.box.x1, y), complex(self.box.x1 + 4, at), "thin")
-            c.text(complex(self.box.x1 + 5, at - 1.75), symbol, 3.5)
+            c.text(complex(self.box.x1 + 5, at - 1.75), name, 3.5)
 
 
 def arrow_head(canvas: Canvas, tip: complex, u: complex, size: float = 3.5) -> None:

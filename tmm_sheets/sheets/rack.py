@@ -15,7 +15,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import Frame
-from tmm_sheets.sheets.gear_marks import Window, arrow_head, ratio, standard
+from tmm_sheets.sheets.gear_marks import Window, arrow_head, dot, gap, ratio, standard
 from tmm_sheets.sheets.player import Stage, stage
 
 MARGIN = 16.0
@@ -81,22 +81,19 @@ class _RackPicture:
         """
         self.window.edge()
         engaged = _turned(self.canvas, self.gear.engagement, self.wheel, self.at)
-        self.window.name_circles(self.window.circles(engaged, self.wheel, ("rw",)), 0.7)
+        self.window.circles(engaged, [self.wheel], 0.7, leave=("rw",))
 
     def lines(self) -> None:
         """Axis, rolling line, reference line, line of generation with its pole and limits."""
         c, w, rack, gear, s = self.canvas, self.window.box, self.rack, self.gear, self.stage
-        with s.of("O", "axis"):
-            self.window.line(complex(self.pole.real, w.y0), complex(self.pole.real, w.y1), "centre")
+        self.window.line(s, "O", complex(self.pole.real, w.y0), complex(self.pole.real, w.y1), "centre")
         if w.contains(s.at("O")):
             with s.of("O", "symbol"):
                 c.circle(s.at("O"), 2.0, "main")
             c.label(s.at("O"), f"O_{self.wheel.number}", away=1 - 1j, height=5, gap=3)
         reference = self.height(0.0)
-        with s.of("WT", "axis"):
-            self.window.line(complex(w.x0, self.pole.imag), complex(w.x1, self.pole.imag), "thin")
-        with s.of("M", "axis"):
-            self.window.line(complex(w.x0, reference), complex(w.x1, reference), "centre")
+        self.window.line(s, "WT", complex(w.x0, self.pole.imag), complex(w.x1, self.pole.imag), "thin")
+        self.window.line(s, "M", complex(w.x0, reference), complex(w.x1, reference), "centre")
         names = [(self.pole.imag, "начальная прямая рейки"), (reference, "делительная прямая рейки")]
         if abs(reference - self.pole.imag) < 0.3:
             names = [(reference, "делительная и начальная прямая рейки")]
@@ -112,8 +109,7 @@ class _RackPicture:
         foot = complex(self.at(1j * rack.r + rack.r * np.sin(rack.alpha) * n))
         limit = complex(self.at(1j * rack.r + (rack.addendum - rack.shift) * gear.m / np.sin(rack.alpha) * n))
         reach = 1.15 * max(abs(foot - self.pole), abs(limit - self.pole))
-        with s.of("K", "axis"):
-            self.window.line(self.pole - reach * n, self.pole + reach * n, "thin")
+        self.window.line(s, "K", self.pole - reach * n, self.pole + reach * n, "thin")
         with c.as_role("symbol"):
             c.dot(self.pole, 1.0)
         c.label(self.pole, "P_0", away=-1 - 1j, height=5, gap=1.5)
@@ -142,12 +138,10 @@ class _RackPicture:
             placed[0] = start + flank * min(past, top / np.cos(rack.alpha))
             placed = self.at(placed)
             s = replace(self.stage, k=k)
-            with s.of("flank", "curve"):
-                self.window.curve(placed, "thin")
+            self.window.curve(s, "flank", placed, "thin")
             touch = s.at("E")
             if touch == touch:
-                with s.of("E", "point"):
-                    c.dot(touch, 0.5, "thin")
+                dot(s, "E", 0.5, "thin")
             if self.window.box.contains(complex(placed[0]), -4) and k % 2 == 0:
                 c.label(complex(placed[0]), plan.labels[k], away=placed[0] - placed[1], height=2.5, gap=0.6, leader=False)
 
@@ -156,20 +150,17 @@ class _RackPicture:
         c = self.canvas
         top = self.gear.addendum * self.gear.m
         outline = self.at(self.rack.placed(self.rack.outline(-1, 1, top), 0.0))
-        with self.stage.of("M", "curve"):
-            self.window.curve(outline, "axis")
+        self.window.curve(self.stage, "M", outline, "axis")
         shape = self.gear.generated(self.wheel)
         teeth = shape.outline(-2, 2, step=0.5 * self.at.scale.mu)
         # The engagement's tooth 0, turned so that a space stands over the centre.
         upright = (teeth - shape.centre) / shape.axis * rect(1, pi / 2 - pi / self.wheel.teeth)
-        with self.stage.of("E", "curve"):
-            self.window.curve(self.at(upright), "main")
+        self.window.curve(self.stage, "E", self.at(upright), "main")
         right = rect(1, pi / 2 - pi / self.wheel.teeth)
         for k in (0, 1):
             u = right * rect(1, k * self.wheel.tau)
             root, tip = (self.at.scale.mm(r) for r in (self.wheel.rf, self.wheel.ra))
-            with self.stage.of("O", "axis"):
-                self.window.line(self.at.origin + u * (root - 4), self.at.origin + u * (tip + 4), "centre")
+            self.window.line(self.stage, "O", self.at.origin + u * (root - 4), self.at.origin + u * (tip + 4), "centre")
         if self.rack.undercut:
             start = np.sqrt(self.wheel.rb**2 + self.wheel.t_fillet**2)
             flank = (shape.flank - shape.centre) / shape.axis
@@ -206,11 +197,7 @@ class _RackPicture:
         for k, (low, high, text) in enumerate(gaps):
             at = x if k == 0 else w.x1 - 26
             a, b = complex(at, self.height(low)), complex(at, self.height(high))
-            for end, way in ((a, 1j), (b, -1j)):
-                arrow_head(c, end, way, 2.5)
-                c.line(end, end - 6 * way, "thin")
-            c.line(a, b, "thin")
-            c.label((a + b) / 2, text, away=1 if k == 0 else -1, height=3.5, gap=2.5)
+            gap(c, a, b, text, 1 if k == 0 else -1, 2.5)
         laid = letter(f"p = {fixed(gear.p * 1e3, 2)}", 3.5)
         y = w.y1 - NOTES + 5.0
         half = gear.p / 2 / self.at.scale.mu
@@ -220,5 +207,5 @@ class _RackPicture:
             arrow_head(c, a, -1, 3.0)
             arrow_head(c, b, 1, 3.0)
             for end in (a, b):
-                self.window.line(end + 2j, complex(end.real, self.height(0.0)), "thin")
+                self.window.line(self.stage, "M", end + 2j, complex(end.real, self.height(0.0)), "thin", "dimension")
             c.put(laid, (a + b) / 2 + complex(4, 1.0))

@@ -14,7 +14,7 @@ from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.gear_marks import arrow_head, ratio, ruled_table, spread
+from tmm_sheets.sheets.gear_marks import arrow_head, dot, line, ratio, ruled_table, spread
 from tmm_sheets.sheets.player import Stage, play
 
 COLUMN = 19.0
@@ -299,8 +299,7 @@ class _Scheme:
 
         s = _placed(c, plan, complex(zero, self.axis), mu, self.mu)
         bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
-        with s.of("O", "axis"):
-            c.line(complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis")
+        line(s, "O", complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis")
         self.heights(s, [name for name in ends if name[0].isupper()])
         self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
         self.lines(s)
@@ -330,12 +329,10 @@ class _Scheme:
         names: dict[float, list[str]] = {}
         for name in points:
             names.setdefault(round(s.at(name).imag, 1), []).append(name)
-        for y, group in names.items():
-            end = complex(s.at(group[0]).real, y)
-            with s.of(group[0], "axis"):
-                self.canvas.line(complex(self.box.x0 + STUB, y), end, "construction")
-            with s.of(group[0], "point"):
-                self.canvas.dot(end, 0.7)
+        for group in names.values():
+            end = s.at(group[0])
+            line(s, group[0], complex(self.box.x0 + STUB, end.imag), end, "construction")
+            dot(s, group[0], 0.7)
             letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
             self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
 
@@ -377,8 +374,7 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         canvas.line(origin, pole, "thin")
     canvas.label(complex(zero + mu.mm(high) + 12, y), "n, об/мин", away=-1j, height=3.5, gap=1.5)
     for name, size, away, height in (("P", 0.9, -1j, 5.0), ("0", 0.8, -1 + 1j, 3.5)):
-        with s.of(name, "point"):
-            canvas.dot(s.at(name), size)
+        dot(s, name, size)
         canvas.label(s.at(name), name, away=away, height=height)
     ends = [(s.at(step), step.name) for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
     ends.sort(key=lambda pair: pair[0].real)
@@ -389,10 +385,8 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         places[-1 - i] = min(places[-1 - i], box.x1 - NAME * (i + 0.5))
     for (end, link), x in zip(ends, places, strict=True):
         play(s, [link], "main")
-        with s.of(link, "point"):
-            canvas.dot(end, 0.8)
-        with s.of(link, "text"):
-            canvas.line(end, complex(x, y + 7), "thin")
+        dot(s, link)
+        line(s, link, end, complex(x, y + 7), "thin", "text")
         canvas.text(complex(x, y + 9), f"n_{{{_link(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
     canvas.of = ""
 
