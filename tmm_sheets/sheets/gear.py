@@ -576,9 +576,9 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     ]
     if gear.profile == "rack":
         rows += [(f"ρ на колесе {w.number}: граничная ≤ нижняя, мм", f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
-                  f"{fixed(w.rack.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
+                  f"{fixed(w.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
         rows += [("Толщина зубьев у вершины, модулей (≥ 0,2)", "s_{a1}; s_{a2}",
-                  "; ".join(fixed(w.sa / gear.m, 2) for w in gear.wheels))]
+                  "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
     inner = canvas.title(box, "Качественные показатели")
     end = ruled_table(canvas, Box(box.x0, box.y0 + 46, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
     one, two = gear.wheels

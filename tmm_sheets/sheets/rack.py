@@ -179,14 +179,12 @@ class _RackPicture:
         arrow_head(c, touch, (touch - tip) / abs(touch - tip), 2.5)
         c.label(tip, f"ρ_f = {fixed(rack.tip_radius * 1e3, 2)}", away=-1 + 0.4j, gap=1.5)
         x = w.x0 + 6.0
-        levels = [(0.0, gear.addendum * m, f"h_a^{{*}}m = {number(gear.addendum * m * 1e3)}")]
-        levels.append((-gear.addendum * m, 0.0, f"h_a^{{*}}m = {number(gear.addendum * m * 1e3)}"))
-        for low, high, text in levels:
-            a, b = complex(x, self.height(low)), complex(x, self.height(high))
+        for low in (0.0, -gear.addendum * m):
+            a, b = complex(x, self.height(low)), complex(x, self.height(low + gear.addendum * m))
             c.line(a, b, "thin")
             arrow_head(c, a, -1j, 3.0)
             arrow_head(c, b, 1j, 3.0)
-            c.label((a + b) / 2, text, away=1, height=3.5, gap=1.0)
+            c.label((a + b) / 2, f"h_a^{{*}}m = {number(gear.addendum * m * 1e3)}", away=1, height=3.5, gap=1.0)
         for level in (-gear.addendum * m, -rack.depth, gear.addendum * m):
             y = self.height(level)
             c.line(complex(x - 3, y), complex(x + 8, y), "thin")

@@ -46,7 +46,10 @@ def built(name):
 
 
 def plans(made):
-    return list(explain._plans(made, set()))
+    """All of it, found among the attributes: none that ``plans`` does not name."""
+    found = list(explain._plans(made, set()))
+    assert {id(p) for p in found} == {id(p) for p in made.plans.values()}
+    return list(made.plans.values())
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -114,6 +117,16 @@ def test_runners_up_are_choices():
     row = r.results()["runners_up"][0]["teeth"]["z1"].step
     assert row.args[0].name == "reducer.runners_up[0].z1"
     assert isinstance(row.value, int)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_plans_stand_in_the_order_of_construction(name):
+    before = set()
+    for plan in plans(built(name)):
+        for step in plan:
+            for a in step.args:
+                assert not isinstance(a, Step) or id(a) in before or name == "reduced", (plan.name, step.name)
+            before.add(id(step))
 
 
 def test_given_numbers_are_named_by_their_place():

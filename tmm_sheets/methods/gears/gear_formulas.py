@@ -320,10 +320,10 @@ def _tooth(plan: Plan, i: str, profile: str) -> None:
     sa = plan.add(f"sa{i}", TIP_THICKNESS, ra, s, r, inv, tip, symbol=f"s_{{a{i}}}")
     plan.add(f"sa_m{i}", TIP_SHARE, sa, m, symbol=f"s_{{a{i}}}/m")
     plan.add(f"rho_l{i}", LIMIT_TANGENT, h, z, alpha, x, m, symbol=f"ρ_{{l{i}}}")
-    half = plan.add(f"psi_b{i}", HALF_TOOTH, s, r, inv, symbol=f"ψ_{{b{i}}}")
     if profile == "rack":
         plan.add(f"rho_f{i}", RACK_FILLET, c, m, alpha, symbol=f"ρ_{{f{i}}}")
         plan.add(f"t_f{i}", RACK_START, m, alpha, h, c, z, x, symbol=f"t_{{f{i}}}")
     else:
+        half = plan.add(f"psi_b{i}", HALF_TOOTH, s, r, inv, symbol=f"ψ_{{b{i}}}")
         rho = plan.add(f"rho_f{i}", FILLET_RADIUS, m, rb, rf, half, z, plan[f"rho_p{i}"], symbol=f"ρ_{{f{i}}}")
         plan.add(f"t_f{i}", FILLET_START, rho, rb, rf, symbol=f"t_{{f{i}}}")

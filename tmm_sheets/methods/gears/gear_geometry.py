@@ -50,8 +50,6 @@ class GearWheel:
     s, s_chord, p_chord, sa = _metres("s"), _metres("s_chord"), _metres("p_chord"), _metres("sa")
     t_pole, t_tip, t_low, r_low = _metres("rho_w"), _metres("rho_a"), _metres("rho_p"), _metres("r_low")
     fillet, t_fillet, rho_limit = _metres("rho_f"), _metres("t_f"), _metres("rho_l")
-    base_half = _Reading("psi_b")
-    """Half of the tooth's angle at the base circle, where the involute begins, rad."""
 
     def __init__(self, number: int, pair: PairGeometry) -> None:
         self.number, self._plan = number, pair.geometry

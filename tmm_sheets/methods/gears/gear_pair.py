@@ -37,6 +37,15 @@ class GearPair(PairGeometry):
     ``gear-greatest-sliding``, ``gear-rack``; those that end in ``-between`` only smooth the curves.
     """
 
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """Plans by name in the order of construction; those that only smooth curves, and the rack's, as far as they were drawn."""
+        there = vars(self)
+        found = [self.geometry, self.engagement, *(self.involute(w) for w in self.wheels if not self._involutes),
+                 *self._involutes.values(), *self._smooth.values(), *self._teeth, self.sliding, self.worst_sliding]
+        found += [there[name] for name in ("smooth_sliding", "rack_sizes", "generating") if name in there]
+        return {plan.name: plan for plan in found}
+
     @cached_property
     def engagement(self) -> Plan:
         """Centres, circles, line of action, A and B, overlap angles."""

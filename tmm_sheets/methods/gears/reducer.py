@@ -47,6 +47,12 @@ class Reducer:
         self.chosen, *rest = sets
         self.runners_up = tuple(rest)
 
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """Plans by name in the order of construction; that of the speeds as far as it was drawn."""
+        found = (*self.sets, self.kinematics, self.conditions, self.velocities, *self._speed_plans.values())
+        return {plan.name: plan for plan in found}
+
     @cached_property
     def sets(self) -> tuple[Plan, ...]:
         """Tooth numbers, ratio and efficiency of the chosen set and of the runners-up."""
