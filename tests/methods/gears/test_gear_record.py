@@ -10,6 +10,7 @@ from tests.methods.gears.test_gears import data
 from tmm_sheets import explain
 from tmm_sheets.construction import arithmetic, expression
 from tmm_sheets.construction.given import Given, GivenNumber
+from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.step import Step, Told, value_of
 from tmm_sheets.methods.gears import fillets, gear_engagement, gear_formulas, planetary, rack, reducer_formulas
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
@@ -127,6 +128,26 @@ def test_plans_stand_in_the_order_of_construction(name):
             for a in step.args:
                 assert not isinstance(a, Step) or id(a) in before or name == "reduced", (plan.name, step.name)
             before.add(id(step))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_protocol_says_every_plan(name):
+    for plan in plans(built(name)):
+        for k in {0, len(plan.labels) - 1}:
+            said = list(sentences(plan, k, float))
+            assert len(said) == len(plan.steps)
+            for text in said:
+                assert text.endswith("."), text
+                assert not set("{}±∓") & set(text), text
+
+
+def test_formulas_are_said_as_the_manual_writes_them():
+    """Manual 002: z 10 and 20, m = 10, x = 0.5 and 0.5: the working pressure angle is 27.2 degrees, 27 degrees 12 minutes."""
+    plan = gear_pair(data((10, 20), (0.5, 0.5), 0.01)).geometry
+    said = dict(zip(plan.steps, sentences(plan, 0, float), strict=True))
+    assert said["alpha_w"] == "По эвольвентному углу 0,03917 найдём угол зацепления α_w = 27°12′."
+    assert said["r1"] == "Делительный радиус r = mz/2: r_1 = 10 × 10/2 = 50 мм."
+    assert said["rf2"] == "Радиус впадин r_f = m(z/2 − h_a* − c* + x): r_f2 = 10 × (20/2 − 1 − 0,25 + 0,5) = 92,5 мм."
 
 
 def test_given_numbers_are_named_by_their_place():
