@@ -16,7 +16,7 @@ import numpy as np
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import PlacedFrame, Role
+from tmm_sheets.drawing.marks import Role
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Stage:
     canvas: Canvas
     plan: Plan
     k: int
-    frame: Callable[[Any], Any] | PlacedFrame
+    frame: Callable[[Any], Any]
     number: int
 
     @property
