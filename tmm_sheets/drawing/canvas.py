@@ -126,9 +126,9 @@ class Canvas:
         self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box, len(self.scales)))
 
     @contextmanager
-    def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1) -> Iterator[None]:
-        """The marks drawn inside have this role and come from that step."""
-        before, self.by = self.by, Trace(role, step, position, frame)
+    def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Iterator[None]:
+        """The marks drawn inside have this role and come from that step, see :class:`Trace`."""
+        before, self.by = self.by, Trace(role, step, position, frame, name)
         try:
             yield
         finally:
