@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from dataclasses import replace
 from math import cos, degrees, pi, radians
 from typing import Any
 
@@ -14,7 +13,7 @@ from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, PlacedFrame
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import Frame
 from tmm_sheets.sheets.gear_marks import (
@@ -22,7 +21,6 @@ from tmm_sheets.sheets.gear_marks import (
     Window,
     arrow_head,
     curve,
-    dot,
     gap,
     hatch_between,
     line,
@@ -169,9 +167,9 @@ class _GearPicture:
             c.label(end, "t", away=end - pole, height=5, leader=False)
         line(s, "B", a, b, "main", "curve")
         for name, point in (("A", a), ("B", b)):
-            dot(s, name, 0.9)
+            s.dot(name, 0.9, "main")
             c.label(point, name, away=1j * u, height=5, gap=1.5)
-        dot(s, "Pw", 0.9)
+        s.dot("Pw", 0.9, "main")
         self.pole_letter(u)
         for i, foot in ((1, n1), (2, n2)):
             centre = self.of(f"O{i}")
@@ -182,7 +180,7 @@ class _GearPicture:
             with s.of(f"N{i}", "symbol"):
                 c.line(corner, corner + 3 * inward, "thin")
                 c.line(corner + 3 * inward, foot + 3 * inward, "thin")
-            dot(s, f"N{i}", 0.8)
+            s.dot(f"N{i}", 0.8, "main")
             c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
         alpha = f"α_w = {degrees_and_minutes(self.gear.alpha_w)}"
         radius = (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2
@@ -245,7 +243,7 @@ class _GearPicture:
                 play(s, [f"E{k}"])
                 out = (t - centre) / abs(t - centre)
                 line(s, f"{k}′", t - 10 * out, t, "construction")
-            dot(s, f"E{k}", 0.5, "thin")
+            s.dot(f"E{k}", 0.5, "thin")
             if 0 < k != parts:
                 c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
             if k != parts:
@@ -358,7 +356,7 @@ class _Detail:
         w.circles(s, gear.wheels, 0.5)
         for wheel in gear.wheels:
             self.teeth(wheel)
-        dot(s, "Pw", 1.0)
+        s.dot("Pw", 1.0, "main")
         c.label(self.pole, "P_w", away=complex(-gear.hand, 1), height=5, gap=1.5)
         start, end = (pi, pi + gear.alpha_w) if gear.hand < 0 else (-gear.alpha_w, 0.0)
         with s.of("alpha_w", "dimension"):
@@ -373,7 +371,7 @@ class _Detail:
         if self.gear.profile == "rack":
             return  # a trochoid has no radius to show
         fillet, touch = s.at("C"), s.at("R")
-        dot(s, "C", 0.5, "thin")
+        s.dot("C", 0.5, "thin")
         with s.of("rho", "dimension"):
             c.line(fillet, touch, "thin")
             arrow_head(c, touch, (touch - fillet) / abs(touch - fillet), 2.5)
@@ -446,8 +444,8 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         values = [plan[f"theta{i}"].value[k] for i in (1, 2)]
         low = min([v for v in values if np.isfinite(v) and v > -deepest * mu.mu] or [0.0])
         # Projection lines leave the title between the graphs free.
-        line(replace(s, k=k), "K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
-        line(replace(t, k=k), "K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
+        line(s.position(k), "K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
+        line(t.position(k), "K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
     canvas.label(complex(left + first, axis + ordinate), f"{number(ordinate)} мм", away=1 - 0.2j, height=3.5)
     canvas.of = ""
@@ -456,8 +454,7 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
 def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale) -> Stage:
     """A plan with the line of action laid along the abscissa."""
     turn = -phase(complex(gear.engagement["N1N2"].value))
-    number = canvas.placed(plan.name, "", pole, scale.mu, turn)
-    return Stage(canvas, plan, 0, canvas.frames[number], number)
+    return stage(canvas, plan, 0, PlacedFrame(-1, plan.name, "", pole, (scale.mu, scale.mu), turn))
 
 
 def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, first: float, scale: Scale) -> None:
@@ -470,7 +467,7 @@ def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, first: float,
     e = _along(canvas, gear, gear.engagement, origin + first, scale)
     line(e, "B", origin + ends[0], origin + ends[1], "main", "curve")
     for name, x in (("N_1", 0.0), ("P_w", first), ("N_2", whole), *zip(names, ends, strict=True)):
-        dot(e, name.replace("_", ""))
+        e.dot(name.replace("_", ""), 0.8, "main")
         canvas.label(origin + x, name, away=-1j, height=3.5)
 
 

@@ -33,12 +33,6 @@ def curve(s: Stage, step: Step | str, points: Any, style: str) -> None:
         s.canvas.polyline(points, style)
 
 
-def dot(s: Stage, step: Step | str, radius: float = 0.8, style: str = "main") -> None:
-    """Dot at the point of a step."""
-    with s.of(step, "point"):
-        s.canvas.dot(s.at(step), radius, style)
-
-
 def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float) -> None:
     """A small upright distance, its arrows outside, lettering beside it."""
     for tip, way in ((a, 1j), (b, -1j)):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from cmath import rect
-from dataclasses import replace
 from math import pi
 from typing import Any
 
@@ -15,7 +14,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import Frame
-from tmm_sheets.sheets.gear_marks import Window, arrow_head, dot, gap, ratio, standard
+from tmm_sheets.sheets.gear_marks import Window, arrow_head, gap, ratio, standard
 from tmm_sheets.sheets.player import Stage, stage
 
 MARGIN = 16.0
@@ -44,8 +43,7 @@ def generating(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
 def _turned(canvas: Canvas, plan: Plan, wheel: Any, at: Frame) -> Stage:
     """The engagement with a wheel's centre where the rack's plan has it."""
     centre = complex(plan[f"O{wheel.number}"].value)
-    number = canvas.placed(plan.name, "", at(-centre), at.scale.mu)
-    return Stage(canvas, plan, 0, canvas.frames[number], number)
+    return stage(canvas, plan, 0, Frame(at.scale, at(-centre)))
 
 
 class _RackPicture:
@@ -137,11 +135,11 @@ class _RackPicture:
             past = np.sqrt(outside**2 - abs(start - foot * flank) ** 2) - foot
             placed[0] = start + flank * min(past, top / np.cos(rack.alpha))
             placed = self.at(placed)
-            s = replace(self.stage, k=k)
+            s = self.stage.position(k)
             self.window.curve(s, "flank", placed, "thin")
             touch = s.at("E")
             if touch == touch:
-                dot(s, "E", 0.5, "thin")
+                s.dot("E", 0.5, "thin")
             if self.window.box.contains(complex(placed[0]), -4) and k % 2 == 0:
                 c.label(complex(placed[0]), plan.labels[k], away=placed[0] - placed[1], height=2.5, gap=0.6, leader=False)
 

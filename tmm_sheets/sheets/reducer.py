@@ -12,10 +12,11 @@ import numpy as np
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, PlacedFrame
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.gear_marks import arrow_head, dot, line, ratio, ruled_table, spread
+from tmm_sheets.sheets.gear_marks import arrow_head, line, ratio, ruled_table, spread
 from tmm_sheets.sheets.player import Stage, play
+from tmm_sheets.sheets.player import stage as staged
 
 COLUMN = 19.0
 """Distance of two columns of wheels of the axial view, mm."""
@@ -307,8 +308,7 @@ class _Scheme:
     def vectors(self, s: Stage, ends: Mapping[str, complex]) -> None:
         """Velocities of the points, from the line of zero velocity to their ends."""
         for name, value in ends.items():
-            with s.of(name, "vector"):
-                self.canvas.arrow(s.at(name.upper()), s.at(name), "vector")
+            s.vector(name.upper(), name)
             way = 1 if value.real > 0 else -1
             self.canvas.label(s.at(name), name, away=complex(way, 0.4), height=3.5, gap=1.2)
 
@@ -332,15 +332,14 @@ class _Scheme:
         for group in names.values():
             end = s.at(group[0])
             line(s, group[0], complex(self.box.x0 + STUB, end.imag), end, "construction")
-            dot(s, group[0], 0.7)
+            s.dot(group[0], 0.7, "main")
             letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
             self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
 
 
 def _placed(canvas: Canvas, plan: Plan, origin: complex, velocity: Scale, height: Scale) -> Stage:
     """A plan of velocities over heights on the sheet."""
-    number = canvas.placed(plan.name, "", origin, (velocity.mu, height.mu))
-    return Stage(canvas, plan, 0, canvas.frames[number], number)
+    return staged(canvas, plan, 0, PlacedFrame(-1, plan.name, "", origin, (velocity.mu, height.mu)))
 
 
 def _link(name: str) -> str:
@@ -374,7 +373,7 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         canvas.line(origin, pole, "thin")
     canvas.label(complex(zero + mu.mm(high) + 12, y), "n, об/мин", away=-1j, height=3.5, gap=1.5)
     for name, size, away, height in (("P", 0.9, -1j, 5.0), ("0", 0.8, -1 + 1j, 3.5)):
-        dot(s, name, size)
+        s.dot(name, size, "main")
         canvas.label(s.at(name), name, away=away, height=height)
     ends = [(s.at(step), step.name) for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
     ends.sort(key=lambda pair: pair[0].real)
@@ -385,7 +384,7 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         places[-1 - i] = min(places[-1 - i], box.x1 - NAME * (i + 0.5))
     for (end, link), x in zip(ends, places, strict=True):
         play(s, [link], "main")
-        dot(s, link)
+        s.dot(link, 0.8, "main")
         line(s, link, end, complex(x, y + 7), "thin", "text")
         canvas.text(complex(x, y + 9), f"n_{{{_link(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
     canvas.of = ""
