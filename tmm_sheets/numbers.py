@@ -7,7 +7,7 @@ column, or the terms it is a difference of) is nothing but that, and is written 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import floor, isfinite, log10
+from math import degrees, floor, isfinite, log10
 from typing import Any
 
 NOISE = 1e-9
@@ -66,6 +66,13 @@ def decimal(x: float, decimals: int = 2, sign: bool = False) -> str:
     if isfinite(x) and float(text) == 0:
         return text.lstrip("-")
     return f"+{text}" if sign and x > 0 else text
+
+
+def degrees_and_minutes(angle: float) -> str:
+    """An angle in rad as it is written: 27°12′, 20°."""
+    minutes = round(abs(degrees(angle)) * 60)
+    sign = "−" if angle < 0 and minutes else ""
+    return f"{sign}{minutes // 60}°{minutes % 60:02d}′" if minutes % 60 else f"{sign}{minutes // 60}°"
 
 
 def plain(x: float, digits: int = 6, kind: float = 0.0) -> str:

@@ -241,8 +241,8 @@ class Errors:
     def _analysed(self, step: Step) -> _Known | None:
         """None for what has no error: given numbers and directions, what no pencil draws, and values that are no numbers."""
         self._note_lengths(step)
-        if not _numeric(step.value) or _beyond_paper(step):
-            return None
+        if not _numeric(step.value) or _beyond_paper(step) or np.asarray(step.value).dtype.kind == "i":
+            return None  # numbers of teeth have no error either
         args = _on_paper(step)
         base = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {}))
         if base.shape != (np.size(step.value),):
@@ -290,7 +290,7 @@ class Errors:
             spread = np.trace(lines, axis1=1, axis2=2) / 2
             crossing = ~(spread < 1 - 1e-9) & _all_lines(through)
             return np.asarray(np.where(crossing[:, None, None], lines, np.eye(2)) * pencil)
-        if step.rule.gives in _MEASURED and any(isinstance(a, Step) for a in _on_paper(step)):
+        if step.rule.gives in _MEASURED and any(map(self._is_drawn, _on_paper(step))):
             return np.diag([1.0, 0.0])[None] * pencil
         return np.zeros((1, 2, 2))
 
@@ -335,8 +335,12 @@ class Errors:
         for kind, a in zip(step.rule.takes, step.args, strict=False):
             if kind == "point" and isinstance(a, Step):
                 last = a
-            elif kind in _MEASURED and last is not None and not (isinstance(a, Step) and any(isinstance(x, Step) for x in a.args)):
+            elif kind in _MEASURED and last is not None and not (isinstance(a, Step) and any(map(self._is_drawn, a.args))):
                 noted[id(last)] = True
+
+    def _is_drawn(self, a: Any) -> bool:
+        """True for a step of one of the plans; what formulas give is a number like those of the project file."""
+        return isinstance(a, Step) and id(a) in self._mu
 
     def _snapped(self, step: Step, args: tuple[Any, ...]) -> dict[int, tuple[int, Any]]:
         """Points of another plan that lie at a known distance from the first such point: only their directions are taken from it.

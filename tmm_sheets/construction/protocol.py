@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
-from tmm_sheets.numbers import fixed, number, size
+from tmm_sheets.numbers import degrees_and_minutes, fixed, number, size
 
 
 def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "мм") -> Iterator[str]:
@@ -63,6 +63,11 @@ def _segments(plan: Plan, step: Step, k: int) -> list[tuple[str, Any]]:
 _GREEK = {"alpha": "α", "phi": "φ", "psi": "ψ", "eps": "ε", "theta": "θ", "rho": "ρ"}
 
 
+def letter_of(step: Step) -> str:
+    """How a step is called in a sentence: its letter on the sheet without markup, or its name."""
+    return re.sub(r"\^(?=\{\*)|[{}]", "", step.symbol) if step.symbol else spoken(step.name)
+
+
 def spoken(name: str) -> str:
     """Name of a step as it stands on the sheet: Greek letters instead of their names."""
     return re.sub(r"^(alpha|phi|psi|eps|theta|rho)(?=_|\d|$)", lambda m: _GREEK[m[1]], name)
@@ -79,25 +84,36 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "�
         sizes = _sizes([step], k)
     wording = step.say if step.say is not None else step.rule.wording
     shown = [_show(a, kind, k, to_mm, unit, sizes) for a, kind in zip(step.args, step.rule.takes, strict=False)]
-    value = _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
+    exact = _exact_angle(step, k)
+    value = exact or _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
 
     def operand(m: re.Match[str]) -> str:
         space, field = m[1] or "", m[2] or m[3]
         return f"{space}({field})" if shown[int(field[1:-1])].startswith("−") else m[0]
 
-    said = _OPERAND.sub(operand, wording).format(*shown, name=spoken(step.name), value=value)
+    said = _OPERAND.sub(operand, wording).format(*shown, name=letter_of(step), value=value)
     return said.replace("параллельно ⟂", "перпендикулярно ")
 
 
 def _show(arg: Any, kind: Kind, k: int, to_mm: Callable[[float], float], unit: str, sizes: Mapping[str, float]) -> str:
     if isinstance(arg, Step) and kind in ("point", "direction", "force"):
-        return spoken(arg.name)
+        return letter_of(arg)
+    if exact := _exact_angle(arg, k):
+        return exact
     own = value_of(arg)
     of_sort = size([own], k) if np.asarray(own).dtype.kind in "ifc" else 0.0
     if isinstance(arg, Step):
         of_sort = max(of_sort, sizes.get(_sort(arg), 0.0))
     said = _said(value_at(arg, k), kind, to_mm, unit, of_sort)
-    return f"{arg.name} ({said})" if isinstance(arg, Step) and kind == "vector" else said
+    return f"{letter_of(arg)} ({said})" if isinstance(arg, Step) and kind == "vector" else said
+
+
+def _exact_angle(arg: Any, k: int) -> str:
+    """Degrees and minutes of an angle that a formula gives; empty for anything else, also for what is measured on the drawing."""
+    if isinstance(arg, Step) and arg.rule.gives in ("angle", "inclination") and arg.rule.unit == "rad":
+        value = float(value_at(arg, k))
+        return degrees_and_minutes(value) if np.isfinite(value) else ""
+    return ""
 
 
 def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of_sort: float) -> str:
@@ -105,7 +121,7 @@ def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of
     if np.ndim(value) or (isinstance(value, complex | np.complexfloating) and kind in ("point", "direction")):
         return ""
     if kind in ("length", "ordinate", "vector", "force", "angle", "inclination", "number") and not np.isfinite(value):
-        return "∞" if np.isinf(value) else "—"
+        return "—" if np.isnan(value) else "−∞" if np.real(value) < 0 else "∞"
     if kind in ("length", "ordinate", "vector"):
         real = to_mm(float(value) if kind == "ordinate" else abs(value))
         return f"{fixed(real, 1)} мм" if unit == "мм" else f"{number(real, kind=to_mm(of_sort))} {unit}"

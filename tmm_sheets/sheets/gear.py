@@ -8,22 +8,27 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
+from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box
-from tmm_sheets.numbers import fixed, number
+from tmm_sheets.drawing.marks import Box, PlacedFrame
+from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets.frame import Frame
 from tmm_sheets.sheets.gear_marks import (
     CIRCLES,
+    Window,
     arrow_head,
+    curve,
+    gap,
     hatch_between,
-    in_degrees,
+    line,
     ratio,
     ruled_table,
-    spread,
     standard,
 )
+from tmm_sheets.sheets.player import Stage, play, stage
 
 EDGE = 24.0
 """Least distance of a wheel's centre from the edge of the picture, mm."""
@@ -70,49 +75,40 @@ class _GearPicture:
         if not EDGE <= above <= spare - EDGE or min(one, two) > 0.7 * spare:
             above = spare / 2
         self.pole = complex((self.box.x0 + self.box.x1) / 2, self.box.y1 - above - gear.wheels[0].rw / self.mu.mu)
-
-    def at(self, p: Any) -> Any:
-        """Point of a plan on the sheet."""
-        return self.pole + np.asarray(p) / self.mu.mu
+        self.at = Frame(self.mu, self.pole)
+        self.stage = stage(canvas, gear.engagement, 0, self.at)
+        self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
+        self.window = Window(canvas, self.box)
+        self.mm = self.mu.mm
 
     def of(self, name: str) -> complex:
         """Point of the engagement plan on the sheet."""
-        return complex(self.at(self.gear.engagement[name].value))
-
-    def mm(self, real: float) -> float:
-        return real / self.mu.mu
+        return self.stage.at(name)
 
     def away(self, wheel: Any) -> int:
         """+1 when the wheel's far side is up."""
         return 1 if wheel.number == 1 else -1
 
-    def line(self, a: complex, b: complex, style: str = "thin") -> None:
-        inside = segment_inside(self.box, a, b)
-        if inside:
-            self.canvas.line(*inside, style)
-
-    def spoke(self, wheel: Any, end: complex, style: str) -> None:
+    def spoke(self, wheel: Any, step: str, end: complex, style: str) -> None:
         """Line from a wheel's centre, interrupted where the dimensions of its teeth are written."""
         centre = self.of(f"O{wheel.number}")
         u = (end - centre) / abs(end - centre)
         root = self.mm(wheel.rf)
-        self.line(centre, centre + u * (root - DIMENSION - 9), style)
-        self.line(centre + u * (root - 1), end, style)
+        self.window.line(self.stage, step, centre, centre + u * (root - DIMENSION - 9), style)
+        self.window.line(self.stage, step, centre + u * (root - 1), end, style)
 
     def circles(self) -> None:
-        top, bottom = self.of("O1"), self.of("O2")
-        reach = [self.mm(w.ra) + 6 for w in self.gear.wheels]
-        self.line(top + 1j * reach[0], top, "centre")
-        self.line(bottom - 1j * reach[1], bottom, "centre")
-        self.spoke(self.gear.wheels[0], self.pole, "centre")
-        self.spoke(self.gear.wheels[1], self.pole, "centre")
         for wheel in self.gear.wheels:
             centre = self.of(f"O{wheel.number}")
-            for key, _, style in CIRCLES:
-                for start, end in arcs_inside(self.box, centre, self.mm(getattr(wheel, key))):
-                    self.canvas.arc(centre, self.mm(getattr(wheel, key)), start, end, style)
-            self.line(centre - 12, centre + 12, "centre")
-            self.canvas.circle(centre, 2.0, "main")
+            self.window.line(self.stage, "O1O2", centre + 1j * self.away(wheel) * (self.mm(wheel.ra) + 6), centre, "centre")
+        for wheel in self.gear.wheels:
+            self.spoke(wheel, "O1O2", self.pole, "centre")
+        for wheel in self.gear.wheels:
+            centre = self.of(f"O{wheel.number}")
+            self.window.circles(self.stage, [wheel])
+            self.window.line(self.stage, f"O{wheel.number}", centre - 12, centre + 12, "centre")
+            with self.stage.of(f"O{wheel.number}", "symbol"):
+                self.canvas.circle(centre, 2.0, "main")
             self.canvas.label(centre, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
 
     def radii(self) -> None:
@@ -125,8 +121,9 @@ class _GearPicture:
                     self.name_on_arc(centre, radius, symbol % wheel.number)
                     continue
                 tip = centre + rect(radius, direction)
-                self.canvas.line(centre + rect(2.0, direction), tip - rect(2.5, direction), "thin")
-                arrow_head(self.canvas, tip, rect(1, direction))
+                with self.stage.of(f"{key}{wheel.number}", "dimension"):
+                    self.canvas.line(centre + rect(2.0, direction), tip - rect(2.5, direction), "thin")
+                    arrow_head(self.canvas, tip, rect(1, direction))
                 text = f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}"
                 laid = letter(text, 3.5)
                 outer = self.mm(wheel.rf) - 4
@@ -160,36 +157,38 @@ class _GearPicture:
         return chosen
 
     def line_of_action(self) -> None:
-        c, plan = self.canvas, self.gear.engagement
+        c, s = self.canvas, self.stage
         n1, n2, a, b, pole = (self.of(k) for k in ("N1", "N2", "A", "B", "Pw"))
-        u = complex(plan["N1N2"].value)
+        u = complex(s.plan["N1N2"].value)
         reach = 1.25 * max(abs(n1 - pole), abs(n2 - pole))
         h = self.gear.hand
-        self.line(pole - h * reach, pole + h * reach, "thin")
+        self.window.line(s, "N1N2", pole - h * reach, pole + h * reach, "thin")
         for end in (pole - h * reach, pole + h * reach):
             c.label(end, "t", away=end - pole, height=5, leader=False)
-        c.line(a, b, "main")
+        line(s, "B", a, b, "main", "curve")
         for name, point in (("A", a), ("B", b)):
-            c.dot(point, 0.9)
+            s.dot(name, 0.9, "main")
             c.label(point, name, away=1j * u, height=5, gap=1.5)
-        c.dot(pole, 0.9)
+        s.dot("Pw", 0.9, "main")
         self.pole_letter(u)
         for i, foot in ((1, n1), (2, n2)):
             centre = self.of(f"O{i}")
-            c.line(centre, foot, "thin")
             away = (foot - centre) / abs(foot - centre)
             inward = (pole - foot) / abs(pole - foot)
+            line(s, f"N{i}", centre, foot, "thin")
             corner = foot - 3 * away
-            c.line(corner, corner + 3 * inward, "thin")
-            c.line(corner + 3 * inward, foot + 3 * inward, "thin")
-            c.dot(foot, 0.8)
+            with s.of(f"N{i}", "symbol"):
+                c.line(corner, corner + 3 * inward, "thin")
+                c.line(corner + 3 * inward, foot + 3 * inward, "thin")
+            s.dot(f"N{i}", 0.8, "main")
             c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
-        alpha = f"α_w = {in_degrees(self.gear.alpha_w)}"
+        alpha = f"α_w = {degrees_and_minutes(self.gear.alpha_w)}"
         radius = (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2
         start, end = (pi, pi + self.gear.alpha_w) if h < 0 else (-self.gear.alpha_w, 0.0)
-        c.angle_mark(pole, start, end, radius, "α_w")
-        o1 = self.of("O1")
-        self.angle(o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
+        with s.of("alpha_w", "dimension"):
+            c.angle_mark(pole, start, end, radius, "α_w")
+            o1 = self.of("O1")
+            self.angle(o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
         self.dimension_of_centres()
 
     def pole_letter(self, action: complex) -> None:
@@ -203,7 +202,7 @@ class _GearPicture:
         along = (np.conj(way) * foot).real
         inside = max((self.mm(self.gear.wheels[0].rf) - 1.5) ** 2 - (abs(foot) ** 2 - along**2), 0.0)
         end = self.pole - (along + inside**0.5) * way
-        self.canvas.line(self.pole, end, "thin")
+        line(self.stage, "Pw", self.pole, end, "thin", "text")
         self.canvas.label(end, "P_w", away=way, height=5, gap=0.5, leader=False)
 
     def angle(self, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
@@ -230,41 +229,41 @@ class _GearPicture:
         """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""
         c = self.canvas
         c.of = f"gear-involute-{wheel.number}"
-        plan = self.gear.involute(wheel, self.mu)
+        s = stage(c, self.gear.involute(wheel, self.mu), 0, self.at)
         parts = self.gear.parts(wheel, self.mu)
         numbers = self.gear.divisions(wheel, self.mu)
-        division, base, point = (self.at([plan[f"{a}{k}{b}"].value for k in numbers]) for a, b in (("", ""), ("", "′"), ("E", "")))
         centre, foot, pole = self.of(f"O{wheel.number}"), self.of(f"N{wheel.number}"), self.pole
         u = (foot - pole) / abs(foot - pole)
-        self.line(pole, complex(division[-1]) + 4 * u)
-        for k, d, t, p in zip(numbers, division, base, point, strict=True):
+        self.window.line(s, str(numbers[-1]), pole, s.at(str(numbers[-1])) + 4 * u)
+        for k in numbers:
+            d, t = s.at(str(k)), s.at(f"{k}′")
             if k:
-                c.line(d - 1.2j * u, d + 1.2j * u, "thin")
+                line(s, str(k), d - 1.2j * u, d + 1.2j * u, "thin", "point")
             if k != parts:
-                c.line(t, p, "construction")
+                play(s, [f"E{k}"])
                 out = (t - centre) / abs(t - centre)
-                c.line(t - 10 * out, t, "construction")
-            c.dot(p, 0.5, "thin")
+                line(s, f"{k}′", t - 10 * out, t, "construction")
+            s.dot(f"E{k}", 0.5, "thin")
             if 0 < k != parts:
                 c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
             if k != parts:
                 c.label(t, f"{k}′", away=centre - t, height=2.5, gap=0.8)
-        c.polyline(self.at(self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)),
-                   "construction")
+        smooth = self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)
+        curve(stage(c, smooth, 0, self.at), "E", self.at(smooth["E"].value), "construction")
         c.of = "gear.engagement"
 
     def teeth(self, wheel: Any) -> None:
-        c = self.canvas
+        c, s = self.canvas, self.tooth[wheel.number]
         shape = self.gear.shape(wheel)
-        c.polyline(self.at(shape.outline(step=self.mu.mu)), "main")
+        curve(s, "E", self.at(shape.outline(step=self.mu.mu)), "main")
         centre = self.of(f"O{wheel.number}")
         for k in (-1, 0, 1):
             axis = shape.axis_of(k)
-            c.line(centre + axis * (self.mm(wheel.rf) - 3), centre + axis * (self.mm(wheel.ra) + 5), "centre")
+            line(s, "axis", centre + axis * (self.mm(wheel.rf) - 3), centre + axis * (self.mm(wheel.ra) + 5), "centre")
         k = self.strip_tooth(wheel)
         outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
         half = len(outline) // 2
-        c.polyline(outline[half:], "thin")
+        curve(s, "E", outline[half:], "thin")
         hatch_between(c, outline[:half], outline[half:][::-1])
         ends = outline[0], outline[half - 1]
         names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
@@ -277,21 +276,22 @@ class _GearPicture:
 
     def overlap(self, wheel: Any) -> None:
         """The wheel's profile in contact at A and at B, and the angle between."""
-        c, i = self.canvas, wheel.number
+        i = wheel.number
         centre, flank = self.of(f"O{i}"), self.gear.shape(wheel).flank
         u = self.gear.engagement["N1N2"].value
         ends = []
         for name in "ab":
             travel = (np.conj(u) * self.gear.engagement[name.upper()].value).real
-            c.polyline(self.at(self.gear.rolled(wheel, flank, travel)), "thin")
             p = self.of(f"{name}{i}")
-            self.spoke(wheel, p, "construction")
+            curve(self.stage, f"{name}{i}", self.at(self.gear.rolled(wheel, flank, travel)), "thin")
+            self.spoke(wheel, f"{name}{i}", p, "construction")
             ends.append(phase(p - centre))
         if i == 1:
             ends.reverse()
         first, last = ends
         drawn = float(self.gear.engagement[f"phi{i}"].value)
-        self.angle(centre, first, last, self.mm(wheel.rf) * 0.66, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
+        with self.stage.of(f"phi{i}", "dimension"):
+            self.angle(centre, first, last, self.mm(wheel.rf) * 0.66, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
 
     def dimensions(self, wheel: Any) -> None:
         """Chordal thickness on an outer tooth, chordal pitch between the axes of the other two."""
@@ -316,7 +316,8 @@ class _GearPicture:
         centre = self.of(f"O{wheel.number}")
         middle = pi / 2 * self.away(wheel)
         half = radians(50)
-        self.canvas.arc_arrow(centre, 12, middle - sense * half, middle + sense * half)
+        with self.canvas.as_role("symbol"):
+            self.canvas.arc_arrow(centre, 12, middle - sense * half, middle + sense * half)
         tip = rect(1, middle + sense * half)
         self.canvas.label(centre + 12 * tip, f"ω_{wheel.number}", away=tip, height=5)
 
@@ -334,76 +335,47 @@ class _Detail:
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
         margin = 18.0
-        self.mu = standard(1.25 * gear.p, box.width - margin)
-        inner = canvas.title(box, "Зона зацепления", f"М {ratio(self.mu)}")
-        self.window = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
-        self.pole = self.window.centre
-        tall = max(w.ra - w.rw + gear.clearance * gear.m for w in gear.wheels) / self.mu.mu + 8
+        mu = standard(1.25 * gear.p, box.width - margin)
+        inner = canvas.title(box, "Зона зацепления", f"М {ratio(mu)}")
+        place = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
+        self.pole = place.centre
+        tall = mu.mm(max(w.ra - w.rw + gear.clearance * gear.m for w in gear.wheels)) + 8
         low, high = self.pole.imag - tall, self.pole.imag + tall
-        self.window = Box(self.window.x0, max(inner.y0, low), self.window.x1, min(inner.y1, high))
-
-    def at(self, p: Any) -> Any:
-        return self.pole + np.asarray(p) / self.mu.mu
-
-    def line(self, a: complex, b: complex, style: str = "thin") -> None:
-        inside = segment_inside(self.window, a, b)
-        if inside:
-            self.canvas.line(*inside, style)
+        self.window = Window(canvas, Box(place.x0, max(inner.y0, low), place.x1, min(inner.y1, high)))
+        self.at = Frame(mu, self.pole)
+        self.stage = stage(canvas, gear.engagement, 0, self.at)
 
     def draw(self) -> None:
-        c, gear, plan = self.canvas, self.gear, self.gear.engagement
-        o1, o2 = (complex(self.at(plan[k].value)) for k in ("O1", "O2"))
-        self.line(o1, o2, "centre")
-        self.line(self.pole - self.window.width, self.pole + self.window.width, "thin")
-        u = complex(plan["N1N2"].value)
-        self.line(self.pole - self.window.width * u, self.pole + self.window.width * u, "thin")
-        entry, leave = (complex(self.at(plan[k].value)) for k in "AB")
-        self.line(entry, leave, "axis")
-        w = self.window
-        corners = (complex(w.x0, w.y0), complex(w.x1, w.y0), complex(w.x1, w.y1), complex(w.x0, w.y1))
-        c.polyline(corners, "thin", closed=True)
-        self.circles()
+        c, gear, s, w = self.canvas, self.gear, self.stage, self.window
+        u, reach = complex(s.plan["N1N2"].value), w.box.width
+        self.window.line(s, "O1O2", s.at("O1"), s.at("O2"), "centre")
+        self.window.line(s, "Pw", self.pole - reach, self.pole + reach, "thin")
+        self.window.line(s, "N1N2", self.pole - reach * u, self.pole + reach * u, "thin")
+        self.window.line(s, "B", s.at("A"), s.at("B"), "axis", "curve")
+        w.edge()
+        w.circles(s, gear.wheels, 0.5)
         for wheel in gear.wheels:
-            shape = gear.shape(wheel)
-            for part in polyline_inside(self.window, self.at(shape.outline(-2, 2, step=0.5 * self.mu.mu))):
-                c.polyline(part, "main")
-            if gear.profile == "rack":
-                continue  # a trochoid has no radius to show
-            fillet, touch = (complex(self.at(gear.tooth(wheel)[name].value)) for name in "CR")
-            c.dot(fillet, 0.5, "thin")
+            self.teeth(wheel)
+        s.dot("Pw", 1.0, "main")
+        c.label(self.pole, "P_w", away=complex(-gear.hand, 1), height=5, gap=1.5)
+        start, end = (pi, pi + gear.alpha_w) if gear.hand < 0 else (-gear.alpha_w, 0.0)
+        with s.of("alpha_w", "dimension"):
+            c.angle_mark(self.pole, start, end, 0.4 * reach, "α_w")
+        with c.as_role("dimension"):
+            self.gaps()
+
+    def teeth(self, wheel: Any) -> None:
+        """Teeth in mesh, and the radius of their fillets."""
+        c, s = self.canvas, stage(self.canvas, self.gear.tooth(wheel), 0, self.at)
+        self.window.curve(s, "E", self.at(self.gear.shape(wheel).outline(-2, 2, step=0.5 * self.at.scale.mu)), "main")
+        if self.gear.profile == "rack":
+            return  # a trochoid has no radius to show
+        fillet, touch = s.at("C"), s.at("R")
+        s.dot("C", 0.5, "thin")
+        with s.of("rho", "dimension"):
             c.line(fillet, touch, "thin")
             arrow_head(c, touch, (touch - fillet) / abs(touch - fillet), 2.5)
-            c.label(fillet, f"ρ_{{f{wheel.number}}} = {fixed(wheel.fillet * 1e3, 2)}", away=fillet - self.pole, gap=1.5)
-        c.dot(self.pole, 1.0)
-        c.label(self.pole, "P_w", away=complex(-gear.hand, 1), height=5, gap=1.5)
-        h = gear.hand
-        start, end = (pi, pi + gear.alpha_w) if h < 0 else (-gear.alpha_w, 0.0)
-        c.angle_mark(self.pole, start, end, 0.4 * self.window.width, "α_w")
-        self.gaps()
-
-    def circles(self) -> None:
-        """Arcs through the window, named beside its right edge, the names spread to keep apart; others where they run."""
-        c, ends = self.canvas, []
-        for wheel in self.gear.wheels:
-            centre = complex(self.at(self.gear.engagement[f"O{wheel.number}"].value))
-            for key, symbol, style in CIRCLES:
-                radius = getattr(wheel, key) / self.mu.mu
-                spans = arcs_inside(self.window, centre, radius)
-                for start, end in spans:
-                    c.arc(centre, radius, start, end, style)
-                tips = [centre + rect(radius, angle) for span in spans for angle in span]
-                at_edge = [p.imag for p in tips if abs(p.real - self.window.x1) < 1e-6]
-                if at_edge:
-                    ends += [(y, symbol % wheel.number) for y in at_edge]
-                elif spans:
-                    start, end = max(spans, key=lambda span: span[1] - span[0])
-                    middle = rect(1, (start + end) / 2)
-                    c.label(centre + radius * middle, symbol % wheel.number, away=-middle)
-        ends.sort()
-        heights = spread([y for y, _ in ends], 6.0)
-        for (y, symbol), at in zip(ends, heights, strict=True):
-            c.line(complex(self.window.x1, y), complex(self.window.x1 + 4, at), "thin")
-            c.text(complex(self.window.x1 + 5, at - 1.75), symbol, 3.5)
+        c.label(fillet, f"ρ_{{f{wheel.number}}} = {fixed(wheel.fillet * 1e3, 2)}", away=fillet - self.pole, gap=1.5)
 
     def gaps(self) -> None:
         """Radial clearances and the distance between the pitch circles, on the line of centres."""
@@ -417,12 +389,8 @@ class _Detail:
         ):
             if abs(high - low) < 1e-9:
                 continue
-            a, b = (self.pole + 1j * v / self.mu.mu for v in sorted((low, high)))
-            for tip, way in ((a, 1j), (b, -1j)):
-                arrow_head(c, tip, way, 2.5)
-                c.line(tip, tip - 6 * way, "thin")
-            c.line(a, b, "thin")
-            c.label((a + b) / 2, text, away=complex(side, 0), gap=4)
+            a, b = (self.pole + 1j * v / self.at.scale.mu for v in sorted((low, high)))
+            gap(c, a, b, text, complex(side, 0), 4)
 
 
 def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -440,15 +408,17 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     first = one.t_pole / scale.mu
     upper = canvas.title(box, "Графики скоростей", f"М {ratio(scale)}")
     left = (box.x0 + box.x1 - whole) / 2
-    y1, y2 = plan["yV1"].value, plan["yV2"].value
+    # rounded: where letters stand must not hang on the last digit
+    y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
     highest = float(max(y1.max(), y2.max()))
     share = np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value)) / scale.mu
-    xs = left + first + share
+    xs = np.round(left + first + share, 9)
     axis = upper.y1 - highest - 8
-    _axis_line(canvas, gear, complex(left, axis), whole, first, scale)
+    s = _along(canvas, gear, plan, complex(left + first, axis), scale)
+    _axis_line(s, gear, complex(left, axis), whole, first, scale)
     ordinate = float(y1[np.argmin(np.abs(share))])
-    canvas.line(complex(left, axis), complex(left + whole, axis + y1[-1]), "curve")
-    canvas.line(complex(left, axis + y2[0]), complex(left + whole, axis), "curve")
+    line(s, "yV1", complex(left, axis), complex(left + whole, axis + y1[-1]), "curve", "curve")
+    line(s, "yV2", complex(left, axis + y2[0]), complex(left + whole, axis), "curve", "curve")
     canvas.label(complex(left + whole, axis + y1[-1]), "V_1", away=-1 + 0.3j, height=5)
     canvas.label(complex(left, axis + y2[0]), "V_2", away=1 + 0.5j, height=5)
 
@@ -458,36 +428,46 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     canvas.text(complex((box.x0 + box.x1) / 2, lower.y1 - 5), str(mu), 5.0, "centre")
     zero = lower.y1 - 14 - top
     deepest = zero - (lower.y0 + 2)
-    _theta(canvas, gear, left, first, whole, zero, mu, deepest)
     origin = complex(left, zero)
-    canvas.line(origin - 6, origin + whole + 8, "axis")
-    canvas.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
-    for theta in range(1, -int(deepest * mu.mu) - 1, -1):
-        if theta:
-            y = zero + theta / mu.mu
-            canvas.line(complex(left - 1.2, y), complex(left + 1.2, y), "axis")
-            canvas.text(complex(left - 2.5, y - 1.25), number(theta), 2.5, "right")
+    t = _along(canvas, gear, plan, origin + first, scale)
+    _theta(_along(canvas, gear, gear.smooth_sliding, origin + first, scale), zero, mu, deepest)
+    line(t, "K", origin - 6, origin + whole + 8, "axis")
+    with t.of("theta1", "axis"):
+        canvas.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
+        for theta in range(1, -int(deepest * mu.mu) - 1, -1):
+            if theta:
+                y = zero + theta / mu.mu
+                canvas.line(complex(left - 1.2, y), complex(left + 1.2, y), "axis")
+                canvas.text(complex(left - 2.5, y - 1.25), number(theta), 2.5, "right")
     canvas.label(complex(left, zero + top + 6), "θ", away=1 + 1j, height=5)
     for k, x in enumerate(xs):
         values = [plan[f"theta{i}"].value[k] for i in (1, 2)]
         low = min([v for v in values if np.isfinite(v) and v > -deepest * mu.mu] or [0.0])
         # Projection lines leave the title between the graphs free.
-        canvas.line(complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
-        canvas.line(complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
+        line(s.position(k), "K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
+        line(t.position(k), "K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
     canvas.label(complex(left + first, axis + ordinate), f"{number(ordinate)} мм", away=1 - 0.2j, height=3.5)
     canvas.of = ""
 
 
-def _axis_line(canvas: Canvas, gear: Any, origin: complex, whole: float, first: float, scale: Scale) -> None:
+def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale) -> Stage:
+    """A plan with the line of action laid along the abscissa."""
+    turn = -phase(complex(gear.engagement["N1N2"].value))
+    return stage(canvas, plan, 0, PlacedFrame(-1, plan.name, "", pole, (scale.mu, scale.mu), turn))
+
+
+def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, first: float, scale: Scale) -> None:
     """The line of action as an abscissa with its points."""
-    canvas.line(origin - 6, origin + whole + 8, "axis")
+    canvas = s.canvas
+    line(s, "K", origin - 6, origin + whole + 8, "axis")
     one, two = gear.wheels
     ends = [first + (one.t_low - one.t_pole) / scale.mu, first + (two.t_pole - two.t_low) / scale.mu]
     names = ("A", "B") if gear.driver == 1 else ("B", "A")
-    canvas.line(origin + ends[0], origin + ends[1], "main")
+    e = _along(canvas, gear, gear.engagement, origin + first, scale)
+    line(e, "B", origin + ends[0], origin + ends[1], "main", "curve")
     for name, x in (("N_1", 0.0), ("P_w", first), ("N_2", whole), *zip(names, ends, strict=True)):
-        canvas.dot(origin + x, 0.8)
+        e.dot(name.replace("_", ""), 0.8, "main")
         canvas.label(origin + x, name, away=-1j, height=3.5)
 
 
@@ -497,13 +477,11 @@ def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
     return mu, 1 / mu.mu
 
 
-def _theta(canvas: Canvas, gear: Any, left: float, first: float, whole: float, zero: float, mu: Scale, deepest: float) -> None:
+def _theta(s: Stage, zero: float, mu: Scale, deepest: float) -> None:
     """Both curves, cut where they leave the place on their way to minus infinity."""
-    share = np.concatenate([np.linspace(-1, 0, 241)[:-1], np.linspace(0, 1, 241)])
-    x = left + first + np.where(share < 0, share * first, share * (whole - first))
-    curve = gear.sliding_curve(share)
+    x = np.real(s.frame(s.plan["K"].value))
     for i in (1, 2):
-        y = np.asarray(curve[f"theta{i}"].value) / mu.mu
+        y = np.asarray(s.plan[f"theta{i}"].value) / mu.mu
         inside = y >= -deepest
         k = int(np.argmax(inside)) if i == 1 else int(len(y) - 1 - np.argmax(inside[::-1]))
         beyond = k - 1 if i == 1 else k + 1
@@ -512,9 +490,9 @@ def _theta(canvas: Canvas, gear: Any, left: float, first: float, whole: float, z
             t = (-deepest - y[k]) / (y[beyond] - y[k])
             cut = x[k] + t * (x[beyond] - x[k])
             px, py = (np.append(cut, px), np.append(-deepest, py)) if i == 1 else (np.append(px, cut), np.append(py, -deepest))
-        canvas.polyline(px + 1j * (zero + py), "curve")
+        curve(s, f"theta{i}", px + 1j * (zero + py), "curve")
         end = 0 if i == 1 else -1
-        canvas.label(complex(px[end], zero + 0.6 * py[end]), f"θ_{i}", away=complex(1 if i == 1 else -1, 0), height=5, gap=3)
+        s.canvas.label(complex(px[end], zero + 0.6 * py[end]), f"θ_{i}", away=complex(1 if i == 1 else -1, 0), height=5, gap=3)
 
 
 def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -546,11 +524,11 @@ def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         ("Параметр", "Знак", "Колесо 1", "Колесо 2"),
         ("Число зубьев", "z", str(one.teeth), str(two.teeth)),
         ("Модуль, мм", "m", number(gear.m * 1e3)),
-        ("Угол профиля исходного контура", "α", in_degrees(gear.alpha)),
+        ("Угол профиля исходного контура", "α", degrees_and_minutes(gear.alpha)),
         ("Коэффициент высоты головки", "h_a^{*}", number(gear.addendum)),
         ("Коэффициент радиального зазора", "c^{*}", number(gear.clearance)),
         ("Коэффициент смещения", "x", number(one.shift), number(two.shift)),
-        ("Угол зацепления", "α_w", in_degrees(gear.alpha_w)),
+        ("Угол зацепления", "α_w", degrees_and_minutes(gear.alpha_w)),
         ("Межосевое расстояние, мм", "a_w", fixed(gear.a_w * 1e3, 2)),
         ("Коэф. воспринимаемого смещения", "y", fixed(gear.y, 4)),
         ("Коэф. уравнительного смещения", "Δy", fixed(gear.dy, 4)),
@@ -564,7 +542,7 @@ def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         ("Толщина зуба у вершины, мм", "s_a", *both("sa")),
         ("Шаг делительный, мм", "p", fixed(gear.p * 1e3, 2)),
         ("Шаг по хорде, мм", "p̅", *both("p_chord")),
-        ("Угловой шаг", "τ", in_degrees(one.tau), in_degrees(two.tau)),
+        ("Угловой шаг", "τ", degrees_and_minutes(one.tau), degrees_and_minutes(two.tau)),
         ("Радиус переходной кривой, мм", "ρ_f", *both("fillet")) if gear.profile == "fillet" else (
             "Радиус закругления рейки, мм", "ρ_f", fixed(one.fillet * 1e3, 2)),
     ]
@@ -595,9 +573,9 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     ]
     if gear.profile == "rack":
         rows += [(f"ρ на колесе {w.number}: граничная ≤ нижняя, мм", f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
-                  f"{fixed(w.rack.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
+                  f"{fixed(w.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
         rows += [("Толщина зубьев у вершины, модулей (≥ 0,2)", "s_{a1}; s_{a2}",
-                  "; ".join(fixed(w.sa / gear.m, 2) for w in gear.wheels))]
+                  "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
     inner = canvas.title(box, "Качественные показатели")
     end = ruled_table(canvas, Box(box.x0, box.y0 + 46, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
     one, two = gear.wheels

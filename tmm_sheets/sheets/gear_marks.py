@@ -2,20 +2,97 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import degrees
+from cmath import rect
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale, fit_standard
-from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.construction.step import Step
+from tmm_sheets.drawing.canvas import Canvas, in_role
+from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
+from tmm_sheets.drawing.marks import Box, Role
 from tmm_sheets.numbers import number
+from tmm_sheets.sheets.player import Stage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
            ("rf", "r_{f%d}", "thin"))
 """Circles of a wheel: attribute, symbol, line type."""
+
+
+def line(s: Stage, step: Step | str, a: complex, b: complex, style: str = "thin", role: Role = "axis") -> None:
+    """Straight stroke that belongs to a step."""
+    with s.of(step, role):
+        s.canvas.line(a, b, style)
+
+
+def curve(s: Stage, step: Step | str, points: Any, style: str) -> None:
+    """Curve of a step through points."""
+    with s.of(step, "curve"):
+        s.canvas.polyline(points, style)
+
+
+def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float) -> None:
+    """A small upright distance, its arrows outside, lettering beside it."""
+    for tip, way in ((a, 1j), (b, -1j)):
+        arrow_head(canvas, tip, way, 2.5)
+        canvas.line(tip, tip - 6 * way, "thin")
+    canvas.line(a, b, "thin")
+    canvas.label((a + b) / 2, text, away=away, gap=space)
+
+
+class Window:
+    """A picture that is cut to a part of the sheet, ``box``; what of a line is inside is drawn."""
+
+    def __init__(self, canvas: Canvas, box: Box) -> None:
+        self.canvas, self.box = canvas, box
+
+    def line(self, s: Stage, step: Step | str, a: complex, b: complex, style: str = "thin", role: Role = "axis") -> None:
+        """Straight stroke that belongs to a step."""
+        inside = segment_inside(self.box, a, b)
+        if inside:
+            line(s, step, *inside, style, role)
+
+    def curve(self, s: Stage, step: Step | str, points: Any, style: str) -> None:
+        """Curve of a step through points."""
+        for part in polyline_inside(self.box, np.asarray(points)):
+            curve(s, step, part, style)
+
+    def edge(self) -> None:
+        """The edge of the picture."""
+        x0, y0, x1, y1 = self.box
+        with self.canvas.as_role("frame"):
+            self.canvas.polyline((complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)), "thin", closed=True)
+
+    def circles(self, s: Stage, wheels: Iterable[Any], share: float | None = None, leave: tuple[str, ...] = ()) -> None:
+        """What is seen of the circles of some wheels, but for those to ``leave``.
+
+        With a ``share`` they are named beside the right edge, the names spread to keep apart; others at that share of their
+        longest arc.
+        """
+        c, ends = self.canvas, []
+        for wheel, (key, symbol, style) in ((w, circle) for w in wheels for circle in CIRCLES if circle[0] not in leave):
+            centre, name = s.at(f"O{wheel.number}"), symbol % wheel.number
+            radius = abs(complex(s.frame(getattr(wheel, key))) - complex(s.frame(0)))
+            spans = arcs_inside(self.box, centre, radius)
+            with s.of(f"{key}{wheel.number}", "construction"):
+                for start, end in spans:
+                    c.arc(centre, radius, start, end, style)
+            if share is None or not spans:
+                continue
+            tips = [centre + rect(radius, angle) for span in spans for angle in span]
+            at_edge = [p.imag for p in tips if abs(p.real - self.box.x1) < 1e-6]
+            ends += [(y, name) for y in at_edge]
+            if not at_edge:
+                start, end = max(spans, key=lambda span: span[1] - span[0])
+                middle = rect(1, start + share * (end - start))
+                c.label(centre + radius * middle, name, away=-middle)
+        ends.sort()
+        for (y, name), at in zip(ends, spread([y for y, _ in ends], 6.0), strict=True):
+            with c.as_role("dimension"):
+                c.line(complex(self.box.x1, y), complex(self.box.x1 + 4, at), "thin")
+            c.text(complex(self.box.x1 + 5, at - 1.75), name, 3.5)
 
 
 def arrow_head(canvas: Canvas, tip: complex, u: complex, size: float = 3.5) -> None:
@@ -24,6 +101,7 @@ def arrow_head(canvas: Canvas, tip: complex, u: complex, size: float = 3.5) -> N
     canvas.fill((tip, tip - size * u + 1j * half * u, tip - size * u - 1j * half * u), "thin")
 
 
+@in_role("hatch")
 def hatch_between(canvas: Canvas, edge: Any, inner: Any, step: float = 1.3) -> None:
     """Slanted strokes at even distances between two curves that run side by side."""
     along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(edge)))))
@@ -33,6 +111,7 @@ def hatch_between(canvas: Canvas, edge: Any, inner: Any, step: float = 1.3) -> N
         canvas.line(complex(a), complex(b), "hatch")
 
 
+@in_role("table")
 def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], widths: Sequence[float], tallest: float) -> float:
     """Ruled table across the box with the names left; a row with one value spans the value columns. Returns its bottom."""
     row = min(tallest, box.height / len(rows))
@@ -84,9 +163,3 @@ def ratio(scale: Scale) -> str:
     """A GOST 2.302 scale as it is written: 4:1, 1:2,5."""
     real = scale.mu * 1e3
     return f"{number(1 / real)}:1" if real <= 1 else f"1:{number(real)}"
-
-
-def in_degrees(angle: float) -> str:
-    """Degrees and minutes of an angle in rad."""
-    minutes = round(degrees(angle) * 60)
-    return f"{minutes // 60}°{minutes % 60:02d}′" if minutes % 60 else f"{minutes // 60}°"

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.gear_marks import CIRCLES, arrow_head, in_degrees, ratio, spread, standard
+from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.gear_marks import Window, arrow_head, gap, ratio, standard
+from tmm_sheets.sheets.player import Stage, stage
 
 MARGIN = 16.0
 """Room for the names of the circles beside the window, mm."""
@@ -33,8 +35,15 @@ def generating(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     picture.lines()
     picture.positions()
     picture.rack_and_teeth()
-    picture.dimensions()
+    with canvas.as_role("dimension"):
+        picture.dimensions()
     canvas.of = ""
+
+
+def _turned(canvas: Canvas, plan: Plan, wheel: Any, at: Frame) -> Stage:
+    """The engagement with a wheel's centre where the rack's plan has it."""
+    centre = complex(plan[f"O{wheel.number}"].value)
+    return stage(canvas, plan, 0, Frame(at.scale, at(-centre)))
 
 
 class _RackPicture:
@@ -49,67 +58,40 @@ class _RackPicture:
         bottom = self.rack.r - self.wheel.rf + BELOW * m
         inner = box.inset(0, 0, MARGIN, 16 + NOTES)
         scale = min(standard(PITCHES * pi * m, inner.width), standard(top + bottom, inner.height), key=lambda s: -s.mu)
-        self.mu = canvas.scales["gear-rack"] = scale
+        canvas.scales["gear-rack"] = scale
         inner = canvas.title(box, f"Станочное зацепление колеса {self.wheel.number}", f"М {ratio(scale)}")
         # What height is left goes to the wheel, whose centre may come to stand on the picture.
         self.pole = complex((inner.x0 + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)
         low = max(inner.y0, self.pole.imag - min(self.rack.r / scale.mu + 12, 2.2 * bottom / scale.mu))
-        self.window = Box(inner.x0, low, inner.x1 - MARGIN, inner.y1)
-
-    def at(self, p: Any) -> Any:
-        """Point of the plan on the sheet; the plan's origin is the wheel's centre."""
-        return self.pole + (np.asarray(p) - 1j * self.rack.r) / self.mu.mu
-
-    def line(self, a: complex, b: complex, style: str = "thin") -> None:
-        """What of a straight line the window shows."""
-        inside = segment_inside(self.window, a, b)
-        if inside:
-            self.canvas.line(*inside, style)
-
-    def curve(self, points: Any, style: str) -> None:
-        """What of a curve the window shows."""
-        for part in polyline_inside(self.window, np.asarray(points)):
-            self.canvas.polyline(part, style)
+        self.window = Window(canvas, Box(inner.x0, low, inner.x1 - MARGIN, inner.y1))
+        # the plan's origin is the wheel's centre
+        self.at = Frame(scale, self.pole - scale.mm(1j * self.rack.r))
+        self.stage = stage(canvas, gear.generating, 0, self.at)
 
     def height(self, y: float) -> float:
         """Ordinate on the sheet at ``y`` m over the reference line of the rack."""
-        return float(self.pole.imag + (self.rack.shift * self.gear.m + y) / self.mu.mu)
+        return float(self.pole.imag + (self.rack.shift * self.gear.m + y) / self.at.scale.mu)
 
     def circles(self) -> None:
-        """Arcs through the window with their names beside its right edge."""
-        c, w, ends = self.canvas, self.window, []
-        corners = (complex(w.x0, w.y0), complex(w.x1, w.y0), complex(w.x1, w.y1), complex(w.x0, w.y1))
-        c.polyline(corners, "thin", closed=True)
-        centre = complex(self.at(0))
-        # The pitch circle rolls: it is drawn like a centre line; the working pitch circle has no part in the cutting.
-        for key, symbol, style in CIRCLES:
-            if key == "rw":
-                continue
-            radius = getattr(self.wheel, key) / self.mu.mu
-            for start, end in arcs_inside(w, centre, radius):
-                c.arc(centre, radius, start, end, style)
-                tips = [centre + rect(radius, a) for a in (start, end)]
-                at_edge = [p.imag for p in tips if abs(p.real - w.x1) < 1e-6]
-                if at_edge:
-                    ends += [(y, symbol % self.wheel.number) for y in at_edge]
-                else:
-                    middle = rect(1, 0.3 * start + 0.7 * end)
-                    c.label(centre + radius * middle, symbol % self.wheel.number, away=-middle)
-        ends.sort()
-        for (y, symbol), at in zip(ends, spread([y for y, _ in ends], 6.0), strict=True):
-            c.line(complex(w.x1, y), complex(w.x1 + 4, at), "thin")
-            c.text(complex(w.x1 + 5, at - 1.75), symbol, 3.5)
+        """Arcs through the window with their names beside its right edge.
+
+        The pitch circle rolls: it is drawn like a centre line; the working pitch circle has no part in the cutting.
+        """
+        self.window.edge()
+        engaged = _turned(self.canvas, self.gear.engagement, self.wheel, self.at)
+        self.window.circles(engaged, [self.wheel], 0.7, leave=("rw",))
 
     def lines(self) -> None:
         """Axis, rolling line, reference line, line of generation with its pole and limits."""
-        c, w, rack, gear = self.canvas, self.window, self.rack, self.gear
-        self.line(complex(self.pole.real, w.y0), complex(self.pole.real, w.y1), "centre")
-        if w.contains(complex(self.at(0))):
-            c.circle(complex(self.at(0)), 2.0, "main")
-            c.label(complex(self.at(0)), f"O_{self.wheel.number}", away=1 - 1j, height=5, gap=3)
+        c, w, rack, gear, s = self.canvas, self.window.box, self.rack, self.gear, self.stage
+        self.window.line(s, "O", complex(self.pole.real, w.y0), complex(self.pole.real, w.y1), "centre")
+        if w.contains(s.at("O")):
+            with s.of("O", "symbol"):
+                c.circle(s.at("O"), 2.0, "main")
+            c.label(s.at("O"), f"O_{self.wheel.number}", away=1 - 1j, height=5, gap=3)
         reference = self.height(0.0)
-        self.line(complex(w.x0, self.pole.imag), complex(w.x1, self.pole.imag), "thin")
-        self.line(complex(w.x0, reference), complex(w.x1, reference), "centre")
+        self.window.line(s, "WT", complex(w.x0, self.pole.imag), complex(w.x1, self.pole.imag), "thin")
+        self.window.line(s, "M", complex(w.x0, reference), complex(w.x1, reference), "centre")
         names = [(self.pole.imag, "начальная прямая рейки"), (reference, "делительная прямая рейки")]
         if abs(reference - self.pole.imag) < 0.3:
             names = [(reference, "делительная и начальная прямая рейки")]
@@ -117,26 +99,30 @@ class _RackPicture:
             at = complex(w.x0 + 36 + 6 * k, w.y1 - 6 - 6 * k)
             c.text(at + 1.0, text, 3.5)
             end = complex(at.real, y)
-            c.line(at - 1j, at - 1j + 2 + letter(text, 3.5).width, "thin")
-            c.line(at - 1j, end, "thin")
-            arrow_head(c, end, -1j, 2.5)
+            with c.as_role("text"):
+                c.line(at - 1j, at - 1j + 2 + letter(text, 3.5).width, "thin")
+                c.line(at - 1j, end, "thin")
+                arrow_head(c, end, -1j, 2.5)
         n = rect(1, -rack.alpha)  # towards the foot of the base circle's tangent, for the flank on the right
         foot = complex(self.at(1j * rack.r + rack.r * np.sin(rack.alpha) * n))
         limit = complex(self.at(1j * rack.r + (rack.addendum - rack.shift) * gear.m / np.sin(rack.alpha) * n))
         reach = 1.15 * max(abs(foot - self.pole), abs(limit - self.pole))
-        self.line(self.pole - reach * n, self.pole + reach * n, "thin")
-        c.dot(self.pole, 1.0)
+        self.window.line(s, "K", self.pole - reach * n, self.pole + reach * n, "thin")
+        with c.as_role("symbol"):
+            c.dot(self.pole, 1.0)
         c.label(self.pole, "P_0", away=-1 - 1j, height=5, gap=1.5)
         for point, name, way in ((foot, "N", n * 1j), (limit, "B_l", n * -1j)):
             if w.contains(point, -2):
-                c.dot(point, 0.8)
+                with c.as_role("symbol"):
+                    c.dot(point, 0.8)
                 c.label(point, name, away=way, height=5, gap=1.5)
         radius = min(0.42 * w.width, 60.0)
-        c.angle_mark(self.pole, -rack.alpha, 0.0, radius, f"α = {in_degrees(rack.alpha)}")
+        with s.of("flank", "dimension"):
+            c.angle_mark(self.pole, -rack.alpha, 0.0, radius, f"α = {degrees_and_minutes(rack.alpha)}")
 
     def positions(self) -> None:
         """Positions of the rack's flank relative to the wheel, and the points in which they touch the tooth."""
-        c, plan, rack = self.canvas, self.gear.generating, self.rack
+        c, plan, rack = self.canvas, self.stage.plan, self.rack
         top = self.gear.addendum * self.gear.m
         whole = rack.tooth(top)
         half = whole[: len(whole) // 2]
@@ -149,11 +135,12 @@ class _RackPicture:
             past = np.sqrt(outside**2 - abs(start - foot * flank) ** 2) - foot
             placed[0] = start + flank * min(past, top / np.cos(rack.alpha))
             placed = self.at(placed)
-            self.curve(placed, "thin")
-            touch = complex(self.at(plan["E"].value[k]))
+            s = self.stage.position(k)
+            self.window.curve(s, "flank", placed, "thin")
+            touch = s.at("E")
             if touch == touch:
-                c.dot(touch, 0.5, "thin")
-            if self.window.contains(complex(placed[0]), -4) and k % 2 == 0:
+                s.dot("E", 0.5, "thin")
+            if self.window.box.contains(complex(placed[0]), -4) and k % 2 == 0:
                 c.label(complex(placed[0]), plan.labels[k], away=placed[0] - placed[1], height=2.5, gap=0.6, leader=False)
 
     def rack_and_teeth(self) -> None:
@@ -161,17 +148,17 @@ class _RackPicture:
         c = self.canvas
         top = self.gear.addendum * self.gear.m
         outline = self.at(self.rack.placed(self.rack.outline(-1, 1, top), 0.0))
-        self.curve(outline, "axis")
+        self.window.curve(self.stage, "M", outline, "axis")
         shape = self.gear.generated(self.wheel)
-        teeth = shape.outline(-2, 2, step=0.5 * self.mu.mu)
+        teeth = shape.outline(-2, 2, step=0.5 * self.at.scale.mu)
         # The engagement's tooth 0, turned so that a space stands over the centre.
         upright = (teeth - shape.centre) / shape.axis * rect(1, pi / 2 - pi / self.wheel.teeth)
-        self.curve(self.at(upright), "main")
+        self.window.curve(self.stage, "E", self.at(upright), "main")
         right = rect(1, pi / 2 - pi / self.wheel.teeth)
         for k in (0, 1):
             u = right * rect(1, k * self.wheel.tau)
-            centre = complex(self.at(0))
-            self.line(centre + u * (self.wheel.rf / self.mu.mu - 4), centre + u * (self.wheel.ra / self.mu.mu + 4), "centre")
+            root, tip = (self.at.scale.mm(r) for r in (self.wheel.rf, self.wheel.ra))
+            self.window.line(self.stage, "O", self.at.origin + u * (root - 4), self.at.origin + u * (tip + 4), "centre")
         if self.rack.undercut:
             start = np.sqrt(self.wheel.rb**2 + self.wheel.t_fillet**2)
             flank = (shape.flank - shape.centre) / shape.axis
@@ -181,46 +168,40 @@ class _RackPicture:
 
     def dimensions(self) -> None:
         """Shift, addendum, clearance, pitch and tip radius of the rack."""
-        c, w, rack, gear = self.canvas, self.window, self.rack, self.gear
+        c, w, rack, gear = self.canvas, self.window.box, self.rack, self.gear
         m = gear.m
         tip = complex(self.at(rack.placed(rack.tip_centre, 0.0)))
-        touch = tip + rect(rack.tip_radius / self.mu.mu, -(rack.alpha + pi / 2) / 2)
+        touch = tip + rect(rack.tip_radius / self.at.scale.mu, -(rack.alpha + pi / 2) / 2)
         c.dot(tip, 0.5, "thin")
         c.line(tip, touch, "thin")
         arrow_head(c, touch, (touch - tip) / abs(touch - tip), 2.5)
         c.label(tip, f"ρ_f = {fixed(rack.tip_radius * 1e3, 2)}", away=-1 + 0.4j, gap=1.5)
         x = w.x0 + 6.0
-        levels = [(0.0, gear.addendum * m, f"h_a^{{*}}m = {number(gear.addendum * m * 1e3)}")]
-        levels.append((-gear.addendum * m, 0.0, f"h_a^{{*}}m = {number(gear.addendum * m * 1e3)}"))
-        for low, high, text in levels:
-            a, b = complex(x, self.height(low)), complex(x, self.height(high))
+        for low in (0.0, -gear.addendum * m):
+            a, b = complex(x, self.height(low)), complex(x, self.height(low + gear.addendum * m))
             c.line(a, b, "thin")
             arrow_head(c, a, -1j, 3.0)
             arrow_head(c, b, 1j, 3.0)
-            c.label((a + b) / 2, text, away=1, height=3.5, gap=1.0)
+            c.label((a + b) / 2, f"h_a^{{*}}m = {number(gear.addendum * m * 1e3)}", away=1, height=3.5, gap=1.0)
         for level in (-gear.addendum * m, -rack.depth, gear.addendum * m):
             y = self.height(level)
             c.line(complex(x - 3, y), complex(x + 8, y), "thin")
         gaps = [(-rack.depth, -gear.addendum * m, f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}")]
-        if abs(rack.shift) * m / self.mu.mu > 0.3:
+        if abs(rack.shift) * m / self.at.scale.mu > 0.3:
             low, high = sorted((0.0, -rack.shift * m))
             gaps.append((low, high, f"xm = {fixed(rack.shift * m * 1e3, 2)}"))
         for k, (low, high, text) in enumerate(gaps):
             at = x if k == 0 else w.x1 - 26
             a, b = complex(at, self.height(low)), complex(at, self.height(high))
-            for end, way in ((a, 1j), (b, -1j)):
-                arrow_head(c, end, way, 2.5)
-                c.line(end, end - 6 * way, "thin")
-            c.line(a, b, "thin")
-            c.label((a + b) / 2, text, away=1 if k == 0 else -1, height=3.5, gap=2.5)
+            gap(c, a, b, text, 1 if k == 0 else -1, 2.5)
         laid = letter(f"p = {fixed(gear.p * 1e3, 2)}", 3.5)
         y = w.y1 - NOTES + 5.0
-        half = gear.p / 2 / self.mu.mu
+        half = gear.p / 2 / self.at.scale.mu
         a, b = complex(self.pole.real - half, y), complex(self.pole.real + half, y)
         if w.contains(a) and w.contains(b):
             c.line(a, b, "thin")
             arrow_head(c, a, -1, 3.0)
             arrow_head(c, b, 1, 3.0)
             for end in (a, b):
-                self.line(end + 2j, complex(end.real, self.height(0.0)), "thin")
+                self.window.line(self.stage, "M", end + 2j, complex(end.real, self.height(0.0)), "thin", "dimension")
             c.put(laid, (a + b) / 2 + complex(4, 1.0))

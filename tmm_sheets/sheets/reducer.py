@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, PlacedFrame
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.gear_marks import arrow_head, ratio, ruled_table, spread
+from tmm_sheets.sheets.gear_marks import arrow_head, line, ratio, ruled_table, spread
+from tmm_sheets.sheets.player import Stage, play
+from tmm_sheets.sheets.player import stage as staged
 
 COLUMN = 19.0
 """Distance of two columns of wheels of the axial view, mm."""
@@ -75,8 +78,9 @@ class _Scheme:
         return float(self.axis + height / self.mu.mu)
 
     def draw(self) -> None:
-        self.axial()
-        self.end_view()
+        with self.canvas.as_role("symbol"):
+            self.axial()
+            self.end_view()
         self.velocities()
 
     # --- axial view ---------------------------------------------------------------------------------------------
@@ -294,42 +298,48 @@ class _Scheme:
         zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
         c.text(complex((self.picture.x0 + self.picture.x1) / 2, self.picture.y1 - 3.0), str(mu), 3.5, "centre")
 
-        def at(z: complex) -> complex:
-            return complex(zero + mu.mm(z.real), self.y(z.imag))
-
+        s = _placed(c, plan, complex(zero, self.axis), mu, self.mu)
         bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
-        c.line(complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis")
-        self.heights(zero, {name: value.imag for name, value in ends.items() if name[0].isupper()})
-        self.vectors(at, {name: value for name, value in ends.items() if name[0].islower()})
-        self.lines(at)
+        line(s, "O", complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis")
+        self.heights(s, [name for name in ends if name[0].isupper()])
+        self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
+        self.lines(s)
 
-    def vectors(self, at: Callable[[complex], complex], ends: Mapping[str, complex]) -> None:
+    def vectors(self, s: Stage, ends: Mapping[str, complex]) -> None:
         """Velocities of the points, from the line of zero velocity to their ends."""
         for name, value in ends.items():
-            self.canvas.arrow(at(1j * value.imag), at(value), "vector")
+            s.vector(name.upper(), name)
             way = 1 if value.real > 0 else -1
-            self.canvas.label(at(value), name, away=complex(way, 0.4), height=3.5, gap=1.2)
+            self.canvas.label(s.at(name), name, away=complex(way, 0.4), height=3.5, gap=1.2)
 
-    def lines(self, at: Callable[[complex], complex]) -> None:
+    def lines(self, s: Stage) -> None:
         """Line of each link through the ends of the velocities of all its points."""
         plan = self.reducer.velocities
         points = [step for step in plan if step.rule.gives == "point"]
         for step in (step for step in plan if step.rule.gives == "direction"):
             on = sorted((complex(p.value) for p in (*step.args, *(p for p in points if step in p.args))), key=lambda z: z.imag)
-            a, b = at(on[0]), at(on[-1])
-            self.canvas.ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
+            a, b = complex(s.frame(on[0])), complex(s.frame(on[-1]))
+            with s.of(step, "axis"):
+                self.canvas.ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
             away = 1j * (b - a) * (-1 if (b - a).real > 0 else 1)
             self.canvas.label(a + 0.62 * (b - a), _link(step.name), away=away, height=5, gap=1.2)
 
-    def heights(self, zero: float, points: Mapping[str, float]) -> None:
+    def heights(self, s: Stage, points: Sequence[str]) -> None:
         """Points of the scheme carried over to the line of zero velocity; those of one height have one line."""
         names: dict[float, list[str]] = {}
-        for name, height in points.items():
-            names.setdefault(round(self.y(height), 1), []).append(name if len(name) == 1 else f"{name[0]}_{name[1:]}")
-        for y, group in names.items():
-            self.canvas.line(complex(self.box.x0 + STUB, y), complex(zero, y), "construction")
-            self.canvas.dot(complex(zero, y), 0.7)
-            self.canvas.label(complex(zero, y), ", ".join(group), away=-1 + 0.6j, height=3.5, gap=1.2)
+        for name in points:
+            names.setdefault(round(s.at(name).imag, 1), []).append(name)
+        for group in names.values():
+            end = s.at(group[0])
+            line(s, group[0], complex(self.box.x0 + STUB, end.imag), end, "construction")
+            s.dot(group[0], 0.7, "main")
+            letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
+            self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
+
+
+def _placed(canvas: Canvas, plan: Plan, origin: complex, velocity: Scale, height: Scale) -> Stage:
+    """A plan of velocities over heights on the sheet."""
+    return staged(canvas, plan, 0, PlacedFrame(-1, plan.name, "", origin, (velocity.mu, height.mu)))
 
 
 def _link(name: str) -> str:
@@ -343,8 +353,7 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     canvas.of = "reducer-speeds"
     picture: Scale = canvas.scales["reducer-velocities"]
     heights: Scale = canvas.scales["reducer-scheme"]
-    unit = reducer.speeds(1.0)
-    values = [float(step.value) for step in unit if step.rule.gives == "number"]
+    values = [float(n.value) for n in reducer.links.values()]
     low, high = min(0.0, *values), max(0.0, *values)
     room, tall = box.width - 30, box.height - 44
     # A speed n takes n/mu_n mm, and with the picture's scale factors H = 30 mu_V/(pi mu_l mu_n).
@@ -356,17 +365,17 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     plan = reducer.speeds(distance * heights.mu)
     zero = (inner.x0 + inner.x1) / 2 - mu.mm(low + high) / 2
     y = inner.y1 - max(14.0, (inner.height - distance) * 0.5)
-    origin, pole = complex(zero, y), complex(zero, y - distance)
-    canvas.line(complex(zero + mu.mm(low) - 10, y), complex(zero + mu.mm(high) + 10, y), "axis")
-    arrow_head(canvas, complex(zero + mu.mm(high) + 12, y), 1)
+    s = _placed(canvas, plan, complex(zero, y), picture, heights)
+    origin, pole = s.at("0"), s.at("P")
+    with s.of("0", "axis"):
+        canvas.line(complex(zero + mu.mm(low) - 10, y), complex(zero + mu.mm(high) + 10, y), "axis")
+        arrow_head(canvas, complex(zero + mu.mm(high) + 12, y), 1)
+        canvas.line(origin, pole, "thin")
     canvas.label(complex(zero + mu.mm(high) + 12, y), "n, об/мин", away=-1j, height=3.5, gap=1.5)
-    canvas.line(origin, pole, "thin")
-    canvas.dot(pole, 0.9)
-    canvas.label(pole, "P", away=-1j, height=5)
-    canvas.dot(origin, 0.8)
-    canvas.label(origin, "0", away=complex(-1, 1), height=3.5, gap=1.0)
-    ends = [(origin + picture.mm(complex(step.value).real), step.name) for step in plan
-            if step.name not in ("P", "0") and step.rule.gives == "point"]
+    for name, size, away, height in (("P", 0.9, -1j, 5.0), ("0", 0.8, -1 + 1j, 3.5)):
+        s.dot(name, size, "main")
+        canvas.label(s.at(name), name, away=away, height=height)
+    ends = [(s.at(step), step.name) for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
     ends.sort(key=lambda pair: pair[0].real)
     places = spread([end.real for end, _ in ends], NAME)
     for i in range(len(places)):
@@ -374,9 +383,9 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     for i in range(len(places)):
         places[-1 - i] = min(places[-1 - i], box.x1 - NAME * (i + 0.5))
     for (end, link), x in zip(ends, places, strict=True):
-        canvas.line(pole, end, "main")
-        canvas.dot(end, 0.8)
-        canvas.line(end, complex(x, y + 7), "thin")
+        play(s, [link], "main")
+        s.dot(link, 0.8, "main")
+        line(s, link, end, complex(x, y + 7), "thin", "text")
         canvas.text(complex(x, y + 9), f"n_{{{_link(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
     canvas.of = ""
 
@@ -384,13 +393,12 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
 def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Table of the chosen tooth set and the runners-up."""
     reducer = project.reducer
-    sets = (reducer.chosen, *reducer.runners_up)
-    names = list(reducer.teeth_of(reducer.chosen))
+    names = reducer.teeth_names
     head = ["№", *(f"z_{n[1:]}" for n in names), "u", "Δu, %", "η"]
     rows = [head]
-    for i, teeth in enumerate(sets):
-        rows.append([str(i + 1), *(str(z) for z in reducer.teeth_of(teeth).values()), fixed(teeth.ratio, 3),
-                     fixed(teeth.deviation * 100, 2), fixed(teeth.efficiency, 3)])
+    for i, found in enumerate(reducer.sets):
+        rows.append([str(i + 1), *(str(found[z].value) for z in names), fixed(found["u"].value, 3),
+                     fixed(found["u_deviation"].value * 100, 2), fixed(found["eta"].value, 3)])
     inner = canvas.title(box, "Подбор чисел зубьев (1 — принято)")
     wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
     widths = [w * box.width / sum(wide) for w in wide]
@@ -400,18 +408,17 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
 def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Split of the ratio, conditions, efficiency, speeds."""
     r = project.reducer
-    left, right = r.coaxiality
-    near, need = r.neighbourhood
+    chosen, held = ({step.name: step.value for step in plan} for plan in (r.sets[0], r.conditions))
     rows: list[tuple[str, ...]] = [
         ("Показатель", "Значение"),
-        ("Требуемое передаточное отношение", fixed(r.asked, 3)),
-        ("Простая ступень × планетарная", f"{fixed(r.simple_ratio, 3)} × {fixed(r.planetary_ratio, 3)}"),
-        ("Полученное; отклонение", f"{fixed(r.chosen.ratio, 3)}; {fixed(r.chosen.deviation * 100, 2)} %"),
-        ("Соосность, зубьев", f"{left} = {right}"),
-        (f"Сборка при q = {r.data.satellites} (целое)", number(r.assembly, 6)),
-        ("Соседство, модулей", f"{fixed(near, 2)} > {fixed(need, 2)}"),
-        ("КПД: пара; планетарная; весь", f"{number(r.data.pair_efficiency)}; {fixed(r.stage_efficiency ** r.data.stages, 3)}; "
-         f"{fixed(r.chosen.efficiency, 3)}"),
+        ("Требуемое передаточное отношение", fixed(chosen["u_asked"], 3)),
+        ("Простая ступень × планетарная", f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}"),
+        ("Полученное; отклонение", f"{fixed(chosen['u'], 3)}; {fixed(chosen['u_deviation'] * 100, 2)} %"),
+        ("Соосность, зубьев", f"{held['coaxiality_left']} = {held['coaxiality_right']}"),
+        (f"Сборка при q = {held['q']} (целое)", number(held["assembly"], 6)),
+        ("Соседство, модулей", f"{fixed(held['between'], 2)} > {fixed(held['width'], 2)}"),
+        ("КПД: пара; планетарная; весь", f"{number(chosen['eta_pair'])}; {fixed(chosen['eta_planetary'], 3)}; "
+         f"{fixed(chosen['eta'], 3)}"),
     ]
     first, second = r.simple
     rows += [("Колёса 1 и 2 картины зацепления",

@@ -15,7 +15,7 @@ from shapely import LineString, Polygon
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_engagement import unrolled
-from tmm_sheets.methods.gears.gear_geometry import FILLET, inverse_involute, involute
+from tmm_sheets.methods.gears.gear_formulas import FILLET, inverse_involute, involute
 from tmm_sheets.methods.gears.gear_pair import gear_pair
 
 MANUALS = Path(__file__).parents[2] / "manuals"
@@ -40,6 +40,11 @@ PAIRS = [
 def rows(name):
     lines = (MANUALS / name).read_text(encoding="utf-8").splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def told(gear):
+    """Results as numbers."""
+    return {key: leaf.value for key, leaf in gear.results().items()}
 
 
 def truth(d, digits=50):
@@ -81,7 +86,7 @@ def truth(d, digits=50):
 
 @pytest.mark.parametrize("d", PAIRS)
 def test_values_of_gost_16532(d):
-    exact, got = truth(d), gear_pair(d).results()
+    exact, got = truth(d), told(gear_pair(d))
     scale = float(exact["a_w"])
     for key, value in exact.items():
         # differences of large lengths (y, dy) are known to rounding of the lengths they come from
@@ -90,7 +95,7 @@ def test_values_of_gost_16532(d):
 
 
 def test_textbook_pair_12_20():
-    got = gear_pair(data((12, 20), (0.5, 0.5), 0.01)).results()
+    got = told(gear_pair(data((12, 20), (0.5, 0.5), 0.01)))
     assert got["a_w"] == pytest.approx(168.5322, abs=5e-5)
     assert degrees(got["alpha_w"]) == pytest.approx(26.8592, abs=5e-5)
     assert got["y"] == pytest.approx(0.8532, abs=5e-5)
@@ -102,7 +107,7 @@ def test_textbook_pair_12_20():
 
 
 def test_printed_values_of_the_manual():
-    got = gear_pair(data()).results()
+    got = told(gear_pair(data()))
     got["inv_w"] = involute(got["alpha_w"])
     compared = 0
     for row in rows("gear_values.csv"):
@@ -195,7 +200,7 @@ def test_unrolled_involute_is_the_parametric_one(d):
         assert abs(points[parts]) < 1e-16 + 1e-15 * w.ra
         # the smooth curve is made of the same steps
         fine = np.sqrt(np.linspace(0, w.t_tip**2, 40))
-        assert np.abs(gear.smooth_involute(w) - parametric(w, centre, foot, fine)).max() < 1e-15 + 1e-14 * w.ra
+        assert np.abs(gear.smooth_involute(w)["E"].value - parametric(w, centre, foot, fine)).max() < 1e-15 + 1e-14 * w.ra
         # it reaches the tip, with two divisions beyond N at least
         assert lengths[-1] >= w.t_tip - 1e-15
         assert len(lengths) >= parts + 3
@@ -302,7 +307,7 @@ def assert_smooth_root(gear, w):
 def test_fillets_are_tangent(d):
     gear = gear_pair(d)
     for w in gear.wheels:
-        assert w.fillet == FILLET * d.module
+        assert w.fillet == pytest.approx(FILLET * d.module, rel=1e-15)
         assert_smooth_root(gear, w)
 
 
@@ -437,10 +442,10 @@ def test_protocol_says_every_step():
 
 
 def test_results_hold_the_keys_of_the_contract():
-    got = gear_pair(data()).results()
+    got = told(gear_pair(data()))
     pairs = ("z", "x", "r", "rb", "rw", "ra", "rf", "s", "sa", "theta")
     keys = {"m", "alpha_w", "a_w", "y", "dy", "p", "eps_alpha"} | {f"{key}{i}" for key in pairs for i in (1, 2)}
     assert keys <= set(got)
-    assert np.isnan(got["theta1"][0])
+    assert np.isinf(got["theta1"][0])
     assert got["theta1_greatest"] == pytest.approx(-6.597, abs=5e-4)
     assert got["rb1"] < got["r_low1"] < got["ra1"]

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from tmm_sheets.methods.gears.planetary import (
     SCHEMES,
     assembles,
+    efficiency_formula,
     inner_ratio,
     least_ring,
     neighbours_clear,
-    stage_efficiency,
     stage_ratio,
 )
 
@@ -94,7 +94,7 @@ def test_efficiency_is_that_of_the_power_balance(case, eta0):
     if abs(inner - 1) < 1e-6:
         return
     for driver in SCHEMES[name].drivers:
-        got = float(stage_efficiency(inner, driver, eta0))
+        got = float(efficiency_formula(inner, driver)(inner, eta0))
         assert got == pytest.approx(balanced(inner, driver, eta0), rel=1e-9)
         assert 0 < got < 1
 
@@ -171,6 +171,6 @@ def test_schemes_of_the_manual():
     assert stage_ratio(inner_ratio((1, -1), (15, 30, 15, 60)), "sun") == 9
     assert gcd(30, 15) == 15
     eta0 = 0.98**2
-    assert stage_efficiency(-8.0, "sun", eta0) == pytest.approx((1 + eta0 * 8) / 9, rel=1e-14)
-    assert stage_efficiency(0.9, "carrier", eta0) == pytest.approx(0.1 / (1 - 0.9 * eta0), rel=1e-12)
-    assert stage_efficiency(1.1, "carrier", eta0) == pytest.approx(eta0 * 0.1 / (1.1 - eta0), rel=1e-12)
+    assert efficiency_formula(-8.0, "sun")(-8.0, eta0) == pytest.approx((1 + eta0 * 8) / 9, rel=1e-14)
+    assert efficiency_formula(0.9, "carrier")(0.9, eta0) == pytest.approx(0.1 / (1 - 0.9 * eta0), rel=1e-12)
+    assert efficiency_formula(1.1, "carrier")(1.1, eta0) == pytest.approx(eta0 * 0.1 / (1.1 - eta0), rel=1e-12)

@@ -14,7 +14,7 @@ from tests.methods.gears.test_gears import data, polygon
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_engagement import unrolled
-from tmm_sheets.methods.gears.gear_geometry import shift_without_undercut
+from tmm_sheets.methods.gears.gear_formulas import geometry_plan
 from tmm_sheets.methods.gears.gear_pair import MeshingPair, gear_pair, settled
 from tmm_sheets.methods.gears.rack import Rack, flank
 
@@ -151,6 +151,12 @@ def test_undercut_of_the_manuals_rule():
     assert above == pytest.approx(1.2e-5, abs=5e-7)
 
 
+def shift_without_undercut(teeth, addendum, alpha):
+    d = data((teeth, 20), "rule", addendum=addendum)
+    d.pressure_angle = alpha
+    return geometry_plan(d)["x1"].value
+
+
 def test_generalised_rule():
     assert shift_without_undercut(14, 1.0, ALPHA) == pytest.approx(0.18116, abs=5e-6)
     assert shift_without_undercut(17, 1.0, ALPHA) == pytest.approx(1 - 17 / 17.0973, abs=5e-6)
@@ -169,8 +175,7 @@ class _Reducer:
 
 
 def test_settled_data():
-    assert settled(_Section()) == MeshingPair((12, 30), 0.005, (shift_without_undercut(12, 1.0, ALPHA), 0.0), ALPHA, 1.0, 0.25, 1,
-                                       "clockwise", "rack")
+    assert settled(_Section()) == MeshingPair((12, 30), 0.005, "rule", ALPHA, 1.0, 0.25, 1, "clockwise", "rack")
     got = settled(_Section(teeth="reducer", module=None, shift=(0.3, -0.1)), _Reducer())
     assert got == MeshingPair((11, 33), 0.012, (0.3, -0.1), ALPHA, 0.8, 0.2, 1, "clockwise", "rack")
 

@@ -22,6 +22,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.cams.cam_motion import ACROSS, ORDINATE
+from tmm_sheets.methods.gears.rack import TAKEN
 from tmm_sheets.methods.integration import CHORD
 
 if TYPE_CHECKING:
@@ -53,8 +54,9 @@ def others(project: Project, found: Measurables) -> None:
 
 def _lengths(plan: Plan, found: Measurables, key: str) -> None:
     """All lengths and angles of a plan that were measured or drawn as circles; not those taken from numbers."""
+    taken = (rules.GIVEN_LENGTH, TAKEN)
     for step in plan:
-        if step.rule.gives in ("length", "ordinate", "angle", "inclination") and step.rule is not rules.GIVEN_LENGTH and step.args:
+        if step.rule.gives in ("length", "ordinate", "angle", "inclination") and step.rule not in taken and step.args:
             for k in range(np.size(step.value)):
                 found.add(measured_step(plan, found.scales, k, step, key=key))
 
@@ -71,7 +73,8 @@ def gear(project: Project, found: Measurables) -> None:
                 found.add(length(plan, found.scales, 0, plan[tail], plan[head], tail + head))
     if "gear-sliding" in found.scales:
         _sliding(pair.sliding, found)
-    for name, value in pair.results().items():
+    for name, told in pair.results().items():
+        value = told.value
         if name in GEAR_ANGLES:
             scalar(found, "Зубчатая передача", name, degrees(value), DEGREES)
         else:
@@ -98,11 +101,10 @@ def reducer(project: Project, found: Measurables) -> None:
     """Results of the reducer."""
     results: Mapping[str, Any] = project.reducer.results()
     for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", "об/мин")):
-        for name, value in results.get(group, {}).items():
-            scalar(found, "Редуктор", f"reducer-{name}", value, unit)
+        for name, told in results[group].items():
+            scalar(found, "Редуктор", f"reducer-{name}", told.value, unit)
     for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q"):
-        if name in results:
-            scalar(found, "Редуктор", f"reducer-{name}", results[name], "")
+        scalar(found, "Редуктор", f"reducer-{name}", results[name].value, "")
 
 
 def cam(project: Project, found: Measurables) -> None:

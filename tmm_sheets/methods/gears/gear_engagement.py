@@ -12,20 +12,22 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import (
     ALONG,
     ARC_ARC,
     ARC_LINE,
     DISTANCE,
-    GIVEN,
     GIVEN_DIRECTION,
-    GIVEN_LENGTH,
     RAY,
     TANGENT,
 )
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry
+from tmm_sheets.methods.gears.rack import TAKEN
+from tmm_sheets.numbers import number
 
 COMMON_ORDINATES = (25.0, 20.0, 15.0, 10.0, 5.0)
 """Ordinate of both speeds at the pole, mm of paper: 25 (manual 000, 6 example), less where the far one gets too high."""
@@ -41,6 +43,7 @@ def hand(pair: PairGeometry) -> int:
     return motion if pair.driver == 1 else -motion
 
 
+@primitive("angle at a point")
 def _angle(p: Any, o: Any, q: Any) -> Any:
     return np.abs(np.angle((p - o) * np.conj(q - o)))
 
@@ -51,10 +54,12 @@ def turn_of(o: Any, foot: Any, travel: Any) -> Any:
     return np.exp(1j * ar.cross(arm, travel) / (np.real(arm) ** 2 + np.imag(arm) ** 2))
 
 
+@primitive("profile in contact")
 def _rolled(p: Any, o: Any, foot: Any, contact: Any) -> Any:
     return o + (p - o) * turn_of(o, foot, contact - p)
 
 
+@primitive("point of the profile")
 def unrolled(o: Any, foot: Any, pole: Any, length: Any) -> Any:
     """Point of the profile through ``pole`` where the unrolled tangent of the base circle has this length."""
     string = pole - foot
@@ -63,6 +68,7 @@ def unrolled(o: Any, foot: Any, pole: Any, length: Any) -> Any:
     return o + ((foot - o) + string / whole * length) * turn
 
 
+@primitive("profile cuts a circle")
 def _profile_on_circle(o: Any, foot: Any, pole: Any, radius: Any) -> Any:
     base = np.abs(foot - o)
     return unrolled(o, foot, pole, np.sqrt((radius - base) * (radius + base)))
@@ -72,10 +78,12 @@ def _divide(p: Any, q: Any, k: Any, parts: Any) -> Any:
     return p + (q - p) * (k / parts)
 
 
+@primitive("lay off an arc")
 def _lay_arc(o: Any, foot: Any, pole: Any, k: Any, parts: Any) -> Any:
     return o + (foot - o) * turn_of(o, foot, (pole - foot) * (1 - k / parts))
 
 
+@primitive("end of the unrolled tangent")
 def _end_of_tangent(o: Any, foot: Any, pole: Any, at: Any, length: Any) -> Any:
     # The tangent at the pole's foot turned together with the radius: a right angle to the radius, on the tooth's side.
     return at + ar.ray(foot, pole) * ar.ray(o, at) * np.conj(ar.ray(o, foot)) * length
@@ -89,30 +97,33 @@ def _speed(foot: Any, pole: Any, at: Any, ordinate: Any) -> Any:
 
 
 def _sliding(own: Any, other: Any) -> Any:
-    return (own - other) / np.asarray(own)
+    return np.divide(own - other, own)  # of two zeros too: no number then
 
 
 def _middle(p: Any, q: Any) -> Any:
     return (p + q) / 2
 
 
+@primitive("fillet on a radial piece")
 def _radial_fillet(o: Any, start: Any, rho: Any, root: Any, side: Any) -> Any:
     return o + ar.ray(o, start) * (np.sqrt(root * (root + 2 * rho)) + 1j * side * rho)
 
 
+@primitive("fillet on the involute")
 def on_normal(o: Any, foot: Any, pole: Any, touch: Any, length: Any, rho: Any) -> Any:
     """Point at ``rho`` from the profile's point ``touch`` (unrolled ``length``) along its normal, out of the tooth."""
     string = pole - foot
     return touch + string / np.abs(string) * turn_of(o, foot, string * (1 - length / np.abs(string))) * rho
 
 
+CENTRE = Rule("centre over the pole", lambda r: 1j * (r / 1e3), ("number",), "point", "Отметим точку {name}.", unit="m")
 CIRCLE = Rule(
-    "circle", lambda o, r: r, ("point", "length"), "length", "Из центра {0} радиусом {1} проведём окружность {name}.",
-    lambda a, v: (Helper("circle", a[0], radius=a[1]),),
+    "circle", lambda o, mm: mm / 1e3, ("point", "number"), "length", "Из центра {0} радиусом {value} проведём окружность {name}.",
+    lambda a, v: (Helper("circle", a[0], radius=v),), unit="m",
 )
 ANGLE = Rule("measure an angle", _angle, ("point", "point", "point"), "angle", "Измерим угол {0}{1}{2}: {name} = {value}.")
 RATIO = Rule("ratio of angles", lambda a, b: a / b, ("angle", "angle"), "number",
-             "Коэффициент перекрытия {name} = {0} / {1} = {value}.")
+             "Коэффициент перекрытия {name} = {0} / {1} = {value}.", source="000, 6.3")
 ROLLED = Rule(
     "profile in contact", _rolled, ("point", "point", "point", "point"), "point",
     "Профиль, касающийся в {3}, пересекает начальную окружность с центром {1} в точке {name} "
@@ -151,11 +162,15 @@ FILLET_ON_NORMAL = Rule(
     "fillet on the involute", on_normal, ("point", "point", "point", "point", "length", "length"), "point",
     "На нормали к эвольвенте в точке {3} отложим радиус выкружки {5}: её центр {name}.",
 )
+TAKEN_SPEED = Rule("common ordinate of the speeds", lambda y: y, ("number",), "number",
+                   "Ординату обеих скоростей в полюсе примем равной {value} мм.", unit="mm")
 SPEED = Rule(
     "ordinate of a speed", _speed, ("point", "point", "point", "number"), "number",
     "Через {0} и вершину ординаты {3} мм в полюсе проведём прямую; над делением {name} = {value} мм.",
+    unit="mm", source="000, 6.3",
 )
-SLIDING = Rule("specific sliding", _sliding, ("number", "number"), "number", "Удельное скольжение {name} = {value}.")
+SLIDING = Rule("specific sliding", _sliding, ("number", "number"), "number",
+               "Удельное скольжение {name} = ({0} − {1})/{0} = {value}.", source="000, 6.3")
 
 
 def engagement_plan(pair: PairGeometry) -> Plan:
@@ -166,18 +181,18 @@ def engagement_plan(pair: PairGeometry) -> Plan:
     """
     plan = Plan("gear-engagement", "Картина зацепления", "m")
     one = pair.wheels[0]
-    down = plan.add("O1O2", GIVEN_DIRECTION, -1j, say="Проведём линию центров.")
-    plan.add("O1", GIVEN, 1j * one.rw)
-    distance = plan.add("aw", GIVEN_LENGTH, pair.a_w)
-    plan.add("O2", ALONG, plan["O1"], down, distance)
+    down = plan.add("O1O2", GIVEN_DIRECTION, -1j, say="Проведём линию центров.", symbol="O_1O_2")
+    plan.add("O1", CENTRE, one.step("rw"), symbol="O_1")
+    distance = plan.add("aw", TAKEN, pair.step("a_w"), symbol="a_w")
+    plan.add("O2", ALONG, plan["O1"], down, distance, symbol="O_2")
     for w in pair.wheels:
         for name in ("rw", "r", "rb", "ra", "rf"):
-            plan.add(f"{name}{w.number}", CIRCLE, plan[f"O{w.number}"], getattr(w, name))
-    pole = plan.add("Pw", ALONG, plan["O1"], down, plan["rw1"])
+            plan.add(f"{name}{w.number}", CIRCLE, plan[f"O{w.number}"], w.step(name), symbol=w.step(name).symbol)
+    pole = plan.add("Pw", ALONG, plan["O1"], down, plan["rw1"], symbol="P_w")
     side = hand(pair)
     for w in pair.wheels:
-        plan.add(f"N{w.number}", TANGENT, pole, plan[f"O{w.number}"], plan[f"rb{w.number}"], side)
-    line = plan.add("N1N2", RAY, plan["N1"], plan["N2"])
+        plan.add(f"N{w.number}", TANGENT, pole, plan[f"O{w.number}"], plan[f"rb{w.number}"], side, symbol=f"N_{w.number}")
+    line = plan.add("N1N2", RAY, plan["N1"], plan["N2"], symbol="N_1N_2")
     ends = ((plan["O2"], plan["ra2"], -1), (plan["O1"], plan["ra1"], 1))
     for name, (centre, radius, way) in zip("AB", ends if pair.driver == 1 else ends[::-1], strict=True):
         plan.add(name, ARC_LINE, centre, radius, pole, line, way)
@@ -185,9 +200,10 @@ def engagement_plan(pair: PairGeometry) -> Plan:
     for w in pair.wheels:
         i = w.number
         for contact in "AB":
-            plan.add(f"{contact.lower()}{i}", ROLLED, pole, plan[f"O{i}"], plan[f"N{i}"], plan[contact])
-        plan.add(f"phi{i}", ANGLE, plan[f"a{i}"], plan[f"O{i}"], plan[f"b{i}"])
-        plan.add(f"eps{i}", RATIO, plan[f"phi{i}"], w.tau)
+            plan.add(f"{contact.lower()}{i}", ROLLED, pole, plan[f"O{i}"], plan[f"N{i}"], plan[contact],
+                     symbol=f"{contact.lower()}_{i}")
+        plan.add(f"phi{i}", ANGLE, plan[f"a{i}"], plan[f"O{i}"], plan[f"b{i}"], symbol=f"φ_{{α{i}}}")
+        plan.add(f"eps{i}", RATIO, plan[f"phi{i}"], w.step("tau"), symbol="ε_α")
     return plan
 
 
@@ -209,22 +225,26 @@ def involute_plan(wheel: GearWheel, engagement: Plan, parts: int) -> Plan:
     |P_w k| laid off on the tangent there: steps ``k``, ``k′``, ``Pwk`` and ``Ek`` for each number k of :func:`divisions`.
     """
     plan = Plan(f"gear-involute-{wheel.number}", f"Эвольвента колеса {wheel.number} обкаткой", "m")
+    whole = Given(parts, f"gear.involute.parts[{wheel.number - 1}]", over="none", choice="части отрезка PwN по 15–25 мм на листе")
     for k in divisions(wheel, parts):
-        _unroll(plan, wheel, engagement, float(k), parts, (f"{k}", f"{k}′", f"Pw{k}", f"E{k}"))
+        _unroll(plan, wheel, engagement, float(k), whole, (f"{k}", f"{k}′", f"Pw{k}", f"E{k}"))
     return plan
 
 
-def smooth_involute(wheel: GearWheel, engagement: Plan, numbers: Any) -> Any:
+def smooth_involute(wheel: GearWheel, engagement: Plan, numbers: Any) -> Plan:
     """Points of the same involute by the same steps at any fractions of P_wN (0 at the base circle, 1 at the pole)."""
-    plan = Plan("gear-involute-curve", "Эвольвента", "m", tuple(f"{v:g}" for v in numbers))
-    return _unroll(plan, wheel, engagement, np.asarray(numbers, dtype=float), 1, ("k", "k′", "Pwk", "E")).value
+    plan = Plan(f"gear-involute-{wheel.number}-between", f"Эвольвента колеса {wheel.number} между делениями", "m",
+                tuple(f"{v:g}" for v in numbers))
+    shares = Given(np.asarray(numbers, dtype=float), "gear.involute.divisions", over="curve")
+    _unroll(plan, wheel, engagement, shares, 1, ("k", "k′", "Pwk", "E"))
+    return plan
 
 
-def _unroll(plan: Plan, wheel: GearWheel, engagement: Plan, k: Any, parts: int, names: tuple[str, str, str, str]) -> Step:
+def _unroll(plan: Plan, wheel: GearWheel, engagement: Plan, k: Any, parts: Any, names: tuple[str, str, str, str]) -> Step:
     centre, foot, pole = engagement[f"O{wheel.number}"], engagement[f"N{wheel.number}"], engagement["Pw"]
     division = plan.add(names[0], DIVIDE, pole, foot, k, parts)
     base = plan.add(names[1], LAY_ARC, centre, foot, pole, k, parts)
-    length = plan.add(names[2], DISTANCE, pole, division)
+    length = plan.add(names[2], DISTANCE, pole, division, symbol=f"P_w{names[0]}")
     return plan.add(names[3], END_OF_TANGENT, centre, foot, pole, base, length)
 
 
@@ -240,25 +260,25 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
     centre, foot, pole = engagement[f"O{i}"], engagement[f"N{i}"], engagement["Pw"]
     side = hand(pair)  # sense in which a wheel turns away from its flank: the same for both
     start = plan.add("E", ON_CIRCLE, centre, foot, pole, engagement[f"r{i}"])
-    chord = plan.add("s", GIVEN_LENGTH, wheel.s_chord, say="Возьмём толщину зуба по хорде {value}.")
+    chord = plan.add("s", TAKEN, wheel.step("s_chord"), say="Возьмём толщину зуба по хорде {value}.")
     other = plan.add("F", ARC_ARC, centre, engagement[f"r{i}"], start, chord, -side)
     middle = plan.add("M", MIDDLE, start, other)
     plan.add("axis", RAY, centre, middle)
     plan.add("H", ON_CIRCLE, centre, foot, pole, engagement[f"ra{i}"])
     if pair.profile == "rack":
         return plan  # the fillet comes from the positions of the rack
-    rho = plan.add("rho", GIVEN_LENGTH, wheel.fillet)
+    rho = plan.add("rho", TAKEN, wheel.step("rho_f"), symbol="ρ_f")
     root = engagement[f"rf{i}"]
     if wheel.t_fillet > 0:
-        length = plan.add("t", GIVEN_LENGTH, wheel.t_fillet)
+        length = plan.add("t", TAKEN, wheel.step("t_f"))
         touch = plan.add("Q", UNROLLED, centre, foot, pole, length)
         fillet = plan.add("C", FILLET_ON_NORMAL, centre, foot, pole, touch, length, rho)
     else:
         begin = plan.add("G", UNROLLED, centre, foot, pole, 0.0, say="Эвольвента начинается на основной окружности в точке {name}.")
         fillet = plan.add("C", RADIAL_FILLET, centre, begin, rho, root, side)
-        radial = plan.add(f"O{i}G", RAY, centre, begin)
+        radial = plan.add(f"O{i}G", RAY, centre, begin, symbol=f"O_{i}G")
         touch = plan.add("Q", _FOOT_ON_RADIUS, centre, radial, fillet)
-    ray = plan.add(f"O{i}C", RAY, centre, fillet)
+    ray = plan.add(f"O{i}C", RAY, centre, fillet, symbol=f"O_{i}C")
     plan.add("R", ALONG, centre, ray, root)
     return plan
 
@@ -269,11 +289,14 @@ _FOOT_ON_RADIUS = Rule(
 )
 
 
-def common_ordinate(pair: PairGeometry) -> float:
+def common_ordinate(pair: PairGeometry) -> Given:
     """Ordinate at the pole, mm of paper, with which the highest one, over a foot of the line, stays in sight."""
     one, two = pair.wheels
     ratio = max(one.t_pole, two.t_pole) / min(one.t_pole, two.t_pole)
-    return next((y for y in COMMON_ORDINATES if y * (1 + ratio) <= HIGHEST_ORDINATE), COMMON_ORDINATES[-1])
+    found = next((y for y in COMMON_ORDINATES if y * (1 + ratio) <= HIGHEST_ORDINATE), COMMON_ORDINATES[-1])
+    tried = ", ".join(number(y) for y in COMMON_ORDINATES)
+    return Given(found, "gear.sliding.ordinate", "y_V", "mm", "000, 6", "none",
+                 f"наибольшая из {tried} мм, с которой наибольшая ордината не выше {number(HIGHEST_ORDINATE)} мм")
 
 
 def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = (3, 4)) -> Plan:
@@ -285,23 +308,38 @@ def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = 
     plan = Plan("gear-sliding", "Удельные скольжения", "m", tuple(str(k) for k in range(first + second + 1)))
     one = np.concatenate([np.arange(first, 0, -1.0), np.zeros(second + 1)])
     two = np.concatenate([np.zeros(first), np.arange(second + 1.0)])
-    return _sliding_steps(plan, engagement, common_ordinate(pair), one / first, two / second)
+    return _sliding_steps(plan, pair, engagement, one / first, two / second)
 
 
 def sliding_between(pair: PairGeometry, engagement: Plan, share: Any) -> Plan:
-    """The same for any points of N1N2: ``share`` is -1 at N1, 0 at the pole, 1 at N2 (for smooth curves and for A, B)."""
+    """The same for any points of N1N2: ``share`` is -1 at N1, 0 at the pole, 1 at N2 (for smooth curves)."""
     share = np.asarray(share, dtype=float)
-    plan = Plan("gear-sliding-curve", "Удельные скольжения", "m", tuple(f"{v:g}" for v in share))
-    return _sliding_steps(plan, engagement, common_ordinate(pair), np.maximum(-share, 0), np.maximum(share, 0))
+    plan = Plan("gear-sliding-between", "Удельные скольжения между делениями", "m", tuple(f"{v:g}" for v in share))
+    return _sliding_steps(plan, pair, engagement, np.maximum(-share, 0), np.maximum(share, 0))
 
 
-def _sliding_steps(plan: Plan, engagement: Plan, ordinate: float, to_first: Any, to_second: Any) -> Plan:
+def greatest_sliding(pair: PairGeometry, engagement: Plan) -> Plan:
+    """Sliding of each wheel at the end of the active line next to its own foot: steps ``theta1``, ``theta2``."""
+    plan = Plan("gear-greatest-sliding", "Наибольшие удельные скольжения на ножках зубьев", "m")
+    pole, feet = engagement["Pw"], (engagement["N1"], engagement["N2"])
+    ordinate = plan.add("yV", TAKEN_SPEED, common_ordinate(pair), symbol="y_V")
+    for i, name in zip((1, 2), "AB" if pair.driver == 1 else "BA", strict=True):
+        own, other = (plan.add(f"yV{k}{name}", SPEED, feet[k - 1], pole, engagement[name], ordinate, symbol=f"y_{{V{k}}}({name})",
+                               say=f"Через {{0}} и вершину ординаты {{3}} мм в полюсе проведём прямую; над точкой {name} "
+                                   "{name} = {value} мм.") for k in (i, 3 - i))
+        plan.add(f"theta{i}", SLIDING, own, other, symbol=f"θ_{i}")
+    return plan
+
+
+def _sliding_steps(plan: Plan, pair: PairGeometry, engagement: Plan, to_first: Any, to_second: Any) -> Plan:
     pole, n1, n2 = engagement["Pw"], engagement["N1"], engagement["N2"]
-    at = plan.add("K", _BETWEEN, pole, n1, to_first, n2, to_second)
-    y1 = plan.add("yV1", SPEED, n1, pole, at, ordinate)
-    y2 = plan.add("yV2", SPEED, n2, pole, at, ordinate)
-    plan.add("theta1", SLIDING, y1, y2)
-    plan.add("theta2", SLIDING, y2, y1)
+    shares = [Given(row, f"gear.sliding.share[{i}]") for i, row in enumerate((to_first, to_second))]
+    at = plan.add("K", _BETWEEN, pole, n1, shares[0], n2, shares[1])
+    ordinate = plan.add("yV", TAKEN_SPEED, common_ordinate(pair), symbol="y_V")
+    y1 = plan.add("yV1", SPEED, n1, pole, at, ordinate, symbol="y_{V1}")
+    y2 = plan.add("yV2", SPEED, n2, pole, at, ordinate, symbol="y_{V2}")
+    plan.add("theta1", SLIDING, y1, y2, symbol="θ_1")
+    plan.add("theta2", SLIDING, y2, y1, symbol="θ_2")
     return plan
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -10,17 +11,12 @@ import numpy.typing as npt
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit_standard
+from tmm_sheets.construction.step import Told
 from tmm_sheets.methods.gears import gear_engagement as ge
 from tmm_sheets.methods.gears import gear_teeth as gt
 from tmm_sheets.methods.gears import rack
-from tmm_sheets.methods.gears.gear_geometry import (
-    GearWheel,
-    MeshingPair,
-    PairGeometry,
-    pair_geometry,
-    shift_without_undercut,
-    warnings_of,
-)
+from tmm_sheets.methods.gears.gear_formulas import GearData, given, rack_sizes
+from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry, warnings_of
 
 POSITIONS = 13
 """Positions of the rack that are drawn along one flank."""
@@ -37,8 +33,18 @@ def standard(symbol: str, span: float, room: float) -> Scale:
 class GearPair(PairGeometry):
     """An external spur gear pair: GOST 16532 values, and plans as lazy properties.
 
-    Plans: ``gear-engagement``, ``gear-involute-1/2``, ``gear-tooth-1/2``, ``gear-sliding``, ``gear-rack``.
+    Plans: ``gear-geometry``, ``gear-engagement``, ``gear-involute-1/2``, ``gear-tooth-1/2``, ``gear-sliding``,
+    ``gear-greatest-sliding``, ``gear-rack``; those that end in ``-between`` only smooth the curves.
     """
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """Plans by name in the order of construction; those that only smooth curves, and the rack's, as far as they were drawn."""
+        there = vars(self)
+        found = [self.geometry, self.engagement, *(self.involute(w) for w in self.wheels if not self._involutes),
+                 *self._involutes.values(), *self._smooth.values(), *self._teeth, self.sliding, self.worst_sliding]
+        found += [there[name] for name in ("smooth_sliding", "rack_sizes", "generating") if name in there]
+        return {plan.name: plan for plan in found}
 
     @cached_property
     def engagement(self) -> Plan:
@@ -74,7 +80,12 @@ class GearPair(PairGeometry):
     def generating(self) -> Plan:
         """Positions of the rack that cuts the pinion, from the tip of a flank to where it leaves the involute."""
         w = self.pinion
-        return rack.generating_plan(w.rack, np.linspace(*w.rack.rolls(w.ra), POSITIONS))
+        return rack.drawn_positions(self.rack_sizes, w.step("r"), self.step("alpha"), POSITIONS - 1)
+
+    @cached_property
+    def rack_sizes(self) -> Plan:
+        """Sizes of the rack that cuts the pinion, and how far it rolls."""
+        return rack_sizes(self.geometry, self.pinion.number)
 
     @property
     def hand(self) -> int:
@@ -117,10 +128,17 @@ class GearPair(PairGeometry):
     def _involutes(self) -> dict[tuple[int, int], Plan]:
         return {}
 
-    def smooth_involute(self, wheel: GearWheel, points: int = 40, reach: float = 1.0) -> npt.NDArray[np.complex128]:
-        """The same construction with many divisions, from the base circle to ``reach`` times the tip's tangent."""
-        numbers = np.sqrt(np.linspace(0, (wheel.t_tip / wheel.t_pole * reach) ** 2, points))
-        return np.asarray(ge.smooth_involute(wheel, self.engagement, numbers))
+    @cached_property
+    def _smooth(self) -> dict[tuple[int, float], Plan]:
+        return {}
+
+    def smooth_involute(self, wheel: GearWheel, points: int = 40, reach: float = 1.0) -> Plan:
+        """The same construction with many divisions, from the base circle to ``reach`` times the tip's tangent: steps ``E``."""
+        key = wheel.number, reach
+        if key not in self._smooth:
+            numbers = np.sqrt(np.linspace(0, (wheel.t_tip / wheel.t_pole * reach) ** 2, points))
+            self._smooth[key] = ge.smooth_involute(wheel, self.engagement, numbers)
+        return self._smooth[key]
 
     def rolled(self, wheel: GearWheel, points: Any, travel: float) -> Any:
         """Points of a wheel when the contact has moved by ``travel`` m along the line of action from the pole to N2."""
@@ -133,19 +151,26 @@ class GearPair(PairGeometry):
         return ge.sliding_between(self, self.engagement, share)
 
     @cached_property
+    def smooth_sliding(self) -> Plan:
+        """Speeds and sliding from N1 to N2, close enough for a smooth curve."""
+        return self.sliding_curve(np.concatenate([np.linspace(-1, 0, 241)[:-1], np.linspace(0, 1, 241)]))
+
+    @cached_property
+    def worst_sliding(self) -> Plan:
+        """Sliding of each wheel where it is worst, at the foot of its working flank: steps ``theta1``, ``theta2``."""
+        return ge.greatest_sliding(self, self.engagement)
+
+    @property
     def greatest_sliding(self) -> tuple[float, float]:
-        """Specific sliding of each wheel where it is worst: at the foot of its working flank."""
-        one, two = self.wheels
-        ends = self.sliding_curve([one.t_low / one.t_pole - 1, 1 - two.t_low / two.t_pole])
-        return float(ends["theta1"].value[0]), float(ends["theta2"].value[1])
+        """Specific sliding of each wheel at the foot of its working flank."""
+        return float(self.worst_sliding["theta1"].value), float(self.worst_sliding["theta2"].value)
 
     def results(self) -> dict[str, Any]:
-        """The ``gear`` section of ``solve --json``; ``theta1``, ``theta2`` at the divisions, NaN where infinite."""
+        """The ``gear`` section of ``solve --json``; ``theta1``, ``theta2`` at the divisions, undefined where infinite."""
         out = super().results()
         for i in (1, 2):
-            theta = self.sliding[f"theta{i}"].value
-            out[f"theta{i}"] = [float(v) if np.isfinite(v) else float("nan") for v in theta]
-            out[f"theta{i}_greatest"] = self.greatest_sliding[i - 1]
+            out[f"theta{i}"] = Told(self.sliding[f"theta{i}"])
+            out[f"theta{i}_greatest"] = Told(self.worst_sliding[f"theta{i}"])
         return out
 
     @property
@@ -154,21 +179,33 @@ class GearPair(PairGeometry):
         return warnings_of(self)
 
 
+@dataclass(frozen=True)
+class MeshingPair:
+    """A gear pair as it is to be built: :class:`GearData` with every number settled, or the steps it comes from."""
+
+    teeth: Any
+    module: Any
+    shift: Any
+    pressure_angle: float
+    addendum: float
+    clearance: float
+    driver: int
+    sense: str
+    profile: str
+
+
 def settled(section: Any, reducer: Any = None) -> MeshingPair:
-    """Data of a ``[gear]`` section whose teeth may come from the reducer's simple stage, and its shifts from the rule."""
+    """Data of a ``[gear]`` section whose teeth may come from the reducer's simple stage; ``shift`` may be "rule"."""
     if section.teeth == "reducer":
         teeth, module, addendum, clearance = reducer.simple_pair
     else:
         teeth, module = section.teeth, section.module
-        addendum = 1.0 if section.addendum is None else section.addendum
-        clearance = 0.25 if section.clearance is None else section.clearance
-    shift = section.shift
-    if shift == "rule":
-        shift = tuple(shift_without_undercut(z, addendum, section.pressure_angle) for z in teeth)
-    return MeshingPair(teeth, module, shift, section.pressure_angle, addendum, clearance, section.driver, section.sense,
+        addendum = given(1.0, "gear.addendum", source="ГОСТ 13755-81") if section.addendum is None else section.addendum
+        clearance = given(0.25, "gear.clearance", source="ГОСТ 13755-81") if section.clearance is None else section.clearance
+    return MeshingPair(teeth, module, section.shift, section.pressure_angle, addendum, clearance, section.driver, section.sense,
                        section.profile)
 
 
-def gear_pair(data: MeshingPair) -> GearPair:
+def gear_pair(data: GearData) -> GearPair:
     """Gear pair of a project; raises :class:`tmm_sheets.errors.CannotBuild` with everything that forbids it."""
-    return pair_geometry(data, GearPair)
+    return GearPair(data)

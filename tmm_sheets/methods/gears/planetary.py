@@ -14,12 +14,14 @@ The assembly condition is necessary and sufficient for k identical blocks at equ
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi, sin, sqrt
 from typing import Any, Literal
 
 import numpy as np
+
+from tmm_sheets.construction.expression import primitive
 
 Driver = Literal["sun", "ring", "carrier"]
 
@@ -63,13 +65,31 @@ def stage_ratio(inner: Any, driver: str) -> Any:
     return 1 - inner if driver == "sun" else 1 - 1 / inner
 
 
-def stage_efficiency(inner: Any, driver: str, inner_efficiency: float) -> Any:
-    """Efficiency of a stage from that of its two pairs with the carrier stopped (the power through the meshes alone)."""
+def efficiency_from_sun(inner: Any, both: Any) -> Any:
+    """Efficiency of a stage driven by its sun; ``both`` is that of its two pairs with the carrier stopped."""
+    return (1 + both * np.abs(inner)) / (1 + np.abs(inner))
+
+
+def efficiency_from_ring(inner: Any, both: Any) -> Any:
+    """The same when the ring drives."""
+    return (1 + both * (1 / np.abs(inner))) / (1 + 1 / np.abs(inner))
+
+
+def efficiency_from_carrier_below(inner: Any, both: Any) -> Any:
+    """The same when the carrier drives, for an inner ratio below 1."""
+    return (1 - inner) / (1 - inner * both)
+
+
+def efficiency_from_carrier_above(inner: Any, both: Any) -> Any:
+    """The same for an inner ratio above 1."""
+    return both * (inner - 1) / (inner - both)
+
+
+def efficiency_formula(inner: float, driver: str) -> Callable[[Any, Any], Any]:
+    """The formula of a stage's efficiency (the power goes through the meshes alone)."""
     if driver == "carrier":
-        return np.where(inner < 1, (1 - inner) / (1 - inner * inner_efficiency),
-                        inner_efficiency * (inner - 1) / (inner - inner_efficiency))
-    size = abs(inner) if driver == "sun" else 1 / abs(inner)
-    return (1 + inner_efficiency * size) / (1 + size)
+        return efficiency_from_carrier_below if inner < 1 else efficiency_from_carrier_above
+    return efficiency_from_sun if driver == "sun" else efficiency_from_ring
 
 
 def assembles(signs: tuple[int, int], z: Sequence[Any], satellites: int) -> Any:
@@ -82,6 +102,7 @@ def neighbours_clear(signs: tuple[int, int], z: Sequence[Any], satellites: int, 
     return (z[0] + signs[0] * z[1]) * sin(pi / satellites) > np.maximum(z[1], z[2]) + 2 * addendum
 
 
+@primitive("least ring")
 def least_ring(satellite: int, addendum: float, alpha: float = pi / 9) -> int:
     """Least tooth number of a ring with which a satellite meshes without interference, no shifts; 0 when there is none.
 

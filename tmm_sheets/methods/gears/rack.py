@@ -20,6 +20,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH, OFFSET
 from tmm_sheets.construction.step import Helper, Rule, Step
@@ -160,16 +162,16 @@ def _bisect(f: Any, low: float, high: float) -> float:
 
 
 def _turned_down(u: Any, angle: Any) -> Any:
-    return u * np.exp(-1j * np.asarray(angle))
+    return u * np.exp(-1j * angle)
 
 
-def _within(point: Any, start: Any, u: Any, least: Any, most: Any) -> Any:
-    t = ar.dot(point - start, u)
-    return np.where((t >= least) & (t <= most), point, np.nan)
+@primitive("point within limits")
+def _within(point: Any, start: Any, u: Any, least: Any) -> Any:
+    return np.where(ar.dot(point - start, u) >= least * (1 + 1e-12), point, np.nan)
 
 
 ROLL = Rule(
-    "roll on the pitch circle", lambda o, r, roll: o + 1j * r * np.exp(1j * np.asarray(roll)), ("point", "length", "angle"),
+    "roll on the pitch circle", lambda o, r, roll: o + 1j * r * np.exp(1j * roll), ("point", "length", "angle"),
     "point",
     "На делительной окружности с центром {0} и радиусом {1} отложим дугу, равную перемещению рейки: точка {name}.",
     lambda a, v: (Helper("line", a[0], v),),
@@ -188,11 +190,20 @@ TOUCH = Rule(
     lambda a, v: (Helper("line", a[0], v),),
 )
 WITHIN = Rule(
-    "point within the straight flank", _within, ("point", "point", "direction", "ordinate", "ordinate"), "point",
+    "point within the straight flank", _within, ("point", "point", "direction", "ordinate"), "point",
     "Точка {0} принадлежит профилю зуба, если лежит в пределах прямолинейной части рейки: точка {name}.",
 )
 
-TRAVEL = Rule("travel of the rack", lambda s: s, ("ordinate",), "ordinate", "Переместим рейку на {value} от среднего положения.")
+TAKEN = Rule("length in millimetres", lambda mm: mm / 1e3, ("number",), "length", "Возьмём отрезок {name} = {value}.", unit="m")
+TAKEN_ORDINATE = Rule("ordinate in millimetres", lambda mm: mm / 1e3, ("number",), "ordinate", "Возьмём отрезок {name} = {value}.",
+                      unit="m")
+EVEN = Rule("even share", lambda first, last, k, parts: first + (last - first) * k / parts,
+            ("inclination", "inclination", "number", "number"), "inclination",
+            "Угол перекатывания рейки от {0} до {1} разделим на равные части (их {3}): {name} = {value}.", unit="rad")
+ROLLS = Rule("angle of rolling", lambda roll: roll, ("inclination",), "inclination", "Угол перекатывания рейки {name} = {value}.",
+             unit="rad")
+TRAVEL = Rule("travel of the rack", lambda r, roll: r * roll, ("length", "inclination"), "ordinate",
+              "Переместим рейку на {value} от среднего положения (произведение радиуса на угол перекатывания).")
 
 
 def generating_plan(rack: Rack, rolls: Any) -> Plan:
@@ -202,37 +213,67 @@ def generating_plan(rack: Rack, rolls: Any) -> Plan:
     reference line, ``F`` flank there, ``K`` foot of the perpendicular, ``E`` the same where the straight flank reaches
     (NaN beyond), ``C`` centre of the tip radius.
     """
-    rolls = np.atleast_1d(np.asarray(rolls, dtype=float))
-    plan = Plan("gear-rack", "Станочное зацепление", "m", tuple(str(k) for k in range(len(rolls))))
-    _positions(plan, rack, rolls)
-    flank = plan["flank"]
-    bottom = -rack.addendum * rack.module / cos(rack.alpha)
-    plan.add("K", TOUCH, plan["W"], plan["F"], flank)
-    plan.add("E", WITHIN, plan["K"], plan["F"], flank, bottom * (1 + 1e-12), np.inf)
+    plan = _positions("gear-rack-between", rack, rolls)
+    _touch(plan, -rack.addendum * rack.module / cos(rack.alpha))
     return plan
 
 
-def _positions(plan: Plan, rack: Rack, rolls: Any) -> None:
-    m = rack.module
+def drawn_positions(sizes: Plan, radius: Step, alpha: Step, parts: int) -> Plan:
+    """The same for ``parts`` + 1 positions, from the first to the last that touches.
+
+    ``sizes`` of the rack, ``radius`` of the pitch circle and profile angle are steps.
+    """
+    plan = Plan("gear-rack", "Станочное зацепление", "m", tuple(str(k) for k in range(parts + 1)))
+    plan.add("φ", EVEN, sizes["phi_first"], sizes["phi_last"], Given(np.arange(parts + 1.0), "gear.rack.positions"),
+             Given(parts, "gear.rack.parts", over="none", choice="столько положений рейки показано на листе"))
+    plan.add("r", TAKEN, radius)
+    for name, what in (("xm", "смещение рейки"), ("a", "половину толщины зуба рейки"),
+                       ("u", "расстояние центра закругления рейки от оси её зуба"),
+                       ("y", "расстояние центра закругления от делительной прямой"),
+                       ("h", "длину прямолинейной части боковой стороны ниже делительной прямой")):
+        plan.add(name, TAKEN_ORDINATE, sizes[name], say=f"Возьмём {what} {{name}} = {{value}}.")
+    _place(plan, alpha)
+    _touch(plan, plan["h"])
+    return plan
+
+
+def _positions(name: str, rack: Rack, rolls: Any) -> Plan:
+    """Positions of a rack that is known by numbers, for curves."""
+    rolls = np.atleast_1d(np.asarray(rolls, dtype=float))
+    plan = Plan(name, "Станочное зацепление", "m", tuple(str(k) for k in range(len(rolls))))
+    plan.add("φ", ROLLS, rolls)
+    end = rack.tip_centre
+    for size, value in (("r", rack.r), ("xm", rack.shift * rack.module), ("a", rack.half_width), ("u", end.real), ("y", end.imag)):
+        plan.add(size, GIVEN_LENGTH, value)
+    _place(plan, rack.alpha)
+    return plan
+
+
+def _place(plan: Plan, alpha: Any) -> None:
+    """Points and directions of the rack in its positions."""
     centre = plan.add("O", GIVEN, 0j)
-    radius = plan.add("r", GIVEN_LENGTH, rack.r)
-    contact = plan.add("W", ROLL, centre, radius, rolls)
+    contact = plan.add("W", ROLL, centre, plan["r"], plan["φ"])
     axis = plan.add("OW", NORMAL, centre, contact)
     line = plan.add("WT", ROLLING_LINE, axis)
-    travel = plan.add("s", TRAVEL, rack.r * rolls)
+    travel = plan.add("s", TRAVEL, plan["r"], plan["φ"])
     moved = plan.add("T", OFFSET, contact, line, travel)
-    middle = plan.add("M", REFERENCE, moved, axis, rack.shift * m)
-    plan.add("F", OFFSET, middle, line, rack.half_width)
-    plan.add("flank", FLANK, axis, rack.alpha)
-    end = plan.add("D", OFFSET, middle, line, rack.tip_centre.real)
-    plan.add("C", OFFSET, end, axis, rack.tip_centre.imag)
+    middle = plan.add("M", REFERENCE, moved, axis, plan["xm"])
+    plan.add("F", OFFSET, middle, line, plan["a"])
+    plan.add("flank", FLANK, axis, alpha)
+    end = plan.add("D", OFFSET, middle, line, plan["u"])
+    plan.add("C", OFFSET, end, axis, plan["y"])
+
+
+def _touch(plan: Plan, bottom: Any) -> None:
+    """Where flank and tooth touch."""
+    touch = plan.add("K", TOUCH, plan["W"], plan["F"], plan["flank"])
+    plan.add("E", WITHIN, touch, plan["F"], plan["flank"], bottom)
 
 
 def fillet_steps(rack: Rack, normals: Any) -> Step:
     """Points of the fillet that the tip radius cuts with the points under ``normals`` below the rolling line."""
     normals = np.atleast_1d(np.asarray(normals, dtype=float))
-    plan = Plan("gear-rack-fillet", "Переходная кривая", "m", tuple(str(k) for k in range(len(normals))))
-    _positions(plan, rack, rack.roll_of_tip(normals))
+    plan = _positions("gear-rack-fillet-between", rack, rack.roll_of_tip(normals))
     normal = plan.add("WC", FLANK, plan["WT"], normals, say="Через {0} и центр закругления рейки проведём прямую.")
     return plan.add("G", ALONG, plan["C"], normal, rack.tip_radius)
 

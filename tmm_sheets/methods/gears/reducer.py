@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from math import gcd, pi, sin
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.construction.given import GivenNumber
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Step, Told
 from tmm_sheets.methods.gears import reducer_speeds
-from tmm_sheets.methods.gears.planetary import SCHEMES, Driver, inner_ratio, least_ring, stage_efficiency, stage_ratio
+from tmm_sheets.methods.gears.planetary import SCHEMES, Driver
+from tmm_sheets.methods.gears.reducer_formulas import carrier_of, conditions_plan, internal_pairs, kinematics_plan, ratio_plan
 from tmm_sheets.methods.gears.reducer_stages import ReducerWheel, Stage
 from tmm_sheets.methods.gears.tooth_search import (
+    TIERS,
     ToothSet,
-    asked_ratio,
     named_teeth,
     search,
     simple_numbers,
@@ -25,63 +27,85 @@ if TYPE_CHECKING:
     from tmm_sheets.task.schema import ReducerTable
 
 
+def criterion_of(data: ReducerTable, sets: Sequence[ToothSet]) -> str:
+    """By what the tooth numbers were chosen, and the sets that came next (Russian)."""
+    tiers = ", ".join(number(100 * t) for t in (*TIERS, data.tolerance))
+    told = "; ".join(", ".join(f"{name} = {z}" for name, z in named_teeth(data, t).items()) for t in sets)
+    return ("среди наборов, соблюдающих соосность, сборку и соседство, — наименьшая высота редуктора в первой из ступеней "
+            f"отклонения передаточного отношения {tiers} %, в которой наборы есть; лучшие наборы по порядку: {told}")
+
+
 class Reducer:
-    """A planetary reducer with its simple stage: the chosen tooth numbers, the runners-up, and what follows from them."""
+    """A planetary reducer with its simple stage: the chosen tooth numbers, the runners-up, and what follows from them.
+
+    Plans: ``reducer-ratio`` and ``reducer-set-2`` .. of the runners-up, ``reducer-kinematics``, ``reducer-conditions``,
+    ``reducer-velocities``, ``reducer-speeds``.
+    """
 
     def __init__(self, data: ReducerTable, sets: Sequence[ToothSet]) -> None:
         self.data = data
         self.scheme = SCHEMES[data.scheme]
         self.driver: Driver = data.driver or self.scheme.drivers[0]
-        self.asked = asked_ratio(data)
         self.chosen, *rest = sets
         self.runners_up = tuple(rest)
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """Plans by name in the order of construction; that of the speeds as far as it was drawn."""
+        found = (*self.sets, self.kinematics, self.conditions, self.velocities, *self._speed_plans.values())
+        return {plan.name: plan for plan in found}
+
+    @cached_property
+    def sets(self) -> tuple[Plan, ...]:
+        """Tooth numbers, ratio and efficiency of the chosen set and of the runners-up."""
+        criterion = criterion_of(self.data, (self.chosen, *self.runners_up))
+        chosen = ratio_plan(self.data, self.chosen, 0, criterion)
+        return chosen, *(ratio_plan(self.data, t, k, criterion, chosen) for k, t in enumerate(self.runners_up, 1))
+
+    @cached_property
+    def kinematics(self) -> Plan:
+        """Diameters and speeds by the formulas."""
+        return kinematics_plan(self.data, self.sets[0])
+
+    @cached_property
+    def conditions(self) -> Plan:
+        """Coaxiality, assembly, neighbourhood."""
+        return conditions_plan(self.data, self.sets[0])
+
+    def told(self, name: str) -> float:
+        """A number of the chosen set: its ratios ``u`` .., efficiencies ``eta`` .."""
+        return float(self.sets[0][name].value)
 
     @cached_property
     def stages(self) -> tuple[Stage, ...]:
         """Planetary stages in the order of the power."""
-        speed = self.data.input_speed
-        if self.data.simple == "before":
-            speed = self.simple[1].speed
-        out = []
-        for k in range(self.data.stages):
-            out.append(self._stage(k, speed))
-            speed = out[-1].output_speed
-        return tuple(out)
+        return tuple(self._stage(k) for k in range(self.data.stages))
 
-    def _stage(self, k: int, speed: float) -> Stage:
-        z, s = self.chosen.stage, self.scheme.signs
-        inner = inner_ratio(s, z)
-        carrier = speed if self.driver == "carrier" else speed / stage_ratio(inner, self.driver)
-        one = {"sun": speed, "ring": 0.0, "carrier": carrier * (1 - inner)}[self.driver]
-        four = speed if self.driver == "ring" else 0.0
-        block = carrier - s[0] * (one - carrier) * z[0] / z[1]
+    def _stage(self, k: int) -> Stage:
         numbers = stage_numbers(self.data, k)
-        speeds = (one, block, block, four)
-        wheels = [ReducerWheel(n, t, t * self.data.module, v) for n, t, v in zip(numbers, z, speeds, strict=True)]
+        wheels = [self._wheel(n, z) for n, z in zip(numbers, self.chosen.stage, strict=True)]
         if self.scheme.single:
             wheels[2] = wheels[1]
-        name = f"H{k + 1}" if self.data.stages > 1 else "H"
-        return Stage(s, self.driver, (wheels[0], wheels[1], wheels[2], wheels[3]), name, carrier)
+        name = carrier_of(self.data, k)
+        return Stage(self.scheme.signs, self.driver, (wheels[0], wheels[1], wheels[2], wheels[3]), name, self.kinematics["a_H"],
+                     self.kinematics[f"n{name}"])
+
+    def _wheel(self, number: str, teeth: int) -> ReducerWheel:
+        return ReducerWheel(number, teeth, self.kinematics[f"d{number}"], self.kinematics[f"n{number}"])
 
     @cached_property
     def simple(self) -> tuple[ReducerWheel, ReducerWheel]:
         """Pinion and wheel of the simple stage."""
-        pinion, wheel = self.chosen.pinion, self.chosen.wheel
-        m = self.data.simple_module
-        speed = self.data.input_speed if self.data.simple == "before" else self.stages[-1].output_speed
         first, second = simple_numbers(self.data)
-        return ReducerWheel(first, pinion, pinion * m, speed), ReducerWheel(second, wheel, wheel * m, -speed * pinion / wheel)
+        return self._wheel(first, self.chosen.pinion), self._wheel(second, self.chosen.wheel)
 
     @property
-    def simple_pair(self) -> tuple[tuple[int, int], float, float, float]:
+    def simple_pair(self) -> tuple[tuple[Step, Step], GivenNumber, GivenNumber, GivenNumber]:
         """Tooth numbers, module, addendum and clearance of the simple stage."""
-        d = self.data
-        return (self.chosen.pinion, self.chosen.wheel), d.simple_module, d.addendum, d.clearance
-
-    @property
-    def output_speed(self) -> float:
-        """Speed of the output, rad/s, negative when it turns against the input."""
-        return self.stages[-1].output_speed if self.data.simple == "before" else self.simple[1].speed
+        d, names = self.data, simple_numbers(self.data)
+        return ((self.sets[0][f"z{names[0]}"], self.sets[0][f"z{names[1]}"]),
+                GivenNumber(d.simple_module, "reducer.simple_module", "m", "m"),
+                GivenNumber(d.addendum, "reducer.addendum", "h_a^{*}"), GivenNumber(d.clearance, "reducer.clearance", "c^{*}"))
 
     @cached_property
     def wheels(self) -> tuple[ReducerWheel, ...]:
@@ -90,52 +114,14 @@ class Reducer:
         return tuple(found[str(n)] for n in range(1, len(found) + 1))
 
     @property
-    def stage_ratio(self) -> float:
-        """Ratio of one planetary stage without sign."""
-        return abs(float(stage_ratio(inner_ratio(self.scheme.signs, self.chosen.stage), self.driver)))
-
-    @property
-    def planetary_ratio(self) -> float:
-        """Ratio of all planetary stages without sign."""
-        return self.stage_ratio**self.data.stages
-
-    @property
-    def simple_ratio(self) -> float:
-        """Ratio of the simple stage without sign."""
-        return self.chosen.wheel / self.chosen.pinion
-
-    @property
-    def stage_efficiency(self) -> float:
-        """Efficiency of one planetary stage."""
-        inner = inner_ratio(self.scheme.signs, self.chosen.stage)
-        return float(stage_efficiency(inner, self.driver, self.data.pair_efficiency**2))
-
-    @property
-    def coaxiality(self) -> tuple[int, int]:
-        """Both sides of the condition, sums or differences of teeth."""
-        z, s = self.chosen.stage, self.scheme.signs
-        return z[0] + s[0] * z[1], z[3] + s[1] * z[2]
-
-    @property
-    def assembly(self) -> float:
-        """The quotient that must be a whole number."""
-        z, s = self.chosen.stage, self.scheme.signs
-        return (z[0] * z[2] - s[0] * s[1] * z[1] * z[3]) / (self.data.satellites * gcd(z[1], z[2]))
-
-    @property
-    def neighbourhood(self) -> tuple[float, float]:
-        """Both sides of the condition in modules: the first must be the larger."""
-        z = self.chosen.stage
-        return self.coaxiality[0] * sin(pi / self.data.satellites), max(z[1], z[2]) + 2 * self.data.addendum
-
-    def teeth_of(self, teeth: ToothSet) -> dict[str, int]:
-        """Tooth numbers of a set by name, "z1" ..; equal stages are named once."""
-        return named_teeth(self.data, teeth)
+    def teeth_names(self) -> tuple[str, ...]:
+        """Names of the tooth numbers, "z1" ..; equal stages are named once."""
+        return tuple(named_teeth(self.data, self.chosen))
 
     @cached_property
     def velocities(self) -> Plan:
         """Picture of velocities."""
-        return reducer_speeds.picture(self.simple, self.stages, self.data.simple == "before")
+        return reducer_speeds.picture(self.simple, self.stages, self.kinematics["a_simple"], self.data.simple == "before")
 
     def speeds(self, distance: float) -> Plan:
         """Plan of the speeds of rotation with its pole ``distance`` m over the line on which they are read."""
@@ -148,22 +134,20 @@ class Reducer:
         return {}
 
     @property
-    def links(self) -> dict[str, float]:
-        """Every turning link's speed, rad/s: wheels by number, carriers by name; a satellite block by its first wheel."""
-        out = {w.number: w.speed for w in self.wheels}
-        return out | {stage.carrier: stage.carrier_speed for stage in self.stages}
+    def links(self) -> dict[str, Step]:
+        """Speed of every turning link, 1/min: wheels by number, carriers by name."""
+        return {w.number: w.n for w in self.wheels} | {stage.carrier: stage.n_H for stage in self.stages}
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Remarks for the sheet (Russian)."""
         out = []
-        if self.simple_ratio < self.scheme.least_simple:
+        if self.told("u_simple") < self.scheme.least_simple:
             out.append(f"передаточное отношение простой ступени меньше {number(self.scheme.least_simple)}")
-        z, s = self.chosen.stage, self.scheme.signs
-        numbers = stage_numbers(self.data, 0)
-        for satellite, ring, sign in ((1, 0, s[0]), (2, 3, s[1])):
+        z, numbers = self.chosen.stage, stage_numbers(self.data, 0)
+        for satellite, ring, sign in internal_pairs(self.scheme.signs):
             if sign < 0:
-                least = least_ring(z[satellite], self.data.addendum)
+                least = int(self.conditions[f"least_z{numbers[ring]}"].value)
                 if not least or z[ring] < least:
                     needed = f"нужно z_{numbers[ring]} ≥ {least}" if least else "без смещения нет ни одного венца"
                     out.append(f"интерференция в паре {numbers[satellite]}–{numbers[ring]}: {needed}")
@@ -174,25 +158,24 @@ class Reducer:
 
         ``conditions``: difference of the sides of coaxiality, quotient of assembly, margin of neighbourhood in modules.
         """
-        c, n = self.coaxiality, self.neighbourhood
+        chosen, conditions = self.sets[0], self.conditions
+        first = {n: of for k in range(self.data.stages)
+                 for n, of in zip(stage_numbers(self.data, k), stage_numbers(self.data, 0), strict=True)}
         return {
-            "ratio_asked": self.asked, "ratio": self.chosen.ratio, "deviation": self.chosen.deviation,
-            "ratio_planetary": self.planetary_ratio, "ratio_simple": self.simple_ratio,
-            "teeth": {f"z{w.number}": w.teeth for w in self.wheels}, "q": self.data.satellites,
-            "efficiency": self.chosen.efficiency, "efficiency_planetary": self.stage_efficiency**self.data.stages,
-            "diameters_w": {f"d{w.number}": w.diameter * 1e3 for w in self.wheels},
-            "speeds_rpm": {f"n{link}": rpm(speed) for link, speed in self.links.items()},
-            "conditions": {"coaxiality": c[0] - c[1], "assembly": self.assembly, "neighbourhood": n[0] - n[1]},
+            "ratio_asked": Told(chosen["u_asked"]), "ratio": Told(chosen["u"]), "deviation": Told(chosen["u_deviation"]),
+            "ratio_planetary": Told(chosen["u_planetary"]), "ratio_simple": Told(chosen["u_simple"]),
+            "teeth": {f"z{w.number}": Told(chosen[f"z{first.get(w.number, w.number)}"]) for w in self.wheels},
+            "q": Told(conditions["q"]),
+            "efficiency": Told(chosen["eta"]), "efficiency_planetary": Told(chosen["eta_planetary"]),
+            "diameters_w": {f"d{w.number}": Told(w.d) for w in self.wheels},
+            "speeds_rpm": {f"n{link}": Told(n) for link, n in self.links.items()},
+            "conditions": {name: Told(conditions[name]) for name in ("coaxiality", "assembly", "neighbourhood")},
             "runners_up": [
-                {"teeth": self.teeth_of(t), "ratio": t.ratio, "deviation": t.deviation, "efficiency": t.efficiency}
-                for t in self.runners_up
+                {"teeth": {name: Told(plan[name]) for name in self.teeth_names}, "ratio": Told(plan["u"]),
+                 "deviation": Told(plan["u_deviation"]), "efficiency": Told(plan["eta"])}
+                for plan in self.sets[1:]
             ],
         }
-
-
-def rpm(speed: float) -> float:
-    """Revolutions per minute of rad/s."""
-    return speed * 30 / pi
 
 
 def reducer(data: ReducerTable) -> Reducer:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN, RAY
 from tmm_sheets.construction.step import Helper, Rule, Step
@@ -32,6 +33,14 @@ def _read(at: Any, origin: Any, pole: Any) -> Any:
     return np.real(at - origin) / np.imag(origin - pole) * 30 / pi
 
 
+AT_RADIUS = Rule("point on a pitch circle", lambda side, d: side * 1j * (d / 2e3), ("number", "number"), "point",
+                 "На высоте начального радиуса {1}/2 мм от главной оси отметим точку {name}.", unit="m")
+AT_DISTANCE = Rule("point at a distance from the axis", lambda side, a: side * 1j * (a / 1e3), ("number", "number"), "point",
+                   "На расстоянии {1} мм от главной оси отметим точку {name}.", unit="m")
+VELOCITY_OF = Rule("velocity of a turning point", lambda n, p, o: n * pi / 30 * (np.imag(p) - np.imag(o)),
+                   ("number", "point", "point"), "vector",
+                   "Скорость точки {1} звена, вращающегося вокруг {2} с частотой {0} об/мин, V = πn/30·{1}{2}: {name} = {value}.",
+                   source="003, 4")
 LAY_VELOCITY = Rule(
     "lay off a velocity", lambda p, v: p + v, ("point", "vector"), "point",
     "От точки {0} отложим её скорость {1}: конец {name}.", lambda a, v: (Helper("line", a[0], v),),
@@ -48,7 +57,7 @@ PARALLEL = Rule(
     lambda a, v: (Helper("line", a[0], v),),
 )
 READ = Rule("measure a speed of rotation", _read, ("point", "point", "point"), "number",
-            "Отрезок {1}{0} даёт частоту вращения {name} = {value} об/мин.")
+            "Отрезок {1}{0} даёт частоту вращения {name} = {value} об/мин.", unit="1/min", source="003, 4")
 
 
 class _SpeedPicture:
@@ -59,9 +68,9 @@ class _SpeedPicture:
         self.axis = self.plan.add("O", GIVEN, 0j)
         self.letters = iter(LETTERS)
 
-    def point(self, height: float) -> Step:
-        """A point of the reducer at this height."""
-        return self.plan.add(next(self.letters), GIVEN, 1j * height)
+    def point(self, at: Rule, size: Step, side: int = 1) -> Step:
+        """A point of the reducer over (``side`` -1: under) the main axis, at half a diameter or at a distance."""
+        return self.plan.add(next(self.letters), at, side, size)
 
     def line(self, link: str, a: Step, b: Step) -> Step:
         """Line of a link's velocities through two of them."""
@@ -71,19 +80,19 @@ class _SpeedPicture:
         """Velocity of a point of a link whose line is there."""
         return self.plan.add(point.name.lower(), VELOCITY, point, axis, line)
 
-    def laid(self, point: Step, speed: float) -> Step:
-        """The velocity everything begins with."""
-        return self.plan.add(point.name.lower(), LAY_VELOCITY, point, speed)
+    def laid(self, point: Step, n: Step, centre: Step) -> Step:
+        """The velocity everything begins with: of a point of a link that turns about ``centre``."""
+        velocity = self.plan.add(f"V{point.name}", VELOCITY_OF, n, point, centre, symbol=f"V_{point.name}")
+        return self.plan.add(point.name.lower(), LAY_VELOCITY, point, velocity)
 
-    def simple(self, pair: tuple[ReducerWheel, ReducerWheel], before: bool, line: Step | None) -> Step:
+    def simple(self, pair: tuple[ReducerWheel, ReducerWheel], distance: Step, before: bool, line: Step | None) -> Step:
         """The simple stage over the main axis, where it begins the train, or under it; gives the driven wheel's line."""
         one, two = pair
-        r1, r2 = one.diameter / 2, two.diameter / 2
         up = 1 if before else -1
-        other = self.plan.add(f"O{one.number if before else two.number}", GIVEN, up * 1j * (r1 + r2))
-        pitch = self.point(up * (r2 if before else r1))
+        other = self.plan.add(f"O{one.number if before else two.number}", AT_DISTANCE, up, distance)
+        pitch = self.point(AT_RADIUS, two.d if before else one.d, up)
         if before:
-            end = self.laid(pitch, -one.speed * r1)
+            end = self.laid(pitch, one.n, other)
             self.line(one.number, other, end)
             return self.line(two.number, self.axis, end)
         assert line is not None
@@ -94,32 +103,34 @@ class _SpeedPicture:
         """One planetary stage; ``line`` is that of the driving link, None when the train begins here."""
         one, two, three, four = stage.wheels
         block = two.number if stage.single else f"{two.number}-{three.number}"
-        r1, r4, rh = one.diameter / 2, four.diameter / 2, stage.axis
+        r1, r4, rh = (AT_RADIUS, one.d), (AT_RADIUS, four.d), (AT_DISTANCE, stage.a_H)
         driving = {"sun": one.number, "ring": four.number, "carrier": stage.carrier}[stage.driver]
-        entry = self.point({"sun": r1, "ring": r4, "carrier": rh}[stage.driver])
+        entry = self.point(*{"sun": r1, "ring": r4, "carrier": rh}[stage.driver])
         if line is None:
-            end = self.laid(entry, stage.input_speed * entry.value.imag)
+            end = self.laid(entry, stage.entry, self.axis)
             line = self.line(driving, self.axis, end)
         else:
             end = self.velocity(entry, self.axis, line)
-        centre = self.point(r1 if stage.driver == "ring" else r4)
+        centre = self.point(*(r1 if stage.driver == "ring" else r4))
         satellite = self.line(block, centre, end)
-        exit_ = self.point(r1 if stage.driver == "carrier" else rh)
+        exit_ = self.point(*(r1 if stage.driver == "carrier" else rh))
         velocity = self.velocity(exit_, centre, satellite)
         return self.line(one.number if stage.driver == "carrier" else stage.carrier, self.axis, velocity)
 
 
-def picture(simple: tuple[ReducerWheel, ReducerWheel], stages: Sequence[Stage], before: bool) -> Plan:
+def picture(simple: tuple[ReducerWheel, ReducerWheel], stages: Sequence[Stage], distance: Step, before: bool) -> Plan:
     """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link.
+
+    ``distance`` is the step of the simple stage's centre distance (mm).
 
     A link that is one with the link before it (a carrier with the next sun) has one line, under its first name.
     """
     drawn = _SpeedPicture()
-    line = drawn.simple(simple, before, None) if before else None
+    line = drawn.simple(simple, distance, before, None) if before else None
     for stage in stages:
         line = drawn.stage(stage, line)
     if not before:
-        drawn.simple(simple, before, line)
+        drawn.simple(simple, distance, before, line)
     return drawn.plan
 
 
@@ -134,7 +145,8 @@ def speeds(velocities: Plan, distance: float) -> Plan:
     For each line of the picture the end of its ray, named like the link, and the speed ``n<link>`` in 1/min.
     """
     plan = Plan("reducer-speeds", "План частот вращения", "m/s")
-    pole = plan.add("P", GIVEN, -1j * distance, say="Отметим полюс {name}.")
+    given = Given(-1j * distance, "reducer.speeds.pole", "H", "m", over="none", choice="при нём масштаб μ_n удобен для счёта")
+    pole = plan.add("P", GIVEN, given, say="Отметим полюс {name}.")
     origin = plan.add("0", GIVEN, 0j, say="Над полюсом отметим начало отсчёта {name} на оси частот вращения.")
     for link in links_of(velocities):
         end = plan.add(link, PARALLEL, pole, velocities[link], origin)

@@ -3,29 +3,45 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi
 
+from tmm_sheets.construction.step import Step
 from tmm_sheets.methods.gears.planetary import Driver
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ReducerWheel:
-    """A wheel of the reducer: ``name`` "z3" .. with its number, teeth, diameter of the pitch circle (m), speed (rad/s)."""
+    """A wheel of the reducer: its number, teeth, and the steps of its pitch circle's diameter (mm) and speed (1/min)."""
 
     number: str
     teeth: int
-    diameter: float
-    speed: float
+    d: Step
+    n: Step
+
+    @property
+    def diameter(self) -> float:
+        """Of the pitch circle, m."""
+        return float(self.d.value) / 1e3
+
+    @property
+    def speed(self) -> float:
+        """Positive as the input's, rad/s."""
+        return float(self.n.value) * pi / 30
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Stage:
-    """One planetary stage: its wheels in the order 1, 2, 3, 4 of the formulas (a single row: 1, 2, 2, 4) and its carrier."""
+    """One planetary stage: its wheels in the order 1, 2, 3, 4 of the formulas (a single row: 1, 2, 2, 4) and its carrier.
+
+    ``a_H`` is the step of the distance of the satellites' axes from the main one (mm), ``n_H`` that of the carrier's speed (1/min).
+    """
 
     signs: tuple[int, int]
     driver: Driver
     wheels: tuple[ReducerWheel, ReducerWheel, ReducerWheel, ReducerWheel]
     carrier: str
-    carrier_speed: float
+    a_H: Step
+    n_H: Step
 
     @property
     def single(self) -> bool:
@@ -35,7 +51,7 @@ class Stage:
     @property
     def axis(self) -> float:
         """Distance of the satellites' axes from the main one, m."""
-        return (self.wheels[0].diameter + self.signs[0] * self.wheels[1].diameter) / 2
+        return float(self.a_H.value) / 1e3
 
     @property
     def fixed(self) -> ReducerWheel:
@@ -43,11 +59,6 @@ class Stage:
         return self.wheels[0] if self.driver == "ring" else self.wheels[3]
 
     @property
-    def input_speed(self) -> float:
-        """Speed of the driving link, rad/s."""
-        return {"sun": self.wheels[0].speed, "ring": self.wheels[3].speed, "carrier": self.carrier_speed}[self.driver]
-
-    @property
-    def output_speed(self) -> float:
-        """Speed of the driven link, rad/s."""
-        return self.wheels[0].speed if self.driver == "carrier" else self.carrier_speed
+    def entry(self) -> Step:
+        """Speed of the driving link, 1/min."""
+        return {"sun": self.wheels[0].n, "ring": self.wheels[3].n, "carrier": self.n_H}[self.driver]

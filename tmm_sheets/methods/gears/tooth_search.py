@@ -21,7 +21,6 @@ from tmm_sheets.methods.gears.planetary import (
     inner_ratio,
     least_ring,
     neighbours_clear,
-    stage_efficiency,
     stage_ratio,
 )
 
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from tmm_sheets.task.schema import ReducerTable
 
 Ints = npt.NDArray[np.int64]
-Given = tuple[int | None, int | None, int | None, int | None]
+Known = tuple[int | None, int | None, int | None, int | None]
 
 TIERS = (0.01, 0.02)
 """Deviations of the ratio that are preferred to any larger one, before the permitted one itself."""
@@ -56,7 +55,6 @@ class ToothSet:
     ratio: float
     deviation: float
     height: float
-    efficiency: float
 
 
 @dataclass(frozen=True)
@@ -67,7 +65,7 @@ class _Task:
     driver: Driver
     stages: int
     ratio: float
-    given: Given
+    given: Known
     pinion: int
     wheel: int | None
     span: tuple[float, float]
@@ -178,10 +176,8 @@ class _Task:
     def set_of(self, z: Sequence[Ints], i: int, j: int, ratio: float, height: float) -> ToothSet:
         """One set of the search as plain numbers."""
         one, two, three, four = (int(v[i]) for v in z)
-        pair = self.data.pair_efficiency
-        stage = stage_efficiency(inner_ratio(self.scheme.signs, (one, two, three, four)), self.driver, pair**2)
         return ToothSet((one, two, three, four), self.pinion, int(self.wheels()[j]), float(ratio), float(ratio) / self.ratio - 1,
-                        float(height), float(stage) ** self.stages * pair)
+                        float(height))
 
 
 def _sets(task: _Task) -> list[ToothSet]:
@@ -256,7 +252,7 @@ def search(data: ReducerTable) -> list[ToothSet]:
         f"gives {nearest.ratio:.4g} ({nearest.deviation * 100:+.1f} %)", hint)
 
 
-def _given(data: ReducerTable) -> tuple[Given, tuple[int, int | None]]:
+def _given(data: ReducerTable) -> tuple[Known, tuple[int, int | None]]:
     """Given tooth numbers of wheels 1 to 4, of the pinion and of its wheel."""
     names = [f"z{n}" for n in stage_numbers(data, 0)]
     pair = [f"z{n}" for n in simple_numbers(data)]
