@@ -153,7 +153,7 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     turning = plan.add("ω", SPEED, speed)
     pieces = [(p, a + 1e-12, b - 1e-12) for p in (law.rise, law.fall) for a, b in pairwise((0.0, *p.law.jumps, 1.0))]
     _, x, p = min(((*_least(lambda x, p=p: p.dds(x), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
-    share = found_share(plan, exact.phases, p, x, "Q", f"наименьшее {law.symbol}''")
+    share = found_share(plan, exact.phases, p, x, "Q", f"{law.symbol}'' наименьшее")
     (dds,) = in_phase(plan, law, exact.phases, p, share, "Q", (2,))
     largest = plan.add("Q_max", LARGEST, dds, moved, turning, way)
     most = plan.add("F_max", PRODUCT, factor, largest)
@@ -168,7 +168,7 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
         return np.asarray(np.divide(force, inertia, out=np.full_like(force, np.inf), where=inertia > 1e-12 * biggest))
 
     _, x, p = min(((*_least(lambda x, p=p: ratio(x, p), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
-    share = found_share(plan, exact.phases, p, x, "k", "наименьшее F/Q при " + f"{law.symbol}'' < 0")
+    share = found_share(plan, exact.phases, p, x, "k", f"отношение F/Q при {law.symbol}'' < 0 наименьшее")
     s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
     plan.add("k_min", RATIO, s, dds, law.stroke, largest, factor, preload, moved, turning, way)
     return Spring(exact, plan, factor, preload, speed)

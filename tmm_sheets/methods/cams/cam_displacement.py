@@ -51,7 +51,7 @@ BACK = Rule("travel of the fall", lambda x: -x, ("ordinate",), "ordinate",
 BACK_ANGLE = Rule("swing of the fall", lambda x: -x, ("inclination",), "inclination",
                   "На возвращении угол коромысла убывает на весь угол качания: {name} = {value}.", unit="rad")
 NEXT = Rule("end of a phase", lambda start, angle: start + angle, ("angle", "angle"), "angle",
-            "Фаза кончается при угле {0} + {1} = {name} = {value}.", unit="rad")
+            "Фаза кончается при угле {name} = {0} + {1} = {value}.", unit="rad")
 IDLE = Rule("lower dwell", lambda end: 2 * np.pi - end, ("angle",), "angle",
             "На ближнее стояние остаётся {name} = 360° − {0} = {value}.", unit="rad")
 
@@ -63,7 +63,7 @@ SHARE = Rule("share of a phase", share, ("angle", "angle", "angle"), "number",
 NUMBERED = Rule("share at numbered positions", lambda x: x, ("number",), "number",
                 "Каждая фаза разделена на равные части; пройденная доля {name} = {value}.", unit="1")
 AT_SHARE = Rule("cam angle of a share", lambda start, angle, x: start + angle * x, ("angle", "angle", "number"), "angle",
-                "Этой доле соответствует угол поворота кулачка {0} + {1}·{2} = {name} = {value}.", unit="rad")
+                "Этой доле соответствует угол поворота кулачка {name} = {0} + {1}·{2} = {value}.", unit="rad")
 
 
 @primitive("row")
@@ -86,9 +86,10 @@ def _of_phase(symbol: str) -> tuple[Rule, Rule, Rule]:
         Rule(f"displacement in a phase{angular}", displaced, (s, travel, "number"), s,
              "Перемещение на этой фазе {name} = {0} + {1}·{2} = {value}.", unit="rad" if angular else "", source=SOURCE),
         Rule(f"first derivative in a phase{angular}", first_derivative, (travel, "angle", "number"), ds,
-             "Аналог скорости на этой фазе {name} = {0}/{1}·{2} = {value}.", unit="1" if angular else "", source=SOURCE),
+             "Аналог скорости {name} = h/φ·f', где h – ход этой фазы со знаком, φ – её угол в радианах: {value}.",
+             unit="1" if angular else "", source=SOURCE),
         Rule(f"second derivative in a phase{angular}", second_derivative, (travel, "angle", "number"), dds,
-             "Аналог ускорения на этой фазе {name} = {0}/{1}²·{2} = {value}.", unit="1" if angular else "", source=SOURCE),
+             "Аналог ускорения {name} = h/φ²·f'' = {value}.", unit="1" if angular else "", source=SOURCE),
     )
 
 
@@ -107,7 +108,7 @@ IN_TURN = {symbol: _of_turn(symbol) for symbol in KINDS}
 
 @cache
 def _law_rule(law: Law, order: int) -> Rule:
-    whose = ("относительное перемещение", "его производная", "вторая производная")[order]
+    whose = ("относительное перемещение", "его производная по доле фазы", "вторая производная по доле фазы")[order]
     return Rule(f"{law.name} law, {('displacement', 'first derivative', 'second derivative')[order]}", law.forms[order],
                 ("number",), "number", f"Закон {law.title}: {whose} {{name}} = {{value}}.", unit="1", source=SOURCE)
 
@@ -135,6 +136,9 @@ def phases(law: PositionFunction) -> Phases:
                          "φ_бс": (end, idle, 0.0, 0.0)}, {"φ_у": rise, "φ_дс": down, "φ_с": end})
 
 
+_WHERE = {"φ_у": "на удалении", "φ_с": "на возвращении"}
+
+
 def names(symbol: str) -> tuple[str, str, str]:
     """Symbols of the displacement and its derivatives."""
     return symbol, f"{symbol}'", f"{symbol}''"
@@ -150,7 +154,9 @@ def in_phase(plan: Plan, law: PositionFunction, at: Phases, phase: Phase, x: Any
         f = plan.add(f"{names('f')[order]}_{tag}", _law_rule(phase.law, order), x, *phase.law.nodes,
                      symbol=f"{names('f')[order]}_{{{tag}}}")
         args = (first, travel, f) if order == 0 else (travel, angle, f)
-        found.append(plan.add(f"{symbol}_{tag}", IN_PHASE[law.symbol][order], *args, symbol=f"{symbol}_{{{tag}}}"))
+        rule = IN_PHASE[law.symbol][order]
+        say = rule.wording.replace("на этой фазе", _WHERE.get(phase.symbol, "на этой фазе"))
+        found.append(plan.add(f"{symbol}_{tag}", rule, *args, say=say, symbol=f"{symbol}_{{{tag}}}"))
     return found
 
 
@@ -224,12 +230,12 @@ class ExactMotion:
     @cached_property
     def before(self) -> Displacement:
         """Limits from below at the numbered positions."""
-        return self._beside(-1, "cam-law-before", "слева")
+        return self._beside(-1, "cam-law-left-between", "слева")
 
     @cached_property
     def after(self) -> Displacement:
         """Limits from above at the numbered positions."""
-        return self._beside(1, "cam-law-after", "справа")
+        return self._beside(1, "cam-law-right-between", "справа")
 
     def _beside(self, side: int, name: str, where: str) -> Displacement:
         phi = Given(self.law.positions + side * INSIDE, "cam.parts", choice=f"нумерованные положения, предел {where}", unit="rad")

@@ -229,9 +229,9 @@ class FollowerMotion:
         """Displacement and derivatives at the numbered positions as they are measured on the diagrams, SI."""
         plan = Plan("cam-ordinates", "Ординаты графиков движения", "m", self.law.labels)
         found = []
-        for order, (steps, mu) in enumerate(((self.s, "μ_s"), (self.ds, "μ_ds"), (self.dds, "μ_dds"))):
+        for order, steps in enumerate((self.s, self.ds, self.dds)):
             name = names(self.law.symbol)[order]
-            found.append(plan.add(name, MEASURED[self.law.symbol][order], self.numbers[mu], *steps, symbol=name))
+            found.append(plan.add(name, MEASURED[self.law.symbol][order], self.numbers[f"μ_{name}"], *steps, symbol=name))
         return Displacement(plan, self.exact.positions.phi, *found)
 
     @property
@@ -248,7 +248,7 @@ class FollowerMotion:
     def between_plan(self) -> Plan:
         """Plan of the smooth curve S''."""
         exact = self.exact.at("cam-motion-between", "График аналога ускорения", self.exact.display(), "узлы плавной кривой")
-        exact.plan.add("Q", ON_PAPER, exact.phi, self.numbers["μ_φ"], exact.dds, self.numbers["μ_dds"])
+        exact.plan.add("Q", ON_PAPER, exact.phi, self.numbers["μ_φ"], exact.dds, self.numbers[f"μ_{self.names[0]}"])
         return exact.plan
 
     def curve_dds(self) -> Complex:
@@ -296,8 +296,9 @@ def _numbers(law: PositionFunction, scales: MotionScales, exact: ExactMotion) ->
     """Scale factors, pole distances, abscissae of the numbered positions, heights of the law's diagram."""
     plan = Plan("cam-scales", "Масштабы графиков движения", "mm")
     choice = "наименьший удобный, при котором графики помещаются"
-    phi, dds, ds, s = (plan.add(name, FACTOR, Given(scale.mu, f"scales.{name}", choice=choice, over="none"), symbol=scale.symbol)
-                       for name, scale in (("μ_φ", scales.phi), ("μ_dds", scales.dds), ("μ_ds", scales.ds), ("μ_s", scales.s)))
+    phi, dds, ds, s = (plan.add(scale.symbol, FACTOR, Given(scale.mu, scale.symbol, choice=choice, over="none"),
+                                say=f"{FACTOR.wording.removesuffix('.')} {scale.unit}.", symbol=scale.symbol)
+                       for scale in (scales.phi, scales.dds, scales.ds, scales.s))
     plan.add("H_1", POLE_DISTANCE, ds, dds, phi, symbol="H_1")
     plan.add("H_2", POLE_DISTANCE, s, ds, phi, symbol="H_2")
     for p, name in ((law.rise, "a_1"), (law.fall, "a_2")):
@@ -326,7 +327,8 @@ def _acceleration(plan: Plan, numbers: Plan, law: PositionFunction, exact: Exact
         phase = law.rise if k <= law.parts else law.fall
         name = f"{law.symbol}''_{label}"
         if phase.law.division is None:
-            height = numbers.add(f"y_{label}", HEIGHT, exact.positions.dds, k, numbers["μ_dds"], symbol=f"y_{{{label}}}")
+            mu = numbers[f"μ_{law.symbol}''"]
+            height = numbers.add(f"y_{label}", HEIGHT, exact.positions.dds, k, mu, symbol=f"y_{{{label}}}")
             points.append(plan.add(name, ORDINATE, x[k], height))
         else:
             angle = numbers.add(f"θ_{label}", _division(phase.law), exact.positions.plan["x"], k, float(np.sign(phase.travel)))
@@ -342,7 +344,7 @@ def _other_side(plan: Plan, numbers: Plan, exact: ExactMotion, k: int, point: St
     for beside, side in ((exact.before, "−0"), (exact.after, "+0")):
         if abs(beside.dds.value[k] - exact.positions.dds.value[k]) > 1e-9 * scale:
             name = f"{point.name}(φ{side})"
-            height = numbers.add(f"y_{exact.law.labels[k]}(φ{side})", HEIGHT, beside.dds, k, numbers["μ_dds"])
+            height = numbers.add(f"y_{exact.law.labels[k]}(φ{side})", HEIGHT, beside.dds, k, numbers[f"μ_{exact.law.symbol}''"])
             plan.add(name, JUMP, x, height)
 
 
@@ -367,7 +369,7 @@ def _integral(plan: Plan, areas: Plan, numbers: Plan, exact: ExactMotion, kept: 
     symbol = names(law.symbol)[order]
     integral = (exact.positions.s, exact.positions.ds)[order]
     below, above = ((exact.before.ds, exact.after.ds), (exact.before.dds, exact.after.dds))[order]
-    mu, pole = ("μ_ds", "H_2") if order == 0 else ("μ_dds", "H_1")
+    mu, pole = f"μ_{names(law.symbol)[order + 1]}", "H_2" if order == 0 else "H_1"
     heights = []
     for a, b in pairwise(kept):
         label = law.labels[b]

@@ -215,7 +215,7 @@ INSCRIBED = Rule("circle that touches the centre profile from inside", _inscribe
 LEAST = Rule("least length", lambda *of: reduce(np.minimum, of), ("length",) * 5, "length",
              "Наименьшее из этих значений: {name} = {value}.")
 PART = Rule("part of a radius", lambda share, radius: share * radius, ("number", "length"), "length",
-            "{0} от {1} составляет {name} = {value}.", source="000, 7.3")
+            "Предел радиуса ролика {0}·{1} = {value}.", source="000, 7.3")
 ROUNDED = Rule("rounded roller", rounded_down, ("length",), "length",
                "Округлим радиус ролика в меньшую сторону до 0,5 мм: {name} = {value}.")
 CHOSEN = Rule("given roller", lambda radius: radius, ("length",), "length", "По заданию радиус ролика {name} = {value}.")
@@ -351,8 +351,9 @@ class Cam:
         """All plans in the order of construction."""
         exact, m = self.exact, self.motion
         plans = [exact.phases.plan, exact.positions.plan, exact.before.plan, exact.after.plan, m.numbers, m.areas, m.plan,
-                 m.ordinates.plan, *self._dimension_plans(), self.inversion.plan, self.dense.at.plan, self.dense.plan,
-                 *([self.spring.plan] if self.spring else [])]
+                 m.between_plan, m.ordinates.plan, *self._dimension_plans(), self.inversion.plan,
+                 self.dense.at.plan, self.dense.plan,
+                 *([self.spring.plan, self.spring.course_plan] if self.spring else [])]
         return {plan.name: plan for plan in plans}
 
     def _dimension_plans(self) -> Iterable[Plan]:
@@ -402,7 +403,7 @@ class RollerCam(Cam):
         _ = self.roller
 
     def _dimension_plans(self) -> Iterable[Plan]:
-        yield from self.zone.plans.values()
+        yield from (*self.zone.plans.values(), self.zone.curve_plan)
         if self.discs is not None:
             yield self.discs
         yield from (self.curvature, self.near.at.plan, self.near.plan, self.choice)
@@ -449,7 +450,7 @@ class RollerCam(Cam):
                     best = (1 / float(bend(at)), p, at, a, b)
         _, p, at, a, b = best
         tag = "ρ2" if second else "ρ"
-        share = found_share(plan, self.exact.phases, p, at, tag, "наибольшая кривизна выпуклой части центрового профиля")
+        share = found_share(plan, self.exact.phases, p, at, tag, "кривизна выпуклой части центрового профиля наибольшая")
         moving = in_phase(plan, self.law, self.exact.phases, p, share, tag)
         radius = plan.add(f"{tag}_min", rule, *moving, *of) if second else plan.add("ρ_1", rule, *moving, *of)
         return Sharpest(p, at, radius, float(p.phi(a)), float(p.phi(b)), self.law.parts)

@@ -318,7 +318,8 @@ CHOICE = Rule("share found", lambda x: x, ("number",), "number", "Место н�
 
 def found_share(plan: Plan, at: Phases, phase: Phase, x: float, tag: str, choice: str) -> Step:
     """Record the share of a phase that a search found by the criterion ``choice``, and the cam angle there."""
-    share = plan.add(f"x_{tag}", CHOICE, Given(x, f"x_{tag}", choice=choice, over="none", unit="1"), symbol=f"x_{{{tag}}}")
+    share = plan.add(f"x_{tag}", CHOICE, Given(x, f"x_{tag}", choice=choice, over="none", unit="1"), symbol=f"x_{{{tag}}}",
+                     say=f"Перебором найдём место, где {choice}: доля фазы {{name}} = {{value}}.")
     start, angle, _, _ = at.of[phase.symbol]
     plan.add(f"φ_{tag}", AT_SHARE, start, angle, share, symbol=f"φ_{{{tag}}}")
     return share
@@ -442,11 +443,11 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any
     touching = []
     for name, side in (("K_1", 1.0), ("K_2", -1.0)):
         phase, x = _touched(cones, side)
-        share = found_share(touch, exact.phases, phase, x, name, "наибольшее " + ("S' − S·tg[α]" if side > 0 else "−S' − S·tg[α]"))
+        share = found_share(touch, exact.phases, phase, x, name, ("S'" if side > 0 else "−S'") + " − S·tg[α] наибольшее")
         at = in_phase(touch, law, exact.phases, phase, share, name, (0, 1))
-        touching.append(plan.add(name, TOUCH, *at, right,
-                                 say=f"Под углом {fixed(degrees(alpha), 1)}° к оси S проведём касательную к "
-                                 "кривой S(S'); точка касания {name}."))
+        drawn = "Соединим точки D плавной кривой S(S'). " if side > 0 else ""
+        touching.append(plan.add(name, TOUCH, *at, right, say=f"{drawn}Под углом {fixed(degrees(alpha), 1)}° к оси S проведём "
+                                 "касательную к кривой S(S'); точка касания {name}."))
     borders = [plan.add(f"t_{k}", INCLINED, alpha, right * side) for k, side in ((1, 1.0), (2, -1.0))]
     if e is not None or centre == "least":
         plan.add("V", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
@@ -523,9 +524,10 @@ def _rocker_axis(plan: Plan, z: Zone, rays: tuple[Ray, ...], mark: str, touch: P
     touching, borders = [], []
     for k, ray in enumerate(rays, 1):
         tag = f"K_{k}{mark}"
-        x = found_share(touch, z.exact.phases, ray.phase, ray.x, tag, "луч, дальше всех отсекающий центр вращения кулачка")
+        x = found_share(touch, z.exact.phases, ray.phase, ray.x, tag, "граничный луч дальше всех отсекает центр вращения кулачка")
         psi, dpsi = in_phase(touch, z.exact.law, z.exact.phases, ray.phase, x, tag, (0, 1))
-        touching.append(plan.add(f"K_{k}", OUTERMOST, psi, dpsi, pivot, turn, right, arm))
+        drawn = "Соединим точки D плавной кривой D(ψ). " if k == 1 else ""
+        touching.append(plan.add(f"K_{k}", OUTERMOST, psi, dpsi, pivot, turn, right, arm, say=drawn + OUTERMOST.wording))
         borders.append(plan.add(f"t_{k}", OUTERMOST_DIRECTION, psi, turn, z.cones.alpha, ray.side * z.right))
     if len(touching) == 1:
         apex = plan.add("O", rules.FOOT, start, touching[0], borders[0],
@@ -565,7 +567,7 @@ class Plate:
     @property
     def plans(self) -> dict[str, Plan]:
         """Its plans in the order of construction."""
-        return {p.name: p for p in (self.place, self.plan)}
+        return {p.name: p for p in (self.place, self.plan, self.course_plan)}
 
     @cached_property
     def course_plan(self) -> Plan:
@@ -638,7 +640,7 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     plan = Plan("cam-plate", "Определение основных размеров", "m", law.labels)
     sums = plan.add("S+S''", SUM, s, dds)
     _, phase, x = lowest_sum(law)
-    at = found_share(place, exact.phases, phase, x, "min", "наименьшая ордината S + S''")
+    at = found_share(place, exact.phases, phase, x, "min", "ордината S + S'' наименьшая")
     lowest = place.add("(S+S'')_min", LOWEST_SUM, *in_phase(place, law, exact.phases, phase, at, "min", (0, 2)))
     least = plan.add("r_min", LOWEST, lowest)
     if base_radius is None:
@@ -655,6 +657,6 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     shares = np.linspace(0, 1, 2001)
     for name, p in (("l_1", law.rise), ("l_2", law.fall)):
         k = int(np.argmax(np.abs(p.ds(shares))))
-        share = found_share(place, exact.phases, p, float(shares[k]), name, "наибольшее |S'|")
+        share = found_share(place, exact.phases, p, float(shares[k]), name, "|S'| наибольшее")
         plan.add(name, LARGEST, *in_phase(place, law, exact.phases, p, share, name, (1,)))
     return Plate(plan, place, exact, sums)
