@@ -180,11 +180,13 @@ class Cones:
         reach = 20 * self.size / sin(self.alpha)
         corners: list[tuple[complex, Ray | None]] = [(reach * c, None) for c in (-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j)]
         choose = self._highest if centre == "vertex" else self._nearest
+        last = None
         for _ in range(200):
             o, active = choose(corners)
             cuts = [ray for ray in (self.worst(o, 1.0), self.worst(o, -1.0)) if ray.beyond(o) > 2e-15 * self.size]
-            if not cuts:
+            if not cuts or o == last:  # where the borders cross flatly, the choice rests before the cuts become nothing
                 return o, tuple(ray for ray in active if ray is not None)
+            last = o
             for ray in cuts:
                 corners = _clipped(corners, ray)
             if len(corners) < 3:
@@ -405,7 +407,7 @@ class Zone:
         if found is None:
             return None
         plan = Plan("cam-zone-least", "Наименьший возможный кулачок", "m")
-        _rocker_axis(plan, self, found[1], "n")
+        _rocker_axis(plan, self, found[1])
         return plan
 
 
@@ -512,18 +514,18 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
             + ("the rise" if limit == "rise" else "the rise and the fall"), _wider(cones))
     touch = Plan("cam-zone-touch", "Точки, из которых выходят крайние лучи зоны", "m")
     z = Zone(plan, {p.name: p for p in (rows, touch, plan)}, exact, cones, axis, points, (), (), start)
-    touching, borders, apex = _rocker_axis(plan, z, found[1], "", touch)
+    touching, borders, apex = _rocker_axis(plan, z, found[1], touch)
     return replace(z, touching=touching, borders=borders, apex=apex)
 
 
-def _rocker_axis(plan: Plan, z: Zone, rays: tuple[Ray, ...], mark: str, touch: Plan | None = None) -> tuple[
+def _rocker_axis(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan | None = None) -> tuple[
         tuple[Step, ...], tuple[Step, ...], Step]:
     """Record the axis O of the cam on one or two outermost rays, with r_0 and l_0."""
     touch = touch or plan
     start, (pivot, turn, right, arm) = z.plan["B_0"], z.swing
     touching, borders = [], []
     for k, ray in enumerate(rays, 1):
-        tag = f"K_{k}{mark}"
+        tag = f"K_{k}"
         x = found_share(touch, z.exact.phases, ray.phase, ray.x, tag, "граничный луч дальше всех отсекает центр вращения кулачка")
         psi, dpsi = in_phase(touch, z.exact.law, z.exact.phases, ray.phase, x, tag, (0, 1))
         drawn = "Соединим точки D плавной кривой D(ψ). " if k == 1 else ""
