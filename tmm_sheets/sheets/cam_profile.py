@@ -371,8 +371,10 @@ def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
     for name, own in (("диск 1", dense.plan["F"].value), ("диск 2", outline)):
         # Where this disc stands out furthest over the other one.
         other = outline if name == "диск 1" else dense.plan["F"].value
-        # Of a dwell, where it is the same all along, the beginning.
-        k = int(np.argmax(np.round([float(np.abs(other - p).min()) for p in own[::4]], 9))) * 4
+        away = np.array([float(np.abs(other - p).min()) for p in own[::4]])
+        # Along a dwell it is the same: there in the middle.
+        furthest = np.flatnonzero(away > away.max() - 1e-9)
+        k = int(furthest[len(furthest) // 2]) * 4
         canvas.label(complex(at(own[k])), name, complex(own[k]) * picture.turn, 3.5, 1.5)
     points = at(inv.plan["B′"].value)
     first, second = complex(at(inv.centres.value[0])), complex(points[0])
