@@ -64,6 +64,19 @@ def of(s: Stage, step: Step | str, role: Role, k: int | None = None) -> Iterator
         yield
 
 
+def mark_line(s: Stage, step: Step | str, a: complex, b: complex, style: str = "construction", k: int | None = None,
+              role: Role = "construction") -> None:
+    """Line that a step leaves."""
+    with of(s, step, role, k):
+        s.canvas.line(a, b, style)
+
+
+def mark_dot(s: Stage, step: Step | str, at: complex, radius: float, k: int | None = None) -> None:
+    """Dot of a point."""
+    with of(s, step, "point", k):
+        s.canvas.dot(at, radius)
+
+
 def draw_curve(s: Stage, step: Step, style: str, points: Any = None, closed: bool = False) -> None:
     """Smooth curve through the points of a step, or through others that it goes through, mm."""
     with of(s, step, "curve"):
@@ -208,8 +221,7 @@ def _ordinates(s: Stage, m: FollowerMotion, steps: list[Step]) -> None:
     narrow = min(np.diff(points.real[kept]), default=10.0) < 6.0
     for k in kept:
         at = s.frame(points[k].real)
-        with of(s, steps[k], "construction"):
-            s.canvas.line(at, s.at(steps[k]), "thin")
+        mark_line(s, steps[k], at, s.at(steps[k]), "thin")
         side = -1j if points[k].imag > -1e-6 else 1j
         s.canvas.label(at, m.law.labels[k], side, 2.5 if narrow else 3.5, 0.7, leader=False)
 
@@ -233,10 +245,8 @@ def _auxiliary_circle(s: Stage, m: FollowerMotion) -> None:
             if any(abs(p - q) < 0.5 for q in shown):
                 continue
             shown.append(p)
-            with of(s, m.circle[first + k], "construction"):
-                canvas.line(centre, p, "construction")
-            with of(s, m.circle[first + k], "point"):
-                canvas.dot(p, 0.5)
+            mark_line(s, m.circle[first + k], centre, p, "construction")
+            mark_dot(s, m.circle[first + k], p, 0.5)
             same = [m.law.labels[first + j] for j in range(half) if abs(at[j] - p) < 0.5]
             outwards = (p - centre) / radius
             canvas.label(p, ", ".join(same), -outwards if radius >= largest - 1e-9 else outwards, 2.5, 0.5, leader=False)
@@ -263,15 +273,12 @@ def _integration(upper: Stage, lower: Stage, m: FollowerMotion, symbol: str, end
         middle, carried = plan[f"{symbol}_m{label}"], plan[f"{symbol}_{label}′"]
         height = 1j * complex(middle.value).imag
         start, end = (upper.frame(complex(plan[name].value).real + height) for name in (first, last))
-        with of(upper, middle, "construction"):
-            canvas.line(start, end, "thin")
-        with of(upper, carried, "construction"):
-            canvas.line(upper.at(carried), start, "construction")
+        mark_line(upper, middle, start, end, "thin")
+        mark_line(upper, carried, upper.at(carried), start, "construction")
         play(upper, [f"{symbol}_P{label}′"])
         play(lower, [last])
         lowest = min(lowest, complex(carried.value).imag)
-    with of(upper, f"{symbol}_P", "point"):
-        canvas.dot(at, 0.6)
+    mark_dot(upper, f"{symbol}_P", at, 0.6)
     canvas.label(at, pole, -1 + 1j, 3.5, 0.8, leader=False)
     play(upper, [f"{symbol}_P"], "axis")
     canvas.dimension(at, complex(origin), min(lowest, -down) - 7.0, distance)
@@ -308,8 +315,7 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     at = o + across.mm(np.degrees(inv.phi))
     values = tall.mm(np.degrees(inv.angles.value))
     for k in range(len(at)):
-        with of(found, inv.angles, "construction", k):
-            canvas.line(at[k], at[k] + 1j * values[k], "thin")
+        mark_line(found, inv.angles, at[k], at[k] + 1j * values[k], "thin", k=k)
     n = cam.law.parts
     for k in (0, n // 2, n, n + 1, n + 1 + n // 2, 2 * n + 1):
         if k != n + 1 or abs(at[n + 1] - at[n]) > 4:

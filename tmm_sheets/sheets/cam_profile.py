@@ -15,7 +15,7 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import draw_curve, for_cams, lines_of_text, of, placed, standard
+from tmm_sheets.sheets.cam import draw_curve, for_cams, lines_of_text, mark_dot, mark_line, of, placed, standard
 from tmm_sheets.sheets.player import Stage, play
 
 if TYPE_CHECKING:
@@ -53,8 +53,7 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
             with of(s, "F", "dimension", k):
                 canvas.arrow(at(p), at(p) + tip, "thin", 3.0)
             canvas.label(at(p) + 0.6 * tip, "r_p", 1j * tip * -cam.right, 3.5, 0.6, leader=False)
-        with of(s, inv.centres, "point", k):
-            canvas.dot(at(p), 0.6)
+        mark_dot(s, inv.centres, at(p), 0.6, k=k)
         if k:
             canvas.label(at(p), labels[k], complex(p) * picture.turn, 3.5, 0.8)
     draw_curve(dense, cam.dense.plan["F"], "curve", at(cam.dense.plan["F"].value[:-1]), closed=True)
@@ -227,8 +226,7 @@ def _circles(s: Stage, picture: _ProfilePicture) -> None:
     for way in (reach, 1j * reach):
         shown = segment_inside(picture.room, origin - way, origin + way)
         if shown:
-            with of(s, "O", "axis"):
-                canvas.line(*shown, "centre")
+            mark_line(s, "O", *shown, "centre", role="axis")
     with of(s, "O", "symbol"):
         canvas.circle(origin, 3.0, "main")
     idle = cam.law.lower_dwell
@@ -286,8 +284,7 @@ def _rod(s: Stage, picture: _ProfilePicture, hole: float) -> None:
     last, side = -10.0, 1.0
     for k in range(len(marks) // 2):
         p = at(marks[k])
-        with of(s, inv.axis, "point", k):
-            canvas.line(p - 1.8, p + 1.8, "thin")
+        mark_line(s, inv.axis, p - 1.8, p + 1.8, "thin", k=k, role="point")
         # Marks that lie close together are numbered on both sides in turn.
         side = -side if p.imag - last < 5.0 else -1.0
         last = p.imag
@@ -316,13 +313,11 @@ def _rocker(s: Stage, picture: _ProfilePicture) -> None:
     with of(s, inv.ends, "construction"):
         canvas.arc(picture.origin, radius, ends[0], ends[1], "thin")
     for name, end in (("A_0", a0), ("B_0", b0)):
-        with of(s, name, "construction"):
-            canvas.line(picture.origin, end, "thin")
+        mark_line(s, name, picture.origin, end, "thin")
     pivots = inv.ends.value
     for k in range(1, len(pivots)):
         if abs(pivots[k] - pivots[k - 1]) > 1e-9:
-            with of(s, inv.ends, "point", k):
-                canvas.dot(at(pivots[k]), 0.6)
+            mark_dot(s, inv.ends, at(pivots[k]), 0.6, k=k)
             canvas.label(at(pivots[k]), f"A_{{{inv.plan.labels[k]}}}", complex(pivots[k]) * picture.turn, 2.5, 0.7)
     marks = at(inv.axis.value[: len(inv.axis.value) // 2])
     arm = abs(b0 - a0)
@@ -332,8 +327,7 @@ def _rocker(s: Stage, picture: _ProfilePicture) -> None:
         canvas.arc(a0, arm, min(first, last), max(first, last), "thin")
     for k, p in enumerate(marks):
         u = (p - a0) / arm
-        with of(s, inv.axis, "point", k):
-            canvas.line(complex(p - 1.8 * u), complex(p + 1.8 * u), "thin")
+        mark_line(s, inv.axis, complex(p - 1.8 * u), complex(p + 1.8 * u), "thin", k=k, role="point")
         if k:
             canvas.label(complex(p + 1.8 * u), inv.plan.labels[k], complex(u), 2.5, 0.4)
     hole = min(1.8, 0.3 * picture.roller)
@@ -350,14 +344,12 @@ def _rocker(s: Stage, picture: _ProfilePicture) -> None:
 
 def _flat(s: Stage, picture: _ProfilePicture) -> None:
     """Flat follower in position 0 and the plates of the inverted positions, whose envelope is the profile."""
-    cam, at, canvas = picture.cam, picture.at, s.canvas
+    cam, at = picture.cam, picture.at
     inv = cam.inversion
     for k, (a, b) in enumerate(_plates(cam)):
-        with of(s, "⊥ON", "construction", k):
-            canvas.line(complex(at(a)), complex(at(b)), "main" if k == 0 else "construction")
+        mark_line(s, "⊥ON", complex(at(a)), complex(at(b)), "main" if k == 0 else "construction", k=k)
     for k, p in enumerate(inv.plan["F"].value):
-        with of(s, "F", "point", k):
-            canvas.dot(at(p), 0.5)
+        mark_dot(s, "F", at(p), 0.5, k=k)
     _rod(s, picture, 0.0)
 
 
@@ -383,8 +375,7 @@ def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
     with of(s, "B′", "symbol", 0):
         canvas.circle(second, min(1.8, 0.3 * picture.roller), "main")
     for k, p in enumerate(points[1:], 1):
-        with of(s, "B′", "point", k):
-            canvas.dot(complex(p), 0.4)
+        mark_dot(s, "B′", complex(p), 0.4, k=k)
     if picture.kind == "rocker":
         a0 = complex(at(inv.plan["A_0"].value))
         u = (second - a0) / abs(second - a0)
@@ -393,8 +384,7 @@ def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
         canvas.label(second, "B′_0", 1j * u, 3.5, picture.roller + 1.0)
     else:
         u = (second - first) / abs(second - first)
-        with of(s, "B′", "construction", 0):
-            canvas.line(first + picture.roller * u, second - picture.roller * u, "centre")
+        mark_line(s, "B′", first + picture.roller * u, second - picture.roller * u, "centre", k=0)
         canvas.label(second, "B′_0", u + 0.6, 3.5, picture.roller + 1.0)
 
 
@@ -406,8 +396,7 @@ def _phase_angles(s: Stage, picture: _ProfilePicture) -> None:
     radius = 0.78 * inner if inner > 0.35 * reach else 0.42 * reach
     for p in cam.law.phases:
         ends = sorted(start + cam.right * v for v in (p.start, p.end))
-        with of(s, cam.inversion.ends, "construction"):
-            canvas.line(origin, origin + rect(reach, start + cam.right * p.start), "thin")
+        mark_line(s, cam.inversion.ends, origin, origin + rect(reach, start + cam.right * p.start), "thin")
         canvas.angle_mark(origin, ends[0], ends[1], radius, p.symbol)
     turn = 0.5 * radius
     with of(s, "O", "symbol"):
@@ -451,12 +440,10 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
             canvas.ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
     with of(s, "ρ_min", "dimension"):
         canvas.arrow(at(centre), at(d), "thin", 3.0)
-    with of(s, "M", "point"):
-        canvas.dot(at(centre), 0.7)
+    mark_dot(s, "M", at(centre), 0.7)
     outwards = (d - centre) / abs(d - centre)
     for name, p in zip("EDG", chords, strict=True):
-        with of(s, f"{name}_ρ", "point"):
-            canvas.dot(at(p), 0.7)
+        mark_dot(s, f"{name}_ρ", at(p), 0.7)
         canvas.label(at(p), name, outwards + 0.6 * (p - d) / max(abs(p - d), 1e-12), 3.5, 1.5)
     canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
     canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)

@@ -15,7 +15,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import axes, distinct, draw_curve, for_cams, lines_of_text, of, placed
+from tmm_sheets.sheets.cam import axes, distinct, draw_curve, for_cams, lines_of_text, mark_dot, mark_line, of, placed
 from tmm_sheets.sheets.player import Stage, play
 
 if TYPE_CHECKING:
@@ -56,11 +56,9 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     cone = np.array([v, at(low - depth * slope), at(low + depth * slope)])
     hatch_polygon(canvas, cone, 4.0)
     for (touch, side), top, step, border in zip(touches, tops, z.touching, z.borders, strict=True):
-        with of(stage, border, "construction"):
-            canvas.line(at(top), at(low - depth * slope * side), "axis")
+        mark_line(stage, border, at(top), at(low - depth * slope * side), "axis")
         if abs(touch) > 0:
-            with of(stage, step, "point"):
-                canvas.dot(at(touch), 0.6)
+            mark_dot(stage, step, at(touch), 0.6)
         canvas.label(at(touch), step.name, side + 0j, 3.5, 1.0)
     reach = float(curve.real[np.argmax(np.abs(curve.real))])
     with of(smooth, z.curve, "axis"):
@@ -73,23 +71,17 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     for k in range(len(points)):
         if k and abs(points[k] - points[k - 1]) < 1e-9:
             continue
-        with of(stage, z.points, "construction", k):
-            canvas.line(at(1j * points[k].imag), at(points[k]), "thin")
-        with of(stage, z.points, "point", k):
-            canvas.dot(at(points[k]), 0.5)
+        mark_line(stage, z.points, at(1j * points[k].imag), at(points[k]), "thin", k=k)
+        mark_dot(stage, z.points, at(points[k]), 0.5, k=k)
         away = points[k] - 1j * stroke / 2
         canvas.label(at(points[k]), labels[k], complex(away), 3.5, 0.8)
-    with of(stage, "r_0", "construction"):
-        canvas.line(o, b, "main")
-    with of(stage, "C", "construction"):
-        canvas.line(c, o, "thin")
-    with of(stage, "V" if "V" in z.plan else "O", "axis"):
-        canvas.line(v, v + 1j * scale.mm(0.75 * z.s0), "centre")
+    mark_line(stage, "r_0", o, b, "main")
+    mark_line(stage, "C", c, o, "thin")
+    mark_line(stage, "V" if "V" in z.plan else "O", v, v + 1j * scale.mm(0.75 * z.s0), "centre", role="axis")
     with of(stage, "O", "axis"):
         if abs(v - o) > 1:
             canvas.line(o - 4j, at(complex(axis.real, 0.0)), "centre")
-    with of(stage, "O", "point"):
-        canvas.dot(o, 0.9)
+    mark_dot(stage, "O", o, 0.9)
     canvas.label(o, "O", -1j + z.right, 5.0, 1.5)
     canvas.label(b, "B", -z.right + 0j, 3.5, 1.0)
     canvas.label(c, "C", -z.right - 1j, 3.5, 0.8)
@@ -166,10 +158,8 @@ def _permitted(s: Stage, cam: RockerCam, picture: Box, scale: Scale) -> None:
         tip = s.at(touch)
         shown = segment_inside(picture, tip, tip + reach * complex(border.value))
         if shown:
-            with of(s, border, "construction"):
-                canvas.line(*shown, "axis")
-        with of(s, touch, "point"):
-            canvas.dot(tip, 0.7)
+            mark_line(s, border, *shown, "axis")
+        mark_dot(s, touch, tip, 0.7)
 
 
 def _rocker_positions(s: Stage, cam: RockerCam) -> None:
@@ -182,13 +172,10 @@ def _rocker_positions(s: Stage, cam: RockerCam) -> None:
         play(replace(s, k=k), [z.axis], "thin")
     draw_curve(s, z.axis, "thin", np.array([complex(at(p)) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))]))
     for k in numbered:
-        with of(s, z.points, "construction", k):
-            canvas.line(complex(at(starts[k])), complex(at(tips[k])), "thin")
-        with of(s, z.points, "point", k):
-            canvas.dot(complex(at(tips[k])), 0.5)
+        mark_line(s, z.points, complex(at(starts[k])), complex(at(tips[k])), "thin", k=k)
+        mark_dot(s, z.points, complex(at(tips[k])), 0.5, k=k)
     for k in rising:
-        with of(s, z.axis, "point", k):
-            canvas.dot(complex(at(starts[k])), 0.6)
+        mark_dot(s, z.axis, complex(at(starts[k])), 0.6, k=k)
         canvas.label(complex(at(starts[k])), labels[k], complex(starts[k] - pivot), 3.5, 0.8)
     for k in numbered:
         if abs(at(tips[k]) - at(starts[k])) > 6:
@@ -206,16 +193,14 @@ def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box) -> None:
     for name, ends in (("r_0", (o, b)), ("B_0", (b, a)), ("l_0", (a, o))):
         with of(s, name, "link" if name == "B_0" else "construction"):
             bar(canvas, ends, (a, b))
-    with of(s, "O", "point"):
-        canvas.dot(o, 0.9)
+    mark_dot(s, "O", o, 0.9)
     canvas.label(o, "O", -1j, 5.0, 1.5)
     canvas.label(a, "A", pivot - 0.5j * abs(pivot), 3.5, 2.2)
     canvas.label(b, "B_0", -pivot - 0.6j * abs(pivot), 3.5, 2.2)
     canvas.label((o + b) / 2, "r_0", 1j * (o - b), 3.5, 0.8)
     canvas.label((o + a) / 2, "l_0", 1j * (o - a), 3.5, 0.8)
     radius = 0.45 * min(abs(o - b), picture.height / 2)
-    with of(s, "B_0", "axis"):
-        canvas.line(b, b - 1.3j * radius, "centre")
+    mark_line(s, "B_0", b, b - 1.3j * radius, "centre", role="axis")
     for lo, hi in ((-pi / 2, -pi / 2 + z.alpha), (-pi / 2 - z.alpha, -pi / 2)):
         canvas.angle_mark(b, lo, hi, radius, "[α]")
 
@@ -271,14 +256,12 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
             with of(found, plate.sums, "construction", k):
                 canvas.line(complex(along[k]), point, "thin")
                 canvas.line(complex(at(law.positions[k], base[k])), point, "construction")
-            with of(found, plate.sums, "point", k):
-                canvas.dot(point, 0.4)
+            mark_dot(found, plate.sums, point, 0.4, k=k)
         canvas.label(complex(along[k]), law.labels[k], -1j if sums[k] > 0 else 1j, 2.5, 0.6, leader=False)
     lowest = int(np.argmin(total))
     if down > 0:
         level = complex(at(phi[lowest], total[lowest]))
-        with of(found, "r_min", "construction"):
-            canvas.line(complex(o.real - 6.0, level.imag), level, "construction")
+        mark_line(found, "r_min", complex(o.real - 6.0, level.imag), level, "construction")
         canvas.dimension(complex(o.real, o.imag), complex(o.real, level.imag), -7.0, "a")
     r_min = max(plate.r_min, 0.0)
     lines_of_text(canvas, box, [

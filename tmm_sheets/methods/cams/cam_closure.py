@@ -65,6 +65,10 @@ RATIO = Rule("force by force of inertia", lambda s, dds, stroke, largest, factor
     "number", "Наименьшее отношение силы пружины к силе инерции {name} = {value}.", unit="1", source=SOURCE)
 
 
+def _number(step: str, doc: str) -> property:
+    return property(lambda self: float(self.plan[step].value), doc=doc)
+
+
 @dataclass(frozen=True)
 class Spring:
     """Closing spring along the path of the follower (of a rocker: along the path of its roller); SI.
@@ -81,11 +85,15 @@ class Spring:
     preload: float
     speed: float
 
-    def __getattr__(self, name: str) -> float:
-        """Numbers of the plan by their names in the results."""
-        if name not in _NAMES:
-            raise AttributeError(name)
-        return float(self.plan[_NAMES[name]].value)
+    mass = _number("m", "Moved mass, kg.")
+    length = _number("l", "What turns a displacement of the law into a way: 1, or the arm of a rocker, m.")
+    largest_inertia = _number("Q_max", "Largest force of inertia that separates follower and cam, N.")
+    f_max = _number("F_max", "Largest force, N.")
+    f_0 = _number("F_0", "Force in the lowest position, N.")
+    way = _number("s", "Way of the spring, m.")
+    rate = _number("c", "Stiffness, N/m.")
+    worst = _number("k_min", "Least ratio of spring force and force of inertia.")
+    worst_phi = _number("φ_k", "Cam angle where it occurs, rad.")
 
     @property
     def closed(self) -> bool:
@@ -126,10 +134,6 @@ class Spring:
         return {"largest_inertia": self.plan["Q_max"], "F_max": self.plan["F_max"], "F_0": self.plan["F_0"],
                 "stiffness": self.plan["c"], "way": self.plan["s"], "worst_ratio": self.plan["k_min"],
                 "worst_phi": self.plan["φ_k"], "closed": self.closed}
-
-
-_NAMES = {"largest_inertia": "Q_max", "f_max": "F_max", "f_0": "F_0", "rate": "c", "way": "s", "worst": "k_min", "worst_phi": "φ_k",
-          "mass": "m", "length": "l"}
 
 
 def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: float, factor: float, preload: float) -> Spring:
