@@ -98,12 +98,12 @@ class Spring:
     @property
     def closed(self) -> bool:
         """True when the spring holds the pair together in every position."""
-        return self.worst > 1
+        return bool(self.worst > 1)
 
     @property
     def needed_factor(self) -> float:
         """Factor of the largest force from which on the pair stays closed, the share of the preload kept."""
-        return self.factor / self.worst
+        return float(self.factor / self.worst)
 
     def force(self, s: Any) -> Any:
         """Force at displacements of the law (m, or rad of a rocker), N."""
