@@ -245,7 +245,7 @@ class ExactMotion:
     def at(self, name: str, title: str, phi: Any, choice: str) -> Displacement:
         """Displacement and derivatives at any cam angles, rad."""
         plan = Plan(name, title, "m", tuple(map(str, range(len(phi)))))
-        return displacement(plan, self.law, self.phases, Given(phi, "cam", choice=choice, over="curve", unit="rad"))
+        return displacement(plan, self.law, self.phases, Given(phi, "cam.parts", choice=choice, over="curve", unit="rad"))
 
     def display(self, parts: int = 64) -> Reals:
         """Cam angles from the rise to the end of the fall for smooth curves, rad: jumps are met from both sides."""

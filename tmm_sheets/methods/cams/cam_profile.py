@@ -47,6 +47,8 @@ SHARE_OF_R0 = (0.3, 0.4)
 """r_p <= (0.3 .. 0.4) r0 (manual 000, 7.3)."""
 SHARE_OF_RHO = (0.7, 0.8)
 """r_p <= (0.7 .. 0.8) rho_min (manual 000, 7.3); manual 003 takes 0.5."""
+ASKED = "углы поворота кулачка, о которых спрашивают"
+"""What tells cam angles that are not those of the program."""
 DENSE = 128
 """Least number of parts of each phase in curves and in tables of results; the numbered positions are among them."""
 
@@ -292,7 +294,7 @@ class Cam:
     @cached_property
     def dense(self) -> Inversion:
         """The same inversion in many positions of a whole turn, for smooth curves and for results."""
-        return self.at(self._divided)
+        return self._bare(self._divided)
 
     @property
     def _divided(self) -> Reals:
@@ -301,7 +303,7 @@ class Cam:
 
     def at(self, phi: Reals) -> Inversion:
         """The same inversion at any cam angles, rad."""
-        return self._bare(phi)
+        return self._bare(phi, choice=ASKED)
 
     def _bare(self, phi: Reals, name: str = "between", choice: str = "фазы делятся на равные части") -> Inversion:
         at = self.exact.at(f"cam-law-{name}", "Закон движения в промежуточных положениях", phi, choice)
@@ -564,7 +566,7 @@ class RollerCam(Cam):
 
     def at(self, phi: Reals) -> Inversion:
         """The same inversion at any cam angles, rad."""
-        return self._contact(self._bare(phi))
+        return self._contact(self._bare(phi, choice=ASKED))
 
     def _contact(self, inv: Inversion) -> Inversion:
         _ = self.roller
