@@ -249,3 +249,42 @@ def test_a_table_without_jumps_has_one_row_of_each():
     rows = rows_of_table(PROJECTS["flat, spring"])
     assert not [name for name in rows if "φ−0" in name]
     assert "S''·10^3, м" in rows
+
+
+# --- marks know their steps
+
+EXEMPT = ("symbol", "dimension", "hatch", "text", "table", "frame")
+
+
+@pytest.mark.parametrize(("name", "view_name"), VIEWS)
+def test_marks_know_step_and_frame(name, view_name):
+    """Every line, arc and curve besides symbols, dimensions, hatching and tables comes from a step that is there."""
+    data = PROJECTS[name]
+    canvas = drawn(view_name, data)
+    counted = [m.by for m in canvas.marks if not isinstance(m, Text) and (m.by is None or m.by.role not in EXEMPT)]
+    assert all(by is not None and by.step and by.frame >= 0 for by in counted)
+    plans = data.cam.plans
+    for by in counted:
+        plan, _, step = by.step.partition("/")
+        assert step in plans[plan]
+        assert by.position in ("", *plans[plan].labels)
+
+
+@pytest.mark.parametrize("name", PROJECTS)
+def test_points_lie_where_their_steps_are(name):
+    """Dots of the profile and of the zone, from the frame and the value of the step alone."""
+    data = PROJECTS[name]
+    canvas = whole(data)
+    plans, checked = data.cam.plans, 0
+    for group in canvas.groups:
+        mark = canvas.marks[group.first]
+        if group.kind != "dot" or mark.by is None or mark.by.role != "point":
+            continue
+        frame, (plan, _, step) = canvas.frames[mark.by.frame], mark.by.step.partition("/")
+        if plan not in ("cam-zone", "cam-profile") or frame.plan != plan:
+            continue
+        value = np.atleast_1d(plans[plan][step].value)
+        k = plans[plan].labels.index(mark.by.position) if mark.by.position else 0
+        assert mark.points.mean() == pytest.approx(complex(frame(value[min(k, len(value) - 1)])), abs=1e-9)
+        checked += 1
+    assert checked > 15

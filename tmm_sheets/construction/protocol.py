@@ -83,7 +83,9 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "�
     if sizes is None:
         sizes = _sizes([step], k)
     wording = step.say if step.say is not None else step.rule.wording
-    shown = [_show(a, kind, k, to_mm, unit, sizes) for a, kind in zip(step.args, step.rule.takes, strict=False)]
+    # A protractor knows no minutes: they are said in formulas, not where an angle is laid off.
+    drawn = step.rule.gives in ("point", "direction")
+    shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(step.args, step.rule.takes, strict=False)]
     exact = _exact_angle(step, k)
     value = exact or _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
 
@@ -95,10 +97,11 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "�
     return said.replace("параллельно ⟂", "перпендикулярно ")
 
 
-def _show(arg: Any, kind: Kind, k: int, to_mm: Callable[[float], float], unit: str, sizes: Mapping[str, float]) -> str:
+def _show(arg: Any, kind: Kind, k: int, to_mm: Callable[[float], float], unit: str, sizes: Mapping[str, float],
+          drawn: bool) -> str:
     if isinstance(arg, Step) and kind in ("point", "direction", "force"):
         return letter_of(arg)
-    if exact := _exact_angle(arg, k):
+    if not drawn and (exact := _exact_angle(arg, k)):
         return exact
     own = value_of(arg)
     of_sort = size([own], k) if np.asarray(own).dtype.kind in "ifc" else 0.0

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, RAY
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 
 Floats = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -68,8 +68,8 @@ CARRY_BETWEEN = Rule(
 )
 
 
-def integrate(plan: Plan, prefix: str, edges: Sequence[float] | Floats, heights: Sequence[Any] | Floats,
-              pole_distance: float, start: float = 0.0, borders: Sequence[str] | None = None,
+def integrate(plan: Plan, prefix: str, edges: Sequence[Any] | Floats, heights: Sequence[Any] | Floats,
+              pole_distance: Any, start: float = 0.0, borders: Sequence[str] | None = None,
               intervals: Sequence[str] | None = None, mark: str = "′") -> list[Step]:
     """Integrate a graph by chords parallel to the rays from a pole (метод хорд).
 
@@ -82,12 +82,12 @@ def integrate(plan: Plan, prefix: str, edges: Sequence[float] | Floats, heights:
         ``{prefix}{i}′`` (carried to the ordinate axis), ``{prefix}P{i}′`` (ray, a direction) and, named after the border,
         ``{prefix}{border}`` (end of the chord), and before them ``{prefix}P`` (pole) and the origin of the lower graph.
     edges
-        abscissae of the borders, ascending, n + 1 numbers, mm; the first is the ordinate axis, 0.
+        abscissae of the borders, ascending, n + 1 numbers or steps, mm; the first is the ordinate axis, 0.
     heights
         ordinate taken in each interval, n numbers or steps, mm: the ordinate in the middle, or the height of the
         rectangle of equal area, which makes the chord ends exact.
     pole_distance
-        H > 0, mm.
+        H > 0, a number or a step, mm.
     start
         ordinate of the integral at the first border, mm.
     borders, intervals
@@ -108,17 +108,17 @@ def integrate(plan: Plan, prefix: str, edges: Sequence[float] | Floats, heights:
     """
     if len(edges) != len(heights) + 1:
         raise ValueError(f"{len(edges)} borders need {len(edges) - 1} ordinates, not {len(heights)}")
-    if not pole_distance > 0:
-        raise ValueError(f"the pole distance must be positive, not {pole_distance}")
+    if not value_of(pole_distance) > 0:
+        raise ValueError(f"the pole distance must be positive, not {value_of(pole_distance)}")
     pole = plan.add(f"{prefix}P", POLE, pole_distance)
     borders = borders or [str(k) for k in range(len(edges))]
     intervals = intervals or [str(k) for k in range(1, len(edges))]
     ends = [plan.add(f"{prefix}{borders[0]}", ORIGIN, start)]
     for i, border, (x0, x1), height in zip(intervals, borders[1:], pairwise(edges), heights, strict=True):
-        middle = plan.add(f"{prefix}m{i}", MID_ORDINATE, float(x0), float(x1), height)
+        middle = plan.add(f"{prefix}m{i}", MID_ORDINATE, x0, x1, height)
         carried = plan.add(f"{prefix}{i}{mark}", CARRY, middle)
         ray = plan.add(f"{prefix}P{i}{mark}", RAY, pole, carried)
-        ends.append(plan.add(f"{prefix}{border}", CHORD, ends[-1], ray, float(x1)))
+        ends.append(plan.add(f"{prefix}{border}", CHORD, ends[-1], ray, x1))
     return ends
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import wraps
 from itertools import pairwise
-from math import degrees, pi
+from math import degrees, pi, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,13 +15,14 @@ import numpy as np
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.drawing.marks import Box, Points, Role
 from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets.player import Stage, play
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.cams.cam_closure import Spring
-    from tmm_sheets.methods.cams.cam_laws import PositionFunction
     from tmm_sheets.methods.cams.cam_motion import FollowerMotion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
 
@@ -45,6 +47,48 @@ def for_cams(view: View) -> View:
             view(project, canvas, box, options)
 
     return drawn
+
+
+def placed(canvas: Canvas, plan: Plan, origin: complex, mu: float | tuple[float, float], turn: float = 0.0) -> Stage:
+    """Place a plan on the sheet; which position a mark belongs to is told with the mark."""
+    number = canvas.placed(plan.name, "", origin, mu, turn)
+    frame: Any = canvas.frames[number]
+    return Stage(canvas, plan, 0, frame, number)
+
+
+@contextmanager
+def of(s: Stage, step: Step | str, role: Role, k: int | None = None) -> Iterator[None]:
+    """The marks drawn inside come from that step, at one position or at all."""
+    name = step if isinstance(step, str) else step.name
+    with s.canvas.traced(role, f"{s.plan.name}/{name}", "" if k is None else s.plan.labels[k], s.number):
+        yield
+
+
+def mark_line(s: Stage, step: Step | str, a: complex, b: complex, style: str = "construction", k: int | None = None,
+              role: Role = "construction") -> None:
+    """Line that a step leaves."""
+    with of(s, step, role, k):
+        s.canvas.line(a, b, style)
+
+
+def mark_dot(s: Stage, step: Step | str, at: complex, radius: float, k: int | None = None) -> None:
+    """Dot of a point."""
+    with of(s, step, "point", k):
+        s.canvas.dot(at, radius)
+
+
+def draw_curve(s: Stage, step: Step, style: str, points: Any = None, closed: bool = False) -> None:
+    """Smooth curve through the points of a step, or through others that it goes through, mm."""
+    with of(s, step, "curve"):
+        s.canvas.polyline(s.frame(step.value) if points is None else points, style, closed=closed)
+
+
+def axes(s: Stage, step: Step | str, x: float, y: tuple[float, float], before: float = 3.0) -> None:
+    """Axes of a diagram of a step, reaching to ``x`` and from ``y[0]`` to ``y[1]``, mm from its origin."""
+    o = s.frame(0j)
+    with of(s, step, "axis"):
+        s.canvas.arrow(o + 1j * (y[0] - before), o + 1j * y[1], "axis", 3.0)
+        s.canvas.arrow(o, o + x, "axis", 3.0)
 
 
 def distinct(labels: tuple[str, ...], x: Points) -> list[int]:
@@ -95,6 +139,8 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         y -= gap + up
         origins.append(complex(x0, y))
         y -= down
+    stages = [placed(canvas, m.plan, o, 1.0) for o in origins]
+    course = placed(canvas, m.between_plan, origins[0], 1.0)
     _phase_borders(canvas, m, origins, ups)
     heads = (
         f"{m.scales.dds}",
@@ -104,23 +150,28 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     units = ("м",) * 3 if law.symbol == "S" else ("", "", "рад")
     symbols = [", ".join(filter(None, pair)) for pair in zip(m.names, units, strict=True)]
     steps = (m.dds, m.ds, m.s)
-    for o, up, down, curve, ordinates, symbol, head in zip(origins, ups, downs, curves, steps, symbols, heads, strict=True):
-        _diagram(canvas, o, up, down, end, symbol, head)
-        _ordinates(canvas, o, m, ordinates)
-        canvas.polyline(o + curve, "curve")
+    smooth = (m.between, m.plan[m.names[1]], m.plan[m.names[2]])
+    every = zip(stages, ups, downs, curves, steps, symbols, heads, smooth, strict=True)
+    for s, up, down, points, ordinates, symbol, head, step in every:
+        _diagram(s, ordinates[0], up, down, end, symbol, head)
+        _ordinates(s, m, ordinates)
+        draw_curve(course if step is m.between else s, step, "curve", s.frame(0j) + points)
     if m.circle:
-        _auxiliary_circle(canvas, origins[0], m)
-    _integration(canvas, origins[0], origins[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
-    _integration(canvas, origins[1], origins[2], m, m.names[2], m.s, "P_2", "H_2", downs[1])
+        _auxiliary_circle(stages[0], m)
+    _integration(stages[0], stages[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
+    _integration(stages[1], stages[2], m, m.names[2], m.s, "P_2", "H_2", downs[1])
     _phase_angles(canvas, m, origins[2] - 7j)
     _relations(canvas, m, complex(box.x0 + 2.0, origins[2].imag + ups[2]))
 
 
 def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], ups: list[float]) -> None:
     """Lines through all diagrams where rise and fall begin and end, interrupted where the headings stand."""
-    for p in (m.law.rise, m.law.fall):
-        for at in (p.start, p.end):
-            x = origins[0].real + float(m.scales.phi.mm(at))
+    n = m.law.parts
+    s = placed(canvas, m.numbers, origins[0], 1.0)
+    for k in (0, n, n + 1, 2 * n + 1):
+        step = m.numbers[f"x_{m.law.labels[k]}"]
+        x = origins[0].real + float(step.value)
+        with of(s, step, "construction"):
             for upper, lower, up in zip(origins, origins[1:], ups[1:], strict=False):
                 head = lower.imag + up
                 canvas.line(complex(x, upper.imag), complex(x, head + 11.0), "construction")
@@ -154,79 +205,83 @@ def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:
         canvas.text(complex(at.real, at.imag - 8.0 * i), line, 3.5)
 
 
-def _diagram(canvas: Canvas, o: complex, up: float, down: float, end: float, symbol: str, head: str) -> None:
+def _diagram(s: Stage, step: Step, up: float, down: float, end: float, symbol: str, head: str) -> None:
     """Axes of one diagram with the letter of its quantity and its scale factor."""
-    canvas.arrow(o - 1j * (down + 3.0 if down else 0.0), o + 1j * (up + 10.0), "axis", 3.0)
-    canvas.arrow(o, o + end + 13.0, "axis", 3.0)
+    canvas, o = s.canvas, s.frame(0j)
+    axes(s, step, end + 13.0, (-down, up + 10.0), 3.0 if down else 0.0)
     canvas.text(o + complex(2.5, up + 6.0), symbol, 3.5)
     canvas.text(o + complex(22.0, up + 6.0), head, 3.5)
     canvas.label(o + end + 12.0, "φ, рад", 1j, 3.5, 1.5, leader=False)
 
 
-def _ordinates(canvas: Canvas, o: complex, m: FollowerMotion, steps: list[Step]) -> None:
+def _ordinates(s: Stage, m: FollowerMotion, steps: list[Step]) -> None:
     """Ordinates of the numbered positions, their numbers on the other side of the axis."""
-    points = np.array([complex(s.value) for s in steps])
+    points = np.array([complex(step.value) for step in steps])
     kept = distinct(m.law.labels, points.real)
     narrow = min(np.diff(points.real[kept]), default=10.0) < 6.0
     for k in kept:
-        at = o + points[k].real
-        canvas.line(at, o + points[k], "thin")
+        at = s.frame(points[k].real)
+        mark_line(s, steps[k], at, s.at(steps[k]), "thin")
         side = -1j if points[k].imag > -1e-6 else 1j
-        canvas.label(at, m.law.labels[k], side, 2.5 if narrow else 3.5, 0.7, leader=False)
+        s.canvas.label(at, m.law.labels[k], side, 2.5 if narrow else 3.5, 0.7, leader=False)
 
 
-def _auxiliary_circle(canvas: Canvas, o: complex, m: FollowerMotion) -> None:
+def _auxiliary_circle(s: Stage, m: FollowerMotion) -> None:
     """Auxiliary circles of the law with their division points carried to the ordinates."""
-    centre = o + complex(m.plan["M"].value)
+    canvas, centre = s.canvas, s.at("M")
     half = m.law.parts + 1
     radii = {}
     phases = [(name, first) for name, first in (("a_1", 0), ("a_2", half)) if first in m.circle]
-    largest = max(abs(complex(m.circle[first].value) - complex(m.plan["M"].value)) for _, first in phases)
+    largest = max(abs(s.at(m.circle[first]) - centre) for _, first in phases)
     for name, first in phases:
-        at = np.array([o + complex(m.circle[first + k].value) for k in range(half)])
+        at = np.array([s.at(m.circle[first + k]) for k in range(half)])
         radius = float(abs(at[0] - centre))
         radii[name] = radius
-        canvas.circle(centre, radius, "thin")
+        with of(s, name, "construction"):
+            canvas.circle(centre, radius, "thin")
         shown: list[complex] = []
         for k, p in enumerate(at):
-            canvas.line(p, o + complex(m.dds[first + k].value), "construction")
+            play(s, [m.dds[first + k]])
             if any(abs(p - q) < 0.5 for q in shown):
                 continue
             shown.append(p)
-            canvas.line(centre, p, "construction")
-            canvas.dot(p, 0.5)
+            mark_line(s, m.circle[first + k], centre, p, "construction")
+            mark_dot(s, m.circle[first + k], p, 0.5)
             same = [m.law.labels[first + j] for j in range(half) if abs(at[j] - p) < 0.5]
             outwards = (p - centre) / radius
             canvas.label(p, ", ".join(same), -outwards if radius >= largest - 1e-9 else outwards, 2.5, 0.5, leader=False)
     reach = largest + 3.0
-    canvas.line(centre - reach, centre + reach, "centre")
-    canvas.line(centre - 1j * reach, centre + 1j * reach, "centre")
+    with of(s, "M", "axis"):
+        canvas.line(centre - reach, centre + reach, "centre")
+        canvas.line(centre - 1j * reach, centre + 1j * reach, "centre")
     angle = 1.15
     for name, radius in radii.items():
         tip = centre + rect(radius, pi - angle)
-        canvas.arrow(centre, tip, "thin", 2.5)
+        with of(s, name, "dimension"):
+            canvas.arrow(centre, tip, "thin", 2.5)
         canvas.label(centre + rect(0.6 * radius, pi - angle), name, 1j * rect(1, pi - angle), 3.5, 0.6, leader=False)
 
 
-def _integration(canvas: Canvas, upper: complex, lower: complex, m: FollowerMotion, symbol: str, ends: list[Step],
+def _integration(upper: Stage, lower: Stage, m: FollowerMotion, symbol: str, ends: list[Step],
                  pole: str, distance: str, down: float) -> None:
     """Rays from the pole of the upper diagram, rectangles of equal area, chords of the lower diagram."""
-    plan = m.plan
-    at = upper + complex(plan[f"{symbol}_P"].value)
+    plan, canvas, origin = m.plan, upper.canvas, upper.frame(0j)
+    at = upper.at(f"{symbol}_P")
     lowest = 0.0
     for first, last in pairwise(dict.fromkeys(s.name for s in ends)):
         label = last.removeprefix(f"{symbol}_")
-        middle, cut = complex(plan[f"{symbol}_m{label}"].value), complex(plan[f"{symbol}_{label}′"].value)
-        start, end = complex(plan[first].value), complex(plan[last].value)
-        canvas.line(upper + complex(start.real, middle.imag), upper + complex(end.real, middle.imag), "thin")
-        canvas.line(upper + cut, upper + complex(start.real, middle.imag), "construction")
-        canvas.line(at, upper + cut, "construction")
-        canvas.line(lower + start, lower + end, "construction")
-        lowest = min(lowest, cut.imag)
-    canvas.dot(at, 0.6)
+        middle, carried = plan[f"{symbol}_m{label}"], plan[f"{symbol}_{label}′"]
+        height = 1j * complex(middle.value).imag
+        start, end = (upper.frame(complex(plan[name].value).real + height) for name in (first, last))
+        mark_line(upper, middle, start, end, "thin")
+        mark_line(upper, carried, upper.at(carried), start, "construction")
+        play(upper, [f"{symbol}_P{label}′"])
+        play(lower, [last])
+        lowest = min(lowest, complex(carried.value).imag)
+    mark_dot(upper, f"{symbol}_P", at, 0.6)
     canvas.label(at, pole, -1 + 1j, 3.5, 0.8, leader=False)
-    canvas.line(at, upper, "axis")
-    canvas.dimension(at, complex(upper), min(lowest, -down) - 7.0, distance)
+    play(upper, [f"{symbol}_P"], "axis")
+    canvas.dimension(at, complex(origin), min(lowest, -down) - 7.0, distance)
 
 
 # --- pressure angle -------------------------------------------------------------------------------------------------
@@ -245,20 +300,22 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     tall = Scale("μ_α", handy((up + down) / (area.height - 8)), "град/мм")
     canvas.title(box, "Угол давления", f"{tall},  {across}")
     o = complex(area.x0 + (area.width - 10 - across.mm(360)) / 2, area.centre.imag - 4 + tall.mm(down - up) / 2)
-    canvas.arrow(o - 1j * (tall.mm(down) + 3), o + 1j * (tall.mm(up) + 9), "axis", 3.0)
-    canvas.arrow(o, o + across.mm(360) + 9, "axis", 3.0)
+    mu = radians(across.mu), radians(tall.mu)
+    course, found = placed(canvas, dense.plan, o, mu), placed(canvas, inv.plan, o, mu)
+    axes(course, dense.angles, across.mm(360) + 9, (-tall.mm(down), tall.mm(up) + 9))
     canvas.text(o + complex(2.5, tall.mm(up) + 5.5), "α, град", 3.5)
     canvas.label(o + across.mm(360) + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
     for limit, side in ((allowed, 1.0), (-allowed, -1.0)):
         level = o + 1j * tall.mm(limit)
-        canvas.line(level, level + across.mm(360), "hidden")
+        with canvas.traced("construction", f"{cam.zone.plan.name}/{cam.zone.borders[0].name}", "", course.number):
+            canvas.line(level, level + across.mm(360), "hidden")
         name = f"[α] = {number(limit)}°" if side > 0 else "−[α]"
         canvas.label(level + across.mm(300), name, 1j * side, 3.5, 0.8, leader=False)
-    canvas.polyline(o + across.mm(np.degrees(dense.phi)) + 1j * tall.mm(y), "curve")
+    draw_curve(course, dense.angles, "curve", o + across.mm(np.degrees(dense.phi)) + 1j * tall.mm(y))
     at = o + across.mm(np.degrees(inv.phi))
     values = tall.mm(np.degrees(inv.angles.value))
     for k in range(len(at)):
-        canvas.line(at[k], at[k] + 1j * values[k], "thin")
+        mark_line(found, inv.angles, at[k], at[k] + 1j * values[k], "thin", k=k)
     n = cam.law.parts
     for k in (0, n // 2, n, n + 1, n + 1 + n // 2, 2 * n + 1):
         if k != n + 1 or abs(at[n + 1] - at[n]) > 4:
@@ -274,7 +331,7 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
 def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S, S', S'' and the pressure angle in the numbered positions."""
     cam: Cam = project.cam
-    second = _second_derivative(cam.motion.law)
+    second = _second_derivative(cam)
     columns = [["Положение", *cam.motion.law.labels], ["φ, град", *(fixed(v, 2) for v in np.degrees(cam.inversion.phi))],
                *_diagram_rows(cam.motion, second), *_check_values(cam, second)]
     first = 32.0 if len(second) > 1 else 26.0
@@ -283,9 +340,9 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     canvas.table(complex(box.x0, box.y1), [first, *[width] * (len(columns[0]) - 1)], columns, row, 2.5)
 
 
-def _second_derivative(law: PositionFunction) -> dict[str, Any]:
+def _second_derivative(cam: Cam) -> dict[str, Any]:
     """The second derivative at the numbered positions by the side it is taken from: both limits where it jumps."""
-    before, after = law.dds_beside
+    before, after = cam.exact.before.dds.value, cam.exact.after.dds.value
     if np.allclose(before, after, rtol=0, atol=1e-9 * float(np.abs((before, after)).max())):
         return {"": before}
     return {" (φ−0)": before, " (φ+0)": after}
@@ -307,9 +364,9 @@ def _check_values(cam: Cam, second: Mapping[str, Any]) -> Iterator[list[str]]:
     if "roller" in cam.traits:
         yield ["α, град", *(fixed(v, 1) for v in np.degrees(cam.inversion.angles.value))]
         return
-    s = cam.motion.law.at_positions(lambda p, x: p.s(x))
-    for side, values in second.items():
-        yield [f"(S + S''){side}·10^3, м", *(fixed(v * 1e3, 2) for v in s + values)]
+    before, after = cam.plate.sides  # type: ignore[attr-defined]
+    for side, sums in zip(second, (before, after), strict=False):
+        yield [f"(S + S''){side}·10^3, м", *(fixed(v * 1e3, 2) for v in sums.value)]
 
 
 # --- spring ---------------------------------------------------------------------------------------------------------
@@ -321,12 +378,8 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     cam: Cam = project.cam
     spring, law = cam.spring, cam.law
     assert spring is not None
-    pieces = []
-    for p in law.phases[:-1] if law.lower_dwell.angle else law.phases:
-        for a, b in zip((0.0, *p.law.jumps), (*p.law.jumps, 1.0), strict=True):
-            x = np.linspace(a + 1e-12, b - 1e-12, 65)
-            pieces.append((p.phi(x), spring.force(p.s(x)), spring.inertia(np.asarray(p.dds(x)))))
-    phi, force, inertia = (np.concatenate([piece[i] for piece in pieces]) for i in range(3))
+    steps = spring.course
+    phi, force, inertia = (step.value for step in steps)
     top, low = float(max(force.max(), inertia.max())), float(min(inertia.min(), 0.0))
     lines = _spring_lines(spring, law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
@@ -341,24 +394,26 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     def at(angle: Any, y: Any) -> Any:
         return o + across.mm(np.degrees(angle)) + 1j * tall.mm(y)
 
-    canvas.arrow(o + 1j * (tall.mm(low) - 3), o + 1j * (tall.mm(top) + 8), "axis", 3.0)
-    canvas.arrow(o, o + end + 10, "axis", 3.0)
+    mu = radians(across.mu), tall.mu
+    course, found = placed(canvas, spring.course_plan, o, mu), placed(canvas, spring.plan, o, mu)
+    axes(course, steps[1], end + 10, (tall.mm(low), tall.mm(top) + 8))
     canvas.text(o + complex(2.5, tall.mm(top) + 4.5), "F, Q, Н", 3.5)
     canvas.label(o + end + 7, "φ, град", 1j, 3.5, 1.5, leader=False)
-    canvas.polyline(at(phi, force), "curve")
-    canvas.polyline(np.concatenate(([o], at(phi, inertia), [o + end])), "main")
-    x = at(law.positions, 0.0)
+    draw_curve(course, steps[1], "curve", at(phi, force))
+    draw_curve(course, steps[2], "main", np.concatenate(([o], at(phi, inertia), [o + end])))
+    x, forces = at(law.positions, 0.0), spring.at_positions
     for k in distinct(law.labels, x.real):
-        value = spring.force(float(law.at_positions(lambda p, x: p.s(x))[k]))
-        canvas.line(complex(x[k]), complex(at(law.positions[k], value)), "thin")
+        with canvas.traced("construction", f"{cam.exact.positions.plan.name}/{forces.name}", law.labels[k], found.number):
+            canvas.line(complex(x[k]), complex(at(law.positions[k], forces.value[k])), "thin")
         canvas.label(complex(x[k]), law.labels[k], -1j, 2.5, 0.6, leader=False)
     k = int(np.argmax(force))
     canvas.label(complex(at(phi[k], force[k])), "F", 1j, 3.5, 1.0)
     k = int(np.argmin(inertia))
     canvas.label(complex(at(phi[k], inertia[k])), "Q", 1.0 + 0j, 3.5, 1.0)
     worst = float(spring.force(law.s(spring.worst_phi)))
-    for y in (worst, worst / spring.worst):
-        canvas.dot(complex(at(spring.worst_phi, y)), 0.8)
+    with of(found, "k_min", "point"):
+        for y in (worst, worst / spring.worst):
+            canvas.dot(complex(at(spring.worst_phi, y)), 0.8)
     if not beside:
         lines_of_text(canvas, box, lines)
         return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase, rect
+from dataclasses import replace
 from itertools import pairwise
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,8 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import for_cams, lines_of_text, standard
+from tmm_sheets.sheets.cam import draw_curve, for_cams, lines_of_text, mark_dot, mark_line, of, placed, standard
+from tmm_sheets.sheets.player import Stage, play
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -34,29 +36,31 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     canvas.scales[cam.inversion.plan.name] = picture.scale
     canvas.title(box, "Построение профиля кулачка", f"М {picture.drawn}:{picture.real}   {picture.scale}")
     inv, at, r = cam.inversion, picture.at, picture.roller
-    _circles(canvas, picture)
-    _inverted(canvas, picture)
+    s, dense = (placed(canvas, i.plan, picture.origin, picture.scale.mu, phase(picture.turn)) for i in (inv, cam.dense))
+    _circles(s, picture)
+    _inverted(s, picture)
     if "roller" in cam.traits:
-        canvas.polyline(at(cam.dense.centres.value[:-1]), "centre", closed=True)
+        draw_curve(dense, cam.dense.centres, "centre", at(cam.dense.centres.value[:-1]), closed=True)
     labels = _joined(inv)
     for k, p in enumerate(inv.centres.value):
         if k not in labels:
             continue
         if r > 0:
-            canvas.circle(at(p), r, "main" if k == 0 else "construction")
+            play(replace(s, k=k), ["F"], "main" if k == 0 else "construction")
         if k == 0 and r > 8:
             # On the side from which the cam turns: the arcs of the inversion lie on the other.
             tip = rect(r, picture.first - cam.right * pi / 3)
-            canvas.arrow(at(p), at(p) + tip, "thin", 3.0)
+            with of(s, "F", "dimension", k):
+                canvas.arrow(at(p), at(p) + tip, "thin", 3.0)
             canvas.label(at(p) + 0.6 * tip, "r_p", 1j * tip * -cam.right, 3.5, 0.6, leader=False)
-        canvas.dot(at(p), 0.6)
+        mark_dot(s, inv.centres, at(p), 0.6, k=k)
         if k:
             canvas.label(at(p), labels[k], complex(p) * picture.turn, 3.5, 0.8)
-    canvas.polyline(at(cam.dense.plan["F"].value[:-1]), "curve", closed=True)
+    draw_curve(dense, cam.dense.plan["F"], "curve", at(cam.dense.plan["F"].value[:-1]), closed=True)
     if "F′" in inv.plan:
-        _second_disc(canvas, picture)
-    {"tappet": _tappet, "rocker": _rocker, "flat": _flat}[picture.kind](canvas, picture)
-    _phase_angles(canvas, picture)
+        _second_disc(s, dense, picture)
+    {"tappet": _tappet, "rocker": _rocker, "flat": _flat}[picture.kind](s, picture)
+    _phase_angles(s, picture)
     size = _table_size(cam)
     corner = picture.corner(size) or complex(room.x0, room.y0 + size[1])
     canvas.table(corner, list(_WIDTHS), _given(cam), _ROW, 3.5)
@@ -209,27 +213,30 @@ def _given(cam: Any) -> list[list[str]]:
     return rows
 
 
-def _circles(canvas: Canvas, picture: _ProfilePicture) -> None:
+def _circles(s: Stage, picture: _ProfilePicture) -> None:
     """Circles r0, e and l0 with their radii, drawn where the cam dwells: no follower line is there."""
-    cam, origin, scale = picture.cam, picture.origin, picture.scale
+    cam, origin, scale, canvas = picture.cam, picture.origin, picture.scale, s.canvas
     radii = [("r_0", cam.r0, 0.3)]
     if picture.kind == "tappet":
         radii.append(("e", abs(cam.zone.e), 0.17))  # type: ignore[attr-defined]
-    for _, radius, _ in radii:
-        canvas.circle(origin, scale.mm(radius), "thin")
+    for (_, radius, _), step in zip(radii, ("C" if picture.kind == "rocker" else "N", "T"), strict=False):
+        with of(s, step, "construction"):
+            canvas.circle(origin, scale.mm(radius), "thin")
     reach = scale.mm(cam.r0) + 6.0
     for way in (reach, 1j * reach):
         shown = segment_inside(picture.room, origin - way, origin + way)
         if shown:
-            canvas.line(*shown, "centre")
-    canvas.circle(origin, 3.0, "main")
+            mark_line(s, "O", *shown, "centre", role="axis")
+    with of(s, "O", "symbol"):
+        canvas.circle(origin, 3.0, "main")
     idle = cam.law.lower_dwell
     start = picture.first
     for name, radius, share in radii:
         if scale.mm(radius) > 8:
             angle = start + cam.right * (idle.start + share * idle.angle)
             tip = origin + rect(scale.mm(radius), angle)
-            canvas.arrow(origin + rect(3.0, angle), tip, "thin", 3.0)
+            with of(s, "O", "dimension"):
+                canvas.arrow(origin + rect(3.0, angle), tip, "thin", 3.0)
             back = max(scale.mm(radius) - 11.0, 0.6 * scale.mm(radius))
             canvas.label(origin + rect(back, angle), name, 1j * rect(1, angle), 3.5, 0.6)
     canvas.label(origin, "O", -1 - 1j, 5.0, 3.5)
@@ -239,42 +246,53 @@ def _arcs(inv: Inversion, right: float) -> list[tuple[complex, float]]:
     """Arcs about O: the mark each starts from and how far it goes round, rad; of equal radii the longest."""
     furthest: dict[float, tuple[complex, float]] = {}
     for centre, mark in zip(inv.centres.value, inv.axis.value, strict=True):
-        turn = float(right * np.angle(centre / mark)) % (2 * pi)
+        turn = float(right * np.angle(centre / mark) + 1e-9) % (2 * pi) - 1e-9  # none is none, not a whole turn
         key = round(abs(mark) / abs(inv.axis.value[0]), 6)
         if turn < 2 * pi - 1e-6 and (key not in furthest or turn > furthest[key][1]):
             furthest[key] = (complex(mark), turn)
     return list(furthest.values())
 
 
-def _inverted(canvas: Canvas, picture: _ProfilePicture) -> None:
+def _inverted(s: Stage, picture: _ProfilePicture) -> None:
     """Follower lines or arms in the inverted motion, and arcs about O through the marks of the path."""
-    cam, at = picture.cam, picture.at
+    cam, at, canvas = picture.cam, picture.at, s.canvas
     inv, right = cam.inversion, cam.right
-    if inv.feet is not None:
-        for centre, foot, line in zip(inv.centres.value, inv.feet.value, inv.lines.value, strict=True):
-            canvas.line(at(foot), at(centre) + 5.0 * line * picture.turn, "construction")
-    elif picture.kind == "rocker":
-        for k, (centre, end) in enumerate(zip(inv.centres.value, inv.ends.value, strict=True)):
-            if k:
+    for k, (centre, line, end) in enumerate(zip(inv.centres.value, inv.lines.value, inv.ends.value, strict=True)):
+        with of(s, inv.ends if picture.kind == "rocker" else inv.lines, "construction", k):
+            if picture.kind != "rocker":
+                start = picture.origin if inv.feet is None else at(inv.feet.value[k])
+                canvas.line(start, at(centre) + 5.0 * line * picture.turn, "construction")
+            elif k:
                 canvas.line(at(end), at(centre), "construction")
-    else:
-        for centre, line in zip(inv.centres.value, inv.lines.value, strict=True):
-            canvas.line(picture.origin, at(centre) + 5.0 * line * picture.turn, "construction")
     for mark, turn in _arcs(inv, right):
         start = phase(mark * picture.turn)
         ends = sorted((start, start + right * turn))
-        canvas.arc(picture.origin, abs(at(mark) - picture.origin), ends[0], ends[1], "construction")
+        with of(s, inv.centres, "construction", int(np.argmin(np.abs(inv.axis.value - mark)))):
+            canvas.arc(picture.origin, abs(at(mark) - picture.origin), ends[0], ends[1], "construction")
 
 
-def _tappet(canvas: Canvas, picture: _ProfilePicture) -> None:
+def _tappet(s: Stage, picture: _ProfilePicture) -> None:
     """Translating follower in position 0: roller, rod, guide, and the marks of its path."""
-    _rod(canvas, picture, min(1.8, 0.3 * picture.roller))
+    _rod(s, picture, min(1.8, 0.3 * picture.roller))
 
 
-def _rod(canvas: Canvas, picture: _ProfilePicture, hole: float) -> None:
-    inv, at = picture.cam.inversion, picture.at
+def _rod(s: Stage, picture: _ProfilePicture, hole: float) -> None:
+    inv, at, canvas = picture.cam.inversion, picture.at, s.canvas
     marks = inv.axis.value
-    low = at(marks[0])
+    with of(s, inv.axis, "symbol", 0):
+        _guided(canvas, picture, at(marks[0]), hole)
+    last, side = -10.0, 1.0
+    for k in range(len(marks) // 2):
+        p = at(marks[k])
+        mark_line(s, inv.axis, p - 1.8, p + 1.8, "thin", k=k, role="point")
+        # Marks that lie close together are numbered on both sides in turn.
+        side = -side if p.imag - last < 5.0 else -1.0
+        last = p.imag
+        canvas.label(p + 1.8 * side, inv.plan.labels[k], side + 0j, 3.5, 0.4)
+
+
+def _guided(canvas: Canvas, picture: _ProfilePicture, low: complex, hole: float) -> None:
+    """Rod from ``low`` up, with its guide and the hole of the roller's axis, mm."""
     if hole:
         canvas.circle(low, hole, "main")
     stand = complex(low.real, picture.origin.imag + picture.scale.mm(picture.guide))
@@ -283,103 +301,106 @@ def _rod(canvas: Canvas, picture: _ProfilePicture, hole: float) -> None:
         a, b = stand + complex(2.2 * side, 5.0), stand + complex(2.2 * side, GUIDE - 5.0)
         canvas.line(a, b, "main")
         canvas.hatch(a, b, 1 if side < 0 else -1)
-    last, side = -10.0, 1.0
-    for k in range(len(marks) // 2):
-        p = at(marks[k])
-        canvas.line(p - 1.8, p + 1.8, "thin")
-        # Marks that lie close together are numbered on both sides in turn.
-        side = -side if p.imag - last < 5.0 else -1.0
-        last = p.imag
-        canvas.label(p + 1.8 * side, inv.plan.labels[k], side + 0j, 3.5, 0.4)
 
 
-def _rocker(canvas: Canvas, picture: _ProfilePicture) -> None:
+def _rocker(s: Stage, picture: _ProfilePicture) -> None:
     """Rocker in position 0, circle l0 with the axes of the inverted positions, marks of the path, triangle OAB."""
-    cam, at = picture.cam, picture.at
+    cam, at, canvas = picture.cam, picture.at, s.canvas
     inv = cam.inversion
-    a0, b0 = (complex(at(inv.plan[n].value)) for n in ("A_0", "B_0"))
+    a0, b0 = s.at("A_0"), s.at("B_0")
     radius = abs(a0 - picture.origin)
     ends = sorted(picture.start + cam.right * v for v in (0.0, cam.law.fall.end))
-    canvas.arc(picture.origin, radius, ends[0], ends[1], "thin")
-    canvas.line(picture.origin, a0, "thin")
-    canvas.line(picture.origin, b0, "thin")
+    with of(s, inv.ends, "construction"):
+        canvas.arc(picture.origin, radius, ends[0], ends[1], "thin")
+    for name, end in (("A_0", a0), ("B_0", b0)):
+        mark_line(s, name, picture.origin, end, "thin")
     pivots = inv.ends.value
     for k in range(1, len(pivots)):
         if abs(pivots[k] - pivots[k - 1]) > 1e-9:
-            canvas.dot(at(pivots[k]), 0.6)
+            mark_dot(s, inv.ends, at(pivots[k]), 0.6, k=k)
             canvas.label(at(pivots[k]), f"A_{{{inv.plan.labels[k]}}}", complex(pivots[k]) * picture.turn, 2.5, 0.7)
     marks = at(inv.axis.value[: len(inv.axis.value) // 2])
     arm = abs(b0 - a0)
     first = phase(complex(marks[0] - a0))
     last = first + float(np.angle((marks[-1] - a0) / (marks[0] - a0)))
-    canvas.arc(a0, arm, min(first, last), max(first, last), "thin")
+    with of(s, inv.axis, "construction"):
+        canvas.arc(a0, arm, min(first, last), max(first, last), "thin")
     for k, p in enumerate(marks):
         u = (p - a0) / arm
-        canvas.line(complex(p - 1.8 * u), complex(p + 1.8 * u), "thin")
+        mark_line(s, inv.axis, complex(p - 1.8 * u), complex(p + 1.8 * u), "thin", k=k, role="point")
         if k:
             canvas.label(complex(p + 1.8 * u), inv.plan.labels[k], complex(u), 2.5, 0.4)
     hole = min(1.8, 0.3 * picture.roller)
     u = (b0 - a0) / arm
-    pivot(canvas, a0, -1j if (b0 - a0).imag >= -1e-9 else 1j)
-    canvas.line(a0 + 1.6 * u, b0 - hole * u, "main")
-    canvas.circle(b0, hole, "main")
+    with of(s, "A_0", "symbol"):
+        pivot(canvas, a0, -1j if (b0 - a0).imag >= -1e-9 else 1j)
+    with of(s, "B_0", "symbol"):
+        canvas.line(a0 + 1.6 * u, b0 - hole * u, "main")
+        canvas.circle(b0, hole, "main")
     canvas.label(a0, "A_0", (a0 - b0) / arm, 3.5, 3.0)
     canvas.label(b0, "B_0", -u + 1j, 3.5, 2.0)
     canvas.label(picture.origin + 0.55 * (a0 - picture.origin), "l_0", 1j * (a0 - picture.origin), 3.5, 0.6)
 
 
-def _flat(canvas: Canvas, picture: _ProfilePicture) -> None:
+def _flat(s: Stage, picture: _ProfilePicture) -> None:
     """Flat follower in position 0 and the plates of the inverted positions, whose envelope is the profile."""
     cam, at = picture.cam, picture.at
     inv = cam.inversion
     for k, (a, b) in enumerate(_plates(cam)):
-        canvas.line(complex(at(a)), complex(at(b)), "main" if k == 0 else "construction")
-    for p in inv.plan["F"].value:
-        canvas.dot(at(p), 0.5)
-    _rod(canvas, picture, 0.0)
+        mark_line(s, "⊥ON", complex(at(a)), complex(at(b)), "main" if k == 0 else "construction", k=k)
+    for k, p in enumerate(inv.plan["F"].value):
+        mark_dot(s, "F", at(p), 0.5, k=k)
+    _rod(s, picture, 0.0)
 
 
-def _second_disc(canvas: Canvas, picture: _ProfilePicture) -> None:
+def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
     """Centre profile and profile of the second disc, its roller, and what keeps both rollers at their distance."""
-    cam, at = picture.cam, picture.at
+    cam, at, canvas = picture.cam, picture.at, s.canvas
     dense, inv = cam.dense, cam.inversion
-    canvas.polyline(at(dense.plan["B′"].value[:-1]), "twodot", closed=True)
     outline = dense.plan["F′"].value
-    canvas.polyline(at(outline[:-1]), "hidden", closed=True)
-    for name, of in (("диск 1", dense.plan["F"].value), ("диск 2", outline)):
+    for name, style in (("B′", "twodot"), ("F′", "hidden")):
+        draw_curve(course, dense.plan[name], style, at(dense.plan[name].value[:-1]), closed=True)
+    for name, own in (("диск 1", dense.plan["F"].value), ("диск 2", outline)):
         # Where this disc stands out furthest over the other one.
         other = outline if name == "диск 1" else dense.plan["F"].value
-        k = int(np.argmax([float(np.abs(other - p).min()) for p in of[::4]])) * 4
-        canvas.label(complex(at(of[k])), name, complex(of[k]) * picture.turn, 3.5, 1.5)
+        away = np.array([float(np.abs(other - p).min()) for p in own[::4]])
+        # Along a dwell it is the same: there in the middle.
+        furthest = np.flatnonzero(away > away.max() - 1e-9)
+        k = int(furthest[len(furthest) // 2]) * 4
+        canvas.label(complex(at(own[k])), name, complex(own[k]) * picture.turn, 3.5, 1.5)
     points = at(inv.plan["B′"].value)
     first, second = complex(at(inv.centres.value[0])), complex(points[0])
-    canvas.circle(second, picture.roller, "main")
-    canvas.circle(second, min(1.8, 0.3 * picture.roller), "main")
-    for p in points[1:]:
-        canvas.dot(complex(p), 0.4)
+    with of(s, "F′", "construction", 0):
+        canvas.circle(second, picture.roller, "main")
+    with of(s, "B′", "symbol", 0):
+        canvas.circle(second, min(1.8, 0.3 * picture.roller), "main")
+    for k, p in enumerate(points[1:], 1):
+        mark_dot(s, "B′", complex(p), 0.4, k=k)
     if picture.kind == "rocker":
         a0 = complex(at(inv.plan["A_0"].value))
         u = (second - a0) / abs(second - a0)
-        canvas.line(a0 + 1.6 * u, second - min(1.8, 0.3 * picture.roller) * u, "main")
+        with of(s, "B′", "symbol", 0):
+            canvas.line(a0 + 1.6 * u, second - min(1.8, 0.3 * picture.roller) * u, "main")
         canvas.label(second, "B′_0", 1j * u, 3.5, picture.roller + 1.0)
     else:
         u = (second - first) / abs(second - first)
-        canvas.line(first + picture.roller * u, second - picture.roller * u, "centre")
+        mark_line(s, "B′", first + picture.roller * u, second - picture.roller * u, "centre", k=0)
         canvas.label(second, "B′_0", u + 0.6, 3.5, picture.roller + 1.0)
 
 
-def _phase_angles(canvas: Canvas, picture: _ProfilePicture) -> None:
+def _phase_angles(s: Stage, picture: _ProfilePicture) -> None:
     """Angles of the phases from the line of position 0, the cam's and the inverted sense of rotation."""
-    cam, origin, scale, start = picture.cam, picture.origin, picture.scale, picture.start
+    cam, origin, scale, start, canvas = picture.cam, picture.origin, picture.scale, picture.start, s.canvas
     reach = scale.mm(cam.r0)
     inner = scale.mm(abs(cam.zone.e)) if picture.kind == "tappet" else 0.0  # type: ignore[attr-defined]
     radius = 0.78 * inner if inner > 0.35 * reach else 0.42 * reach
     for p in cam.law.phases:
         ends = sorted(start + cam.right * v for v in (p.start, p.end))
-        canvas.line(origin, origin + rect(reach, start + cam.right * p.start), "thin")
+        mark_line(s, cam.inversion.ends, origin, origin + rect(reach, start + cam.right * p.start), "thin")
         canvas.angle_mark(origin, ends[0], ends[1], radius, p.symbol)
     turn = 0.5 * radius
-    canvas.arc_arrow(origin, turn, start + cam.right * 0.3, start - cam.right * 1.3, "axis")
+    with of(s, "O", "symbol"):
+        canvas.arc_arrow(origin, turn, start + cam.right * 0.3, start - cam.right * 1.3, "axis")
     canvas.label(origin + rect(turn, start - cam.right * 0.6), "ω", rect(1, start - cam.right * 0.6), 5.0, 1.0)
     idle = max(cam.law.phases, key=lambda p: p.angle if p.travel == 0 and p.first == 0 else 0.0)
     # Nearer to the end of the fall: a rocker's arm lies over the beginning of the rise.
@@ -387,7 +408,8 @@ def _phase_angles(canvas: Canvas, picture: _ProfilePicture) -> None:
     room, around = picture.room, reach + 9.0
     if not all(room.contains(origin + rect(around + 2.0, middle + turned)) for turned in (-0.25, 0.0, 0.25)):
         around = reach - 7.0
-    canvas.arc_arrow(origin, around, middle - 0.22 * cam.right, middle + 0.22 * cam.right, "axis")
+    with of(s, "O", "symbol"):
+        canvas.arc_arrow(origin, around, middle - 0.22 * cam.right, middle + 0.22 * cam.right, "axis")
     canvas.label(origin + rect(around, middle), "−ω", rect(1, middle) * (1 if around > reach else -1), 5.0, 1.0)
 
 
@@ -398,7 +420,8 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     plan, phi = cam.inversion.plan, float(cam.sharpest.three[1])
     d, centre = complex(plan["D_ρ"].value), complex(plan["M"].value)
     chords = [complex(plan[f"{n}_ρ"].value) for n in "EDG"]
-    course = cam.at(phi + np.linspace(-0.6, 0.6, 121)).centres.value
+    beside = cam.at(phi + np.linspace(-0.6, 0.6, 121))
+    course = beside.centres.value
     near = course[np.abs(course - d) < 0.75 * abs(centre - d)]
     every = np.array([*near, centre])
     text = 34.0
@@ -408,18 +431,19 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     middle = complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2)
     origin = room.centre - scale.mm(middle)
 
-    def at(p: Any) -> Any:
-        return origin + scale.mm(p)
-
-    canvas.polyline(at(near), "curve")
-    for a, b in pairwise(chords):
-        canvas.line(at(a), at(b), "thin")
-        canvas.ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
-    canvas.arrow(at(centre), at(d), "thin", 3.0)
-    canvas.dot(at(centre), 0.7)
+    s = placed(canvas, plan, complex(origin), scale.mu)
+    at = s.frame
+    draw_curve(placed(canvas, beside.plan, complex(origin), scale.mu), beside.centres, "curve", at(near))
+    for (a, b) in pairwise(chords):
+        with of(s, "M", "construction"):
+            canvas.line(at(a), at(b), "thin")
+            canvas.ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
+    with of(s, "ρ_min", "dimension"):
+        canvas.arrow(at(centre), at(d), "thin", 3.0)
+    mark_dot(s, "M", at(centre), 0.7)
     outwards = (d - centre) / abs(d - centre)
     for name, p in zip("EDG", chords, strict=True):
-        canvas.dot(at(p), 0.7)
+        mark_dot(s, f"{name}_ρ", at(p), 0.7)
         canvas.label(at(p), name, outwards + 0.6 * (p - d) / max(abs(p - d), 1e-12), 3.5, 1.5)
     canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
     canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import degrees, pi, tan
+from dataclasses import replace
+from math import degrees, pi, radians, tan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,8 +15,8 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import distinct, for_cams, lines_of_text
-from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.cam import axes, distinct, draw_curve, for_cams, lines_of_text, mark_dot, mark_line, of, placed
+from tmm_sheets.sheets.player import Stage, play
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
@@ -27,7 +28,7 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     cam: TappetCam = project.cam
     z = cam.zone
     slope = tan(z.alpha)
-    curve, axis, apex = z.curve(), complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
+    curve, axis, apex = z.curve.value, complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
     stroke = cam.law.stroke
     touches = [(complex(t.value), z.right * side) for t, side in zip(z.touching, (1.0, -1.0), strict=True)]
     tops = [apex + (min(t.imag + 0.25 * stroke, 1.05 * stroke) - apex.imag) * complex(side * slope, 1.0) for t, side in touches]
@@ -47,74 +48,56 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     scale = Scale("μ_S", mu, "м/мм")
     canvas.scales[z.plan.name] = scale
     canvas.title(box, "Определение основных размеров", f"μ_S = μ_S' = {number(scale.mu)} м/мм")
-    at = Frame(scale, room.centre - scale.mm(complex((xs.max() + xs.min()) / 2, (stroke + low.imag) / 2)))
-    hatch_polygon(canvas, np.array([at(apex), at(low - depth * slope), at(low + depth * slope)]), 4.0)
-    for (touch, side), top in zip(touches, tops, strict=True):
-        canvas.line(at(top), at(low - depth * slope * side), "axis")
+    origin = room.centre - scale.mm(complex((xs.max() + xs.min()) / 2, (stroke + low.imag) / 2))
+
+    stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
+    at = stage.frame
+    v, o, b, c = at(apex), stage.at("O"), stage.at("B"), stage.at("C")
+    cone = np.array([v, at(low - depth * slope), at(low + depth * slope)])
+    hatch_polygon(canvas, cone, 4.0)
+    for (touch, side), top, step, border in zip(touches, tops, z.touching, z.borders, strict=True):
+        mark_line(stage, border, at(top), at(low - depth * slope * side), "axis")
         if abs(touch) > 0:
-            canvas.dot(at(touch), 0.6)
-        canvas.label(at(touch), "K_1" if side == z.right else "K_2", side + 0j, 3.5, 1.0)
-    _tappet_axes(canvas, cam, at)
-    canvas.polyline(at(curve), "curve")
-    _tappet_positions(canvas, cam, at)
-    _tappet_dimensions(canvas, cam, at, apex)
-    lines_of_text(canvas, box, _tappet_lines(cam, scale))
-
-
-def _tappet_axes(canvas: Canvas, cam: TappetCam, at: Frame) -> None:
-    """The axis of S with what lies below the stroke, and that of S'."""
-    z, stroke = cam.zone, cam.law.stroke
-    canvas.arrow(at(complex(z.plan["C"].value)) - 4j, at(1j * stroke) + 9j, "axis", 3.0)
-    canvas.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
-    curve = z.curve()
-    reach = at(complex(curve.real[np.argmax(np.abs(curve.real))]))
-    canvas.arrow(at(0j), reach + 10 * z.right, "axis", 3.0)
-    canvas.label(reach + 8 * z.right, "S', м", -1j, 3.5, 1.5, leader=False)
-
-
-def _tappet_positions(canvas: Canvas, cam: TappetCam, at: Frame) -> None:
-    """The segments S' of the numbered positions; of those that fall together (no dwell between) the first."""
-    z = cam.zone
-    points = [complex(p) for p in z.points.value]
-    for k, p in enumerate(points):
-        if k and abs(p - points[k - 1]) < 1e-9:
+            mark_dot(stage, step, at(touch), 0.6)
+        canvas.label(at(touch), step.name, side + 0j, 3.5, 1.0)
+    reach = float(curve.real[np.argmax(np.abs(curve.real))])
+    with of(smooth, z.curve, "axis"):
+        canvas.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
+        canvas.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
+        canvas.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
+    canvas.label(at(complex(reach)) + 8 * z.right, "S', м", -1j, 3.5, 1.5, leader=False)
+    draw_curve(smooth, z.curve, "curve")
+    points, labels = np.asarray(z.points.value), z.plan.labels
+    for k in range(len(points)):
+        if k and abs(points[k] - points[k - 1]) < 1e-9:
             continue
-        canvas.line(at(1j * p.imag), at(p), "thin")
-        canvas.dot(at(p), 0.5)
-        canvas.label(at(p), z.plan.labels[k], p - 1j * cam.law.stroke / 2, 3.5, 0.8)
-
-
-def _tappet_dimensions(canvas: Canvas, cam: TappetCam, at: Frame, apex: complex) -> None:
-    """The axis of the cam with S0, e and r0, and the permitted angles in the zone's apex."""
-    z = cam.zone
-    axis = complex(z.apex.value)
-    v, o, b, c = at(apex), at(axis), at(0j), at(complex(z.plan["C"].value))
-    canvas.line(o, b, "main")
-    canvas.line(c, o, "thin")
-    canvas.line(v, v + 1j * at.scale.mm(0.75 * z.s0), "centre")
-    if abs(v - o) > 1:
-        canvas.line(o - 4j, at(complex(axis.real, 0.0)), "centre")
-    canvas.dot(o, 0.9)
+        mark_line(stage, z.points, at(1j * points[k].imag), at(points[k]), "thin", k=k)
+        mark_dot(stage, z.points, at(points[k]), 0.5, k=k)
+        away = points[k] - 1j * stroke / 2
+        canvas.label(at(points[k]), labels[k], complex(away), 3.5, 0.8)
+    mark_line(stage, "r_0", o, b, "main")
+    mark_line(stage, "C", c, o, "thin")
+    mark_line(stage, "V" if "V" in z.plan else "O", v, v + 1j * scale.mm(0.75 * z.s0), "centre", role="axis")
+    with of(stage, "O", "axis"):
+        if abs(v - o) > 1:
+            canvas.line(o - 4j, at(complex(axis.real, 0.0)), "centre")
+    mark_dot(stage, "O", o, 0.9)
     canvas.label(o, "O", -1j + z.right, 5.0, 1.5)
     canvas.label(b, "B", -z.right + 0j, 3.5, 1.0)
     canvas.label(c, "C", -z.right - 1j, 3.5, 0.8)
-    radius = 0.5 * at.scale.mm(z.s0)
+    radius = 0.5 * scale.mm(z.s0)
     canvas.angle_mark(v, pi / 2, pi / 2 + z.alpha, radius, "[α]")
     canvas.angle_mark(v, pi / 2 - z.alpha, pi / 2, radius, "[α]")
     canvas.dimension(c, b, 9.0 * z.right, "S_0")
     if abs(o - c) > 6:
         canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8)
     canvas.label((o + b) / 2, "r_0", z.right * 1 + 0.6j, 3.5, 0.6)
-
-
-def _tappet_lines(cam: TappetCam, scale: Scale) -> list[str]:
-    """Main dimensions in formulas and numbers."""
-    z, factor = cam.zone, number(scale.mu)
+    factor = number(scale.mu)
     measured = [f"{name} = |{segment}|·μ_S = {fixed(scale.mm(abs(value)), 2)}·{factor} = {fixed(abs(value) * 1e3, 3)}·10^{{−3}} м"
                 for name, segment, value in (("S_0", "CB", z.s0), ("e", "CO", z.e), ("r_0", "OB", z.r0))]
     if cam.data.eccentricity is not None:
         measured[1] = f"e = {number(z.e * 1e3)} мм — по заданию"
-    return measured
+    lines_of_text(canvas, box, measured)
 
 
 @for_cams
@@ -123,7 +106,7 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     cam: RockerCam = project.cam
     z = cam.zone
     pivot, apex = complex(z.plan["A"].value), complex(z.apex.value)
-    curve = z.curve()
+    curve = z.curve.value
     every = np.array([pivot, apex, 0j, *np.asarray(z.axis.value), *curve])
     x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
     measured = _rocker_lines(cam)
@@ -140,12 +123,14 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     scale = Scale("μ_l", mu, "м/мм")
     canvas.scales[z.plan.name] = scale
     canvas.title(box, "Определение основных размеров", f"{scale}")
-    at = Frame(scale, room.centre - scale.mm(complex((x0 + x1) / 2, (y1 + low) / 2)))
+    origin = complex(room.centre - scale.mm(complex((x0 + x1) / 2, (y1 + low) / 2)))
+    stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
+    at = stage.frame
     picture = Box(at(complex(x0)).real - 6, at(1j * low).imag, at(complex(x1)).real + 6, at(1j * y1).imag + 4)
-    _permitted(canvas, cam, at, picture)
-    _rocker_positions(canvas, cam, at)
-    canvas.polyline(np.asarray(at(curve)), "curve")
-    _rocker_and_axis(canvas, cam, at, picture)
+    _permitted(stage, cam, picture, scale)
+    _rocker_positions(stage, cam)
+    draw_curve(smooth, z.curve, "curve")
+    _rocker_and_axis(stage, cam, picture)
     measured = _rocker_lines(cam, scale)
     if not beside:
         lines_of_text(canvas, box, measured)
@@ -154,12 +139,12 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
         canvas.text(complex(box.x1 - text + 6.0, box.y1 - 40.0 - 8.0 * i), line, 3.5)
 
 
-def _permitted(canvas: Canvas, cam: RockerCam, at: Frame, picture: Box) -> None:
+def _permitted(s: Stage, cam: RockerCam, picture: Box, scale: Scale) -> None:
     """The allowed zone, the rays under the permitted pressure angle and the borders that touch the curve, inside the picture."""
-    z = cam.zone
+    z, canvas, at = cam.zone, s.canvas, s.frame
     corners = [complex(picture.x0, picture.y0), complex(picture.x1, picture.y0),
                complex(picture.x1, picture.y1), complex(picture.x0, picture.y1)]
-    region = z.cones.region([complex(at.scale.real(p - at.origin)) for p in corners])
+    region = z.cones.region([complex(scale.real(p - at(0j))) for p in corners])
     if len(region) > 2:
         hatch_polygon(canvas, np.asarray(at(region)), 5.0)
     reach = picture.width + picture.height
@@ -167,51 +152,55 @@ def _permitted(canvas: Canvas, cam: RockerCam, at: Frame, picture: Box) -> None:
     for k, ray in enumerate(rays):
         shown = segment_inside(picture, complex(at(ray.tip)), complex(at(ray.tip)) + reach * ray.direction)
         if shown and (k < 2 or abs(ray.tip - rays[k - 2].tip) > 1e-9):
-            canvas.line(*shown, "construction")
+            with of(s, z.points, "construction", k // 2):
+                canvas.line(*shown, "construction")
     for touch, border in zip(z.touching, z.borders, strict=True):
-        tip = complex(at(complex(touch.value)))
+        tip = s.at(touch)
         shown = segment_inside(picture, tip, tip + reach * complex(border.value))
         if shown:
-            canvas.line(*shown, "axis")
-        canvas.dot(tip, 0.7)
+            mark_line(s, border, *shown, "axis")
+        mark_dot(s, touch, tip, 0.7)
 
 
-def _rocker_positions(canvas: Canvas, cam: RockerCam, at: Frame) -> None:
+def _rocker_positions(s: Stage, cam: RockerCam) -> None:
     """Path of the roller's axis, the rocker in the numbered positions of the rise, the segments in all of them."""
-    z, labels = cam.zone, cam.zone.plan.labels
+    z, labels, canvas, at = cam.zone, cam.zone.plan.labels, s.canvas, s.frame
     pivot, starts, tips = complex(z.plan["A"].value), np.asarray(z.axis.value), np.asarray(z.points.value)
     numbered = [k for k in range(len(starts)) if k == 0 or abs(starts[k] - starts[k - 1]) > 1e-9]
     rising = [k for k in numbered if k <= cam.law.parts]
     for k in rising[1:]:
-        canvas.line(complex(at(pivot)), complex(at(starts[k])), "thin")
-    canvas.polyline(np.array([complex(at(p)) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))]), "thin")
+        play(replace(s, k=k), [z.axis], "thin")
+    draw_curve(s, z.axis, "thin", np.array([complex(at(p)) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))]))
     for k in numbered:
-        canvas.line(complex(at(starts[k])), complex(at(tips[k])), "thin")
-        canvas.dot(complex(at(tips[k])), 0.5)
+        mark_line(s, z.points, complex(at(starts[k])), complex(at(tips[k])), "thin", k=k)
+        mark_dot(s, z.points, complex(at(tips[k])), 0.5, k=k)
     for k in rising:
-        canvas.dot(complex(at(starts[k])), 0.6)
+        mark_dot(s, z.axis, complex(at(starts[k])), 0.6, k=k)
         canvas.label(complex(at(starts[k])), labels[k], complex(starts[k] - pivot), 3.5, 0.8)
     for k in numbered:
         if abs(at(tips[k]) - at(starts[k])) > 6:
             canvas.label(complex(at(tips[k])), f"{labels[k]}_D", complex(tips[k] - starts[k]), 2.5, 0.6)
 
 
-def _rocker_and_axis(canvas: Canvas, cam: RockerCam, at: Frame, picture: Box) -> None:
+def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box) -> None:
     """The rocker, the cam's axis in the zone's apex, both main dimensions and the permitted angles at the roller."""
-    z = cam.zone
+    z, canvas = cam.zone, s.canvas
     pivot = complex(z.plan["A"].value)
-    a, o, b = complex(at(pivot)), complex(at(complex(z.apex.value))), complex(at(0j))
-    for p in (a, b):
-        hinge(canvas, p)
-    bar(canvas, (o, b, a, o), (a, b))
-    canvas.dot(o, 0.9)
+    a, o, b = (s.at(name) for name in ("A", "O", "B_0"))
+    for p, name in ((a, "A"), (b, "B_0")):
+        with of(s, name, "symbol"):
+            hinge(canvas, p)
+    for name, ends in (("r_0", (o, b)), ("B_0", (b, a)), ("l_0", (a, o))):
+        with of(s, name, "link" if name == "B_0" else "construction"):
+            bar(canvas, ends, (a, b))
+    mark_dot(s, "O", o, 0.9)
     canvas.label(o, "O", -1j, 5.0, 1.5)
     canvas.label(a, "A", pivot - 0.5j * abs(pivot), 3.5, 2.2)
     canvas.label(b, "B_0", -pivot - 0.6j * abs(pivot), 3.5, 2.2)
     canvas.label((o + b) / 2, "r_0", 1j * (o - b), 3.5, 0.8)
     canvas.label((o + a) / 2, "l_0", 1j * (o - a), 3.5, 0.8)
     radius = 0.45 * min(abs(o - b), picture.height / 2)
-    canvas.line(b, b - 1.3j * radius, "centre")
+    mark_line(s, "B_0", b, b - 1.3j * radius, "centre", role="axis")
     for lo, hi in ((-pi / 2, -pi / 2 + z.alpha), (-pi / 2 - z.alpha, -pi / 2)):
         canvas.angle_mark(b, lo, hi, radius, "[α]")
 
@@ -222,11 +211,9 @@ def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:
     lines = [f"{name} = |{segment}|·μ_l = {fixed(value / mu, 2)}·{number(mu)} = {fixed(value * 1e3, 3)}·10^{{−3}} м"
              for name, segment, value in (("r_0", "OB_0", z.r0), ("l_0", "OA", z.l0))]
     lines.append(f"x_i = AB·ψ'_i — {'к оси A' if cam.data.rotation == 'same' else 'на продолжении AB'}")
-    least = z.least()
-    if least is not None and abs(least) < z.r0 * (1 - 1e-6):
-        away = abs(least - complex(z.cones.pivot or 0j))
-        lines += [f"Наименьший возможный r_0 = {fixed(abs(least) * 1e3, 2)} мм",
-                  f"при l_0 = {fixed(away * 1e3, 2)} мм (не в вершине зоны)"]
+    if z.least is not None and (r0 := float(z.least["r_0"].value)) < z.r0 * (1 - 1e-6):
+        lines += [f"Наименьший возможный r_0 = {fixed(r0 * 1e3, 2)} мм",
+                  f"при l_0 = {fixed(float(z.least['l_0'].value) * 1e3, 2)} мм (не в вершине зоны)"]
     return lines
 
 
@@ -235,12 +222,8 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """Graph of S + S'' over the cam angle with its lowest ordinate; radius r0 and sizes of the plate."""
     cam: FlatCam = project.cam
     law, plate = cam.law, cam.plate
-    pieces = []
-    for p in (law.phases[:-1] if law.lower_dwell.angle else law.phases):
-        for a, b in zip((0.0, *p.law.jumps), (*p.law.jumps, 1.0), strict=True):
-            x = np.linspace(a + 1e-12, b - 1e-12, 65)
-            pieces.append((p.phi(x), np.asarray(p.s(x)), np.asarray(p.s(x) + p.dds(x))))
-    phi, s, total = (np.concatenate([piece[i] for piece in pieces]) for i in range(3))
+    steps = plate.course
+    phi, s, total = (step.value for step in steps)
     up, down = max(float(total.max()), law.stroke), max(float(-total.min()), 0.0)
     room = box.inset(14, 44, 14, 34)
     across = Scale("μ_φ", handy(degrees(law.fall.end) / room.width), "град/мм")
@@ -253,30 +236,32 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     def at(angle: Any, y: Any) -> Any:
         return o + across.mm(np.degrees(angle)) + 1j * scale.mm(y)
 
-    canvas.arrow(o - 1j * (scale.mm(down) + 3), o + 1j * (scale.mm(up) + 9), "axis", 3.0)
-    canvas.arrow(o, o + end + 9, "axis", 3.0)
+    pair = radians(across.mu), scale.mu
+    course, found = placed(canvas, plate.course_plan, o, pair), placed(canvas, plate.plan, o, pair)
+    axes(course, steps[2], end + 9, (-scale.mm(down), scale.mm(up) + 9))
     canvas.text(o + complex(2.5, scale.mm(up) + 6.0), "S + S'', м", 3.5)
     canvas.label(o + end + 6, "φ", 1j, 3.5, 1.5, leader=False)
-    canvas.polyline(at(phi, s), "centre")
+    draw_curve(course, steps[1], "centre", at(phi, s))
     k = int(np.argmax(s))
     canvas.label(complex(at(phi[k], s[k])), "S", -1 + 1j, 3.5, 0.8)
     k = int(np.argmax(total))
     canvas.label(complex(at(phi[k], total[k])), "S + S''", 1 + 1j, 3.5, 0.8)
-    canvas.polyline(np.concatenate(([o], at(phi, total), [o + end])), "curve")
-    sums, base = np.asarray(plate.sums.value), law.at_positions(lambda p, x: p.s(x))
+    draw_curve(course, steps[2], "curve", np.concatenate(([o], at(phi, total), [o + end])))
+    sums, base = np.asarray(plate.sums.value), cam.exact.positions.s.value
     along = at(law.positions, 0.0)
     kept = distinct(law.labels, along.real)
-    sides = [at(law.positions, base + dds) for dds in law.dds_beside]
+    sides = [at(law.positions, step.value) for step in plate.sides]
     for k in kept:
-        for point in dict.fromkeys(complex(points[k]) for points in sides):
-            canvas.line(complex(along[k]), point, "thin")
-            canvas.line(complex(at(law.positions[k], base[k])), point, "construction")
-            canvas.dot(point, 0.4)
+        for point in dict.fromkeys(complex(np.round(points[k], 6)) for points in sides):
+            with of(found, plate.sums, "construction", k):
+                canvas.line(complex(along[k]), point, "thin")
+                canvas.line(complex(at(law.positions[k], base[k])), point, "construction")
+            mark_dot(found, plate.sums, point, 0.4, k=k)
         canvas.label(complex(along[k]), law.labels[k], -1j if sums[k] > 0 else 1j, 2.5, 0.6, leader=False)
     lowest = int(np.argmin(total))
     if down > 0:
         level = complex(at(phi[lowest], total[lowest]))
-        canvas.line(complex(o.real - 6.0, level.imag), level, "construction")
+        mark_line(found, "r_min", complex(o.real - 6.0, level.imag), level, "construction")
         canvas.dimension(complex(o.real, o.imag), complex(o.real, level.imag), -7.0, "a")
     r_min = max(plate.r_min, 0.0)
     lines_of_text(canvas, box, [
@@ -300,9 +285,20 @@ def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     real, drawn, scale = standard(p.l1 + p.l2, 0.3 * (p.l1 + p.l2), room.width, room.height - 24)
     canvas.title(box, "Тарелка толкателя", f"М {drawn}:{real}")
     left, right = (p.l1, p.l2) if cam.right > 0 else (p.l2, p.l1)
-    thick, high = 5.0, min(0.75 * room.height, 62.0)
-    axis = complex(room.centre.real - scale.mm(right - left) / 2, room.centre.imag - high / 2)
+    with canvas.as_role("symbol"):
+        axis = _plate_symbol(canvas, room, scale.mm(left), scale.mm(right))
     a, b = axis - scale.mm(left), axis + scale.mm(right)
+    names = ("l_1", "l_2") if cam.right > 0 else ("l_2", "l_1")
+    canvas.dimension(a, axis, -11.0, f"{names[0]} = {fixed(left * 1e3, 1)}")
+    canvas.dimension(axis, b, -11.0, f"{names[1]} = {fixed(right * 1e3, 1)}")
+    canvas.text(complex(box.centre.real, box.y0 + 4), "Точка касания не должна выходить за края тарелки", 3.5, "centre")
+
+
+def _plate_symbol(canvas: Canvas, room: Box, left: float, right: float) -> complex:
+    """The flat follower with its guide, reaching as far to both sides, mm; returns the middle of its face."""
+    thick, high = 5.0, min(0.75 * room.height, 62.0)
+    axis = complex(room.centre.real - (right - left) / 2, room.centre.imag - high / 2)
+    a, b = axis - left, axis + right
     canvas.polyline(np.array([a, b, b + 1j * thick, a + 1j * thick]), "main", closed=True)
     rod = 4.0
     for side in (-rod, rod):
@@ -311,7 +307,4 @@ def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
         canvas.hatch(axis + complex(1.25 * side, 0.45 * high), axis + complex(1.25 * side, 0.85 * high), 1 if side < 0 else -1)
     canvas.line(axis + complex(-rod, high), axis + complex(rod, high), "thin")
     canvas.line(axis - 6j, axis + 1j * (high + 5.0), "centre")
-    names = ("l_1", "l_2") if cam.right > 0 else ("l_2", "l_1")
-    canvas.dimension(a, axis, -11.0, f"{names[0]} = {fixed(left * 1e3, 1)}")
-    canvas.dimension(axis, b, -11.0, f"{names[1]} = {fixed(right * 1e3, 1)}")
-    canvas.text(complex(box.centre.real, box.y0 + 4), "Точка касания не должна выходить за края тарелки", 3.5, "centre")
+    return axis

@@ -5,6 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from tmm_sheets.results import _plain
+
 
 def cam_data(**changes):
     """Example 1 of manual 000, section 7, with changes; angles in degrees, lengths in mm, speed in rpm."""
@@ -34,6 +36,11 @@ def flat_data(**changes):
     """Example 3 of manual 000, section 7, with changes."""
     return cam_data(**{"follower": "flat", "law": "constant", "rise": 140, "upper_dwell": 20, "fall": 120, "stroke": 55,
                        "pressure_angle": None, "roller": None, "base_radius": 30} | changes)
+
+
+def told(cam, *phi):
+    """The results of a cam as numbers."""
+    return _plain(cam.results(*phi))
 
 
 def sine_motion(data, phi):

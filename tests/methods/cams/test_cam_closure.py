@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Polygon
 
-from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
+from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data, told
 from tmm_sheets.methods.cams.cam_profile import cam
 
 
@@ -75,7 +75,7 @@ def test_no_spring_without_its_numbers(data):
 
 
 def test_spring_of_a_flat_follower_in_the_results():
-    r = cam(flat_data(speed=200, follower_mass=0.4)).results()
+    r = told(cam(flat_data(speed=200, follower_mass=0.4)))
     assert set(r["spring"]) == {"largest_inertia", "F_max", "F_0", "stiffness", "way", "worst_ratio", "worst_phi", "closed"}
     assert r["spring"]["worst_ratio"] == pytest.approx(1.1375, rel=1e-11)
 
@@ -141,7 +141,7 @@ def test_second_disc_keeps_the_pressure_angle(data):
 
 def test_results_of_two_discs():
     c = cam(DISCS[0])
-    r = c.results()
+    r = told(c)
     assert set(r["second_disc"]) == {"pitch_curve", "profile"}
     assert r["roller_distance"] == pytest.approx(2 * c.zone.s0 + 0.01, rel=1e-14)
-    assert "arm_angle" in cam(DISCS[2]).results()
+    assert "arm_angle" in told(cam(DISCS[2]))

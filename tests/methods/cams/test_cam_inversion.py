@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from shapely import Polygon
 from shapely import intersection as meet
 
-from tests.methods.cams.cam_cases import flat_data, rocker_data
+from tests.methods.cams.cam_cases import flat_data, rocker_data, told
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_profile import cam
@@ -160,14 +160,14 @@ def test_finished_profile_lifts_the_flat_follower_by_the_law(changes):
 def test_flat_follower_has_no_pressure_angle():
     c = cam(flat_data())
     assert np.abs(c.dense.angles.value).max() < 1e-13
-    r = c.results()
+    r = told(c)
     assert {"r0", "r_min", "l1", "l2", "rho_min"} < set(r)
     assert "r_roller" not in r
     np.testing.assert_allclose(np.hypot(*np.array(r["pitch_curve"]).T), c.r0 + np.array(r["s"]), rtol=1e-12)
 
 
 def test_results_of_a_rocker():
-    r = cam(rocker_data()).results()
+    r = told(cam(rocker_data()))
     assert {"r0", "l0", "least", "r_roller", "rho_min"} < set(r)
     assert "e" not in r
     assert r["pressure_angle"][0] == pytest.approx(-pi / 4, abs=1e-12)
@@ -197,7 +197,7 @@ def test_any_rocker_cam_is_right_or_refused(rise, dwell, fall, swing, angle, sam
         return
     if data.roller is not None and data.roller >= c.largest_roller:
         with pytest.raises(CannotBuild, match=r"less than .* mm"):
-            c.results()
+            told(c)
         return
     assert zone.r0 > 0
     assert polygon(c.dense.plan["F"].value).is_valid

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tests.methods.cams.cam_cases import cam_data, sine_motion
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.cams.cam_displacement import ExactMotion
 from tmm_sheets.methods.cams.cam_laws import CONSTANT, LAWS, LINEAR, SINE, TRAPEZOID, PositionFunction, table_law
 
 KINKS = {"constant": (0.5,), "trapezoid": (1 / 8, 3 / 8, 5 / 8, 7 / 8)}
@@ -170,14 +171,15 @@ def limits(rise, dwell, fall):
 def test_both_limits_where_the_second_derivative_jumps(dwell):
     law = PositionFunction.of(radians(140), dwell, radians(120), 0.055, CONSTANT)
     before, after = limits(radians(140), dwell, radians(120))
-    np.testing.assert_allclose(law.dds_beside[0], 0.055 * before, atol=1e-15)
-    np.testing.assert_allclose(law.dds_beside[1], 0.055 * after, atol=1e-15)
+    exact = ExactMotion(law)
+    np.testing.assert_allclose(exact.before.dds.value, 0.055 * before, atol=1e-15)
+    np.testing.assert_allclose(exact.after.dds.value, 0.055 * after, atol=1e-15)
 
 
 def test_limits_of_a_law_that_fills_the_turn():
     """Without a lower dwell the fall goes over into the rise: the limits at 0 and 16 are those of the other phase."""
     law = PositionFunction.of(pi, 0.0, pi, 0.02, LAWS["cosine"])
-    before, after = law.dds_beside
+    before, after = (side.dds.value for side in (ExactMotion(law).before, ExactMotion(law).after))
     peak = 0.02 * pi**2 / 2 / pi**2
     assert before[[0, 8, 9, 17]] == pytest.approx([peak, -peak, -peak, peak])
     assert after[[0, 8, 9, 17]] == pytest.approx([peak, -peak, -peak, peak])
@@ -185,5 +187,5 @@ def test_limits_of_a_law_that_fills_the_turn():
 
 @pytest.mark.parametrize("law", [SINE, TRAPEZOID])
 def test_a_law_without_jumps_has_one_limit(law):
-    before, after = PositionFunction.of(1.0, 0.3, 1.5, 0.02, law).dds_beside
-    np.testing.assert_allclose(before, after, atol=1e-9 * 0.02 * 2 * pi)
+    exact = ExactMotion(PositionFunction.of(1.0, 0.3, 1.5, 0.02, law))
+    np.testing.assert_allclose(exact.before.dds.value, exact.after.dds.value, atol=1e-9 * 0.02 * 2 * pi)

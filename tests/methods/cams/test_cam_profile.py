@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Polygon
 
-from tests.methods.cams.cam_cases import cam_data, centre_profile, sine_motion
+from tests.methods.cams.cam_cases import cam_data, centre_profile, sine_motion, told
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_profile import cam
@@ -224,7 +224,7 @@ def test_pressure_angle_measured_from_the_profile():
 
 def test_pressure_angle_of_the_results():
     c = cam(cam_data())
-    r = c.results()
+    r = told(c)
     phi, angle = np.array(r["phi"]), np.array(r["pressure_angle"])
     rise = phi <= c.data.rise
     assert np.degrees(np.abs(angle[rise])).max() <= 30 * (1 + 1e-14)
@@ -253,7 +253,7 @@ def test_largest_roller_is_where_the_profile_breaks():
     below, above = (cam(cam_data(roller=c.largest_roller * 1e3 * f)) for f in (0.999, 1.02))
     assert polygon(below.dense.plan["F"].value).is_valid
     with pytest.raises(CannotBuild, match=r"roller of radius 7\.04\d* mm .* less than 6\.906 mm"):
-        above.results()
+        told(above)
     # The profile that is refused does cut itself.
     fine = c.at(c.law.divided(512))
     b, n = fine.centres.value, fine.normals.value
@@ -271,11 +271,11 @@ def test_roller_limited_by_another_part_of_the_profile():
 
 
 def test_results_have_the_keys_of_the_interface():
-    r = cam(cam_data()).results()
+    r = told(cam(cam_data()))
     assert list(r) == ["phi", "s", "ds", "dds", "r0", "e", "s0", "r_roller", "rho_min", "pressure_angle", "pitch_curve", "profile"]
     n = len(r["phi"])
     assert all(len(r[k]) == n for k in ("s", "ds", "dds", "pressure_angle", "pitch_curve", "profile"))
-    few = cam(cam_data()).results(np.radians([0, 50, 170]))
+    few = told(cam(cam_data()), np.radians([0, 50, 170]))
     assert few["s"] == pytest.approx([0, 0.005, 0.005], abs=1e-15)
     for p, q in zip(few["pitch_curve"], few["profile"], strict=True):
         assert hypot(p[0] - q[0], p[1] - q[1]) == pytest.approx(0.0035, rel=1e-12)
@@ -330,7 +330,7 @@ def test_any_cam_is_right_or_refused(rise, dwell, fall, stroke, angle, limit, se
     assert (np.abs(ds - c.zone.e) <= slope * (c.zone.s0 + s) * (1 + 1e-12) + 1e-15).all()
     if data.roller is not None and data.roller >= c.largest_roller:
         with pytest.raises(CannotBuild, match=r"less than .* mm"):
-            c.results()
+            told(c)
         return
     profile = c.dense.plan["F"].value
     assert c.roller < c.largest_roller

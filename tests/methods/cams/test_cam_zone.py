@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from shapely import Point, Polygon, box
 from shapely import intersection as meet
 
-from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
+from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data, told
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_profile import cam
@@ -44,11 +44,11 @@ def test_rockers_of_the_manuals(case):
 
 def test_least_rocker_cam_is_not_in_the_vertex():
     truth = values("000 ex. 2")
-    at_vertex = cam(rocker_data()).results(np.zeros(1))["least"]
+    at_vertex = told(cam(rocker_data()), np.zeros(1))["least"]
     z = cam(rocker_data(centre="least")).zone
-    for name, value, told in (("r0", z.r0, at_vertex["r0"]), ("l0", z.l0, at_vertex["l0"])):
+    for name, value, stated in (("r0", z.r0, at_vertex["r0"]), ("l0", z.l0, at_vertex["l0"])):
         assert value * 1e3 == pytest.approx(float(truth[f"{name} least"]["exact"]), abs=6e-5)
-        assert told == pytest.approx(value, rel=1e-9)
+        assert stated == pytest.approx(value, rel=1e-9)
     # One border only: O is the foot of a perpendicular.
     assert len(z.touching) == 1
     assert cam(rocker_data(centre="least")).dense.angles.value.max() == pytest.approx(pi / 4, abs=2e-5)
@@ -134,7 +134,7 @@ def test_zone_against_half_planes(changes):
     c = cam(data)
     shape = brute_force(data, c.law)
     start = Point(data.arm * 1e3, 0)
-    least = c.results(np.zeros(1))["least"]
+    least = told(c, np.zeros(1))["least"]
     # 701 positions a phase miss the envelope by the square of their spacing.
     assert shape.distance(start) == pytest.approx(least["r0"] * 1e3, abs=2e-3)
     l0, r0 = c.zone.l0 * 1e3, c.zone.r0 * 1e3

@@ -125,6 +125,6 @@ def cam(project: Project, found: Measurables) -> None:
         if plan is not None and plan.name in found.scales:
             found.plans.append((plan, plan.name))
             _lengths(plan, found, plan.name)
-    for name, value in cam.results().items():
+    for name, step in cam.results().items():
         if name in ("r0", "e", "s0", "l0", "r_roller", "rho_min"):
-            scalar(found, "Кулачок", name, 1000 * value, MILLIMETRES)
+            scalar(found, "Кулачок", name, 1000 * float(step.value), MILLIMETRES)

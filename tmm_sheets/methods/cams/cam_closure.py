@@ -6,118 +6,176 @@ Source: manual 003, sheet 2, items 12 and 13.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.methods.cams.cam_displacement import ExactMotion, in_phase
 from tmm_sheets.methods.cams.cam_inversion import Inversion
-from tmm_sheets.methods.cams.cam_laws import PositionFunction
-from tmm_sheets.methods.cams.cam_zone import TURNED
+from tmm_sheets.methods.cams.cam_laws import Phase
+from tmm_sheets.methods.cams.cam_zone import TURNED, found_share
 
 Reals = npt.NDArray[np.float64]
 
+SOURCE = "003, лист 2"
+
 
 # --- spring -----------------------------------------------------------------------------------------------------------
+
+
+def _inertia(dds: Any, mass: Any, speed: Any, length: Any) -> Any:
+    """Force of inertia away from the cam, N; negative where it presses together."""
+    return -dds * (mass * speed**2 * length)
+
+
+def _force(s: Any, preload: Any, rate: Any, length: Any) -> Any:
+    """Force of the spring at a displacement, N."""
+    return preload + rate * length * s
+
+
+MASS = Rule("moved mass", lambda mass: mass, ("number",), "number", "По заданию масса толкателя {name} = {value} кг.", unit="kg")
+REDUCED_MASS = Rule("mass reduced to the roller", lambda inertia, arm: inertia / arm**2, ("number", "length"), "number",
+                    "Масса коромысла, приведённая к оси ролика: {name} = J/AB² = {value} кг.", unit="kg", source=SOURCE)
+SPEED = Rule("speed of the cam", lambda speed: speed, ("number",), "number",
+             "По заданию угловая скорость кулачка {name} = {value} рад/с.",
+             unit="rad/s")
+ARM = Rule("arm of the way", lambda length: length, ("number",), "number", "Перемещение закона умножается на {name} = {value}.",
+           unit="m")
+INERTIA = Rule("force of inertia", _inertia, ("ordinate", "number", "number", "number"), "number",
+               "Сила инерции, отрывающая толкатель от кулачка: {name} = {value} Н.", unit="N", source=SOURCE)
+LARGEST = Rule("largest force of inertia", lambda *of: np.maximum(_inertia(*of), 0.0), INERTIA.takes, "number",
+               "Наибольшая сила инерции, отрывающая толкатель от кулачка: {name} = {value} Н.", unit="N", source=SOURCE)
+PRODUCT = Rule("force by a factor", lambda factor, force: factor * force, ("number", "number"), "number",
+               "Сила пружины {name} = {0}·{1} = {value} Н.", unit="N", source=SOURCE)
+WAY = Rule("way of the spring", lambda length, stroke: length * stroke, ("number", "length"), "number",
+           "Ход пружины {name} = {value} м.", unit="m", source=SOURCE)
+RATE = Rule("stiffness", lambda most, first, way: (most - first) / way, ("number", "number", "number"), "number",
+            "Жёсткость пружины {name} = ({0} − {1})/{2} = {value} Н/м.", unit="N/m", source=SOURCE)
+FORCE = Rule("force of the spring", _force, ("ordinate", "number", "number", "number"), "number",
+             "Сила пружины в этом положении {name} = {value} Н.", unit="N", source=SOURCE)
+RATIO = Rule("force by force of inertia", lambda s, dds, stroke, largest, factor, preload, mass, speed, length: factor * largest * (
+    preload + (1 - preload) * s / stroke) / _inertia(dds, mass, speed, length),
+             ("ordinate", "ordinate", "length") + ("number",) * 6,
+    "number", "Наименьшее отношение силы пружины к силе инерции {name} = {value}.", unit="1", source=SOURCE)
+
+
+def _number(step: str, doc: str) -> property:
+    return property(lambda self: float(self.plan[step].value), doc=doc)
 
 
 @dataclass(frozen=True)
 class Spring:
     """Closing spring along the path of the follower (of a rocker: along the path of its roller); SI.
 
-    ``largest_inertia`` is the largest force of inertia that tends to separate follower and cam (S'' < 0), ``f_max`` the
-    spring force at the end of the rise, ``f_0`` its preload, ``rate`` the stiffness. ``worst`` is the least ratio of spring
-    force and force of inertia where S'' < 0, ``worst_phi`` the cam angle where it occurs: the pair stays closed when it
+    ``plan`` holds Q_max, the largest force of inertia that tends to separate follower and cam (S'' < 0), F_max, the
+    spring force at the end of the rise, its preload F_0 and its stiffness c; the least ratio of spring
+    force and force of inertia where S'' < 0 and the cam angle where it occurs: the pair stays closed when it
     is greater than 1. Gravity and friction are left out, the safe side.
     """
 
-    law: PositionFunction
-    length: float
-    mass: float
-    speed: float
+    exact: ExactMotion
+    plan: Plan
     factor: float
     preload: float
-    largest_inertia: float
-    worst: float
-    worst_phi: float
+    speed: float
 
-    @property
-    def f_max(self) -> float:
-        """Largest force, N."""
-        return self.factor * self.largest_inertia
-
-    @property
-    def f_0(self) -> float:
-        """Force in the lowest position, N."""
-        return self.preload * self.f_max
-
-    @property
-    def way(self) -> float:
-        """Way of the spring, m."""
-        return self.length * self.law.stroke
-
-    @property
-    def rate(self) -> float:
-        """Stiffness, N/m."""
-        return (self.f_max - self.f_0) / self.way
+    mass = _number("m", "Moved mass, kg.")
+    length = _number("l", "What turns a displacement of the law into a way: 1, or the arm of a rocker, m.")
+    largest_inertia = _number("Q_max", "Largest force of inertia that separates follower and cam, N.")
+    f_max = _number("F_max", "Largest force, N.")
+    f_0 = _number("F_0", "Force in the lowest position, N.")
+    way = _number("s", "Way of the spring, m.")
+    rate = _number("c", "Stiffness, N/m.")
+    worst = _number("k_min", "Least ratio of spring force and force of inertia.")
+    worst_phi = _number("φ_k", "Cam angle where it occurs, rad.")
 
     @property
     def closed(self) -> bool:
         """True when the spring holds the pair together in every position."""
-        return self.worst > 1
+        return bool(self.worst > 1)
 
     @property
     def needed_factor(self) -> float:
         """Factor of the largest force from which on the pair stays closed, the share of the preload kept."""
-        return self.factor / self.worst
+        return float(self.factor / self.worst)
 
     def force(self, s: Any) -> Any:
         """Force at displacements of the law (m, or rad of a rocker), N."""
-        return self.f_0 + self.rate * self.length * s
+        return _force(s, self.f_0, self.rate, self.length)
 
-    def inertia(self, dds: Any) -> Any:
-        """Force of inertia away from the cam at second derivatives of the law, N; negative where it presses together."""
-        return -self.mass * self.speed**2 * self.length * dds
+    @cached_property
+    def course_plan(self) -> Plan:
+        """Force and force of inertia over rise and fall, for smooth curves."""
+        at = self.exact.at("cam-spring-between", "Силы пружины и инерции", self.exact.display(), "узлы плавной кривой")
+        numbers = self.plan
+        at.plan.add("F", FORCE, at.s, numbers["F_0"], numbers["c"], numbers["l"])
+        at.plan.add("Q", INERTIA, at.dds, numbers["m"], numbers["ω"], numbers["l"])
+        return at.plan
+
+    @property
+    def course(self) -> tuple[Step, Step, Step]:
+        """Cam angle, force and force of inertia over rise and fall."""
+        return self.course_plan["φ"], self.course_plan["F"], self.course_plan["Q"]
+
+    @cached_property
+    def at_positions(self) -> Step:
+        """Force at the numbered positions, N."""
+        at = self.exact.positions
+        return at.plan.add("F", FORCE, at.s, self.plan["F_0"], self.plan["c"], self.plan["l"])
 
     def results(self) -> dict[str, Any]:
-        """Results in SI."""
-        return {"largest_inertia": self.largest_inertia, "F_max": self.f_max, "F_0": self.f_0, "stiffness": self.rate,
-                "way": self.way, "worst_ratio": self.worst, "worst_phi": self.worst_phi, "closed": self.closed}
+        """Results in SI: steps, and whether the pair stays closed."""
+        return {"largest_inertia": self.plan["Q_max"], "F_max": self.plan["F_max"], "F_0": self.plan["F_0"],
+                "stiffness": self.plan["c"], "way": self.plan["s"], "worst_ratio": self.plan["k_min"],
+                "worst_phi": self.plan["φ_k"], "closed": self.closed}
 
 
-def spring(law: PositionFunction, length: float, mass: float, speed: float, factor: float, preload: float) -> Spring:
+def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: float, factor: float, preload: float) -> Spring:
     """Spring for force closure.
 
     Parameters
     ----------
-    law
+    exact
         law of motion; ``length`` turns its displacement into a way, m (1, or the arm of a rocker).
     mass
-        mass moved along that way, kg (of a rocker J/arm^2).
+        mass moved along that way, kg; of a rocker its moment of inertia, kg m^2, and its arm, m.
     speed
         rad/s.
     factor, preload
         largest force by the largest separating force of inertia; force in the lowest position by the largest.
     """
-    largest, worst, where = 0.0, float("inf"), 0.0
-    pieces = [(p, a + 1e-12, b - 1e-12) for p in (law.rise, law.fall)
-              for a, b in zip((0.0, *p.law.jumps), (*p.law.jumps, 1.0), strict=True)]
-    for p, a, b in pieces:
-        largest = max(largest, float(-_least(lambda x, p=p: p.dds(x), a, b)[0]))
-    unit = mass * speed**2 * length
-    largest *= unit
-    for p, a, b in pieces:
+    law = exact.law
+    plan = Plan("cam-spring", "Замыкающая пружина", "m")
+    moved = plan.add("m", MASS if len(mass) == 1 else REDUCED_MASS, *mass)
+    way = plan.add("l", ARM, length)
+    turning = plan.add("ω", SPEED, speed)
+    pieces = [(p, a + 1e-12, b - 1e-12) for p in (law.rise, law.fall) for a, b in pairwise((0.0, *p.law.jumps, 1.0))]
+    _, x, p = min(((*_least(lambda x, p=p: p.dds(x), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
+    share = found_share(plan, exact.phases, p, x, "Q", f"{law.symbol}'' наименьшее")
+    (dds,) = in_phase(plan, law, exact.phases, p, share, "Q", (2,))
+    largest = plan.add("Q_max", LARGEST, dds, moved, turning, way)
+    most = plan.add("F_max", PRODUCT, factor, largest)
+    first = plan.add("F_0", PRODUCT, preload, most)
+    plan.add("s", WAY, way, law.stroke)
+    plan.add("c", RATE, most, first, plan["s"])
+    unit, biggest = float(moved.value) * speed**2 * length, float(largest.value)
 
-        def ratio(x: Reals, p: Any = p) -> Reals:
-            force = factor * largest * (preload + (1 - preload) * p.s(x) / law.stroke)
-            inertia = -unit * p.dds(x)
-            return np.asarray(np.divide(force, inertia, out=np.full_like(force, np.inf), where=inertia > 1e-12 * largest))
+    def ratio(x: Reals, p: Phase) -> Reals:
+        force = factor * biggest * (preload + (1 - preload) * p.s(x) / law.stroke)
+        inertia = -unit * p.dds(x)
+        return np.asarray(np.divide(force, inertia, out=np.full_like(force, np.inf), where=inertia > 1e-12 * biggest))
 
-        value, x = _least(ratio, a, b)
-        if value < worst:
-            worst, where = value, float(p.phi(x))
-    return Spring(law, length, mass, speed, factor, preload, largest, worst, where)
+    _, x, p = min(((*_least(lambda x, p=p: ratio(x, p), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
+    share = found_share(plan, exact.phases, p, x, "k", f"отношение F/Q при {law.symbol}'' < 0 наименьшее")
+    s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
+    plan.add("k_min", RATIO, s, dds, law.stroke, largest, factor, preload, moved, turning, way)
+    return Spring(exact, plan, factor, preload, speed)
 
 
 def _least(f: Any, lo: float, hi: float) -> tuple[float, float]:
@@ -133,18 +191,33 @@ def _least(f: Any, lo: float, hi: float) -> tuple[float, float]:
 # --- second disc ------------------------------------------------------------------------------------------------------
 
 
-def second_disc_of_tappet(inv: Inversion, distance: float) -> None:
+BACK = Rule("lay off backwards", lambda b, u, distance: b + u * -distance, ("point", "direction", "length"), "point",
+            "От точки {0} по линии толкателя отложим постоянное расстояние между роликами {2}: точка {name}.",
+            lambda a, v: (Helper("line", a[0], v),))
+DISTANCE = Rule("distance of the rollers", lambda s0, stroke: 2 * s0 + stroke, ("length", "length"), "length",
+                "Расстояние между роликами {name} = 2·S_0 + S_max = {value}.", source=SOURCE)
+
+
+def _spread(pivot: Any, apex: Any, swing: Any) -> Any:
+    turned = (apex - pivot) / -pivot
+    return 2 * np.abs(np.arctan2(turned.imag, turned.real)) + swing
+
+
+SPREAD = Rule("angle between the arms", _spread, ("point", "point", "inclination"), "inclination",
+              "Угол между плечами коромысла {name} = 2·∠B_0AO + ψ_max = {value}.", unit="rad", source=SOURCE)
+
+
+def second_disc_of_tappet(inv: Inversion, distance: Step) -> None:
     """Record the centre profile B′ of the second disc and its normals N′: the rollers keep their ``distance`` (m)."""
     plan = inv.plan
-    second = plan.add("B′", rules.ALONG, inv.centres, inv.lines, -distance,
-                      say="От точки {0} по линии толкателя отложим постоянное расстояние между роликами {2}: точка {name}.")
+    second = plan.add("B′", BACK, inv.centres, inv.lines, distance)
     plan.add("N′", rules.RAY, second, plan["P"], say="Нормаль {name} второго диска проходит через ту же точку {1}.")
 
 
-def second_disc_of_rocker(inv: Inversion, angle: float, arm: float) -> None:
-    """Record the centre profile B′ of the second disc and its normals N′: the arms keep their ``angle`` (rad, signed)."""
+def second_disc_of_rocker(inv: Inversion, angle: Step, sense: float) -> None:
+    """Record the centre profile B′ of the second disc and its normals N′: the arms keep their ``angle``, rad."""
     plan = inv.plan
-    second = plan.add("B′", TURNED, inv.ends, inv.centres, abs(angle), float(np.sign(angle)),
+    second = plan.add("B′", TURNED, inv.ends, inv.centres, angle, sense,
                       say="Второе плечо коромысла повёрнуто вокруг {0} относительно первого на постоянный угол {2}: точка {name}.")
     line = plan.add("B′A", rules.RAY, second, inv.ends)
     tips = plan.add("D′", rules.OFFSET, second, line, plan["D"].args[2],

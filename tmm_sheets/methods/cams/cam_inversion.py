@@ -16,9 +16,11 @@ import numpy.typing as npt
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.methods.cams.cam_zone import TURNED, Zone
+from tmm_sheets.methods.cams.cam_displacement import Displacement
+from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Zone
 
 Reals = npt.NDArray[np.float64]
 
@@ -38,6 +40,18 @@ ACROSS_LINE = Rule("perpendicular to a direction", lambda u, side: 1j * side * u
 CONTACT = Rule("contact on the normal", lambda b, n, r: b + r * n, ("point", "direction", "length"), "point",
                "Из точки {0} радиусом ролика {2} проведём окружность; на нормали {1} лежит точка профиля {name}.",
                lambda a, v: (Helper("circle", a[0], radius=a[2]),))
+FOOT_OF_LINE = Rule("foot on the follower's line", lambda right, e: -(right * e) + 0j, ("number", "ordinate"), "point",
+                    "На расстоянии e = {1} от точки O отметим основание линии толкателя {name}.")
+FROM_AXIS = Rule("point from the axis of the cam", lambda p, o: p - o, ("point", "point"), "point", "Отметим точку {name}.")
+
+
+@primitive("tangent to the circle e")
+def _touching(p: Any, centre: Any, e: Any, side: Any) -> Any:
+    return ar.tangent_point(p, centre, np.abs(e), side)
+
+
+TANGENT_E = Rule("tangent to the circle e", _touching, ("point", "point", "ordinate", "number"), "point",
+                 rules.TANGENT.wording, rules.TANGENT.helpers)
 BETWEEN = Rule("angle between two lines", lambda n, u, right: np.arctan2(right * ar.cross(n, -u), ar.dot(n, -u)),
                ("direction", "direction", "number"), "inclination",
                "Измерим угол давления между нормалью {0} и направлением скорости толкателя {1}: {value}.")
@@ -55,7 +69,7 @@ class Inversion:
     """
 
     plan: Plan
-    phi: Reals
+    at: Displacement
     origin: Step
     axis: Step
     ends: Step
@@ -65,69 +79,78 @@ class Inversion:
     normals: Step
     angles: Step
 
+    @property
+    def phi(self) -> Reals:
+        """Cam angles, rad."""
+        return np.asarray(self.at.phi.value)
 
-def translating(plan: Plan, dimensions: Zone, phi: Reals, s: Reals, ds: Reals) -> Inversion:
-    """Record the inversion of a translating roller follower for cam angles ``phi``; ``s`` and ``ds`` in m."""
-    right, e, s0, r0 = dimensions.right, dimensions.e, dimensions.s0, dimensions.r0
+
+def translating(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
+    """Record the inversion of a translating roller follower."""
+    right, e, s0, r0 = dimensions.right, *(dimensions.plan[name] for name in ("e", "S_0", "r_0"))
     o = plan.add("O", rules.GIVEN, 0j)
-    foot = plan.add("T_0", rules.GIVEN, complex(-right * e))
+    foot = plan.add("T_0", FOOT_OF_LINE, right, e)
     start = plan.add("B_0", rules.ALONG, foot, 1j, s0,
                      say="По катетам e и S_0 = {2} построим прямоугольный треугольник; вершина {name}.")
-    axis = plan.add("A", rules.OFFSET, start, 1j, s,
+    axis = plan.add("A", rules.OFFSET, start, 1j, at.s,
                     say="На линии толкателя от точки {0} отложим перемещение {2}: точка {name}.")
     # The cam turns by -right * phi, so the follower goes round the standing cam by right * phi.
-    ends = plan.add("N", LAY_OFF_FROM, o, start, r0, phi, right)
-    feet = plan.add("T", rules.TANGENT, ends, o, abs(e), -right if e >= 0 else right)
+    ends = plan.add("N", LAY_OFF_FROM, o, start, r0, at.phi, right)
+    feet = plan.add("T", TANGENT_E, ends, o, e, -right if dimensions.e >= 0 else right)
     lines = plan.add("TN", rules.RAY, feet, ends)
     radius = plan.add("OA", rules.DISTANCE, o, axis)
     centres = plan.add("B", rules.ARC_LINE, o, radius, ends, lines, 1.0)
     side = plan.add("⊥TN", ACROSS_LINE, lines, right)
-    poles = plan.add("P", PITCH_POINT, o, side, ds)
+    poles = plan.add("P", PITCH_POINT, o, side, at.ds)
     normals = plan.add("BP", rules.RAY, centres, poles)
     angles = plan.add("α", BETWEEN, normals, lines, right)
-    return Inversion(plan, phi, o, axis, ends, feet, lines, centres, normals, angles)
+    return Inversion(plan, at, o, axis, ends, feet, lines, centres, normals, angles)
 
 
-def rocker(plan: Plan, dimensions: Zone, phi: Reals, psi: Reals, dpsi: Reals) -> Inversion:
-    """Record the inversion of an oscillating roller follower for cam angles ``phi``; ``psi`` in rad."""
+def rocker(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
+    """Record the inversion of an oscillating roller follower."""
     cones = dimensions.cones
     right, turn = cones.right, cones.turn
-    apex, pivot = complex(dimensions.apex.value), complex(cones.pivot or 0j)
-    same, arm, l0 = turn * right < 0, abs(pivot), dimensions.l0
+    zone, arm = dimensions.plan, dimensions.swing[3]
     o = plan.add("O", rules.GIVEN, 0j)
-    a0 = plan.add("A_0", rules.GIVEN, pivot - apex, say="На расстоянии l_0 от точки O отметим ось коромысла {name}.")
-    b0 = plan.add("B_0", rules.GIVEN, -apex, say="По сторонам r_0, l_0 и AB построим треугольник OA_0B_0; вершина {name}.")
-    axis = plan.add("C", TURNED, a0, b0, psi, turn)
-    ends = plan.add("A", LAY_OFF_FROM, o, a0, l0, phi, right)
+    a0 = plan.add("A_0", FROM_AXIS, zone["A"], zone["O"], say="На расстоянии l_0 от точки O отметим ось коромысла {name}.")
+    b0 = plan.add("B_0", FROM_AXIS, zone["B_0"], zone["O"],
+                  say="По сторонам r_0, l_0 и AB построим треугольник OA_0B_0; вершина {name}.")
+    axis = plan.add("C", TURNED, a0, b0, at.s, turn)
+    ends = plan.add("A", LAY_OFF_FROM, o, a0, zone["l_0"], at.phi, right)
     radius = plan.add("OC", rules.DISTANCE, o, axis)
-    side = float(np.sign(ar.cross(pivot - apex, -apex)))
+    side = float(np.sign(ar.cross(a0.value, b0.value)))
     centres = plan.add("B", rules.ARC_ARC, o, radius, ends, arm, side)
     line = plan.add("BA", rules.RAY, centres, ends)
-    tips = plan.add("D", rules.OFFSET, centres, line, (1.0 if same else -1.0) * arm * dpsi,
+    x = at.plan.add("x", ALONG_ROCKER, 1.0 if turn * right < 0 else -1.0, arm, at.ds)
+    tips = plan.add("D", rules.OFFSET, centres, line, x,
                     say="На линии коромысла от точки {0} отложим отрезок AB·ψ' = {2}: точка {name}.")
     normals = plan.add("DO", rules.RAY, tips, o,
                        say="Проведём прямую {0}{1}: нормаль к профилю в точке B ей параллельна.")
     lines = plan.add("⊥BA", ACROSS_LINE, line, -turn)
     angles = plan.add("α", BETWEEN, normals, lines, right)
-    return Inversion(plan, phi, o, axis, ends, None, lines, centres, normals, angles)
+    return Inversion(plan, at, o, axis, ends, None, lines, centres, normals, angles)
 
 
-def flat(plan: Plan, r0: float, right: float, phi: Reals, s: Reals, ds: Reals) -> Inversion:
-    """Record the inversion of a flat follower for cam angles ``phi``; the plate is perpendicular to its motion."""
+def flat(plan: Plan, r0: Step, right: float, at: Displacement) -> Inversion:
+    """Record the inversion of a flat follower; the plate is perpendicular to its motion."""
     o = plan.add("O", rules.GIVEN, 0j)
     start = plan.add("B_0", rules.ALONG, o, 1j, r0, say="На линии толкателя отложим радиус r_0 = {2}: точка {name}.")
-    axis = plan.add("A", rules.OFFSET, start, 1j, s,
+    axis = plan.add("A", rules.OFFSET, start, 1j, at.s,
                     say="На линии толкателя от точки {0} отложим перемещение {2}: точка {name}.")
-    ends = plan.add("N", LAY_OFF_FROM, o, start, r0, phi, right)
+    ends = plan.add("N", LAY_OFF_FROM, o, start, r0, at.phi, right)
     lines = plan.add("ON", rules.RAY, o, ends)
     radius = plan.add("OA", rules.DISTANCE, o, axis)
     centres = plan.add("B", rules.ARC_LINE, o, radius, o, lines, 1.0)
     plates = plan.add("⊥ON", ACROSS_LINE, lines, right, say="Через точку B проведём перпендикуляр {name} к {0}: плоскость тарелки.")
-    plan.add("F", rules.OFFSET, centres, plates, ds,
+    plan.add("F", rules.OFFSET, centres, plates, at.ds,
              say="На тарелке от точки {0} отложим аналог скорости {2}: точка касания с профилем {name}.")
     normals = plan.add("−ON", rules.RAY, centres, o, say="Нормаль к профилю {name} параллельна линии толкателя.")
     angles = plan.add("α", BETWEEN, normals, lines, right)
-    return Inversion(plan, phi, o, axis, ends, None, lines, centres, normals, angles)
+    return Inversion(plan, at, o, axis, ends, None, lines, centres, normals, angles)
+
+
+# --- curvature --------------------------------------------------------------------------------------------------------
 
 
 def curvature(w: Any, dw: Any, ddw: Any, right: float) -> Any:
@@ -137,3 +160,23 @@ def curvature(w: Any, dw: Any, ddw: Any, right: float) -> Any:
     """
     first, second = 1j * right * w + dw, -w + 2j * right * dw + ddw
     return right * (np.conjugate(first) * second).imag / np.abs(first) ** 3
+
+
+def tappet_curvature(s: Any, ds: Any, dds: Any, s0: Any, e: Any, right: Any, distance: Any) -> Any:
+    """Curvature of the centre profile of a translating follower, 1/m; ``distance`` of the second disc's roller, 0 for the first."""
+    return curvature(1j * (s0 + s) - right * e - 1j * distance, 1j * ds, 1j * dds, right)
+
+
+def rocker_curvature(psi: Any, dpsi: Any, ddpsi: Any, pivot: Any, apex: Any, turn: Any, right: Any, spread: Any) -> Any:
+    """Curvature of the centre profile of a rocker, 1/m; ``spread`` turns the arm of the second disc back, rad, 0 for the first."""
+    arm = -pivot * np.exp(-1j * turn * spread) * np.exp(1j * turn * psi)
+    first = 1j * turn * dpsi * arm
+    return curvature(pivot - apex + arm, first, 1j * turn * ddpsi * arm + 1j * turn * dpsi * first, right)
+
+
+TAPPET_RADIUS = Rule("radius of curvature", lambda *of: 1 / tappet_curvature(*of), ("ordinate",) * 5 + ("number", "length"),
+                     "length",
+                     "Радиус кривизны центрового профиля в этом месте {name} = {value}.", source="002, 4.4")
+ROCKER_RADIUS = Rule("radius of curvature, rocker", lambda *of: 1 / rocker_curvature(*of),
+                     ("inclination", "number", "number", "point", "point", "number", "number", "inclination"), "length",
+                     "Радиус кривизны центрового профиля в этом месте {name} = {value}.", source="002, 4.4")

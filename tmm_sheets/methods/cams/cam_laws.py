@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 from math import pi
 from typing import Any
@@ -16,17 +16,54 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given
 from tmm_sheets.errors import CannotBuild
 
 Reals = npt.NDArray[np.float64]
-Function = Callable[[Any], Any]
+Function = Callable[..., Any]
+
+
+@primitive("by pieces")
+def by_pieces(x: Any, *pieces: Any) -> Any:
+    """The first of some values whose border ``x`` has not reached: value, border, value, border ... value."""
+    borders, values = pieces[1::2], pieces[::2]
+    return np.select([np.asarray(x) < b for b in borders], values[:-1], values[-1])
+
+
+@primitive("within a turn")
+def within_turn(phi: Any) -> Any:
+    """Cam angle within a turn, 0 .. 2 pi, both included."""
+    phi = np.asarray(phi, dtype=float)
+    return np.where((phi >= 0) & (phi <= 2 * pi), phi, phi % (2 * pi))
+
+
+def share(phi: Any, start: Any, angle: Any) -> Any:
+    """Share of a phase that is over at a cam angle, 0 .. 1."""
+    return np.minimum(np.maximum((phi - start) / angle, 0.0), 1.0)
+
+
+def displaced(first: Any, travel: Any, s: Any) -> Any:
+    """Displacement in a phase, ``s`` that of the law for unit stroke, m."""
+    return first + travel * s
+
+
+def first_derivative(travel: Any, angle: Any, ds: Any) -> Any:
+    """First derivative of the displacement by the cam angle, m."""
+    return travel / angle * ds
+
+
+def second_derivative(travel: Any, angle: Any, dds: Any) -> Any:
+    """Second derivative of the displacement by the cam angle, m."""
+    return travel / angle**2 * dds
 
 
 @dataclass(frozen=True)
 class Law:
     """Law of one phase for unit stroke and unit phase angle: ``s`` grows from 0 to 1 while ``x`` grows from 0 to 1.
 
-    ``ds`` and ``dds`` are its exact derivatives and ``peak`` the largest ``|dds|``. ``division``, where the law has an
+    ``forms`` are ``s`` and its exact derivatives ``ds`` and ``dds``: functions of ``x`` and of the ``nodes`` of a given diagram,
+    where the law is one. ``peak`` is the largest ``|dds|``. ``division``, where the law has an
     auxiliary circle, gives the angles, rad, at which the points of the circle of radius ``peak`` stand as high as ``dds``.
     ``jumps`` are the shares inside the phase where ``dds`` jumps. ``even`` means
     that the second half of the phase is the first one read backwards.
@@ -34,52 +71,60 @@ class Law:
 
     name: str
     title: str
-    s: Function
-    ds: Function
-    dds: Function
+    forms: tuple[Function, Function, Function]
     peak: float
     division: Function | None = None
     jumps: tuple[float, ...] = ()
     even: bool = True
+    nodes: tuple[Given, ...] = ()
+
+    def s(self, x: Any) -> Any:
+        """Displacement."""
+        return self._at(0, x)
+
+    def ds(self, x: Any) -> Any:
+        """First derivative."""
+        return self._at(1, x)
+
+    def dds(self, x: Any) -> Any:
+        """Second derivative."""
+        return self._at(2, x)
+
+    def _at(self, order: int, x: Any) -> Any:
+        return self.forms[order](x, *(given.value for given in self.nodes))
 
     @property
     def reverse(self) -> Law:
         """The law of the mirror image: a fall that retraces the rise."""
         if self.even:
             return self
-        return replace(self, s=lambda x: 1 - self.s(1 - x), ds=lambda x: self.ds(1 - x), dds=lambda x: -self.dds(1 - x),
-                       jumps=tuple(1 - j for j in reversed(self.jumps)))
+        s, ds, dds = self.forms
+        return replace(self, name=f"{self.name}, backwards", jumps=tuple(1 - j for j in reversed(self.jumps)), forms=(
+            lambda x, *nodes: 1 - s(1 - x, *nodes), lambda x, *nodes: ds(1 - x, *nodes), lambda x, *nodes: -dds(1 - x, *nodes)))
 
 
 SINE = Law(
     "sine", "синусоидальный",
-    s=lambda x: x - np.sin(2 * pi * x) / (2 * pi),
-    ds=lambda x: 2 * np.sin(pi * x) ** 2,
-    dds=lambda x: 2 * pi * np.sin(2 * pi * x),
+    (lambda x: x - np.sin(2 * pi * x) / (2 * pi), lambda x: 2 * np.sin(pi * x) ** 2, lambda x: 2 * pi * np.sin(2 * pi * x)),
     peak=2 * pi,
     division=lambda x: 2 * pi * x,
 )
 COSINE = Law(
     "cosine", "косинусоидальный",
-    s=lambda x: np.sin(pi / 2 * x) ** 2,
-    ds=lambda x: pi / 2 * np.sin(pi * x),
-    dds=lambda x: pi**2 / 2 * np.cos(pi * x),
+    (lambda x: np.sin(pi / 2 * x) ** 2, lambda x: pi / 2 * np.sin(pi * x), lambda x: pi**2 / 2 * np.cos(pi * x)),
     peak=pi**2 / 2,
     division=lambda x: pi / 2 - pi * x,
 )
 CONSTANT = Law(
     "constant", "постоянного ускорения",
-    s=lambda x: np.where(x < 0.5, 2 * x**2, 1 - 2 * (1 - x) ** 2),
-    ds=lambda x: np.where(x < 0.5, 4 * x, 4 * (1 - x)),
-    dds=lambda x: np.where(x < 0.5, 4.0, -4.0),
+    (lambda x: by_pieces(x, 2 * x**2, 0.5, 1 - 2 * (1 - x) ** 2), lambda x: by_pieces(x, 4 * x, 0.5, 4 * (1 - x)),
+     lambda x: by_pieces(x, 4.0, 0.5, -4.0)),
     peak=4.0,
     jumps=(0.5,),
 )
 LINEAR = Law(
     "linearly decreasing", "линейно убывающего ускорения",
-    s=lambda x: x**2 * (3 - 2 * x),
-    ds=lambda x: 6 * x * (1 - x),
-    dds=lambda x: 6 * (1 - 2 * x),
+    (lambda x: x**2 * (3 - 2 * x), lambda x: 6 * x * (1 - x), lambda x: 6 * (1 - 2 * x)),
     peak=6.0,
 )
 
@@ -175,6 +220,18 @@ def _value(c: Reals, t: Reals) -> Reals:
     return np.asarray((c * t[:, None] ** np.arange(c.shape[1])).sum(axis=1))
 
 
+@cache
+def _pieces(x: tuple[float, ...], y: tuple[float, ...]) -> _Pieces:
+    return _Pieces(x, y)
+
+
+@primitive("law of a diagram")
+def diagram(x: Any, shares: Any, accelerations: Any, order: float) -> Any:
+    """The law whose acceleration is a given diagram (see :func:`table_law`), ``order`` 0, or its first or second derivative."""
+    p = _pieces(tuple(shares), tuple(accelerations))
+    return p.at((p.s, p.ds, p.dds)[int(order)], x)
+
+
 def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title: str = "по заданной диаграмме",
               key: str = "cam.table") -> Law:
     """Law from a diagram of the acceleration: shares ``x`` of the phase, 0 .. 1, and relative accelerations ``y``.
@@ -188,7 +245,8 @@ def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title
     CannotBuild
         when the areas differ by more, or when the follower would turn back inside the phase; ``key`` names the diagram.
     """
-    p = _Pieces(x, y)
+    nodes = tuple(Given(np.asarray(row, dtype=float), f"{key}[*][{i}]", over="curve") for i, row in enumerate((x, y)))
+    p = _pieces(*(tuple(given.value) for given in nodes))
     if not p.area > 0:
         raise CannotBuild(f"{key}: the diagram of the acceleration is zero everywhere")
     if abs(p.unequal) > READING * p.area:
@@ -202,13 +260,14 @@ def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title
         raise CannotBuild(f"{key}: the follower turns back inside the phase, at the share {shares[velocity.argmin()]:.3f}",
                           "speeding up comes first, slowing down after it")
     values = np.concatenate((p.at(p.dds, shares), p.at(p.dds, np.append(p.starts[1:], 1.0) - 1e-12)))
-    return Law(name, title, lambda x: p.at(p.s, x), lambda x: p.at(p.ds, x), lambda x: p.at(p.dds, x),
-               peak=float(np.abs(values).max()), jumps=p.jumps, even=False)
+    return Law(name, title, (lambda x, a, b: diagram(x, a, b, 0.0), lambda x, a, b: diagram(x, a, b, 1.0),
+                             lambda x, a, b: diagram(x, a, b, 2.0)),
+               peak=float(np.abs(values).max()), jumps=p.jumps, even=False, nodes=nodes)
 
 
 TRAPEZOID = replace(
     table_law((0, 1 / 8, 1 / 8, 3 / 8, 3 / 8, 5 / 8, 5 / 8, 7 / 8, 7 / 8, 1), (0, 1, 1, 1, 1, -1, -1, -1, -1, 0),
-              "trapezoid", "трапецеидальный"), even=True)
+              "trapezoid", "трапецеидальный", "cam.law"), even=True)
 
 LAWS = {law.name: law for law in (SINE, COSINE, CONSTANT, TRAPEZOID, LINEAR)}
 """Laws of motion by the name they have in project files."""
@@ -243,25 +302,19 @@ class Phase:
 
     def s(self, x: Any) -> Any:
         """Displacement, m."""
-        return self.first + self.travel * self.law.s(x)
+        return displaced(self.first, self.travel, self.law.s(x))
 
     def ds(self, x: Any) -> Any:
         """First derivative by the cam angle, m."""
-        return self.travel / self.angle * self.law.ds(x)
+        return first_derivative(self.travel, self.angle, self.law.ds(x))
 
     def dds(self, x: Any) -> Any:
         """Second derivative by the cam angle, m."""
-        return self.travel / self.angle**2 * self.law.dds(x)
+        return second_derivative(self.travel, self.angle, self.law.dds(x))
 
     def phi(self, x: Any) -> Any:
         """Cam angle, rad."""
         return self.start + self.angle * x
-
-
-def _aside(phase: Phase, x: Any, side: int) -> Any:
-    """Shares of a phase, those of its jumps moved a rounding to one side."""
-    jump = np.isclose(np.asarray(x)[:, None], np.asarray(phase.law.jumps)[None, :], rtol=0, atol=1e-12).any(axis=1)
-    return np.where(jump, x + side * 1e-12, x)
 
 
 @dataclass(frozen=True)
@@ -321,10 +374,9 @@ class PositionFunction:
         return self._at(phi, Phase.dds)
 
     def _at(self, phi: Any, function: Callable[[Phase, Any], Any]) -> Any:
-        phi = np.asarray(phi, dtype=float)
-        turn = np.where((phi >= 0) & (phi <= 2 * pi), phi, phi % (2 * pi))
-        values = [function(p, np.clip((turn - p.start) / p.angle, 0.0, 1.0)) for p in self.phases]
-        return np.select([turn < p.end for p in self.phases[:-1]], values[:-1], values[-1])
+        turn = within_turn(phi)
+        values = [function(p, share(turn, p.start, p.angle)) for p in self.phases]
+        return by_pieces(turn, *[v for p, value in zip(self.phases, values, strict=True) for v in (value, p.end)][:-1])
 
     @cached_property
     def labels(self) -> tuple[str, ...]:
@@ -345,23 +397,6 @@ class PositionFunction:
     def at_positions(self, function: Callable[[Phase, Any], Any]) -> Reals:
         """A function of the phases, such as ``Phase.dds``, at the numbered positions, shape (2 parts + 2,)."""
         return np.concatenate((function(self.rise, self.shares), function(self.fall, self.shares)))
-
-    @cached_property
-    def dds_beside(self) -> tuple[Reals, Reals]:
-        """Limits of the second derivative at the numbered positions from below and from above, each of shape (2 parts + 2,).
-
-        They differ where it jumps: inside a phase, or where one ends and the next begins.
-        """
-        before, after = (np.concatenate([p.dds(_aside(p, self.shares, side)) for p in (self.rise, self.fall)]) for side in (-1, 1))
-        n, order = self.parts, self.phases
-        for first, last, phase in ((0, n, self.rise), (n + 1, 2 * n + 1, self.fall)):
-            k = order.index(phase)
-            before[first] = order[k - 1].dds(1.0)
-            after[last] = order[(k + 1) % len(order)].dds(0.0)
-        # Without an upper dwell its two ends are one position.
-        if self.upper_dwell not in order:
-            before[n + 1], after[n] = before[n], after[n + 1]
-        return before, after
 
     def divided(self, parts: int) -> Reals:
         """Cam angles of a whole turn, each phase in equal parts, 0 and 2 pi included, rad.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, cached_property
 from itertools import pairwise
 from math import degrees, radians
 from typing import Any
@@ -16,17 +17,19 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.methods.cams.cam_laws import Phase, PositionFunction
-from tmm_sheets.methods.integration import integrate, ordinates, smooth
+from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, entries, names, row
+from tmm_sheets.methods.cams.cam_laws import Law, PositionFunction
+from tmm_sheets.methods.integration import integrate, ordinates
 
 Reals = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-_INSIDE = 1e-12
-"""A share of a phase: how far inside a border one-sided limits are read."""
 GAP = 6.0
 """Clear distance between the pole of S'' and the auxiliary circle, mm."""
 BESIDE = GAP + 3.0 + 14.0
@@ -46,9 +49,58 @@ ORDINATE = Rule("lay off an ordinate", lambda x, y: x + 1j * y, ("ordinate", "or
 ACROSS = Rule("carry across", lambda p, x: x + 1j * np.imag(p), ("point", "ordinate"), "point",
               "Точку {0} перенесём горизонталью на вертикаль с абсциссой {1}: точка {name}.",
               lambda a, v: (Helper("line", a[0], v),))
+JUMP = Rule("lay off the other ordinate of a jump", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
+            "На той же вертикали с абсциссой {0}, по другую сторону скачка, отложим ординату закона {1}: точка {name}.",
+            lambda a, v: (Helper("line", complex(a[0], 0), v),))
 EQUAL_AREA = Rule("rectangle of equal area", lambda area, width: area / width, ("number", "length"), "ordinate",
                   "Криволинейную трапецию площадью {0} мм² заменим прямоугольником той же площади и той же ширины {1}; "
                   "его высота {name} = {value}.")
+CIRCLE_CENTRE = Rule("centre of the auxiliary circle", lambda pole, radius: -(pole + GAP + radius) + 0j, ("length", "length"),
+                     "point",
+                     "Слева от полюса на продолжении оси абсцисс отметим центр вспомогательной окружности {name}.")
+
+FACTOR = Rule("scale factor", lambda mu: mu, ("number",), "number", "Примем масштабный коэффициент {name} = {value}.", unit="1/mm")
+POLE_DISTANCE = Rule("pole distance", lambda integral, integrand, across: integral / (integrand * across), ("number",) * 3,
+                     "length",
+                     "Полюсное расстояние {name} = {0}/({1}·{2}) = {value}.", source=SOURCE)
+LARGEST = Rule("largest ordinate of the law", lambda travel, peak, angle, mu: np.abs(travel) * peak / angle**2 / mu,
+               ("number", "number", "angle", "number"), "length",
+               "Наибольшая ордината графика аналога ускорения {name} = {value}.", source=SOURCE)
+ABSCISSA = Rule("abscissa of a position", lambda phi, k, mu: entries(phi, k) / mu, ("angle", "number", "number"), "ordinate",
+                "Абсцисса положения {name} = φ/μ_φ = {value}.")
+HEIGHT = Rule("ordinate of the law", lambda y, k, mu: entries(y, k) / mu, ("ordinate", "number", "number"), "ordinate",
+              "Ордината закона на графике {name} = {value}.")
+WIDTH = Rule("width of an interval", lambda a, b: b - a, ("ordinate", "ordinate"), "length",
+             "Ширина интервала {name} = {1} − {0} = {value}.")
+AREA = Rule("area under a diagram", lambda y, a, b, mu, across: (entries(y, b) - entries(y, a)) / (mu * across), ("number",) * 5,
+            "number",
+            "Площадь под графиком на этом интервале равна приращению интеграла, делённому на масштабы: {name} = {value} мм².",
+            unit="mm2")
+NO_AREA = Rule("no area", lambda: 0.0, (), "number", "На дальнем стоянии площадь под графиком {name} = 0.", unit="mm2")
+
+
+@primitive("curve through points")
+def curve_through(left: Any, right: Any, *points: Any) -> Curve:
+    """Smooth curve through n + 1 points with the slopes at the beginnings and at the ends of the n stretches."""
+    p = np.array(points)
+    return Curve(p.real, p.imag, np.asarray(left), np.asarray(right))
+
+
+SLOPES = Rule("slopes of an integral", lambda y, at, mu, pole: entries(y, at) / mu / pole,
+              ("number", "number", "number", "length"), "number",
+              "Наклон интегральной кривой равен ординате подынтегральной, делённой на полюсное расстояние.", unit="1")
+SMOOTH = Rule("smooth curve through chord ends", curve_through, ("number", "number", "point"), "curve",
+              "Концы хорд соединим плавной кривой {name}.")
+ON_PAPER = Rule("point of a diagram", lambda phi, across, y, mu: phi / across + 1j * (y / mu),
+                ("angle", "number", "ordinate", "number"),
+                "point", "Точка плавной кривой {name}.", unit="mm")
+MEASURED = {symbol: tuple(
+    Rule(f"measured ordinates, {name}{' of a rocker' if symbol == 'ψ' else ''}",
+         lambda mu, *points: row(*(np.imag(p) for p in points)) * mu, ("number", "point"), kind,
+         "Снимем с графика ординату и умножим на масштабный коэффициент: {name} = {value}.",
+         unit="" if symbol == "S" else ("rad", "1", "1")[i])
+    for i, (name, kind) in enumerate(zip(("displacement", "first derivative", "second derivative"), kinds, strict=True)))
+    for symbol, kinds in KINDS.items()}
 
 
 @dataclass(frozen=True)
@@ -153,110 +205,184 @@ class FollowerMotion:
     """The diagrams S'', S' and S on paper: points in mm, each diagram from its own origin.
 
     ``dds``, ``ds`` and ``s`` hold the steps of the numbered positions, ``circle`` those of the auxiliary circle by the
-    number of the position, for the phases whose law has one.
+    number of the position, for the phases whose law has one. ``numbers`` are the scale factors, pole distances and abscissae,
+    ``areas`` the rectangles of equal area.
     """
 
     law: PositionFunction
     scales: MotionScales
+    numbers: Plan
+    areas: Plan
     plan: Plan
     circle: dict[int, Step]
     dds: list[Step]
     ds: list[Step]
     s: list[Step]
+    exact: ExactMotion
 
     def measured(self, steps: list[Step], scale: Scale) -> Reals:
         """Ordinates of a diagram at the numbered positions in SI."""
         return np.asarray(scale.real(ordinates(steps)))
+
+    @cached_property
+    def ordinates(self) -> Displacement:
+        """Displacement and derivatives at the numbered positions as they are measured on the diagrams, SI."""
+        plan = Plan("cam-ordinates", "Ординаты графиков движения", "m", self.law.labels)
+        found = []
+        for order, steps in enumerate((self.s, self.ds, self.dds)):
+            name = names(self.law.symbol)[order]
+            found.append(plan.add(name, MEASURED[self.law.symbol][order], self.numbers[f"μ_{name}"], *steps, symbol=name))
+        return Displacement(plan, self.exact.positions.phi, *found)
 
     @property
     def names(self) -> tuple[str, str, str]:
         """Symbols of the second derivative, the first derivative and the displacement."""
         return f"{self.law.symbol}''", f"{self.law.symbol}'", self.law.symbol
 
-    def curve_dds(self, parts: int = 64) -> Complex:
+    @cached_property
+    def between(self) -> Step:
+        """Points of the smooth curve S'' from position 0 to 16, mm."""
+        return self.between_plan["Q"]
+
+    @cached_property
+    def between_plan(self) -> Plan:
+        """Plan of the smooth curve S''."""
+        exact = self.exact.at("cam-motion-between", "График аналога ускорения", self.exact.display(), "узлы плавной кривой")
+        exact.plan.add("Q", ON_PAPER, exact.phi, self.numbers["μ_φ"], exact.dds, self.numbers[f"μ_{self.names[0]}"])
+        return exact.plan
+
+    def curve_dds(self) -> Complex:
         """Smooth curve S'' from position 0 to 16 for display, mm; it starts and ends on the axis."""
-        points = []
-        for p in self.law.phases[:-1] if self.law.lower_dwell.angle else self.law.phases:
-            for a, b in zip((0.0, *p.law.jumps), (*p.law.jumps, 1.0), strict=True):
-                x = np.linspace(a + _INSIDE, b - _INSIDE, parts + 1)
-                points.append(self._paper(p.phi(x), p.dds(x), self.scales.dds))
-        return np.concatenate(([0j], *points, [complex(points[-1][-1].real)]))
+        points = self.between.value
+        return np.concatenate(([0j], points, [complex(points[-1].real)]))
 
     def curve_ds(self, parts: int = 64) -> Complex:
         """Smooth curve S' through the chord ends for display, mm."""
-        return self._smooth(self.ds, Phase.dds, self.scales.dds, self.scales.h1, parts)
+        return self._smooth(self.plan[self.names[1]].value, parts)
 
     def curve_s(self, parts: int = 64) -> Complex:
         """Smooth curve S through the chord ends for display, mm."""
-        return self._smooth(self.s, Phase.ds, self.scales.ds, self.scales.h2, parts)
+        return self._smooth(self.plan[self.names[2]].value, parts)
 
-    def _paper(self, phi: Any, y: Any, scale: Scale) -> Complex:
-        return np.asarray(self.scales.phi.mm(phi) + 1j * scale.mm(y))
-
-    def _smooth(self, ends: list[Step], slope: Callable[[Phase, Any], Any], scale: Scale, pole: float, parts: int) -> Complex:
+    def _smooth(self, curve: Curve, parts: int) -> Complex:
         points = []
-        n, shares = self.law.parts, self.law.shares
-        for p, steps in ((self.law.rise, ends[: n + 1]), (self.law.fall, ends[n + 1 :])):
-            edges, x = self.scales.phi.mm(p.phi(shares)), np.linspace(0, 1, parts + 1)
-            left, right = (scale.mm(slope(p, s)) / pole for s in (shares[:-1] + _INSIDE, shares[1:] - _INSIDE))
-            at = np.clip(self.scales.phi.mm(p.phi(x)), edges[0], edges[-1])
-            points.append(at + 1j * smooth(edges, ordinates(steps), left, right, at))
+        x = np.linspace(0, 1, parts + 1)
+        for p in (self.law.rise, self.law.fall):
+            at = np.clip(self.scales.phi.mm(p.phi(x)), *self.scales.phi.mm(p.phi(np.array([0.0, 1.0]))))
+            points.append(at + 1j * curve(at))
         return np.concatenate(points)
 
 
-def motion(law: PositionFunction, scales: MotionScales) -> FollowerMotion:
+def motion(law: PositionFunction, scales: MotionScales, exact: ExactMotion | None = None) -> FollowerMotion:
     """Record the construction of the three diagrams: auxiliary circle, two integrations with rays and chords."""
-    plan = Plan("cam-motion", "Графики движения толкателя" if law.symbol == "S" else "Графики движения коромысла", "mm")
-    x = [float(v) for v in scales.phi.mm(law.positions)]
-    circle, dds = _acceleration(plan, law, scales, x)
+    exact = exact or ExactMotion(law)
+    whose = "толкателя" if law.symbol == "S" else "коромысла"
+    numbers, x = _numbers(law, scales, exact)
+    plan = Plan("cam-motion", f"Графики движения {whose}", "mm")
+    areas = Plan("cam-areas", "Прямоугольники равной площади под графиками", "mm")
+    circle, dds = _acceleration(plan, numbers, law, exact, x)
     # Where there is no upper dwell, 8 and 8' are one point and there is nothing to integrate between them.
     top = law.parts
     kept = [k for k in range(len(x)) if k != top + 1 or law.upper_dwell.angle > 0]
-    borders = [x[k] for k in kept]
-    names = [law.labels[k] for k in kept]
-    ds = _integral(plan, f"{law.symbol}'", _growth(law, Phase.ds), scales.dds, scales.phi, borders, scales.h1, names)
-    s = _integral(plan, law.symbol, _growth(law, Phase.s), scales.ds, scales.phi, borders, scales.h2, names)
+    ds = _integral(plan, areas, numbers, exact, kept, x, 1)
+    s = _integral(plan, areas, numbers, exact, kept, x, 0)
     place = {k: i for i, k in enumerate(kept)}
     place.setdefault(top + 1, place[top])
     every = [place[k] for k in range(len(x))]
-    return FollowerMotion(law, scales, plan, circle, dds, [ds[i] for i in every], [s[i] for i in every])
+    return FollowerMotion(law, scales, numbers, areas, plan, circle, dds, [ds[i] for i in every], [s[i] for i in every], exact)
 
 
-def _acceleration(plan: Plan, law: PositionFunction, scales: MotionScales, x: list[float]) -> tuple[dict[int, Step], list[Step]]:
+def _numbers(law: PositionFunction, scales: MotionScales, exact: ExactMotion) -> tuple[Plan, list[Step]]:
+    """Scale factors, pole distances, abscissae of the numbered positions, heights of the law's diagram."""
+    plan = Plan("cam-scales", "Масштабы графиков движения", "mm")
+    choice = "наименьший удобный, при котором графики помещаются"
+    phi, dds, ds, s = (plan.add(scale.symbol, FACTOR, Given(scale.mu, scale.symbol, choice=choice, over="none"),
+                                say=f"{FACTOR.wording.removesuffix('.')} {scale.unit}.", symbol=scale.symbol)
+                       for scale in (scales.phi, scales.dds, scales.ds, scales.s))
+    plan.add("H_1", POLE_DISTANCE, ds, dds, phi, symbol="H_1")
+    plan.add("H_2", POLE_DISTANCE, s, ds, phi, symbol="H_2")
+    for p, name in ((law.rise, "a_1"), (law.fall, "a_2")):
+        _, angle, _, travel = exact.phases.of[p.symbol]
+        plan.add(name, LARGEST, travel, p.law.peak, angle, dds, symbol=name)
+    at = exact.positions
+    x = [plan.add(f"x_{label}", ABSCISSA, at.phi, k, phi, symbol=f"x_{{{label}}}") for k, label in enumerate(law.labels)]
+    return plan, x
+
+
+def _acceleration(plan: Plan, numbers: Plan, law: PositionFunction, exact: ExactMotion,
+                  x: list[Step]) -> tuple[dict[int, Step], list[Step]]:
     """Points of the auxiliary circle and of S'' in the numbered positions."""
-    names = {law.rise: "a_1", law.fall: "a_2"}
-    high, low = sorted(names, key=lambda p: p.amplitude, reverse=True)
-    amplitude = {high: plan.add(names[high], rules.GIVEN_LENGTH, float(scales.dds.mm(high.amplitude)))}
+    named = {law.rise: "a_1", law.fall: "a_2"}
+    high, low = sorted(named, key=lambda p: p.amplitude, reverse=True)
+    amplitude = {high: plan.add(named[high], rules.GIVEN_LENGTH, numbers[named[high]])}
     if high.law.peak == low.law.peak:
-        amplitude[low] = plan.add(names[low], AMPLITUDE, amplitude[high], high.angle, low.angle)
+        amplitude[low] = plan.add(named[low], AMPLITUDE, amplitude[high], *(exact.phases.of[p.symbol][1] for p in (high, low)))
     else:
-        amplitude[low] = plan.add(names[low], EQUAL_STROKE, float(scales.dds.mm(low.amplitude)))
+        amplitude[low] = plan.add(named[low], EQUAL_STROKE, numbers[named[low]])
     circle, points = {}, []
     if has_circle(law):
-        widest = max(p.amplitude for p in names if p.law.division is not None)
-        centre = plan.add("M", rules.GIVEN, -(scales.h1 + GAP + float(scales.dds.mm(widest))) + 0j)
+        widest = max((p for p in named if p.law.division is not None), key=lambda p: p.amplitude)
+        centre = plan.add("M", CIRCLE_CENTRE, numbers["H_1"], numbers[named[widest]])
     for k, label in enumerate(law.labels):
-        phase, share = (law.rise, law.shares[k]) if k <= law.parts else (law.fall, law.shares[k - law.parts - 1])
+        phase = law.rise if k <= law.parts else law.fall
         name = f"{law.symbol}''_{label}"
         if phase.law.division is None:
-            points.append(plan.add(name, ORDINATE, x[k], float(scales.dds.mm(phase.dds(share)))))
-            continue
-        angle = float(np.sign(phase.travel) * phase.law.division(share))
-        circle[k] = plan.add(f"K_{label}", rules.LAY_OFF, centre, amplitude[phase], angle)
-        points.append(plan.add(name, ACROSS, circle[k], x[k]))
+            mu = numbers[f"μ_{law.symbol}''"]
+            height = numbers.add(f"y_{label}", HEIGHT, exact.positions.dds, k, mu, symbol=f"y_{{{label}}}")
+            points.append(plan.add(name, ORDINATE, x[k], height))
+        else:
+            angle = numbers.add(f"θ_{label}", _division(phase.law), exact.positions.plan["x"], k, float(np.sign(phase.travel)))
+            circle[k] = plan.add(f"K_{label}", rules.LAY_OFF, centre, amplitude[phase], angle)
+            points.append(plan.add(name, ACROSS, circle[k], x[k]))
+        _other_side(plan, numbers, exact, k, points[-1], x[k])
     return circle, points
 
 
-def _growth(law: PositionFunction, integral: Callable[[Phase, Any], Any]) -> Reals:
-    """Growth of an integral of the law from border to border, m; nothing in the upper dwell."""
-    dwell = [0.0] if law.upper_dwell.angle > 0 else []
-    return np.concatenate((np.diff(integral(law.rise, law.shares)), dwell, np.diff(integral(law.fall, law.shares))))
+def _other_side(plan: Plan, numbers: Plan, exact: ExactMotion, k: int, point: Step, x: Step) -> None:
+    """Where S'' jumps the diagram has two points on one vertical: the one that the law of the position does not give."""
+    scale = float(np.abs(exact.positions.dds.value).max())
+    for beside, side in ((exact.before, "−0"), (exact.after, "+0")):
+        if abs(beside.dds.value[k] - exact.positions.dds.value[k]) > 1e-9 * scale:
+            name = f"{point.name}(φ{side})"
+            height = numbers.add(f"y_{exact.law.labels[k]}(φ{side})", HEIGHT, beside.dds, k, numbers[f"μ_{exact.law.symbol}''"])
+            plan.add(name, JUMP, x, height)
 
 
-def _integral(plan: Plan, symbol: str, growth: Reals, scale: Scale, phi: Scale, borders: list[float], pole: float,
-              names: list[str]) -> list[Step]:
-    """Integrate by the rectangles whose areas are the exact ones of the law."""
-    areas = growth / (scale.mu * phi.mu)
-    heights = [plan.add(f"h{symbol}_{name}", EQUAL_AREA, float(area), b - a)
-               for name, area, (a, b) in zip(names[1:], areas, pairwise(borders), strict=True)]
-    return integrate(plan, f"{symbol}_", borders, heights, pole, borders=names, intervals=names[1:])
+def _division(law: Law) -> Rule:
+    """Rule for the angles at which the points of the auxiliary circle stand as high as the law's diagram."""
+    divided = law.division
+    assert divided is not None
+    return _division_rule(law.name, divided)
+
+
+@cache
+def _division_rule(name: str, divided: Callable[[Any], Any]) -> Rule:
+    return Rule(f"division of the auxiliary circle, {name} law", lambda x, k, sense: sense * divided(entries(x, k)),
+                ("number", "number", "number"), "angle",
+                "Вспомогательная окружность делится на равные части: угол {name} = {value}.",
+                unit="rad", source=SOURCE)
+
+
+def _integral(plan: Plan, areas: Plan, numbers: Plan, exact: ExactMotion, kept: list[int], x: list[Step], order: int) -> list[Step]:
+    """Integrate by the rectangles whose areas are the exact ones of the law; ``order`` of the integral: 1 for S', 0 for S."""
+    law = exact.law
+    symbol = names(law.symbol)[order]
+    integral = (exact.positions.s, exact.positions.ds)[order]
+    below, above = ((exact.before.ds, exact.after.ds), (exact.before.dds, exact.after.dds))[order]
+    mu, pole = f"μ_{names(law.symbol)[order + 1]}", "H_2" if order == 0 else "H_1"
+    heights = []
+    for a, b in pairwise(kept):
+        label = law.labels[b]
+        still = b - a == 1 and b == law.parts + 1  # the upper dwell
+        of = () if still else (integral, a, b, numbers[mu], numbers["μ_φ"])
+        area = areas.add(f"A{symbol}_{label}", NO_AREA if still else AREA, *of)
+        width = areas.add(f"b{symbol}_{label}", WIDTH, x[a], x[b])
+        heights.append(areas.add(f"h{symbol}_{label}", EQUAL_AREA, area, width))
+    labels = [law.labels[k] for k in kept]
+    ends = integrate(plan, f"{symbol}_", [x[k] for k in kept], heights, numbers[pole], borders=labels, intervals=labels[1:])
+    slopes = []
+    for name, integrand, at in (("left", above, kept[:-1]), ("right", below, kept[1:])):
+        places = Given(np.array(at, dtype=float), "cam.parts", choice="номера положений")
+        slopes.append(numbers.add(f"{symbol}_{name}", SLOPES, integrand, places, numbers[mu], numbers[pole]))
+    plan.add(symbol, SMOOTH, *slopes, *ends)
+    return ends

@@ -6,9 +6,9 @@ Source: manual 000, section 7, examples 1 to 3; manual 002, 4.4 (radius of curva
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import pairwise
 from math import degrees, floor, isfinite, log10, pi
 from typing import TYPE_CHECKING, Any
@@ -18,21 +18,30 @@ import numpy.typing as npt
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Rule
+from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams import cam_inversion, cam_zone
-from tmm_sheets.methods.cams.cam_closure import Spring, second_disc_of_rocker, second_disc_of_tappet, spring
-from tmm_sheets.methods.cams.cam_inversion import CONTACT, Inversion, curvature
+from tmm_sheets.methods.cams.cam_closure import DISTANCE, SPREAD, Spring, second_disc_of_rocker, second_disc_of_tappet, spring
+from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, entries, in_phase
+from tmm_sheets.methods.cams.cam_inversion import (
+    CONTACT,
+    ROCKER_RADIUS,
+    TAPPET_RADIUS,
+    Inversion,
+    rocker_curvature,
+    tappet_curvature,
+)
 from tmm_sheets.methods.cams.cam_laws import LAWS, Law, Phase, PositionFunction, table_law
 from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
-from tmm_sheets.methods.cams.cam_zone import Plate, Zone
+from tmm_sheets.methods.cams.cam_zone import Plate, Zone, found_share
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import CamTable
 
 Reals = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 DIAGRAMS = {"tappet": (325.0, 500.0), "rocker": (325.0, 288.0), "flat": (325.0, 500.0)}
 """Room on paper for the three diagrams when nobody asks for another one, mm: that of the sheet as shipped."""
@@ -41,6 +50,8 @@ SHARE_OF_R0 = (0.3, 0.4)
 """r_p <= (0.3 .. 0.4) r0 (manual 000, 7.3)."""
 SHARE_OF_RHO = (0.7, 0.8)
 """r_p <= (0.7 .. 0.8) rho_min (manual 000, 7.3); manual 003 takes 0.5."""
+ASKED = "углы поворота кулачка, о которых спрашивают"
+"""What tells cam angles that are not those of the program."""
 DENSE = 128
 """Least number of parts of each phase in curves and in tables of results; the numbered positions are among them."""
 
@@ -74,18 +85,42 @@ THREE_POINT_CENTRE = Rule(
 )
 
 
+GIVEN = {"rise": ("φ_у", "rad"), "upper_dwell": ("φ_дс", "rad"), "fall": ("φ_с", "rad"), "stroke": ("S_{max}", "m"),
+         "swing": ("ψ_{max}", "rad"), "arm": ("AB", "m"), "eccentricity": ("e", "m"), "pressure_angle": ("[α]", "rad"),
+         "base_radius": ("r_0", "m"), "roller": ("r_p", "m"), "curvature_share": ("", "1"), "speed": ("ω", "rad/s"),
+         "follower_mass": ("m", "kg"), "follower_inertia": ("J", "kg*m2"), "spring_factor": ("", "1"), "preload": ("", "1")}
+"""Symbol and unit of the numbers of a project file."""
+
+
+def given(data: CamTable, key: str) -> GivenNumber | None:
+    """A number of the project file that knows its place there; None where it is left out."""
+    value = getattr(data, key)
+    return None if value is None else GivenNumber(value, f"cam.{key}", *GIVEN[key])
+
+
 @dataclass(frozen=True)
 class Sharpest:
-    """Sharpest convex place of the centre profile: cam angle, rad, exact radius of curvature, m.
+    """Sharpest convex place of a centre profile: phase and share, and the step of its exact radius of curvature, m.
 
     ``start`` and ``end`` are the cam angles between which the curvature has no jump, ``parts`` those of a phase.
     """
 
-    phi: float
-    rho: float
+    phase: Phase
+    x: float
+    radius: Step
     start: float
     end: float
     parts: int = 8
+
+    @property
+    def phi(self) -> float:
+        """Cam angle, rad."""
+        return float(self.phase.phi(self.x))
+
+    @property
+    def rho(self) -> float:
+        """Radius of curvature, m."""
+        return float(self.radius.value)
 
     @property
     def three(self) -> Reals:
@@ -96,16 +131,45 @@ class Sharpest:
 
 @dataclass(frozen=True)
 class RollerRule:
-    """A rule r_p <= (0.3 .. 0.4) r0 or r_p <= (0.7 .. 0.8) rho_min: ``radius`` in m and its two shares."""
+    """A rule r_p <= (0.3 .. 0.4) r0 or r_p <= (0.7 .. 0.8) rho_min: its two shares and the stricter and the milder limit."""
 
     symbol: str
-    radius: float
     shares: tuple[float, float]
+    steps: tuple[Step, Step]
 
     @property
     def limits(self) -> tuple[float, float]:
         """The stricter and the milder limit, m."""
-        return self.shares[0] * self.radius, self.shares[1] * self.radius
+        return float(self.steps[0].value), float(self.steps[1].value)
+
+
+@primitive("rounded down to half a millimetre")
+def rounded_down(radius: Any) -> Any:
+    """Radius of a roller, m, rounded down to 0.5 mm; a smaller one to one significant digit."""
+    if radius >= 0.5e-3:
+        return floor(radius * 2000 * (1 + 1e-12)) / 2000
+    unit = 10.0 ** floor(log10(radius))
+    return floor(radius / unit * (1 + 1e-12)) * unit
+
+
+def _inscribed(centres: Any, normals: Any, i: Any, j: Any) -> Any:
+    p, n = entries(centres, i), entries(normals, i)
+    d = entries(centres, j) - p
+    return (d.real**2 + d.imag**2) / (2 * (d.real * n.real + d.imag * n.imag))
+
+
+INSCRIBED = Rule("circle that touches the centre profile from inside", _inscribed, ("point", "direction", "number", "number"),
+                 "length",
+                 "Окружность, касающаяся центрового профиля изнутри и проходящая через другую его точку: {name} = {value}.")
+LEAST = Rule("least length", lambda *of: reduce(np.minimum, of), ("length",) * 5, "length",
+             "Наименьшее из этих значений: {name} = {value}.")
+PART = Rule("part of a radius", lambda share, radius: share * radius, ("number", "length"), "length",
+            "Предел радиуса ролика {0}·{1} = {value}.", source="000, 7.3")
+ROUNDED = Rule("rounded roller", rounded_down, ("length",), "length",
+               "Округлим радиус ролика в меньшую сторону до 0,5 мм: {name} = {value}.")
+CHOSEN = Rule("given roller", lambda radius: radius, ("length",), "length", "По заданию радиус ролика {name} = {value}.")
+OF_THREE = Rule("point of the sharpest place", entries, ("point", "number"), "point",
+                "На самом крутом участке центрового профиля отметим точку {name}.")
 
 
 # --- the cam --------------------------------------------------------------------------------------------------------
@@ -121,12 +185,16 @@ class Cam:
     @property
     def right(self) -> float:
         """+1 when the velocity of the rising follower, turned by 90 degrees with the cam, points to the right, else -1."""
-        return 1.0 if self.data.sense == "clockwise" else -1.0
+        return GivenNumber(1.0 if self.data.sense == "clockwise" else -1.0, "cam.sense")
 
     @property
     def alpha(self) -> float:
         """Permitted pressure angle, rad."""
-        return float(self.data.pressure_angle or 0.0)
+        return self.given("pressure_angle") or 0.0
+
+    def given(self, key: str) -> GivenNumber | None:
+        """A number of the project file that knows its place there; None where it is left out."""
+        return given(self.data, key)
 
     @property
     def traits(self) -> frozenset[str]:
@@ -142,9 +210,14 @@ class Cam:
     # --- motion
 
     @cached_property
+    def exact(self) -> ExactMotion:
+        """What follows from the law alone."""
+        return ExactMotion(self.law)
+
+    @cached_property
     def motion(self) -> FollowerMotion:
         """Diagrams S'', S', S at the scale factors of the shipped sheet."""
-        return motion(self.law, self._scales)
+        return motion(self.law, self._scales, self.exact)
 
     @cached_property
     def _scales(self) -> MotionScales:
@@ -156,35 +229,35 @@ class Cam:
     def motion_on(self, width: float, height: float) -> FollowerMotion:
         """Diagrams S'', S', S at the scale factors that suit another place on paper, mm."""
         scales = self._scales_on(width, height)
-        return self.motion if scales == self._scales else motion(self.law, scales)
-
-    @cached_property
-    def _ordinates(self) -> tuple[Reals, Reals]:
-        m = self.motion
-        return m.measured(m.s, m.scales.s), m.measured(m.ds, m.scales.ds)
+        return self.motion if scales == self._scales else motion(self.law, scales, self.exact)
 
     # --- profile
 
     @cached_property
     def inversion(self) -> Inversion:
         """Inversion in the numbered positions: the plan of the protocol."""
-        return self._invert(Plan("cam-profile", "Профиль кулачка", "m", self.law.labels), self.law.positions, *self._ordinates)
+        return self._invert(Plan("cam-profile", "Профиль кулачка", "m", self.law.labels), self.motion.ordinates)
 
     @cached_property
     def dense(self) -> Inversion:
         """The same inversion in many positions of a whole turn, for smooth curves and for results."""
+        return self._bare(self._divided)
+
+    @property
+    def _divided(self) -> Reals:
         parts = self.law.parts
-        return self.at(self.law.divided(parts * -(-DENSE // parts)))
+        return self.law.divided(parts * -(-DENSE // parts))
 
     def at(self, phi: Reals) -> Inversion:
         """The same inversion at any cam angles, rad."""
-        return self._bare(phi)
+        return self._bare(phi, choice=ASKED)
 
-    def _bare(self, phi: Reals) -> Inversion:
-        plan = Plan("cam-profile-between", "Профиль кулачка в промежуточных положениях", "m", tuple(map(str, range(len(phi)))))
-        return self._invert(plan, phi, self.law.s(phi), self.law.ds(phi))
+    def _bare(self, phi: Reals, name: str = "between", choice: str = "фазы делятся на равные части") -> Inversion:
+        at = self.exact.at(f"cam-law-{name}", "Закон движения в промежуточных положениях", phi, choice)
+        plan = Plan(f"cam-profile-{name}", "Профиль кулачка в промежуточных положениях", "m", at.plan.labels)
+        return self._invert(plan, at)
 
-    def _invert(self, plan: Plan, phi: Reals, s: Reals, ds: Reals) -> Inversion:
+    def _invert(self, plan: Plan, at: Displacement) -> Inversion:
         raise NotImplementedError
 
     @property
@@ -202,30 +275,38 @@ class Cam:
     def spring(self) -> Spring | None:
         """Closing spring; None with geometric closure, or when speed or mass are not given."""
         d = self.data
-        mass = d.follower_mass
-        if d.follower_inertia is not None and d.arm is not None:
-            mass = d.follower_inertia / d.arm**2
-        if d.closure != "force" or d.speed is None or mass is None:
+        keys = ("follower_inertia", "arm") if d.follower_inertia is not None and d.arm is not None else ("follower_mass",)
+        mass = tuple(m for key in keys if (m := self.given(key)) is not None)
+        speed, factor, preload = (self.given(key) for key in ("speed", "spring_factor", "preload"))
+        if d.closure != "force" or speed is None or not mass or factor is None or preload is None:
             return None
-        return spring(self.law, d.arm if d.arm is not None else 1.0, mass, d.speed, d.spring_factor, d.preload)
+        return spring(self.exact, self.given("arm") or 1.0, mass, speed, factor, preload)
 
     # --- results
 
     def results(self, phi: Reals | None = None) -> dict[str, Any]:
         """Results in SI (m, rad) at the given cam angles, or over a whole turn, the numbered positions among them."""
         inv = self.dense if phi is None else self.at(np.asarray(phi, dtype=float))
-        at = inv.phi
-        found = {"phi": at.tolist(), "s": self.law.s(at).tolist(), "ds": self.law.ds(at).tolist(), "dds": self.law.dds(at).tolist()}
-        found |= self._dimensions()
-        found |= {
-            "pressure_angle": inv.angles.value.tolist(),
-            "pitch_curve": _pairs(inv.centres.value), "profile": _pairs(inv.plan["F"].value),
-        }
+        found: dict[str, Any] = {"phi": inv.at.phi, "s": inv.at.s, "ds": inv.at.ds, "dds": inv.at.dds, **self._dimensions()}
+        found |= {"pressure_angle": inv.angles, "pitch_curve": inv.centres, "profile": inv.plan["F"]}
         if "F′" in inv.plan:
-            found["second_disc"] = {"pitch_curve": _pairs(inv.plan["B′"].value), "profile": _pairs(inv.plan["F′"].value)}
+            found["second_disc"] = {"pitch_curve": inv.plan["B′"], "profile": inv.plan["F′"]}
         if self.spring is not None:
             found["spring"] = self.spring.results()
         return found
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """All plans in the order of construction."""
+        exact, m = self.exact, self.motion
+        plans = [exact.phases.plan, exact.positions.plan, exact.before.plan, exact.after.plan, m.numbers, m.areas, m.plan,
+                 m.between_plan, m.ordinates.plan, *self._dimension_plans(), self.inversion.plan,
+                 self.dense.at.plan, self.dense.plan,
+                 *([self.spring.plan, self.spring.course_plan] if self.spring else [])]
+        return {plan.name: plan for plan in plans}
+
+    def _dimension_plans(self) -> Iterable[Plan]:
+        raise NotImplementedError
 
     def _dimensions(self) -> dict[str, Any]:
         raise NotImplementedError
@@ -245,76 +326,157 @@ class RollerCam(Cam):
         """Smallest radius of the centre profile, m."""
         return self.zone.r0
 
-    def _path(self, p: Phase, x: Any) -> tuple[Any, Any, Any]:
-        """Path of the roller's centre before the standing cam, m, and its derivatives by the cam angle."""
+    def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
+        """Rule for the radius of curvature of a centre profile, the curvature itself, and what both take besides the motion."""
         raise NotImplementedError
 
-    def _path_of_second(self, p: Phase, x: Any) -> tuple[Any, Any, Any]:
-        """The same of the roller of the second disc."""
+    @property
+    def apart(self) -> Step | None:
+        """What keeps the rollers of two discs apart: their distance, m, or the angle between their arms, rad; None for one disc."""
+        return None if self.discs is None else next(iter(self.discs))
+
+    @cached_property
+    def discs(self) -> Plan | None:
+        """Plan of what keeps the rollers of two discs apart: that with which both discs have the same smallest radius."""
+        if self.data.closure != "geometric":
+            return None
+        plan = Plan("cam-discs", "Два диска", "m")
+        self._keep_apart(plan)
+        return plan
+
+    def _keep_apart(self, plan: Plan) -> Step:
         raise NotImplementedError
 
     def check(self) -> None:
         """Zone and roller."""
         _ = self.roller
 
-    # --- roller
+    def _dimension_plans(self) -> Iterable[Plan]:
+        yield from (*self.zone.plans.values(), self.zone.curve_plan)
+        if self.discs is not None:
+            yield self.discs
+        yield from (self.curvature, self.near.at.plan, self.near.plan, self.choice)
+
+    # --- curvature
+
+    @cached_property
+    def curvature(self) -> Plan:
+        """Exact radii of curvature of the sharpest places."""
+        plan = Plan("cam-curvature", "Наименьший радиус кривизны центрового профиля", "m")
+        radii = [found.radius for found in self._sharpest_places(plan)]
+        plan.add("ρ_min", LEAST, *radii, symbol="ρ_{min}")
+        return plan
 
     @cached_property
     def sharpest(self) -> Sharpest:
         """Sharpest convex place of the centre profile."""
-        return self._sharpest(self._path)
+        _ = self.curvature
+        return self._places[0]
 
-    def _sharpest(self, path: Callable[[Phase, Any], tuple[Any, Any, Any]]) -> Sharpest:
-        best = Sharpest(0.0, float("inf"), 0.0, 0.0)
+    def _sharpest_places(self, plan: Plan) -> list[Sharpest]:
+        self._places.extend(self._sharpest(plan, second) for second in ((False, True) if self.discs else (False,)))
+        return self._places
+
+    @cached_property
+    def _places(self) -> list[Sharpest]:
+        return []
+
+    def _sharpest(self, plan: Plan, second: bool) -> Sharpest:
+        rule, curvature, of = self._bending(second)
+        known = [value_of(a) for a in of]
+        best: tuple[float, Phase, float, float, float] = (float("inf"), self.law.rise, 0.0, 0.0, 0.0)
         for p in self.law.phases:
 
             def bend(x: Any, p: Phase = p) -> Any:
-                return curvature(*path(p, x), self.right)
+                return curvature(p.s(x), p.ds(x), p.dds(x), *known)
 
             for a, b in pairwise((0.0, *p.law.jumps, 1.0)):
                 # Where the law jumps, the curvature is read from inside the piece.
                 x = np.linspace(a + 1e-12, b - 1e-12, 257)
                 k = int(np.argmax(bend(x)))
                 at = _peak(bend, float(x[max(k - 1, 0)]), float(x[min(k + 1, 256)]))
-                if float(bend(at)) * best.rho > 1 + 1e-12:
-                    best = Sharpest(float(p.phi(at)), 1 / float(bend(at)), float(p.phi(a)), float(p.phi(b)), self.law.parts)
-        return best
-
-    @cached_property
-    def rho_min(self) -> float:
-        """Smallest radius of curvature of the convex parts of the centre profile, or of both where there are two discs, m."""
-        second = self._sharpest(self._path_of_second).rho if self.data.closure == "geometric" else self.sharpest.rho
-        return min(self.sharpest.rho, second)
+                if float(bend(at)) * best[0] > 1 + 1e-12:
+                    best = (1 / float(bend(at)), p, at, a, b)
+        _, p, at, a, b = best
+        tag = "ρ2" if second else "ρ"
+        share = found_share(plan, self.exact.phases, p, at, tag, "кривизна выпуклой части центрового профиля наибольшая")
+        moving = in_phase(plan, self.law, self.exact.phases, p, share, tag)
+        radius = plan.add(f"{tag}_min", rule, *moving, *of) if second else plan.add("ρ_1", rule, *moving, *of)
+        return Sharpest(p, at, radius, float(p.phi(a)), float(p.phi(b)), self.law.parts)
 
     @property
-    def roller_rules(self) -> tuple[RollerRule, RollerRule]:
-        """The two rules for the radius of the roller."""
-        given = self.data.curvature_share
-        shares = SHARE_OF_RHO if given is None else (given, given)
-        return RollerRule("r_0", self.zone.r0, SHARE_OF_R0), RollerRule("ρ_{min}", self.rho_min, shares)
+    def rho_min(self) -> float:
+        """Smallest radius of curvature of the convex parts of the centre profile, or of both where there are two discs, m."""
+        return float(self.curvature["ρ_min"].value)
 
     @cached_property
-    def largest_roller(self) -> float:
-        """Radius from which on the profile has a cusp or cuts itself, m.
+    def near(self) -> Inversion:
+        """The inversion in three points of the sharpest place."""
+        return self._bare(self.sharpest.three, "curvature-between", "три точки самого крутого участка центрового профиля")
 
-        Besides the radii of curvature: no centre of the roller may lie within the circle that touches the centre profile
-        anywhere from inside; the circle through q touching in p with the inner normal n has |q - p|^2 / (2 n (q - p)).
+    # --- roller
+
+    @cached_property
+    def choice(self) -> Plan:
+        """Choice of the roller's radius by both rules.
+
+        Where another part of the profile is in the way, it limits the roller as a radius of curvature does.
+        """
+        plan = Plan("cam-roller", "Выбор радиуса ролика", "m")
+        rho = self.curvature["ρ_min"]
+        share = self.given("curvature_share")
+        of_rho = SHARE_OF_RHO if share is None else (share, share)
+        for name, radius, shares in (("r_0", self.zone.plan["r_0"], SHARE_OF_R0), ("ρ", rho, of_rho)):
+            for i, part in enumerate(shares, 1):
+                plan.add(f"{name}_{i}", PART, part, radius)
+        inside = self._inscribed(plan)
+        most = plan.add("r_max", LEAST, rho, *inside)
+        chosen = self.given("roller")
+        if chosen is not None:
+            plan.add("r_p", CHOSEN, chosen, symbol="r_p")
+            return plan
+        limit = plan.add("r_max_2", PART, plan["ρ_2"].args[0], most)
+        plan.add("r_p", ROUNDED, plan.add("r", LEAST, plan["r_0_2"], plan["ρ_2"], limit), symbol="r_p")
+        return plan
+
+    def _inscribed(self, plan: Plan) -> list[Step]:
+        """Record the least circle that touches a centre profile anywhere from inside and goes through another of its points.
+
+        No centre of the roller may lie within it; the circle through q touching in p with the inner normal n has
+        |q - p|^2 / (2 n (q - p)). None where no point lies on the inner side of another.
         """
         course = self._course
-        pairs = [(course.centres.value, course.normals.value)]
-        if "B′" in course.plan:
-            pairs.append((course.plan["B′"].value, course.plan["N′"].value))
-        least = self.rho_min
-        for centres, normals in pairs:
-            p, normal = centres[::2], normals[::2]
+        found: tuple[float, Any, Any, int, int] | None = None
+        for centres, normals in [("B", course.normals.name), *([("B′", "N′")] if self.discs else [])]:
+            p, normal = (course.plan[name].value[::2] for name in (centres, normals))
             d = p[None, :] - p[:, None]
             depth = d.real * normal.real[:, None] + d.imag * normal.imag[:, None]
             square = d.real**2 + d.imag**2
             # Points that coincide (0 and 2 pi) say nothing.
             apart = (depth > 0) & (square > (1e-6 * self.zone.r0) ** 2)
             radius = np.divide(square, 2 * depth, out=np.full_like(square, np.inf), where=apart)
-            least = min(least, float(radius.min()))
-        return least
+            i, j = np.unravel_index(int(np.argmin(radius)), radius.shape)
+            if radius[i, j] < (found[0] if found else np.inf):
+                found = float(radius[i, j]), course.plan[centres], course.plan[normals], 2 * int(i), 2 * int(j)
+        if found is None:
+            return []
+        choice = "пара точек центрового профиля с наименьшей вписанной окружностью"
+        of, normals, *pair = found[1:]
+        places = (Given(float(k), "cam-profile-between", choice=choice, over="none") for k in pair)
+        return [plan.add("r_вп", INSCRIBED, of, normals, *places)]
+
+    @property
+    def roller_rules(self) -> tuple[RollerRule, RollerRule]:
+        """The two rules for the radius of the roller."""
+        plan, share = self.choice, self.data.curvature_share
+        shares = SHARE_OF_RHO if share is None else (share, share)
+        return (RollerRule("r_0", SHARE_OF_R0, (plan["r_0_1"], plan["r_0_2"])),
+                RollerRule("ρ_{min}", shares, (plan["ρ_1"], plan["ρ_2"])))
+
+    @property
+    def largest_roller(self) -> float:
+        """Radius from which on the profile has a cusp or cuts itself, m."""
+        return float(self.choice["r_max"].value)
 
     @cached_property
     def roller(self) -> float:
@@ -325,37 +487,30 @@ class RollerCam(Cam):
         CannotBuild
             when the given one is too large for the profile.
         """
-        given = self.data.roller
-        if given is None:
-            # Where another part of the profile is in the way, it limits the roller as a radius of curvature does.
-            rules = self.roller_rules
-            return _rounded_down(min(*(rule.limits[1] for rule in rules), rules[1].shares[1] * self.largest_roller))
-        if not given < self.largest_roller:
+        radius = float(self.choice["r_p"].value)
+        if self.data.roller is not None and not radius < self.largest_roller:
             raise CannotBuild(
-                f"cam: a roller of radius {given * 1e3:g} mm makes a profile with a cusp or a loop: "
+                f"cam: a roller of radius {radius * 1e3:g} mm makes a profile with a cusp or a loop: "
                 f"the centre profile allows less than {self.largest_roller * 1e3:.4g} mm",
-                f"take a roller of at most {_rounded_down(min(r.limits[1] for r in self.roller_rules)) * 1e3:g} mm "
+                f"take a roller of at most {rounded_down(min(r.limits[1] for r in self.roller_rules)) * 1e3:g} mm "
                 "or leave cam.roller out")
-        return given
+        return radius
 
     # --- profile
 
     @cached_property
     def inversion(self) -> Inversion:
         """Inversion in the numbered positions, with curvature, roller and profile: the plan of the protocol."""
-        plan = Plan("cam-profile", "Профиль кулачка", "m", self.law.labels)
-        inv = self._invert(plan, self.law.positions, *self._ordinates)
-        near = self._bare(self.sharpest.three).centres.value
-        say = "На самом крутом участке центрового профиля отметим точку {name}."
-        e, d, g = (inv.plan.add(f"{name}_ρ", rules.GIVEN, complex(at), say=say) for name, at in zip("EDG", near, strict=True))
+        inv = super().inversion
+        near = self.near.centres
+        e, d, g = (inv.plan.add(f"{name}_ρ", OF_THREE, near, k) for k, name in enumerate("EDG"))
         centre = inv.plan.add("M", THREE_POINT_CENTRE, e, d, g)
         inv.plan.add("ρ_min", rules.DISTANCE, centre, d)
         return self._contact(inv)
 
     @cached_property
     def _course(self) -> Inversion:
-        parts = self.law.parts
-        return self._bare(self.law.divided(parts * -(-DENSE // parts)))
+        return self._bare(self._divided)
 
     @cached_property
     def dense(self) -> Inversion:
@@ -364,12 +519,13 @@ class RollerCam(Cam):
 
     def at(self, phi: Reals) -> Inversion:
         """The same inversion at any cam angles, rad."""
-        return self._contact(self._bare(phi))
+        return self._contact(self._bare(phi, choice=ASKED))
 
     def _contact(self, inv: Inversion) -> Inversion:
-        inv.plan.add("F", CONTACT, inv.centres, inv.normals, self.roller)
+        _ = self.roller
+        inv.plan.add("F", CONTACT, inv.centres, inv.normals, self.choice["r_p"])
         if "B′" in inv.plan:
-            inv.plan.add("F′", CONTACT, inv.plan["B′"], inv.plan["N′"], self.roller)
+            inv.plan.add("F′", CONTACT, inv.plan["B′"], inv.plan["N′"], self.choice["r_p"])
         return inv
 
 
@@ -380,31 +536,33 @@ class TappetCam(RollerCam):
     @cached_property
     def zone(self) -> Zone:
         """Allowed zone and main dimensions from the ordinates of the diagrams."""
-        d = self.data
-        return cam_zone.zone(self.law, self.alpha, d.limit, self.right, *self._ordinates, d.eccentricity, d.centre)
+        at = self.motion.ordinates
+        return cam_zone.zone(self.law, self.alpha, self.data.limit, self.right, at.s, at.ds, self.given("eccentricity"),
+                             self.data.centre, self.exact)
 
     @property
     def distance(self) -> float:
-        """Distance of the rollers of the two discs, m: that with which both discs have the same smallest radius."""
-        return 2 * self.zone.s0 + self.law.stroke
+        """Distance of the rollers of the two discs, m."""
+        return float(self.apart.value) if self.apart else 0.0
 
-    def _invert(self, plan: Plan, phi: Reals, s: Reals, ds: Reals) -> Inversion:
-        inv = cam_inversion.translating(plan, self.zone, phi, s, ds)
-        if self.data.closure == "geometric":
-            second_disc_of_tappet(inv, self.distance)
+    def _keep_apart(self, plan: Plan) -> Step:
+        return plan.add("L", DISTANCE, self.zone.plan["S_0"], self.law.stroke)
+
+    def _invert(self, plan: Plan, at: Displacement) -> Inversion:
+        inv = cam_inversion.translating(plan, self.zone, at)
+        if self.apart is not None:
+            second_disc_of_tappet(inv, self.apart)
         return inv
 
-    def _path(self, p: Phase, x: Any) -> tuple[Any, Any, Any]:
-        return 1j * (self.zone.s0 + p.s(x)) - self.right * self.zone.e, 1j * p.ds(x), 1j * p.dds(x)
-
-    def _path_of_second(self, p: Phase, x: Any) -> tuple[Any, Any, Any]:
-        w, dw, ddw = self._path(p, x)
-        return w - 1j * self.distance, dw, ddw
+    def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
+        of = (self.zone.plan["S_0"], self.zone.plan["e"], self.right, self.apart if second else 0.0)
+        return TAPPET_RADIUS, tappet_curvature, of
 
     def _dimensions(self) -> dict[str, Any]:
-        z = self.zone
-        found = {"r0": z.r0, "e": z.e, "s0": z.s0, "r_roller": self.roller, "rho_min": self.rho_min}
-        return found | ({"roller_distance": self.distance} if self.data.closure == "geometric" else {})
+        z = self.zone.plan
+        _ = self.roller
+        found = {"r0": z["r_0"], "e": z["e"], "s0": z["S_0"], "r_roller": self.choice["r_p"], "rho_min": self.curvature["ρ_min"]}
+        return found | ({"roller_distance": self.apart} if self.apart else {})
 
 
 @dataclass(frozen=True)
@@ -414,46 +572,47 @@ class RockerCam(RollerCam):
     @cached_property
     def zone(self) -> Zone:
         """Allowed zone and main dimensions from the ordinates of the diagrams."""
-        d = self.data
-        return cam_zone.rocker_zone(self.law, self.arm, self.alpha, d.limit, self.right, d.rotation == "same", *self._ordinates,
-                                    d.centre)
+        d, at = self.data, self.motion.ordinates
+        return cam_zone.rocker_zone(self.law, self.arm, self.alpha, d.limit, self.right, d.rotation == "same", at.s, at.ds,
+                                    d.centre, self.exact)
 
     @property
     def arm(self) -> float:
         """Length of the rocker, m."""
-        return float(self.data.arm or 0.0)
+        return self.given("arm") or 0.0
 
     @property
     def spread(self) -> float:
-        """Angle between the arms of the two rollers, rad: that with which both discs have the same smallest radius."""
-        pivot, apex = complex(self.zone.cones.pivot or 0j), complex(self.zone.apex.value)
-        return 2 * abs(float(np.angle((apex - pivot) / -pivot))) + self.law.stroke
+        """Angle between the arms of the two rollers, rad."""
+        return float(self.apart.value) if self.apart else 0.0
 
-    def _invert(self, plan: Plan, phi: Reals, s: Reals, ds: Reals) -> Inversion:
-        inv = cam_inversion.rocker(plan, self.zone, phi, s, ds)
-        if self.data.closure == "geometric":
-            second_disc_of_rocker(inv, -self.zone.cones.turn * self.spread, self.arm)
+    def _keep_apart(self, plan: Plan) -> Step:
+        return plan.add("ψ_12", SPREAD, self.zone.plan["A"], self.zone.plan["O"], self.law.stroke)
+
+    def _invert(self, plan: Plan, at: Displacement) -> Inversion:
+        inv = cam_inversion.rocker(plan, self.zone, at)
+        if self.apart is not None:
+            second_disc_of_rocker(inv, self.apart, -self.zone.cones.turn)
         return inv
 
-    def _path(self, p: Phase, x: Any) -> tuple[Any, Any, Any]:
-        return self._path_on(p, x, 1.0 + 0j)
+    def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
+        z = self.zone
+        of = (z.plan["A"], z.plan["O"], z.cones.turn, self.right, self.apart if second else 0.0)
+        return ROCKER_RADIUS, rocker_curvature, of
 
-    def _path_of_second(self, p: Phase, x: Any) -> tuple[Any, Any, Any]:
-        return self._path_on(p, x, complex(np.exp(-1j * self.zone.cones.turn * self.spread)))
-
-    def _path_on(self, p: Phase, x: Any, turned: complex) -> tuple[Any, Any, Any]:
-        cones = self.zone.cones
-        pivot, turn = complex(cones.pivot or 0j), 1j * cones.turn
-        arm = -pivot * turned * np.exp(turn * p.s(x))
-        first = turn * p.ds(x) * arm
-        return pivot - complex(self.zone.apex.value) + arm, first, turn * p.dds(x) * arm + turn * p.ds(x) * first
+    def _dimension_plans(self) -> Iterable[Plan]:
+        yield from super()._dimension_plans()
+        if self.zone.least is not None:
+            yield self.zone.least
 
     def _dimensions(self) -> dict[str, Any]:
         z = self.zone
-        found: dict[str, Any] = {"r0": z.r0, "l0": z.l0, "r_roller": self.roller, "rho_min": self.rho_min}
-        if (least := z.least()) is not None:
-            found["least"] = {"r0": abs(least), "l0": abs(least - complex(z.cones.pivot or 0j))}
-        return found | ({"arm_angle": self.spread} if self.data.closure == "geometric" else {})
+        _ = self.roller
+        found: dict[str, Any] = {"r0": z.plan["r_0"], "l0": z.plan["l_0"], "r_roller": self.choice["r_p"],
+                                 "rho_min": self.curvature["ρ_min"]}
+        if z.least is not None:
+            found["least"] = {"r0": z.least["r_0"], "l0": z.least["l_0"]}
+        return found | ({"arm_angle": self.apart} if self.apart else {})
 
 
 @dataclass(frozen=True)
@@ -466,8 +625,8 @@ class FlatCam(Cam):
     @cached_property
     def plate(self) -> Plate:
         """Main dimensions from the ordinates of the diagrams."""
-        m = self.motion
-        return cam_zone.plate(self.law, *self._ordinates, m.measured(m.dds, m.scales.dds), self.data.base_radius)
+        at = self.motion.ordinates
+        return cam_zone.plate(self.law, at.s, at.dds, self.given("base_radius"), self.exact)
 
     @property
     def r0(self) -> float:
@@ -478,29 +637,20 @@ class FlatCam(Cam):
         """Radius and plate."""
         _ = self.plate
 
-    def _invert(self, plan: Plan, phi: Reals, s: Reals, ds: Reals) -> Inversion:
-        return cam_inversion.flat(plan, self.r0, self.right, phi, s, ds)
+    def _invert(self, plan: Plan, at: Displacement) -> Inversion:
+        return cam_inversion.flat(plan, self.plate.plan["r_0"], self.right, at)
 
     @property
     def rho_min(self) -> float:
         """Smallest radius of curvature of the profile, m."""
-        return self.r0 + cam_zone.lowest_sum(self.law)[0]
+        return float(self.plate.plan["ρ_min"].value)
+
+    def _dimension_plans(self) -> Iterable[Plan]:
+        return self.plate.plans.values()
 
     def _dimensions(self) -> dict[str, Any]:
-        p = self.plate
-        return {"r0": p.r0, "r_min": p.r_min, "l1": p.l1, "l2": p.l2, "rho_min": self.rho_min}
-
-
-def _pairs(points: Complex) -> list[list[float]]:
-    return [[p.real, p.imag] for p in points.tolist()]
-
-
-def _rounded_down(radius: float) -> float:
-    """Radius of a roller, m, rounded down to 0.5 mm; a smaller one to one significant digit."""
-    if radius >= 0.5e-3:
-        return floor(radius * 2000 * (1 + 1e-12)) / 2000
-    unit = 10.0 ** floor(log10(radius))
-    return floor(radius / unit * (1 + 1e-12)) * unit
+        names = {"r0": "r_0", "r_min": "r_min", "l1": "l_1", "l2": "l_2", "rho_min": "ρ_min"}
+        return {key: self.plate.plan[name] for key, name in names.items()}
 
 
 def cam(data: CamTable) -> Cam:
@@ -522,10 +672,10 @@ def cam(data: CamTable) -> Cam:
     if data.roller is not None and not data.roller > 0:
         raise CannotBuild(f"cam.roller: expected a radius greater than 0 mm, not {data.roller * 1e3:g} mm",
                           "leave it out to have it taken by both rules")
-    stroke, symbol = (data.swing, "ψ") if angular else (data.stroke, "S")
+    key, symbol = ("swing", "ψ") if angular else ("stroke", "S")
     fall_law = None if data.fall_law is None else _law(data, data.fall_law, "fall_table")
-    law = PositionFunction.of(data.rise, data.upper_dwell, data.fall, float(stroke or 0.0), _law(data, data.law, "table"), fall_law,
-                              data.parts, symbol)
+    rise, dwell, fall, stroke = (given(data, name) or 0.0 for name in ("rise", "upper_dwell", "fall", key))
+    law = PositionFunction.of(rise, dwell, fall, stroke, _law(data, data.law, "table"), fall_law, data.parts, symbol)
     return follower(data, law)
 
 
