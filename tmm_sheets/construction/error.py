@@ -184,7 +184,8 @@ class Errors:
         values: dict[int, Any] = {id(source): moved}
 
         def value(step: Step) -> Any:
-            self._of(step)  # which lengths are known
+            for s in step.ancestors():
+                self._note_lengths(s)
             for s in step.ancestors() if id(step) not in values else ():
                 if id(s) in values:
                     continue

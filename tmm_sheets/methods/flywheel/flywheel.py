@@ -662,7 +662,7 @@ class Flywheel(ABC):
         """The plans by name, in drawing order, after those of the reduced quantities."""
         r = self.reduced
         shown = (self.moment_plan, self.middles_plan, self.slopes_plan, self.intervals_plan, self.area_plan, self.work_plan, self.driving_plan, self.total_plan,
-                 self.inertia_plan, self.contacts_plan, *self.own_plans, self.first_plan, self.limit_plan)
+                 self.inertia_plan, self.contacts_plan, *self.own_plans, *((self.rotor_plan,) if self.rotor_plan.steps else ()), self.first_plan, self.limit_plan)
         last = (*((self.wheel.plan,) if self.wheel else ()), *((self.motor.plan,) if self.motor else ()), self.position_acceleration)
         before = (*r.crank_plans, self.data_plan, *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
         return {p.name: p for p in (*before, *shown, *last)}
