@@ -194,7 +194,7 @@ class Errors:
                     values[id(s)] = s.value
                 else:
                     with np.errstate(all="ignore"):
-                        now = [values[id(a)] if isinstance(a, Step) else a for a in args]
+                        now = [values[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
                         values[id(s)] = _replayed(s, now, self._snapped(s, args))
             return values[id(step)]
 

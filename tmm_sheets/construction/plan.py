@@ -56,7 +56,7 @@ class Plan:
         """Record a step under a name that is unique in this plan and return it; nothing is computed."""
         if name in self.steps:
             raise ValueError(f"plan {self.name!r} has a step {name!r} already")
-        step = Step(name, rule, args, say, symbol)
+        step = Step(name, rule, args, say, symbol, plan=self.name)
         self.steps[name] = step
         return step
 

@@ -60,6 +60,11 @@ class AsSteps:
     def crank(self):
         return Step("J_кр", rules.GIVEN_NUMBER, (self.crank_inertia,))
 
+    @property
+    def force_steps(self):
+        plan, forces = self.numbered.plan, self.forces_at(self.phi[:-1])
+        return tuple(plan[name] if name in plan else plan.add(name, rules.GIVEN_NUMBER, Given(row, name)) for name, row in forces.items())
+
     def at(self, where, phi, labels=None):
         found = self.kept.get(where)
         if found is None or not np.array_equal(found.phi, phi):

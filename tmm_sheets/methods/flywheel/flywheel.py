@@ -92,6 +92,11 @@ class ReducedData(Protocol):
         ...
 
     @property
+    def force_steps(self) -> tuple[Step, ...]:
+        """Steps of the forces that ``forces_at`` tells, in its order, at the positions."""
+        ...
+
+    @property
     def crank_plans(self) -> tuple[Plan, ...]:
         """Plans behind it."""
         ...
@@ -616,6 +621,7 @@ class Flywheel(ABC):
         curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
         total = plan.add("ΣA", SUM, curve, line)
         energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("energy"))
+        plan.add("points", PLOT, self.across, energy)
         plan.add("A", FROM_PAPER, curve, self.mu("work"), say="Работа переменного момента {name} = y_2·μ_A = {0}·{1} = {value} Дж.")
         plan.add("E", FROM_PAPER, energy, self.mu("energy"),
                  say="Изменение кинетической энергии {name} = ΔE·μ_E = {0}·{1} = {value} Дж.")
@@ -758,7 +764,7 @@ class Flywheel(ABC):
 
     def _bare(self, plan: Plan, name: str, first: Step, without: Rule, with_rotor: Rule) -> Step:
         """What of all that turns with the crank is left for the flywheel."""
-        if self.data.motor is None or not self.data.motor.rotor_inertia:
+        if "J_рот" not in self.rotor_plan:
             return plan.add(name, without, first, self.reduced.crank)
         return plan.add(name, with_rotor, first, self.reduced.crank, self.rotor_plan["J_рот"])
 
@@ -766,7 +772,7 @@ class Flywheel(ABC):
     def rotor_plan(self) -> Plan:
         """Moment of inertia of the motor's rotor reduced to the crank: ``J_рот``."""
         plan, motor = Plan(f"rotor{self.where}", "Ротор двигателя", ""), self.data.motor
-        if motor is None:
+        if motor is None or not motor.rotor_inertia:
             return plan
         u: Any = motor.ratio and named(motor.ratio, "flywheel.motor.ratio", "u")
         u = u or plan.add("u", RATIO, named(motor.rated, "flywheel.motor.rated", "ω_н", "rad/s"), self.omega1)

@@ -27,6 +27,8 @@ from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 
 _SOURCE = "000, 5"
 
+GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {name} = {value}.", unit="N")
+GIVEN_MOMENT = Rule("given moment", lambda m: m, ("number",), "number", "Момент {name} = {value} Н·м.", unit="N*m")
 POWER = Rule("power of a force", lambda f, v: (f * np.conj(v)).real, ("force", "point"), "number",
              "Мощность силы {0} по плану скоростей, отрезок p{1}: {name} = F·V·cos(F̅, V̅) = {value} Вт.", unit="W", source=_SOURCE)
 MOMENT_POWER = Rule("power of a moment", lambda m, w: m * w, ("number", "number"), "number",
@@ -82,6 +84,7 @@ class Reduction:
         self._drawn = drawn
         self.plan = Plan(f"reduction{where}", "Приведение сил и масс", "", labels)
         self._moments: dict[int, Step] = {}
+        self.loads: dict[str, Step] = {}
 
     @cached_property
     def velocities(self) -> Velocities:
@@ -89,17 +92,12 @@ class Reduction:
         if self._drawn is not None:
             return self._drawn()
         r = self.reduced
-        found = velocity_plan(position_plan(r.mechanism, r.cycle.world(self.phi), self.labels))
-        found.positions.plan.name += self.where
-        found.plan.name += self.where
-        return found
+        return velocity_plan(position_plan(r.mechanism, r.cycle.world(self.phi), self.labels, self.where))
 
     @cached_property
     def accelerations(self) -> Accelerations:
         """Acceleration plans of the evenly turning crank at the angles."""
-        found = acceleration_plan(self.velocities, 0.0)
-        found.plan.name += self.where or "@even"
-        return found
+        return acceleration_plan(self.velocities, 0.0, "" if self.where else "@even")
 
     @property
     def plans(self) -> tuple[Plan, ...]:
@@ -128,11 +126,12 @@ class Reduction:
             numbers[kind] += 1
             letters = f"{f.name[0]}_{{{f.name[1:]}}}"
             if f.point is None:
-                given = Given(f.law(self.phi, side), origin, letters, "N*m")
+                given = plan.add(f"{f.name}{mark}", GIVEN_MOMENT, Given(f.law(self.phi, side), origin, letters, "N*m"))
                 powers.append(plan.add(f"N_{f.name}{mark}", MOMENT_POWER, given, vel.omega[f.link]))
             else:
-                given = Given(f.vector(self.phi, side), origin, letters, "N")
+                given = plan.add(f"{f.name}{mark}", GIVEN_FORCE, Given(f.vector(self.phi, side), origin, letters, "N"))
                 powers.append(plan.add(f"N_{f.name}{mark}", POWER, given, vel.points[f.point]))
+            self.loads[given.name] = given
         if r.gravity:
             for i, link in enumerate(r.mechanism.links.values()):
                 if link.mass and link.centre is not None:
@@ -254,6 +253,13 @@ class Reduced:
         shown = [f for f in self.forces if f.point is not None] or self.forces
         return {f"{f.name[0]}_{{{f.name[1:]}}}": np.asarray(f.magnitude(phi, side)) for f in shown}
 
+    @property
+    def force_steps(self) -> tuple[Step, ...]:
+        """Steps of the forces that :meth:`forces_at` tells, in its order, at the numbered positions."""
+        _ = self.numbered.moment()
+        shown = [f for f in self.forces if f.point is not None] or self.forces
+        return tuple(self.numbered.loads[f.name] for f in shown)
+
     def inertia(self, phi: Any) -> Any:
         """Reduced moment of inertia of the moving links without the flywheel, kg m2."""
         return self._search(phi).inertia.value
@@ -287,9 +293,7 @@ class Reduced:
 
     @cached_property
     def _at_start(self) -> Positions:
-        found = position_plan(self.mechanism, self.cycle.start)
-        found.plan.name += "@start"
-        return found
+        return position_plan(self.mechanism, self.cycle.start, where="@start")
 
     @property
     def crank_plans(self) -> tuple[Plan, ...]:

@@ -133,11 +133,14 @@ class Accelerations:
         self.epsilon[link] = self.plan.add(f"ε{link}", SAME, self.epsilon[other])
 
 
-def acceleration_plan(vel: Velocities, epsilon1: Any = None) -> Accelerations:
-    """Record the acceleration plans of all positions; ``epsilon1`` (rad/s2, signed) defaults to the mechanism's."""
+def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") -> Accelerations:
+    """Record the acceleration plans of all positions; ``epsilon1`` (rad/s2, signed) defaults to the mechanism's.
+
+    ``where`` stands behind the plan's name.
+    """
     pos = vel.positions
     m = pos.mechanism
-    plan = Plan("accelerations", "План ускорений", "m/s2", pos.plan.labels, "π")
+    plan = Plan(f"accelerations{pos.where}{where}", "План ускорений", "m/s2", pos.plan.labels, "π")
     acc = Accelerations(pos, vel, plan)
     pole = plan.add("π", POLE, 0j)
     for name in m.fixed:
