@@ -114,7 +114,7 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     with of.of("M", "axis"):
         graphs.axes(canvas, g, length, low, high, "M, Н·м")
         graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.where(np.abs(points.imag) < 1.0, body, points.imag))
-    _uprights(of, "M")
+    uprights(of, "M")
     pole = plan["P"].value
     rays = stage(canvas, plan, None, g.place())
     _rays(rays, fw, drawn)
@@ -131,7 +131,7 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.label(g(0.78 * length + 1j * level), f"M_{constant}^пр", -1j if level > 0 else 1j, height=5)
 
 
-def _uprights(s: Stage, step: str) -> None:
+def uprights(s: Stage, step: str) -> None:
     """Ordinates of the points of a graph, one for each position."""
     for k in range(len(s.plan.labels)):
         play(s.position(k), [step], "thin")
@@ -139,12 +139,13 @@ def _uprights(s: Stage, step: str) -> None:
 
 def _moment_curve(fw: Flywheel) -> Any:
     """The varying moment over the crank angle, mm, with both values where it jumps."""
-    s, r = fw.scales, fw.reduced
+    s, r, values = fw.scales, fw.reduced, fw.at_samples.moment().value
     stretches = []
     for a, b in _stretches(fw):
         p = _inside(fw, a, b)
         ends = [graphs.one(r.moment(p[0], side=1)), graphs.one(r.moment(p[-1], side=-1))]
-        stretches.append(s.angle.mm(p) + 1j * s.moment.mm(np.concatenate((ends[:1], r.moment(p[1:-1]), ends[1:]))))
+        inside = values[(fw.samples > a) & (fw.samples < b)]
+        stretches.append(s.angle.mm(p) + 1j * s.moment.mm(np.concatenate((ends[:1], inside, ends[1:]))))
     return np.concatenate(stretches)
 
 
@@ -222,7 +223,7 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     of = stage(canvas, fw.total_plan, None, g.place())
     with of.of("points", "curve"):
         canvas.polyline(g(curve))
-    _uprights(of, "points")
+    uprights(of, "points")
     with of.of("points", "axis"):
         graphs.axes(canvas, g, points[-1].real, curve.imag.min(), curve.imag.max(), "ΔE, Дж")
         graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, points.imag)

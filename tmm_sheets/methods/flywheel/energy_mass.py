@@ -6,7 +6,7 @@ The curve is the change of kinetic energy over the reduced moment of inertia, th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -205,6 +205,11 @@ class AtAngles(Protocol):
     @property
     def inertia(self) -> Step:
         """Reduced moment of inertia without the flywheel, kg m2."""
+        ...
+
+    @property
+    def terms(self) -> Mapping[str, Step]:
+        """Twice the kinetic energy of each link, term by term, kg m2/s2, by names in lettering markup."""
         ...
 
     @property
