@@ -17,7 +17,6 @@ import numpy.typing as npt
 
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, RAY
 from tmm_sheets.construction.step import Helper, Rule, Step

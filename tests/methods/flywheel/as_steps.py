@@ -63,7 +63,8 @@ class AsSteps:
     @property
     def force_steps(self):
         plan, forces = self.numbered.plan, self.forces_at(self.phi[:-1])
-        return tuple(plan[name] if name in plan else plan.add(name, rules.GIVEN_NUMBER, Given(row, name)) for name, row in forces.items())
+        return tuple(plan[name] if name in plan else plan.add(name, rules.GIVEN_NUMBER, Given(row, name))
+                     for name, row in forces.items())
 
     def at(self, where, phi, labels=None):
         found = self.kept.get(where)

@@ -181,7 +181,8 @@ def test_a_crank_too_light_to_be_carried_round():
 
 def test_comparison_on_the_sheet(fw):
     drawn, other, ours, exact = fw.compared
-    assert [c.first for c in fw.compared] == [fw.J_first, other.first, fw.J_first_converged, pytest.approx(fw.limit.inertia, rel=1e-14)]
+    assert [c.first for c in fw.compared] == [fw.J_first, other.first, fw.J_first_converged,
+                                              pytest.approx(fw.limit.inertia, rel=1e-14)]
     assert other.first == Wittenbauer(fw.reduced, data()).J_first
     assert exact.running.delta == pytest.approx(0.04, rel=1e-11)
     assert ours.running.delta == pytest.approx(0.0399, abs=5e-6)
@@ -288,7 +289,7 @@ def test_rim_share_of_manual_001():
 
 def test_every_plan_speaks_and_can_be_built(fw):
     own = [name for name in fw.plans if "@" not in name]
-    assert own[-8:] == ["first-energy", "crank-speed", "comparison", "flywheel-inertia", "flywheel-limit", "flywheel-wheel",
+    assert own[-8:] == ["first-energy", "flywheel-inertia", "flywheel-limit", "crank-speed", "comparison", "flywheel-wheel",
                         "motor-check", "crank-acceleration"]
     for plan in fw.plans.values():
         assert plan.check() is None

@@ -76,9 +76,10 @@ def _between_positions(f: Flywheel, found: Measurables) -> None:
 def _results(f: Flywheel, found: Measurables) -> None:
     moment = f.driving_plan["M"]
     scalar(found, TITLE, "M_const", float(moment.value), "Н·м", [(moment, 0, 1 + 0j)], scale=MOMENT, signed=False)
-    wheel = f.wheel.plan if f.wheel is not None else {}
-    steps = {"J_I": (f.first_plan["J_I"], "кг·м²"), "J_flywheel": (f.first_plan["J_м"], "кг·м²"),
-             **{name: (wheel[name], "кг" if name == "m" else "м") for name in "DBHm" if name in wheel}}
+    steps = {"J_I": (f.first_plan["J_I"], "кг·м²"), "J_flywheel": (f.first_plan["J_м"], "кг·м²")}
+    if f.wheel is not None:
+        sizes = f.wheel.plan
+        steps |= {name: (sizes[name], "кг" if name == "m" else "м") for name in "DBHm" if name in sizes}
     read = Errors([]).displaced(f.ab, 0, NEAR)
     for name, (step, unit) in steps.items():
         value = float(step.value)

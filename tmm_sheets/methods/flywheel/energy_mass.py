@@ -46,7 +46,7 @@ def highest(f: Callable[[Floats], Floats], samples: Floats) -> float:
 
 
 def touched(curve: Curve, angle: float, side: int, samples: Floats) -> float:
-    """Argument of the point of a curve (complex) where a tangent under an angle touches it from above (``side`` +1) or below (-1)."""
+    """Argument of the point of a complex curve where a tangent under an angle touches it from above (``side`` +1) or below (-1)."""
     slope = np.tan(angle)
 
     def height(t: Floats) -> Floats:

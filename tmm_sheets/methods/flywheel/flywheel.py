@@ -25,7 +25,7 @@ from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step, Told
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.energy_mass import AtAngles, ConvergedWheel, limit, speed
+from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, limit, speed
 from tmm_sheets.methods.flywheel.running import Energy, Running, steady
 from tmm_sheets.methods.flywheel.wheel import MotorCheck, RimWheel, motor_check, wheel
 from tmm_sheets.methods.integration import (
@@ -37,7 +37,6 @@ from tmm_sheets.methods.integration import (
     Quadrature,
     differentiate,
     integrate,
-    ordinates,
 )
 
 
@@ -347,8 +346,8 @@ ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("nu
 RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maximum(-wheel, 0.0), ("number", "number"), "number",
                "У готовой машины с начальным звеном вращаются {name} = {value} кг·м².", unit="kg*m2")
 TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
-DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"), "number",
-                  "Построение отличается от предела на {name} = {value} %.", beyond_paper=True, unit="%")
+DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"),
+                  "number", "Построение отличается от предела на {name} = {value} %.", beyond_paper=True, unit="%")
 
 
 @dataclass(frozen=True, eq=False)
@@ -568,8 +567,9 @@ class Flywheel(ABC):
     def intervals_plan(self) -> Plan:
         """The same interval by interval: ``y``, ``+`` (at its beginning), ``−`` (at its end) with its name."""
         plan = Plan(f"ordinates@intervals{self.where}", "Ординаты момента по интервалам", "mm")
-        for name, row, rule, first in (("y", self.middles_plan["y"], ORDINATE_AT, 0), ("+", self.slopes_plan["+"], SLOPE_OF_CHORD, 0),
-                                       ("−", self.slopes_plan["−"], SLOPE_OF_CHORD, 1)):
+        slopes = self.slopes_plan
+        for name, row, rule, first in (("y", self.middles_plan["y"], ORDINATE_AT, 0), ("+", slopes["+"], SLOPE_OF_CHORD, 0),
+                                       ("−", slopes["−"], SLOPE_OF_CHORD, 1)):
             for k, interval in enumerate(self.intervals):
                 plan.add(f"{name}{interval}", rule, row, k + first)
         return plan
@@ -592,7 +592,7 @@ class Flywheel(ABC):
 
     @cached_property
     def area_plan(self) -> Plan:
-        """Work by the area of the graph of the moment: ``A`` at the positions, ``A_Σ`` of the cycle, J, ``M`` the mean moment, N m."""
+        """Work by the area of the graph of the moment: ``A`` at the positions, ``A_Σ`` of the cycle, J; ``M`` its mean, N m."""
         plan = Plan(f"area@limit{self.where}", "Работа по площади графика момента", "", self.labels)
         q = Quadrature(np.zeros_like, self.edges, 4)
         moment = self.reduced.at("area", q.at).moment()
@@ -639,7 +639,7 @@ class Flywheel(ABC):
 
     @cached_property
     def inertia_plan(self) -> Plan:
-        """Graph of the reduced moment of inertia: ``J`` the ordinates, ``points`` the points at the positions, mm; ``J_пр``, kg m2."""
+        """Graph of the reduced moment of inertia: ``J`` the ordinates, ``points`` at the positions, mm; ``J_пр``, kg m2."""
         plan = Plan(f"reduced-inertia{self.where}", "График приведённого момента инерции", "mm", self.labels)
         inertia = plan.add("J_пр", INERTIA_AT, self.mass(self.reduced.numbered), self.closing)
         ordinate = plan.add("J", LAY_DOWN, plan.add("y_J", TO_PAPER, inertia, self.mu("inertia")))
@@ -660,23 +660,31 @@ class Flywheel(ABC):
         work = plan.add(f"A_{name}", ON_CURVE, self.work_plan["A(φ)"], x)
         total = plan.add(f"ΣA_{name}", SUM, work, plan.add(f"K_{name}", ON_LINE, x, self.driving_plan["K"]))
         energy = plan.add(f"ΔE_{name}", ENLARGE, total, self.mu("work"), self.mu("energy"))
-        at = self.at(f"contact-{name}", phi, (name,))
-        return x, energy, plan.add(f"J_{name}", TO_PAPER, self.mass(at), self.mu("inertia"))
+        at = self.at(f"contact-{name}", np.array([phi]), (name,))
+        mass = plan.add(f"J_пр_{name}", AT_CONTACT, self.mass(at), 0)
+        return x, energy, plan.add(f"J_{name}", TO_PAPER, mass, self.mu("inertia"))
 
     @property
     def plans(self) -> dict[str, Plan]:
         """The plans by name, in drawing order, after those of the reduced quantities."""
         r = self.reduced
-        shown = (self.moment_plan, self.middles_plan, self.slopes_plan, self.intervals_plan, self.area_plan, self.work_plan, self.driving_plan, self.total_plan,
-                 self.inertia_plan, self.contacts_plan, *self.own_plans, *((self.rotor_plan,) if self.rotor_plan.steps else ()), self.first_plan, self.limit_plan)
-        last = (*((self.wheel.plan,) if self.wheel else ()), *((self.motor.plan,) if self.motor else ()), self.position_acceleration)
+        shown = (self.moment_plan, self.middles_plan, self.slopes_plan, self.intervals_plan, self.area_plan, self.work_plan,
+                 self.driving_plan, self.total_plan, self.inertia_plan, self.contacts_plan, *self.own_plans)
+        rotor, check = self.rotor_plan, self.motor
+        last = (*((rotor,) if rotor.steps else ()), self.first_plan, self.limit_plan, *self.later_plans,
+                *((self.wheel.plan,) if self.wheel else ()), *((check.plan,) if check else ()), self.position_acceleration)
         before = (*r.crank_plans, self.data_plan, *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
         return {p.name: p for p in (*before, *shown, *last)}
 
     @property
     @abstractmethod
     def own_plans(self) -> tuple[Plan, ...]:
-        """Plans of this method alone."""
+        """Plans of this method that lead to the segment ab."""
+
+    @property
+    def later_plans(self) -> tuple[Plan, ...]:
+        """Plans of this method that follow from the flywheel."""
+        return ()
 
     # --- curves on paper, mm, over the angle ----------------------------------------------------------
     def work_curve(self, phi: Any) -> Floats:
@@ -747,7 +755,7 @@ class Flywheel(ABC):
 
     @cached_property
     def first_plan(self) -> Plan:
-        """From the segment ab to the flywheel: ``J_I`` all that turns with the crank, ``J_рот`` the rotor there, ``J_м`` the flywheel."""
+        """From the segment ab to the flywheel: ``J_I`` all that turns with the crank, ``J_м`` the flywheel, ``J_вр`` what runs."""
         plan = Plan(f"flywheel-inertia{self.where}", "Момент инерции маховика", "")
         first = self._first(plan)
         flywheel = self._bare(plan, "J_м", first, BARE, BARE_OF_ROTOR)
@@ -862,9 +870,9 @@ class Flywheel(ABC):
         m = self.data.motor
         if m is None:
             return None
-        given = (("efficiency", "η", ""), ("synchronous", "ω_с", "rad/s"), ("rated", "ω_н", "rad/s"))
-        numbers = (named(getattr(m, name), f"flywheel.motor.{name}", letter, unit) for name, letter, unit in given)
-        return motor_check(self.driving_plan["M"], self.omega1, *numbers, m.power, self.data.delta, self.where)
+        return motor_check(self.driving_plan["M"], self.omega1, named(m.efficiency, "flywheel.motor.efficiency", "η"),
+                           named(m.synchronous, "flywheel.motor.synchronous", "ω_с", "rad/s"),
+                           named(m.rated, "flywheel.motor.rated", "ω_н", "rad/s"), m.power, self.data.delta, self.where)
 
     def speed(self, phi: Floats, inertia: float | None = None) -> Floats:
         """Angular velocity of the crank over the angle with the exact flywheel (or another, kg m2), rad/s.

@@ -128,7 +128,8 @@ class Mertsalov(Flywheel):
 
         ``μ_ω`` is its scale factor, ``ω_max`` and ``ω_min`` the angular velocity at the tangents.
         """
-        plan, energy = Plan(f"crank-speed{self.where}", "График угловой скорости начального звена", "mm", self.labels), self.energy_plan
+        plan = Plan(f"crank-speed{self.where}", "График угловой скорости начального звена", "mm", self.labels)
+        energy = self.energy_plan
         mu = plan.add("μ_ω", SPEED_SCALE, self.mu("energy"), self.first_plan["J_вр"], self.omega1)
         axis = plan.add("O", MIDDLE, energy["a"], energy["b"])
         y = plan.add("y", FROM_AXIS, energy["T_I"], axis)
@@ -139,9 +140,14 @@ class Mertsalov(Flywheel):
 
     @property
     def own_plans(self) -> tuple[Plan, ...]:
-        """Energy of the crank's group, angular velocity, comparison with the exact running and the other method."""
+        """Energy of the crank's group."""
+        return (self.energy_plan,)
+
+    @property
+    def later_plans(self) -> tuple[Plan, ...]:
+        """Angular velocity, the other method, comparison with the exact running."""
         other = (p for p in self.other.plans.values() if p.name.endswith(self.other.where))
-        return self.energy_plan, self.speed_plan, *other, self.comparison_plan
+        return self.speed_plan, *other, self.comparison_plan
 
     def second_curve(self, phi: Any) -> Floats:
         """Ordinate of the graph T_II(phi) in the scale of energies, mm."""
@@ -210,11 +216,12 @@ class Mertsalov(Flywheel):
                  ("Мерцалов, n → ∞", self.limit_plan["J_I∞"]), ("Виттенбауэр, n → ∞", self.other.limit_plan["J_I∞"]))
         # No flywheel takes away from what turns with the crank without it.
         least = self.reduced.crank_inertia + self.J_rotor
-        return tuple(Compared(name, float(first.value), self.running(max(float(first.value), least)), first) for name, first in found)
+        return tuple(Compared(name, float(first.value), self.running(max(float(first.value), least)), first)
+                     for name, first in found)
 
     @cached_property
     def comparison_plan(self) -> Plan:
-        """Exact running with each of these flywheels: ``ω_max``, ``ω_min`` and ``δ`` with its number; ``e`` the theory's difference."""
+        """Exact running with each of these flywheels: ``ω_max``, ``ω_min``, ``δ`` with its number; ``e`` theory's difference."""
         plan = Plan(f"comparison{self.where}", "Сравнение с точным движением", "")
         for i, c in enumerate(self.compared, 1):
             criterion = f"steady running with {c.first:.6g} kg m2 on the crank whose extremes have the mean omega1"

@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_sheets.construction.given import Given, named
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.rules import GIVEN_NUMBER
+from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Link, Mechanism
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
@@ -53,7 +53,9 @@ MOVING_SLOPE = Rule("power of the inertia of a centre of mass", lambda m, a, v: 
 INERTIA_SLOPE = Rule("slope of the reduced moment of inertia", lambda omega, *parts: 2 * reduce(add, parts) / omega**3,
                      ("number",) * 20, "number", "{name} = 2Σ/ω1³ = {value} кг·м².", unit="kg*m2", source="002, 1.12")
 CRANK_INERTIA = Rule("moment of inertia about the pivot", lambda j, m, s, o: j + m * np.abs(s - o) ** 2,
-                     ("number", "number", "point", "point"), "number", "{name} = {0} + {1}·|{3}{2}|² = {value} кг·м².", unit="kg*m2")
+                     ("number", "number", "point", "point"), "number", "{name} = {0} + {1}·|{3}{2}|² = {value} кг·м².",
+                     unit="kg*m2")
+AT_START = taken("moment of inertia of the crank", "kg*m2", "В любом положении {name} = {value} кг·м².")
 EVERYWHERE = Rule("the same at all positions", lambda x, phi: x + 0 * phi, ("number", "number"), "number",
                   "{name} = {0} во всех положениях.")
 
@@ -283,8 +285,9 @@ class Reduced:
             return plan.add("J_кр", GIVEN_NUMBER, self.turning(i, crank))
         assert crank.centre is not None
         pos = self._at_start
-        return plan.add("J_кр", CRANK_INERTIA, self.turning(i, crank), self.mass(i, crank), pos.points[crank.centre],
-                        pos.points[m.crank.pivot])
+        at_start = plan.add("J_1", CRANK_INERTIA, self.turning(i, crank), self.mass(i, crank), pos.points[crank.centre],
+                            pos.points[m.crank.pivot])
+        return plan.add("J_кр", AT_START, at_start, 0)
 
     @cached_property
     def crank_plan(self) -> Plan:
@@ -293,7 +296,7 @@ class Reduced:
 
     @cached_property
     def _at_start(self) -> Positions:
-        return position_plan(self.mechanism, self.cycle.start, where="@start")
+        return position_plan(self.mechanism, np.array([self.cycle.start]), where="@start")
 
     @property
     def crank_plans(self) -> tuple[Plan, ...]:

@@ -17,7 +17,8 @@ RIM_INERTIA = Rule("share of the rim", lambda share, j: share * j, ("number", "n
                    "На обод приходится {name} = {0}·J_м = {value} кг·м².", unit="kg*m2", source="001")
 RIM_DIAMETER = Rule(
     "diameter of a rim", lambda j, density, width, thickness: (4 * j / (pi * density * width * thickness)) ** 0.2,
-    ("number",) * 4, "number", "Средний диаметр обода {name} = [4·{0}/(π·{1}·{2}·{3})]^(1/5) = {value} м.", unit="m", source=_SOURCE)
+    ("number",) * 4, "number", "Средний диаметр обода {name} = [4·{0}/(π·{1}·{2}·{3})]^(1/5) = {value} м.", unit="m",
+    source=_SOURCE)
 DISC_DIAMETER = Rule(
     "diameter of a disc", lambda j, density, width: (32 * j / (pi * density * width)) ** 0.2,
     ("number",) * 3, "number", "Диаметр диска {name} = [32·{0}/(π·{1}·{2})]^(1/5) = {value} м.", unit="m", source=_SOURCE)
@@ -33,7 +34,8 @@ MOTOR_POWER = Rule("power of the motor", lambda m, omega, efficiency: m * omega 
                    "Необходимая мощность двигателя {name} = M·ω1/η = {0}·{1}/{2} = {value} Вт.", unit="W", source="002, 1.13")
 PERMITTED = Rule("non-uniformity that the slip permits", lambda synchronous, rated: 2 * (synchronous - rated) / rated,
                  ("number", "number"), "number",
-                 "Двигатель остаётся двигателем весь цикл, пока δ не больше {name} = 2(ω_с − ω_н)/ω_н = {value}.", source="002, 1.13")
+                 "Двигатель остаётся двигателем весь цикл, пока δ не больше {name} = 2(ω_с − ω_н)/ω_н = {value}.",
+                 source="002, 1.13")
 
 
 @dataclass(frozen=True)
