@@ -215,10 +215,14 @@ class Quadrature:
         equal panels per interval.
     order
         Gauss points per panel.
+    whole
+        the same integrand where all nodes are asked at once (its values may be kept); ``f`` unless told.
     """
 
-    def __init__(self, f: Callable[[Floats], Floats], edges: Floats, panels: int = 1, order: int = 16) -> None:
+    def __init__(self, f: Callable[[Floats], Floats], edges: Floats, panels: int = 1, order: int = 16,
+                 whole: Callable[[Floats], Floats] | None = None) -> None:
         self.f = f
+        self.whole = whole or f
         self.nodes, self.weights = np.polynomial.legendre.leggauss(order)
         part = np.arange(panels) / panels
         starts = (edges[:-1, None] + np.diff(edges)[:, None] * part).ravel()
@@ -228,7 +232,8 @@ class Quadrature:
     @cached_property
     def sums(self) -> Floats:
         """Integrals from the first border to each border of a panel."""
-        return np.concatenate(([0.0], np.cumsum(self._over(self.borders[:-1], self.borders[1:]))))
+        rows = self.whole(self.at).reshape(-1, len(self.nodes))
+        return np.concatenate(([0.0], np.cumsum(self.halves * (rows @ self.weights))))
 
     def _over(self, a: Floats, b: Floats) -> Floats:
         x = self._nodes(a, b)
@@ -247,9 +252,10 @@ class Quadrature:
         """Half the width of each panel."""
         return np.asarray(np.diff(self.borders) / 2)
 
-    def weights_up_to(self, x: Floats) -> tuple[Floats, list[Floats]]:
-        """Nodes and weights of the integrals from the first border to each of the ``x``: :attr:`at`, then the nodes of the panels
-        that are not full; weights of all these for each of the ``x``.
+    def excess_weights(self, x: Floats) -> tuple[Floats, list[tuple[Floats, Floats]]]:
+        """Weights of the integral from the first border to each of the ``x`` less the mean's, which is the change of energy.
+
+        The nodes of the panels that are not full there, and for each of the ``x`` the weights of :attr:`at` and of these nodes.
         """
         k = np.clip(np.searchsorted(self.borders, x, side="right") - 1, 0, len(self.borders) - 2)
         parts, each = self._nodes(self.borders[k], x), self.halves[:, None] * self.weights
@@ -257,8 +263,9 @@ class Quadrature:
         for i, (panel, end) in enumerate(zip(k, x, strict=True)):
             further = np.zeros(parts.shape)
             further[i] = (end - self.borders[panel]) / 2 * self.weights
-            found.append(np.concatenate(((each * (np.arange(len(each)) < panel)[:, None]).ravel(), further.ravel())))
-        return np.concatenate((self.at, parts.ravel())), found
+            share = (end - self.borders[0]) / (self.borders[-1] - self.borders[0])
+            found.append(((each * ((np.arange(len(each)) < panel)[:, None] - share)).ravel(), further.ravel()))
+        return parts.ravel(), found
 
     @property
     def total(self) -> float:

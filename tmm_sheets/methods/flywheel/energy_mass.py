@@ -132,19 +132,20 @@ class ConvergedWheel:
     panels: int = 1
 
 
-def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: float, tolerance: float = 1e-13) -> ConvergedWheel:
+def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: float, tolerance: float = 1e-13,
+          whole: Curve | None = None) -> ConvergedWheel:
     """Flywheel without chords: max(dE - J omega_max^2/2) - min(dE - J omega_min^2/2) = delta omega^2 J_flywheel.
 
-    ``moment`` (without the constant one, N m) and ``inertia`` (without the flywheel, kg m2) are vectorised functions of
-    the angle, smooth between the ``borders``. Work by
-    Gauss-Legendre panels, the contacts found between the nodes; the panels are halved until two results agree to ``tolerance``.
+    ``moment`` (without the constant one, N m; ``whole`` where it is asked at all nodes at once) and ``inertia`` (without the
+    flywheel, kg m2) are vectorised functions of the angle, smooth between the ``borders``. Work by Gauss-Legendre panels, the
+    contacts found between the nodes; the panels are halved until two results agree to ``tolerance``.
     This is the search for the contacts and the panels; what is told of it is a step of :func:`limit_segment`.
     """
     samples = np.unique(np.concatenate((np.linspace(borders[0], borders[-1], 721), borders)))
     j = np.asarray(inertia(samples))
     result = None
     for panels in (1, 2, 4, 8, 16):
-        work = Quadrature(moment, borders, panels)
+        work = Quadrature(moment, borders, panels, whole=whole)
         mean = work.total / (borders[-1] - borders[0])
         done = work(samples)
         segment, contact = 0.0, []
@@ -168,15 +169,16 @@ def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: f
 
 SEGMENT_LIMIT = Rule(
     "excess of energy for vanishing intervals",
-    lambda m, upper, lower, j_upper, j_lower, omega, delta: (
-        weighted(m, upper) - (omega * (1 + delta / 2)) ** 2 / 2 * j_upper
-        - (weighted(m, lower) - (omega * (1 - delta / 2)) ** 2 / 2 * j_lower)),
-    ("number",) * 7, "number", "", beyond_paper=True, unit="J")
+    lambda m, up, low, end, end_up, end_low, j_up, j_low, omega, delta: (
+        weighted(m, up) + weighted(end, end_up) - (omega * (1 + delta / 2)) ** 2 / 2 * j_up
+        - (weighted(m, low) + weighted(end, end_low) - (omega * (1 - delta / 2)) ** 2 / 2 * j_low)),
+    ("number",) * 10, "number", "", beyond_paper=True, unit="J")
 EVEN_SEGMENT_LIMIT = Rule(
     "excess of energy at an even speed for vanishing intervals",
-    lambda m, upper, lower, j_upper, j_lower, omega: (
-        weighted(m, upper) - omega**2 / 2 * j_upper - (weighted(m, lower) - omega**2 / 2 * j_lower)),
-    ("number",) * 6, "number", "", beyond_paper=True, unit="J")
+    lambda m, up, low, end, end_up, end_low, j_up, j_low, omega: (
+        weighted(m, up) + weighted(end, end_up) - omega**2 / 2 * j_up
+        - (weighted(m, low) + weighted(end, end_low) - omega**2 / 2 * j_low)),
+    ("number",) * 9, "number", "", beyond_paper=True, unit="J")
 AT_CONTACT = taken("moment of inertia at a contact", "kg*m2", "Приведённый момент инерции в точке касания {name} = {value} кг·м².")
 
 
@@ -242,20 +244,19 @@ def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callab
     """
     contacts = np.array([found.phi_max, found.phi_min])
     quadrature = Quadrature(np.zeros_like, borders, found.panels)
-    nodes, weights = quadrature.weights_up_to(contacts)
-    whole = np.zeros(len(nodes))
-    whole[:len(quadrature.at)] = (quadrature.halves[:, None] * quadrature.weights).ravel()
-    share = (contacts - borders[0]) / (borders[-1] - borders[0])
-    excess = [Given(w - part * whole, f"weights up to the contact {name}", over="curve")
-              for w, part, name in zip(weights, share, ("max", "min"), strict=True)]
-    moment, inertia = at("limit", nodes).moment(0), mass(at("limit-contacts", contacts))
+    nodes, ends = quadrature.at, quadrature.excess_weights(contacts)
+    args: list[Any] = []
+    for name, angles, i in (("limit", nodes, 0), ("limit-ends", ends[0], 1)):
+        args += [at(name, angles).moment(0), *(Given(of[i], f"weights up to the contact {which}", over="curve")
+                                               for of, which in zip(ends[1], ("max", "min"), strict=True))]
+    inertia = mass(at("limit-contacts", contacts))
     j = [plan.add(f"J_{name}", AT_CONTACT, inertia, k) for k, name in enumerate(("max", "min"))]
     error = "" if np.isinf(found.error) else f", относительная погрешность {found.error:.0e}"
     say = (f"При n → ∞ избыток энергии между точками касания – квадратурой Гаусса – Лежандра (панелей на интервал {found.panels}, "
-           f"узлов {len(nodes)}{error}): {{name}} = {{value}} Дж.")
+           f"узлов {len(nodes) + len(ends[0])}{error}): {{name}} = {{value}} Дж.")
     if delta is None:
-        return plan.add("ab·μ_E", EVEN_SEGMENT_LIMIT, moment, *excess, *j, omega, say=say)
-    return plan.add("ab·μ_E", SEGMENT_LIMIT, moment, *excess, *j, omega, delta, say=say)
+        return plan.add("ab·μ_E", EVEN_SEGMENT_LIMIT, *args, *j, omega, say=say)
+    return plan.add("ab·μ_E", SEGMENT_LIMIT, *args, *j, omega, delta, say=say)
 
 
 def speed(moment: Curve, inertia: Curve, borders: Floats, flywheel: float, fastest: tuple[float, float],

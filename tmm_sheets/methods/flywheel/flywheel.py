@@ -849,6 +849,10 @@ class Flywheel(ABC):
         """Exact flywheel, with its error: that of the energy-mass curve for vanishing intervals."""
         return limit(self.reduced.moment, self.reduced.inertia, self.edges, self.reduced.omega1, self.data.delta)
 
+    def _limit_row(self, nodes: Floats) -> Floats:
+        """Moment at the nodes of the quadrature, from plans that are kept."""
+        return np.asarray(self.at("limit", nodes).moment(0).value)
+
     @property
     def difference_percent(self) -> float:
         """How much the drawn construction differs from the limit, % of the limit."""
@@ -890,7 +894,9 @@ class Flywheel(ABC):
         Steps ``ψ`` (angle of the tangent on paper, rad), ``dJ/dφ`` (kg m2/rad), ``M`` (sum of the reduced moments, N m), ``J``
         (kg m2) and ``ε1`` (rad/s2, positive in the sense of rotation), one entry for each of the ``phi``.
         """
-        return self._acceleration(self.reduced.at("acceleration", np.asarray(phi, dtype=float)), labels, name)
+        at, numbered = np.asarray(phi, dtype=float), self.reduced.numbered
+        there = numbered if np.array_equal(at, numbered.phi) else self.reduced.at("acceleration", at)
+        return self._acceleration(there, labels, name)
 
     @cached_property
     def position_acceleration(self) -> Plan:

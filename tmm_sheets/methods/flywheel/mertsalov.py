@@ -172,7 +172,7 @@ class Mertsalov(Flywheel):
         return plan.add("J_I", OF_SEGMENT, self.ab, self.mu("energy"), self.delta, self.omega1)
 
     def _first_converged(self, plan: Plan) -> Step:
-        work = Quadrature(self.reduced.moment, self.edges, 8)
+        work = Quadrature(self.reduced.moment, self.edges, 8, whole=self._limit_row)
         mean, half = work.total / self.reduced.period, self.reduced.omega1**2 / 2
 
         def first(phi: Floats) -> Floats:

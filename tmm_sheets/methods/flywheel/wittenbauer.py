@@ -10,7 +10,7 @@ from typing import Any
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.construction.step import Step
-from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan, limit_segment, touched
+from tmm_sheets.methods.flywheel.energy_mass import ConvergedWheel, energy_mass_plan, limit, limit_segment, touched
 from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, TOGETHER, TOGETHER_LIMIT, DiagramSpace, Flywheel
 from tmm_sheets.methods.integration import Floats
 
@@ -89,6 +89,12 @@ class Wittenbauer(Flywheel):
     def _first(self, plan: Plan) -> Step:
         added = plan.add("J_доб", OF_SEGMENT, self.ab, self.mu("energy"), self.delta, self.omega1)
         return plan.add("J_I", TOGETHER, added, self.reduced.crank)
+
+    @cached_property
+    def limit(self) -> ConvergedWheel:
+        """The same for vanishing intervals, with its error."""
+        r = self.reduced
+        return limit(r.moment, r.inertia, self.edges, r.omega1, self.data.delta, whole=self._limit_row)
 
     def _first_converged(self, plan: Plan) -> Step:
         excess = limit_segment(plan, self.limit, self.edges, self.at, self.mass, self.omega1, self.delta)
