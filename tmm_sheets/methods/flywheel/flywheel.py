@@ -25,7 +25,7 @@ from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step, Told
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, limit, speed
+from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, speed
 from tmm_sheets.methods.flywheel.running import Energy, Running, steady
 from tmm_sheets.methods.flywheel.wheel import MotorCheck, RimWheel, motor_check, wheel
 from tmm_sheets.methods.integration import (
@@ -844,10 +844,10 @@ class Flywheel(ABC):
         return (f"the drawn construction {one} flywheel ({self.J_flywheel:.4g} kg m2), in the limit of many positions {other} "
                 f"({self.J_flywheel_converged:.4g} kg m2): the difference is the construction's error")
 
-    @cached_property
+    @property
+    @abstractmethod
     def limit(self) -> ConvergedWheel:
         """Exact flywheel, with its error: that of the energy-mass curve for vanishing intervals."""
-        return limit(self.reduced.moment, self.reduced.inertia, self.edges, self.reduced.omega1, self.data.delta)
 
     def _limit_row(self, nodes: Floats) -> Floats:
         """Moment at the nodes of the quadrature, from plans that are kept."""

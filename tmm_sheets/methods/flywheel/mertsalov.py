@@ -209,6 +209,11 @@ class Mertsalov(Flywheel):
         """Wittenbauer's flywheel for the same machine."""
         return Wittenbauer(self.reduced, self.data, self.space, where="@wittenbauer")
 
+    @property
+    def limit(self) -> ConvergedWheel:
+        """Exact flywheel: that of the energy-mass curve for vanishing intervals."""
+        return self.other.limit
+
     @cached_property
     def compared(self) -> tuple[Compared, ...]:
         """Both methods, drawn and for vanishing intervals, each with the exact running of a machine that has its flywheel."""
