@@ -251,7 +251,7 @@ def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callab
                                                for of, which in zip(ends[1], ("max", "min"), strict=True))]
     inertia = mass(at("limit-contacts", contacts))
     j = [plan.add(f"J_{name}", AT_CONTACT, inertia, k) for k, name in enumerate(("max", "min"))]
-    error = "" if np.isinf(found.error) else f", относительная погрешность {found.error:.0e}"
+    error = "" if np.isinf(found.error) else f", относительная погрешность не больше {max(found.error, 1e-15):.0e}"
     say = (f"При n → ∞ избыток энергии между точками касания – квадратурой Гаусса – Лежандра (панелей на интервал {found.panels}, "
            f"узлов {len(nodes) + len(ends[0])}{error}): {{name}} = {{value}} Дж.")
     if delta is None:

@@ -290,9 +290,9 @@ ORDINATE_AT = taken("ordinate of an interval", "mm", "Ордината {name} = 
 SLOPE_OF_CHORD = taken("slope at the border of an interval", "", "Наклон кривой на границе интервала {name} = {value}.")
 WORK_AT = taken("work of the cycle", "J", "Работа за цикл {name} = {value} Дж.")
 TO_PAPER = Rule("to scale", lambda value, mu: value / mu, ("number", "number"), "number",
-                "Её ордината {name} = {0}/{1} = {value} мм.", unit="mm")
+                "Ордината на чертеже {name} = {0}/{1} = {value} мм.", unit="mm")
 FROM_PAPER = Rule("from scale", lambda y, mu: y * mu, ("ordinate", "number"), "number",
-                  "{name} = {0}·{1} = {value} Дж.", unit="J")
+                  "{name} = {0}·{1} Дж/мм = {value} Дж.", unit="J")
 TO_SLOPE = Rule("slope on paper", lambda value, mu, pole: value / (mu * pole), ("number",) * 3, "number",
                 "Наклон {name} = M/(μ_M·H) = {value}.")
 ABSCISSA = Rule("abscissa of an angle", lambda phi, mu: phi / mu, ("number", "number"), "number",
@@ -324,11 +324,12 @@ BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - 
 MEAN_MOMENT = Rule("mean moment from the work", lambda a, period: -a / period, ("number", "number"), "number",
                    "По площади {name} = {value} Н·м.", beyond_paper=True, unit="N*m")
 ENLARGE = Rule("enlarge ordinates", lambda y, mu, other: y * (mu / other), ("ordinate", "number", "number"), "ordinate",
-               "Пересчитаем ординату {0} из масштаба μ_A = {1} в масштаб μ_E = {2}, умножив на μ_A/μ_E: {name} = {value}.")
+               "Пересчитаем ординату {0} из масштаба μ_A = {1} Дж/мм в масштаб μ_E = {2} Дж/мм: "
+               "{name} = {0}·μ_A/μ_E = {value}.")
 LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", "Отложим ординату {name} = {value}.")
 OF_SEGMENT = Rule("moment of inertia from the segment", lambda ab, mu, delta, omega: ab * mu / (delta * omega**2),
-                  ("ordinate", "number", "number", "number"), "number",
-                  "{name} = ab·μ_E/(δ·ω1²) = {0}·{1}/({2}·{3}²) = {value} кг·м².", unit="kg*m2", source="000, 5.6")
+                  ("number",) * 4, "number",
+                  "По отрезку ab, мм: {name} = ab·μ_E/(δ·ω1²) = {0}·{1}/({2}·{3}²) = {value} кг·м².", unit="kg*m2", source="000, 5.6")
 OF_EXCESS = Rule("moment of inertia from the excess of energy", lambda excess, delta, omega: excess / (delta * omega**2),
                  ("number",) * 3, "number", "{name} = {0}/({1}·{2}²) = {value} кг·м².", beyond_paper=True, unit="kg*m2",
                  source="000, 5.6")
@@ -339,12 +340,14 @@ BARE = Rule("moment of inertia of the flywheel", lambda first, crank: first - cr
 BARE_OF_ROTOR = Rule("moment of inertia of the flywheel beside a rotor", lambda first, crank, rotor: first - crank - rotor,
                      ("number",) * 3, "number",
                      "Момент инерции маховика {name} = {0} − {1} − {2} = {value} кг·м².", unit="kg*m2")
+WITHOUT_CRANK = Rule("without the crank", lambda j, crank: j - crank, ("number", "number"), "number",
+                     "Без начального звена {name} = {0} − {1} = {value} кг·м².", unit="kg*m2", source="002, 1.7")
 RATIO = Rule("ratio of angular velocities", lambda rotor, crank: rotor / crank, ("number", "number"), "number",
              "Передаточное отношение от двигателя {name} = {0}/{1} = {value}.")
 ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("number", "number"), "number",
              "Момент инерции ротора, приведённый к начальному звену: {name} = {0}·{1}² = {value} кг·м².", unit="kg*m2")
 RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maximum(-wheel, 0.0), ("number", "number"), "number",
-               "У готовой машины с начальным звеном вращаются {name} = {value} кг·м².", unit="kg*m2")
+               "В готовой машине вместе с начальным звеном вращается {name} = {value} кг·м².", unit="kg*m2")
 TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
 DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"),
                   "number", "Построение отличается от предела на {name} = {value} %.", beyond_paper=True, unit="%")
@@ -622,9 +625,10 @@ class Flywheel(ABC):
         total = plan.add("ΣA", SUM, curve, line)
         energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("energy"))
         plan.add("points", PLOT, self.across, energy)
-        plan.add("A", FROM_PAPER, curve, self.mu("work"), say="Работа переменного момента {name} = y_2·μ_A = {0}·{1} = {value} Дж.")
+        plan.add("A", FROM_PAPER, curve, self.mu("work"),
+                 say="Работа переменного момента {name} = y_2·μ_A = {0}·{1} Дж/мм = {value} Дж.")
         plan.add("E", FROM_PAPER, energy, self.mu("energy"),
-                 say="Изменение кинетической энергии {name} = ΔE·μ_E = {0}·{1} = {value} Дж.")
+                 say="Изменение кинетической энергии {name} = ΔE·μ_E = {0}·{1} Дж/мм = {value} Дж.")
         return plan
 
     @cached_property
@@ -759,7 +763,9 @@ class Flywheel(ABC):
         plan = Plan(f"flywheel-inertia{self.where}", "Момент инерции маховика", "")
         first = self._first(plan)
         flywheel = self._bare(plan, "J_м", first, BARE, BARE_OF_ROTOR)
-        plan.add("J_вр", RUNNING, first, flywheel)
+        none = ("Момент инерции маховика не больше нуля, маховик не требуется: вместе с начальным звеном вращается "
+                "{name} = {value} кг·м².")
+        plan.add("J_вр", RUNNING, first, flywheel, say=None if float(flywheel.value) > 0 else none)
         return plan
 
     @cached_property
@@ -906,11 +912,12 @@ class Flywheel(ABC):
     def _acceleration(self, at: AtAngles, labels: tuple[str, ...], name: str, closing: tuple[Given, ...] = ()) -> Plan:
         plan = Plan(f"crank-acceleration{name}{self.where}", "Угловое ускорение начального звена", "rad/s2", labels)
         mu_phi, mu_j = self.mu("angle"), self.mu("inertia")
-        slope, moment, others = at.slope, at.moment(), at.others
+        moment, inertia, slope = at.moment(), at.inertia, at.slope
         if closing:
-            slope = plan.add("J′", SLOPE_AT, slope, *closing)
             moment = plan.add("M_пр", MOMENT_AT, moment, *closing)
-            others = plan.add("J_II", INERTIA_AT, others, *closing)
+            inertia = plan.add("J_пр", INERTIA_AT, inertia, *closing)
+            slope = plan.add("J′", SLOPE_AT, slope, *closing)
+        others = plan.add("J_II", WITHOUT_CRANK, inertia, self.reduced.crank)
         angle = plan.add("ψ", TANGENT, slope, mu_phi, mu_j)
         slope = plan.add("dJ/dφ", SLOPE, angle, mu_phi, mu_j)
         moment = plan.add("M", SUM_OF_MOMENTS, moment, self.driving_plan["M"])

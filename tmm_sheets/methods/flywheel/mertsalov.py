@@ -119,7 +119,7 @@ class Mertsalov(Flywheel):
         plan.add("ab", DISTANCE, plan["a"], plan["b"])
         for name, of_group, ordinate in (("E_II", "второй", second), ("E_I", "первой", first)):
             plan.add(name, FROM_PAPER, ordinate, self.mu("energy"),
-                     say=f"Энергия звеньев {of_group} группы {{name}} = {{0}}·{{1}} = {{value}} Дж.")
+                     say=f"Энергия звеньев {of_group} группы {{name}} = {{0}}·{{1}} Дж/мм = {{value}} Дж.")
         return plan
 
     @cached_property
@@ -230,8 +230,9 @@ class Mertsalov(Flywheel):
         plan = Plan(f"comparison{self.where}", "Сравнение с точным движением", "")
         for i, c in enumerate(self.compared, 1):
             criterion = f"steady running with {c.first:.6g} kg m2 on the crank whose extremes have the mean omega1"
-            fast, slow = (plan.add(f"ω_{name}{i}", FOUND, Given(value, f"running {i}", unit="rad/s", over="none", choice=criterion))
-                          for name, value in (("max", c.running.fastest), ("min", c.running.slowest)))
+            say = f"{c.name}: точное движение по закону изменения кинетической энергии даёт {{name}} = {{value}} рад/с."
+            fast, slow = (plan.add(f"ω_{name}{i}", FOUND, Given(value, f"running {i}", unit="rad/s", over="none", choice=criterion),
+                                   say=say) for name, value in (("max", c.running.fastest), ("min", c.running.slowest)))
             plan.add(f"δ{i}", NON_UNIFORMITY, fast, slow)
         contacts = self.mass(self.at("exact-contacts", np.array([self.limit.phi_max, self.limit.phi_min])))
         plan.add("e", EXCESS, *(plan.add(f"J_{name}", AT_CONTACT, contacts, k) for k, name in enumerate(("max", "min"))))

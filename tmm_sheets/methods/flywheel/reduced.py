@@ -19,6 +19,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Link, Mechanism
+from tmm_sheets.methods.flywheel.flywheel import WITHOUT_CRANK
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import Applied, distinct
@@ -44,12 +45,11 @@ ROTATION = Rule("twice the energy of rotation", lambda j, w: j * w * w, ("number
                 "{name} = {0}·{1}² = {value} Дж.", unit="J", source=_SOURCE)
 REDUCED_INERTIA = Rule("reduced moment of inertia", lambda omega, *terms: reduce(add, terms) / omega**2, ("number",) * 20, "number",
                        "Приведённый момент инерции {name} = Σ/ω1² = {value} кг·м².", unit="kg*m2", source=_SOURCE)
-WITHOUT_CRANK = Rule("without the crank", lambda j, crank: j - crank, ("number", "number"), "number",
-                     "Без начального звена {name} = {0} − {1} = {value} кг·м².", unit="kg*m2", source="002, 1.7")
 TURNING_SLOPE = Rule("power of the inertia of rotation", lambda j, w, e: j * w * e, ("number",) * 3, "number",
-                     "{name} = {0}·{1}·{2} = {value} Вт.", unit="W")
+                     "Для производной: {name} = {0}·{1}·{2} = {value} Вт.", unit="W")
 MOVING_SLOPE = Rule("power of the inertia of a centre of mass", lambda m, a, v: m * (a * np.conj(v)).real,
-                    ("number", "point", "point"), "number", "{name} = {0}·a·V·cos(a̅, V̅) = {value} Вт.", unit="W")
+                    ("number", "point", "point"), "number",
+                    "Для производной, по отрезкам π{1} и p{2}: {name} = {0}·a·V·cos(a̅, V̅) = {value} Вт.", unit="W")
 INERTIA_SLOPE = Rule("slope of the reduced moment of inertia", lambda omega, *parts: 2 * reduce(add, parts) / omega**3,
                      ("number",) * 20, "number", "{name} = 2Σ/ω1³ = {value} кг·м².", unit="kg*m2", source="002, 1.12")
 CRANK_INERTIA = Rule("moment of inertia about the pivot", lambda j, m, s, o: j + m * np.abs(s - o) ** 2,
@@ -85,6 +85,7 @@ class Reduction:
         self.labels = labels
         self._drawn = drawn
         self.plan = Plan(f"reduction{where}", "Приведение сил и масс", "", labels)
+        self.slope_plan = Plan(f"inertia-slope{where}", "Производная приведённого момента инерции", "", labels)
         self._moments: dict[int, Step] = {}
         self.loads: dict[str, Step] = {}
 
@@ -106,7 +107,8 @@ class Reduction:
         """The plans that were drawn for these angles, in order."""
         own = vars(self).get("velocities") if self._drawn is None else None
         further = vars(self).get("accelerations")
-        return (*((own.positions.plan, own.plan) if own else ()), *((further.plan,) if further else ()), self.plan)
+        return (*((own.positions.plan, own.plan) if own else ()), *((further.plan,) if further else ()), self.plan,
+                *((self.slope_plan,) if self.slope_plan.steps else ()))
 
     def moment(self, side: int = 1) -> Step:
         """Reduced moment of the technological forces, and of the weights where they count, N m; ``side`` picks the limit at a jump.
@@ -163,7 +165,7 @@ class Reduction:
     @cached_property
     def inertia(self) -> Step:
         """Reduced moment of inertia of the moving links without the flywheel, kg m2: step ``J``."""
-        return self._sum("J", REDUCED_INERTIA, list(self.terms.values()))
+        return self._sum(self.plan, "J", REDUCED_INERTIA, list(self.terms.values()))
 
     @cached_property
     def others(self) -> Step:
@@ -182,21 +184,21 @@ class Reduction:
         for i, link in enumerate(r.mechanism.links.values()):
             n = link.name
             if link.inertia if link.pivot_inertia is None else link.pivot_inertia:
-                parts.append(self.plan.add(f"J{n}ω{n}ε{n}", TURNING_SLOPE, r.turning(i, link), vel.omega[n], acc.epsilon[n]))
+                parts.append(self.slope_plan.add(f"J{n}ω{n}ε{n}", TURNING_SLOPE, r.turning(i, link), vel.omega[n], acc.epsilon[n]))
             if link.pivot_inertia is None and r.moves(link):
                 assert link.centre is not None
-                parts.append(self.plan.add(f"m{n}a_{link.centre}V_{link.centre}", MOVING_SLOPE, r.mass(i, link),
+                parts.append(self.slope_plan.add(f"m{n}a_{link.centre}V_{link.centre}", MOVING_SLOPE, r.mass(i, link),
                                            acc.points[link.centre], vel.points[link.centre]))
-        return self._sum("dJ/dφ", INERTIA_SLOPE, parts)
+        return self._sum(self.slope_plan, "dJ/dφ", INERTIA_SLOPE, parts)
 
-    def _sum(self, name: str, rule: Rule, parts: list[Step]) -> Step:
+    def _sum(self, plan: Plan, name: str, rule: Rule, parts: list[Step]) -> Step:
         """Sum of terms by a rule, a number at every angle also where no term changes."""
         over = Given(self.phi, "cycle", "φ_1", "rad")
         if not parts:
-            parts = [self.plan.add(f"{name}0", EVERYWHERE, 0.0, over)]
+            parts = [plan.add(f"{name}0", EVERYWHERE, 0.0, over)]
         elif np.shape(self.phi) and all(self.reduced.even(step) for step in parts):
-            parts = [self.plan.add(f"{step.name}′", EVERYWHERE, step, over) for step in parts]
-        return self.plan.add(name, rule, self.reduced.omega, *parts)
+            parts = [plan.add(f"{step.name}′", EVERYWHERE, step, over) for step in parts]
+        return plan.add(name, rule, self.reduced.omega, *parts)
 
 
 class Reduced:

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step, value_of
+from tmm_sheets.numbers import number
 
 RIM_SPEED = 30.0
 """Speed of the rim up to which a rim with spokes is used, m/s (manual 000, 5.7)."""
@@ -150,6 +151,11 @@ def motor_check(moment: Step | float, omega: float, efficiency: float, synchrono
                 delta: float, where: str = "") -> MotorCheck:
     """Check of a motor that drives the crank through a gear train against the constant ``moment``, N m (manual 002, 1.13)."""
     plan = Plan(f"motor-check{where}", "Проверка двигателя", "")
-    plan.add("P", MOTOR_POWER, moment, omega, efficiency)
-    plan.add("[δ]", PERMITTED, synchronous, rated)
+    needed = float(MOTOR_POWER.compute(value_of(moment), omega, efficiency))
+    plan.add("P", MOTOR_POWER, moment, omega, efficiency, say=MOTOR_POWER.wording.removesuffix(".") + (
+        f" ≤ {number(power)} Вт: мощности двигателя хватает." if needed <= power else f" > {number(power)} Вт: двигатель слаб."))
+    permitted = PERMITTED.compute(synchronous, rated)
+    plan.add("[δ]", PERMITTED, synchronous, rated, say=PERMITTED.wording.removesuffix(".") + (
+        f" ≥ {number(delta)}: генераторного режима нет." if delta <= permitted
+        else f" < {number(delta)}: двигатель переходит в генераторный режим."))
     return MotorCheck(plan, power, delta)
