@@ -329,7 +329,8 @@ ENLARGE = Rule("enlarge ordinates", lambda y, mu, other: y * (mu / other), ("ord
 LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", "Отложим ординату {name} = {value}.")
 OF_SEGMENT = Rule("moment of inertia from the segment", lambda ab, mu, delta, omega: ab * mu / (delta * omega**2),
                   ("number",) * 4, "number",
-                  "По отрезку ab, мм: {name} = ab·μ_E/(δ·ω1²) = {0}·{1}/({2}·{3}²) = {value} кг·м².", unit="kg*m2", source="000, 5.6")
+                  "По отрезку ab, мм: {name} = ab·μ_E/(δ·ω1²) = {0}·{1}/({2}·{3}²) = {value} кг·м².", unit="kg*m2",
+                  source="000, 5.6")
 OF_EXCESS = Rule("moment of inertia from the excess of energy", lambda excess, delta, omega: excess / (delta * omega**2),
                  ("number",) * 3, "number", "{name} = {0}/({1}·{2}²) = {value} кг·м².", beyond_paper=True, unit="kg*m2",
                  source="000, 5.6")
