@@ -446,7 +446,7 @@ def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None
         ["Положение", *fw.labels],
         graphs.row(f"M_{varying}^пр, Н·м", fw.M_reduced),
         graphs.row(f"A_{varying}, Дж", fw.work),
-        graphs.row(f"A_{constant}, Дж", fw.M_constant * fw.reduced.phi),
+        graphs.row(f"A_{constant}, Дж", fw.total_plan["A_K"].value),
         graphs.row("ΔE, Дж", fw.delta_E),
     ]
     graphs.table(canvas, box, f"Работы за цикл, M_{constant}^пр = {fixed(fw.M_constant, 1)} Н·м", rows)

@@ -229,6 +229,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     varying, constant = ("с", "д") if fw.reduced.resisting else ("д", "с")
     taken = " (принято)" if d.accepted else ""
     fast, slow = fw.extremes
+    highest, lowest = (float(fw.speed_plan[f"[ω_{name}]"].value) for name in ("max", "min"))
     plan = fw.position_acceleration
     label = fw.labels[k]
     at = {name: float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1")}
@@ -245,8 +246,8 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         f"I_м = I_I − (I_{{кр}} + I_р·u^2) = {number(fw.J_first, 5)} − {number(fw.J_first - fw.J_flywheel, 4, fw.J_first)} = "
         f"{number(fw.J_flywheel, 5)} кг·м^2",
         f"μ_ω = μ_T/({held}·ω_{{1ср}}) = {number(mu.mu)} {mu.unit}",
-        f"ω_{{max}} = {fixed(fast, 4)}{bound} ω_{{ср}}(1 + δ/2) = {fixed(omega * (1 + d.delta / 2), 4)} рад/с",
-        f"ω_{{min}} = {fixed(slow, 4)}{bound.replace('<', '>')} ω_{{ср}}(1 − δ/2) = {fixed(omega * (1 - d.delta / 2), 4)} рад/с",
+        f"ω_{{max}} = {fixed(fast, 4)}{bound} ω_{{ср}}(1 + δ/2) = {fixed(highest, 4)} рад/с",
+        f"ω_{{min}} = {fixed(slow, 4)}{bound.replace('<', '>')} ω_{{ср}}(1 − δ/2) = {fixed(lowest, 4)} рад/с",
         f"Положение {label}:  ψ = {fixed(degrees(at['ψ']), 2)}°;  d{sign}/dφ = tg ψ·μ_J/μ_φ = "
         f"{number(at['dJ/dφ'], kind=steepest)} кг·м^2",
         f"M = M_{constant} + M_{varying} = {fixed(at['M'], 1)} Н·м;  {held} + {sign} = {fixed(at['J'], 2)} кг·м^2",

@@ -619,7 +619,7 @@ class Flywheel(ABC):
 
     @cached_property
     def total_plan(self) -> Plan:
-        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at the scale of energy, mm; ``A`` and ``E``, J."""
+        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at that of energy, mm; ``A``, ``A_K``, ``E``, J."""
         plan = Plan(f"total-work{self.where}", "График суммарной работы", "mm", self.labels)
         line = plan.add("y_1", ON_LINE, self.across, self.driving_plan["K"])
         curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
@@ -628,6 +628,8 @@ class Flywheel(ABC):
         plan.add("points", PLOT, self.across, energy)
         plan.add("A", FROM_PAPER, curve, self.mu("work"),
                  say="Работа переменного момента {name} = y_2·μ_A = {0}·{1} Дж/мм = {value} Дж.")
+        plan.add("A_K", FROM_PAPER, line, self.mu("work"),
+                 say="Работа постоянного момента {name} = y_1·μ_A = {0}·{1} Дж/мм = {value} Дж.")
         plan.add("E", FROM_PAPER, energy, self.mu("energy"),
                  say="Изменение кинетической энергии {name} = ΔE·μ_E = {0}·{1} Дж/мм = {value} Дж.")
         return plan

@@ -52,6 +52,10 @@ ANGULAR_SPEED = Rule("angular velocity from its graph", lambda y, mu, mean: mean
 EXTREME_SPEED = Rule("angular velocity at an extreme", lambda at, axis, mu, mean: mean + mu * (np.imag(at) - np.imag(axis)),
                      ("point", "point", "number", "number"), "number",
                      "В точке {0} угловая скорость {name} = {3} + {2}·y = {value} рад/с.", unit="rad/s")
+HIGHEST = Rule("highest angular velocity permitted", lambda omega, delta: omega * (1 + delta / 2), ("number", "number"), "number",
+               "Допускается {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} рад/с.", unit="rad/s")
+LOWEST = Rule("lowest angular velocity permitted", lambda omega, delta: omega * (1 - delta / 2), ("number", "number"), "number",
+              "Допускается {name} = ω1·(1 − δ/2) = {0}·(1 − {1}/2) = {value} рад/с.", unit="rad/s")
 FOUND = Rule("found by the exact running", lambda w: w, ("number",), "number",
              "Точное движение по закону изменения энергии даёт {name} = {value} рад/с.", unit="rad/s", beyond_paper=True)
 NON_UNIFORMITY = Rule("non-uniformity of a running", lambda fast, slow: (fast - slow) / ((fast + slow) / 2), ("number", "number"),
@@ -136,6 +140,8 @@ class Mertsalov(Flywheel):
         plan.add("ω1", ANGULAR_SPEED, y, mu, self.omega1)
         for name in ("max", "min"):
             plan.add(f"ω_{name}", EXTREME_SPEED, energy[f"M_{name}"], axis, mu, self.omega1)
+        for name, rule in (("max", HIGHEST), ("min", LOWEST)):
+            plan.add(f"[ω_{name}]", rule, self.omega1, self.delta)
         return plan
 
     @property
