@@ -41,8 +41,8 @@ def lines(project: Project, name: str | None) -> Iterator[str]:
             raise BadInput(f'{project.variant.project.name} has no plan "{name}"', hint=hint)
         found = {name: found[name]}
     else:
-        # What lies between the numbered positions only smooths the curves.
-        found = {key: drawn for key, drawn in found.items() if not key.endswith("-between")}
+        # What lies between the numbered positions only smooths the curves, and what has "@" in its name nobody draws.
+        found = {key: drawn for key, drawn in found.items() if not key.endswith("-between") and "@" not in key}
     for i, (plan, scale) in enumerate(found.values()):
         if i:
             yield ""
@@ -63,7 +63,11 @@ def _drawn(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], Cann
         _construct(project, problem)
     for composed in attempt.drawn.values():
         scales |= composed.scales
-    plans = [plan for of_part in parts(project).values() if of_part for plan in of_part]
+    plans = [plan for of_part in parts(project).values() if of_part for plan in of_part if plan.steps]
+    if "flywheel" in vars(project):
+        order = {name: i for i, name in enumerate(project.flywheel.plans)}
+        own = iter(sorted((p for p in plans if p.name in order), key=lambda p: order[p.name]))
+        plans = [next(own) if p.name in order else p for p in plans]
     first: dict[str, tuple[Plan, Scale | None]] = {}
     for plan in plans:
         first.setdefault(plan.name, (plan, scales.get(plan.name)))

@@ -16,6 +16,7 @@ import numpy as np
 
 from tmm_sheets import explain
 from tmm_sheets.catalogue import read
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Text
 from tmm_sheets.project import Project
@@ -87,21 +88,31 @@ def _unknown(m: Mark) -> str:
 # --- is it true -------------------------------------------------------------------------------------------------------
 
 
-def steps(project: Project) -> dict[str, Step]:
-    """All steps of a project that was drawn, by plan/name; steps of the numbered positions, not of further angles."""
-    found: dict[str, Step] = {}
+def plans(project: Project) -> dict[str, Plan]:
+    """All plans of a project that was drawn by name; those of the numbered positions, not of further angles."""
+    found: dict[str, Plan] = {}
     if "positions" in project.parts:
         _ = project.study.loads  # a sheet shows the law of a load without asking for its step
-    for plans in explain.parts(project).values():
-        for plan in plans or ():
-            for step in plan:
-                found.setdefault(step.path, step)
+    for of_part in explain.parts(project).values():
+        for plan in of_part or ():
+            found.setdefault(plan.name, plan)
     return found
+
+
+def steps(project: Project) -> dict[str, Step]:
+    """All steps of these plans, by plan/name."""
+    return {step.path: step for plan in plans(project).values() for step in plan}
+
+
+def places(label: str, plan: Plan) -> list[int]:
+    """Positions of a plan with that number: the one that closes the cycle may have the number of the first."""
+    asked = label.split(", ")[0]
+    return [k for k, other in enumerate(plan.labels) if other == asked] if asked else [0]
 
 
 def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str], list[str]]:
     """How many marks of each role were checked, and those that are not where their step says."""
-    known, order, checked, wrong = steps(project), list(project.cycle.labels), Counter[str](), []
+    known, of, checked, wrong = steps(project), plans(project), Counter[str](), []
     for n, sheet in sheets.items():
         tips = {g.first: sheet.drawing.marks[g.end - 1] for g in sheet.groups if g.kind == "arrow"}
         for i, m in enumerate(sheet.drawing.marks):
@@ -114,8 +125,9 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
                 continue
             if isinstance(m, Text) or (isinstance(m, Fill) and m.by.role != "point"):
                 continue  # letters and heads
-            k = order.index(m.by.position.split(", ")[0]) if m.by.position else 0
-            off = distance(m, known[m.by.step], k, sheet.frames[m.by.frame], known, tips.get(i))
+            step = known[m.by.step]
+            off = min(distance(m, step, k, sheet.frames[m.by.frame], known, tips.get(i))
+                      for k in places(m.by.position, of[step.plan]))
             checked[m.by.role] += 1
             if not off <= EXACT:
                 wrong.append(f"sheet {n}: {m.by.role} {m.by.step} at {m.by.position or 'all'}: off by {off:.4f} mm")

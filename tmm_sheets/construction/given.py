@@ -68,3 +68,8 @@ class Given:
     source: str = ""
     over: Over = "positions"
     choice: str = ""
+
+
+def named(value: float, name: str, symbol: str = "", unit: str = "") -> float:
+    """A number with its origin; one that knows it already stays as it is."""
+    return value if isinstance(value, GivenNumber) else GivenNumber(value, name, symbol, unit)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number, size
 
@@ -83,9 +84,10 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "Ð
     if sizes is None:
         sizes = _sizes([step], k)
     wording = step.say if step.say is not None else step.rule.wording
-    # A protractor knows no minutes: they are said in formulas, not where an angle is laid off.
-    drawn = step.rule.gives in ("point", "direction")
-    shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(step.args, step.rule.takes, strict=False)]
+    # What is taken from another plan has other positions there. A protractor knows no minutes: they are said in formulas, not
+    # where an angle is laid off.
+    args, drawn = () if step.rule.compute is take else step.args, step.rule.gives in ("point", "direction")
+    shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(args, step.rule.takes, strict=False)]
     exact = _exact_angle(step, k)
     value = exact or _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
 

@@ -133,14 +133,14 @@ class Accelerations:
         self.epsilon[link] = self.plan.add(f"ε{link}", SAME, self.epsilon[other])
 
 
-def acceleration_plan(vel: Velocities, epsilon1: Any = None) -> Accelerations:
+def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") -> Accelerations:
     """Record the acceleration plans of all positions; ``epsilon1`` of the crank, rad/s2, signed, is a number or of shape (n,).
 
-    Left out, it is the mechanism's.
+    Left out, it is the mechanism's. ``where`` stands behind the plan's name.
     """
     pos = vel.positions
     m = pos.mechanism
-    plan = Plan("accelerations", "План ускорений", "m/s2", pos.plan.labels, "π")
+    plan = Plan(f"accelerations{pos.where}{where}", "План ускорений", "m/s2", pos.plan.labels, "π")
     acc = Accelerations(pos, vel, plan)
     pole = plan.add("π", POLE, 0j)
     for name in m.fixed:

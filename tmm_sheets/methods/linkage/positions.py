@@ -28,6 +28,7 @@ class Positions:
     mechanism: Mechanism
     plan: Plan
     phi: Any
+    where: str = ""
     points: dict[str, Step] = field(default_factory=dict)
     directions: dict[str, Step] = field(default_factory=dict)
     guide_points: dict[str, Step] = field(default_factory=dict)
@@ -57,12 +58,15 @@ class Positions:
         return found.lengths
 
 
-def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",)) -> Positions:
-    """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,)."""
-    plan = Plan("positions", "Планы положений механизма", "m", labels)
+def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), where: str = "") -> Positions:
+    """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,).
+
+    ``where`` stands behind the names of this plan and of those made on it: "@middles" for angles between the positions.
+    """
+    plan = Plan(f"positions{where}", "Планы положений механизма", "m", labels)
     inner = {g.inner for g in mechanism.groups if g.inner}
     plan.reserved = frozenset({*mechanism.fixed, mechanism.crank.pin, *inner, *(p.name for p in mechanism.points)})
-    pos = Positions(mechanism, plan, phi)
+    pos = Positions(mechanism, plan, phi, where)
     for name, at in mechanism.fixed.items():
         pos.points[name] = plan.add(name, rules.GIVEN, at)
     for guide in mechanism.guides.values():
