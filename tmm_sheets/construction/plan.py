@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.tally import Tally
 
 
 def symbol(name: str) -> str:
@@ -40,25 +41,44 @@ class Plan:
         name of the point all others are measured from, on plans of velocities and accelerations.
     labels
         position numbers of the cycle, as strings; one entry per position, ``("",)`` for a single construction.
+    search
+        count of a search that makes this plan only to look at its numbers; None for a plan that is drawn or told.
+
+    ``asides`` are steps that no pencil makes: numbers that spare rounding (see :attr:`Rule.beyond_paper`). They are no part of the
+    drawing order and are told by the record alone.
     """
 
-    def __init__(self, name: str, title: str, unit: str, labels: tuple[str, ...] = ("",), pole: str | None = None) -> None:
+    def __init__(self, name: str, title: str, unit: str, labels: tuple[str, ...] = ("",), pole: str | None = None,
+                 search: Tally | None = None) -> None:
         self.name = name
         self.title = title
         self.unit = unit
         self.labels = labels
         self.pole = pole
+        self.search = search
         self.steps: dict[str, Step] = {}
+        self.asides: dict[str, Step] = {}
         self.segments: list[Segment] = []
         self.reserved: frozenset[str] = frozenset()
+        if search is not None:
+            search.plans += 1
 
     def add(self, name: str, rule: Rule, *args: Any, say: str | None = None, symbol: str = "") -> Step:
         """Record a step under a name that is unique in this plan and return it; nothing is computed."""
         if name in self.steps:
             raise ValueError(f"plan {self.name!r} has a step {name!r} already")
-        step = Step(name, rule, args, say, symbol)
+        step = self._step(name, rule, args, say, symbol)
         self.steps[name] = step
         return step
+
+    def aside(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
+        """Record a number that no pencil knows, once under its name."""
+        if name not in self.asides:
+            self.asides[name] = self._step(name, rule, args, None, symbol)
+        return self.asides[name]
+
+    def _step(self, name: str, rule: Rule, args: tuple[Any, ...], say: str | None = None, symbol: str = "") -> Step:
+        return Step(name, rule, args, say, symbol) if self.search is None else Step(name, rule, args, say, symbol, self.search)
 
     def free(self, name: str) -> str:
         """The name itself, or with as many primes as it takes when the plan has it already or keeps it for a later step."""

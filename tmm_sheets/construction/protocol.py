@@ -14,22 +14,26 @@ from tmm_sheets.construction.step import Kind, Step, value_at, value_of
 from tmm_sheets.numbers import fixed, number, size
 
 
+UNITS = {"mm": "мм", "m": "м", "m/s": "м/с", "m/s2": "м/с²", "N": "Н", "rad": "рад"}
+"""Russian units of plans that no sheet draws."""
+
+
 def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "мм") -> Iterator[str]:
     """Sentences of the plan at position ``k``; ``to_mm`` turns a length of the plan into millimetres of paper.
 
     A plan that is not drawn has no millimetres: ``to_mm`` leaves its lengths as they are and ``unit`` names theirs.
     """
-    sizes = _sizes(plan, k)
+    of_sort = sizes(plan, k)
     for step in plan:
-        said = sentence(step, k, to_mm, unit, sizes)
-        segments = [f"|{name}{step.name}| = {_said(vector, 'vector', to_mm, unit, sizes[_sort(step)])}"
+        said = sentence(step, k, to_mm, unit, of_sort)
+        segments = [f"|{name}{step.name}| = {_said(vector, 'vector', to_mm, unit, of_sort[_sort(step)])}"
                     for name, vector in _segments(plan, step, k)]
         if segments:
             said += f" {'Отрезки' if len(segments) > 1 else 'Отрезок'} {', '.join(segments)}."
         yield said
 
 
-def _sizes(steps: Iterable[Step], k: int) -> dict[str, float]:
+def sizes(steps: Iterable[Step], k: int) -> dict[str, float]:
     """Size of each sort among some steps, at position ``k``."""
     values: dict[str, list[Any]] = {}
     for step in steps:
@@ -73,13 +77,13 @@ _OPERAND = re.compile(r"(?<=[·/×+−])( ?)(\{\d\})|(\{\d\})(?=²)")
 
 
 def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "мм",
-             sizes: Mapping[str, float] | None = None) -> str:
-    """One step as a sentence; ``sizes`` are those of each sort in its plan."""
-    if sizes is None:
-        sizes = _sizes([step], k)
+             of_sort: Mapping[str, float] | None = None) -> str:
+    """One step as a sentence; ``of_sort`` are the :func:`sizes` of its plan."""
+    if of_sort is None:
+        of_sort = sizes([step], k)
     wording = step.say if step.say is not None else step.rule.wording
-    shown = [_show(a, kind, k, to_mm, unit, sizes) for a, kind in zip(step.args, step.rule.takes, strict=False)]
-    value = _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
+    shown = [_show(a, kind, k, to_mm, unit, of_sort) for a, kind in zip(step.args, step.rule.takes, strict=False)]
+    value = _said(value_at(step, k), step.rule.gives, to_mm, unit, of_sort.get(_sort(step), 0.0))
 
     def operand(m: re.Match[str]) -> str:
         space, field = m[1] or "", m[2] or m[3]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
+
+from tmm_sheets.construction.tally import Tally
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.groups.kind import GroupKind
@@ -72,7 +74,7 @@ class StructuralGroup:
     inner: str | None = None
     lengths: tuple[float, ...] = ()
     guides: tuple[str, ...] = ()
-    side: int = 1
+    side: float = 1
     offset: float = 0.0
     slot: float = 0.0
 
@@ -108,7 +110,7 @@ class Crank:
     pin: str
     length: float
     speed: float
-    sense: int
+    sense: float
     acceleration: float = 0.0
 
     @property
@@ -128,6 +130,12 @@ class Mechanism:
     points: tuple[LinkPoint, ...]
     links: dict[str, Link]
     frame: str = "0"
+    searches: dict[str, Tally] = field(default_factory=dict, compare=False, repr=False)
+    """what has been looked for with plans of this mechanism, by purpose"""
+
+    def search(self, purpose: str) -> Tally | None:
+        """Count of the plans that search for something; None without a purpose, for a plan to be drawn or told."""
+        return self.searches.setdefault(purpose, Tally(purpose)) if purpose else None
 
     @property
     def pairs(self) -> tuple[Pair, ...]:

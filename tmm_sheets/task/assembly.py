@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import tomllib
+from collections.abc import Iterable, Sequence
 from math import cos, pi, sin
+from typing import TYPE_CHECKING
 
+from tmm_sheets.construction.given import FoundNumber, GivenNumber, GivenPoint
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
@@ -18,31 +21,99 @@ from tmm_sheets.methods.linkage.loads import (
     stroke_law,
     turning_motion,
 )
-from tmm_sheets.task.schema import ForceTable, GroupTable, MomentTable
+from tmm_sheets.task import synthesis_refs
+from tmm_sheets.task.schema import ForceTable, GroupTable, LinkTable, MomentTable
 from tmm_sheets.task.variant import Variant
 
+if TYPE_CHECKING:
+    from tmm_sheets.methods.linkage.synthesis import Synthesis
 
-def mechanism_of(variant: Variant) -> Mechanism:
-    """Links, pairs and groups of a project file; :class:`CannotBuild` when the file has no mechanism."""
+
+def mechanism_of(variant: Variant, synthesis: Synthesis | None = None) -> Mechanism:
+    """Links, pairs and groups of a project file, with numbers that know their places in it.
+
+    Parameters
+    ----------
+    variant
+        the project file.
+    synthesis
+        construction of the lengths that the file takes from its ``[synthesis]``; without it they are given ones.
+
+    Raises
+    ------
+    CannotBuild
+        when the file has no mechanism.
+    """
     c = variant.crank
     if c is None:
         raise CannotBuild("the project has no mechanism", "add [crank], [points] and [[group]] to the project file")
+    of = Givens(variant, synthesis)
     # The acceleration from the flywheel needs the mechanism first: the study of the forces puts it in.
     acceleration = c.angular_acceleration if isinstance(c.angular_acceleration, float) else 0.0
-    crank = Crank(c.link, c.pivot, c.pin, c.length, c.speed, -1 if c.sense == "clockwise" else 1, acceleration)
-    fixed = {name: complex(x, y) for name, (x, y) in variant.points.items()}
+    crank = Crank(c.link, c.pivot, c.pin,
+                  of.length(c.length, f"l_{{{c.pivot}{c.pin}}}", "crank", "length"),
+                  of.number(c.speed, f"ω_{c.link}", "rad/s", "crank", "speed"),
+                  of.number(-1.0 if c.sense == "clockwise" else 1.0, "", "", "crank", "sense"),
+                  of.number(acceleration, f"ε_{c.link}", "rad/s2", "crank", "angular_acceleration"))
+    fixed: dict[str, complex] = {name: of.point(at, name, "points", name) for name, at in variant.points.items()}
     guides = {}
-    for g in variant.guide:
-        through = g.through if isinstance(g.through, str) else complex(*g.through)
+    for i, g in enumerate(variant.guide):
+        through: str | complex = g.through if isinstance(g.through, str) else of.point(g.through, f"{g.name}₀", "guide", i, "through")
         if g.link is None and isinstance(through, str):
             through = fixed[through]
-        guides[g.name] = Guide(g.name, g.link or "0", through, g.direction, g.towards)
-    points = tuple(LinkPoint(p.name, p.link, p.from_, p.towards, p.distance, p.angle) for p in variant.point)
-    listed = {p.name: Link(p.name, p.title, p.mass, p.centre, p.inertia, p.pivot_inertia) for p in variant.link}
-    groups = tuple(_group(g) for g in variant.group)
+        direction = of.number(g.direction, "", "rad", "guide", i, "direction")
+        guides[g.name] = Guide(g.name, g.link or "0", through, direction, g.towards)
+    points = tuple(
+        LinkPoint(p.name, p.link, p.from_, p.towards, of.length(p.distance, f"l_{{{p.from_}{p.name}}}", "point", i, "distance"),
+                  of.number(p.angle, "", "rad", "point", i, "angle")) for i, p in enumerate(variant.point))
+    listed = {p.name: _link(of, i, p) for i, p in enumerate(variant.link)}
+    groups = tuple(_group(of, i, g) for i, g in enumerate(variant.group))
     names = [crank.link, *(name for g in groups for name in g.links)]
     links = {name: listed.get(name, Link(name)) for name in names}
     return Mechanism(crank, fixed, guides, groups, points, links)
+
+
+class Givens:
+    """Numbers of a project file with their places in it: "group[1].lengths[0]", tables and lists counted from 0."""
+
+    def __init__(self, variant: Variant, synthesis: Synthesis | None = None) -> None:
+        self.variant = variant
+        self.synthesis = synthesis
+        self.written = {} if synthesis is None else dict(synthesis_refs.uses(tomllib.loads(variant.text)))
+
+    def number(self, value: float, symbol: str, unit: str, *path: str | int) -> GivenNumber:
+        """A number in SI; ``symbol`` is its letter in lettering markup."""
+        return GivenNumber(value, place(path), symbol, unit, self._source(path))
+
+    def point(self, at: tuple[float, float], symbol: str, *path: str | int) -> GivenPoint:
+        """A point, m."""
+        return GivenPoint(complex(*at), place(path), symbol, "m", self._source(path))
+
+    def length(self, value: float, symbol: str, *path: str | int) -> float:
+        """A length, m: a given one, or a step of the synthesis."""
+        match = self.written.get(path)
+        if match is None or self.synthesis is None:
+            return self.number(value, symbol, "m", *path)
+        name = match["name"] or synthesis_refs.PLACES.get((path[0], path[-1]), "")
+        return FoundNumber(value, self.synthesis.written(place(path), name, synthesis_refs.share(match), symbol))
+
+    def _source(self, path: tuple[str | int, ...]) -> str:
+        return self.variant.source(*path) or self.variant.source(*path[:-1])
+
+
+def place(path: Iterable[str | int]) -> str:
+    """A key path as text."""
+    text = ""
+    for part in path:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text
+
+
+def _link(of: Givens, i: int, p: LinkTable) -> Link:
+    mass = of.number(p.mass, f"m_{p.name}", "kg", "link", i, "mass")
+    inertia = of.number(p.inertia, f"J_{{S{p.name}}}", "kg*m2", "link", i, "inertia")
+    pivot = None if p.pivot_inertia is None else of.number(p.pivot_inertia, f"J_{p.name}", "kg*m2", "link", i, "pivot_inertia")
+    return Link(p.name, p.title, mass, p.centre, inertia, pivot)
 
 
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
@@ -121,8 +192,15 @@ def unit(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
 
 
-def _group(g: GroupTable) -> StructuralGroup:
-    lengths = g.lengths or (() if g.length is None else (g.length,))
+def _group(of: Givens, i: int, g: GroupTable) -> StructuralGroup:
+    ends = [p + str(g.inner) for p in g.outer]
+    lengths: tuple[float, ...] = ()
+    if g.lengths is not None:
+        lengths = tuple(of.length(x, f"l_{{{end}}}", "group", i, "lengths", n)
+                        for n, (x, end) in enumerate(zip(g.lengths, ends, strict=True)))
+    elif g.length is not None:
+        lengths = (of.length(g.length, f"l_{{{ends[0]}}}", "group", i, "length"),)
     guides = g.guides or (() if g.guide is None else (g.guide,))
-    slot = pi / 2 if g.slot is None else g.slot
-    return StructuralGroup(KINDS[g.kind], g.links, g.outer, g.inner, lengths, guides, g.side, g.offset, slot)
+    slot = of.number(pi / 2 if g.slot is None else g.slot, "", "rad", "group", i, "slot")
+    return StructuralGroup(KINDS[g.kind], g.links, g.outer, g.inner, lengths, guides, of.number(g.side, "", "", "group", i, "side"),
+                           of.length(g.offset, "e", "group", i, "offset"), slot)

@@ -43,7 +43,7 @@ class Reduced:
         return float(np.sum(self.moment(middles))) <= 0
 
     def _velocities(self, turned: Any) -> Velocities:
-        return velocity_plan(position_plan(self.mechanism, self.cycle.world(turned)))
+        return velocity_plan(position_plan(self.mechanism, self.cycle.world(turned), purpose="reduced quantities"))
 
     def moment(self, phi: Any, side: int = 0) -> Any:
         """Reduced moment of the technological forces, and of the weights where ``gravity`` is not zero, N m.
@@ -104,7 +104,7 @@ class Reduced:
             return crank.pivot_inertia
         if not crank.mass or crank.centre is None or crank.centre in m.fixed:
             return crank.inertia
-        pos = position_plan(m, np.array([self.cycle.start]))
+        pos = position_plan(m, np.array([self.cycle.start]), purpose="reduced quantities")
         arm = abs(complex(pos.points[crank.centre].value[0]) - m.fixed[m.crank.pivot])
         return crank.inertia + crank.mass * arm**2
 

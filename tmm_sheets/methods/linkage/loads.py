@@ -24,6 +24,7 @@ from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 
+STROKES = "strokes of forces"
 NEAR = 1e-12
 """Angles closer than this are the same, rad."""
 
@@ -113,10 +114,10 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     """
 
     def along(turned: Floats) -> Any:
-        return (position_plan(m, cycle.world(turned)).points[point].value * np.conj(sense)).real
+        return (position_plan(m, cycle.world(turned), purpose=STROKES).points[point].value * np.conj(sense)).real
 
     def speed(turned: Floats) -> Any:
-        v = velocity_plan(position_plan(m, cycle.world(turned))).points[point].value
+        v = velocity_plan(position_plan(m, cycle.world(turned), purpose=STROKES)).points[point].value
         return (np.broadcast_to(v, np.shape(turned)) * np.conj(sense)).real
 
     the_output = known is not None and known.output == point and abs(known.path - sense) < 1e-9
@@ -134,11 +135,11 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     """Strokes of a link that swings, or of a link that turns all the way round, which may go back for a while as well."""
 
     def speed(turned: Floats) -> Any:
-        w = velocity_plan(position_plan(m, cycle.world(turned))).omega[link].value
+        w = velocity_plan(position_plan(m, cycle.world(turned), purpose=STROKES)).omega[link].value
         return np.broadcast_to(sense * w, np.shape(turned))
 
     def angle(turned: Any) -> Any:
-        u = position_plan(m, cycle.world(turned)).directions[link].value
+        u = position_plan(m, cycle.world(turned), purpose=STROKES).directions[link].value
         return sense * np.angle(np.broadcast_to(u, np.shape(turned)))
 
     runs = runs_of(speed)

@@ -11,7 +11,7 @@ from typing import Any
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.mechanism.groups.dead_centres import Crossing, foot_on_guide
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
@@ -27,7 +27,7 @@ class Positions:
 
     mechanism: Mechanism
     plan: Plan
-    phi: Any
+    angle: Any
     points: dict[str, Step] = field(default_factory=dict)
     directions: dict[str, Step] = field(default_factory=dict)
     guide_points: dict[str, Step] = field(default_factory=dict)
@@ -36,6 +36,11 @@ class Positions:
     rays: dict[tuple[str, str], Step] = field(default_factory=dict)
     feet: dict[str, str] = field(default_factory=dict)
     sines: dict[str, Step] = field(default_factory=dict)
+
+    @property
+    def phi(self) -> Any:
+        """World angles of the crank, rad; ``angle`` is the step or the row they come from."""
+        return value_of(self.angle)
 
     def known_sine(self, group: StructuralGroup) -> tuple[Step, ...]:
         """The sine between a group's lines as a further argument of the rule that crosses them, where it is known."""
@@ -57,9 +62,12 @@ class Positions:
         return found.lengths
 
 
-def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",)) -> Positions:
-    """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,)."""
-    plan = Plan("positions", "Планы положений механизма", "m", labels)
+def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), purpose: str = "") -> Positions:
+    """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,): numbers, a row or a step.
+
+    ``purpose`` is what the plan searches for, when it is neither drawn nor told: it is counted then.
+    """
+    plan = Plan("positions", "Планы положений механизма", "m", labels, search=mechanism.search(purpose))
     inner = {g.inner for g in mechanism.groups if g.inner}
     plan.reserved = frozenset({*mechanism.fixed, mechanism.crank.pin, *inner, *(p.name for p in mechanism.points)})
     pos = Positions(mechanism, plan, phi)
@@ -86,7 +94,7 @@ def _fixed_guide(pos: Positions, guide: Guide) -> None:
     at = near_point(pos.mechanism, guide)
     point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), rules.GIVEN, at, say="Отметим точку {name} направляющей.")
     pos.guide_points[guide.name] = point
-    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.GIVEN_DIRECTION, ar.unit(guide.direction),
+    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.UNDER, guide.direction,
                                                     say=f"Через точку {point.name} проведём направляющую {{name}}.")
 
 

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
 
+import numpy as np
+
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
@@ -37,7 +39,8 @@ class Study:
     """All linkage plans for the angles ``turned`` (rad from position 0, shape (n,)).
 
     ``technological`` gives the technological forces and moments; they are asked for when the first force is.
-    ``running`` gives the uneven running of the crank and what it carries; None when the mechanism itself says both.
+    ``running`` gives the uneven running of the crank and what it carries; None when the mechanism itself says both. ``purpose`` is
+    what the plans search for; empty when they are drawn or told.
     """
 
     mechanism: Mechanism
@@ -48,6 +51,21 @@ class Study:
     technological: Callable[[], tuple[Applied, ...]]
     driver: GearForce | None
     running: Callable[[], CrankMotion] | None = None
+    purpose: str = ""
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """The plans that were asked for, in the order of construction."""
+        made = vars(self)
+        found = [made[name].plan for name in ("positions", "velocities", "accelerations") if name in made]
+        if "loads" in made:
+            found.append(made["loads"][2])
+        if "forces" in made:
+            found += [made["forces"].plan, *(fp.plan for fp in made["forces"].plans.values())]
+        if "lever" in made:
+            found.append(made["lever"].plan)
+        found += [made["balance"]] if "balance" in made else []
+        return {plan.name: plan for plan in found}
 
     @cached_property
     def applied(self) -> tuple[Applied, ...]:
@@ -57,7 +75,7 @@ class Study:
     @cached_property
     def positions(self) -> Positions:
         """Position plan."""
-        return position_plan(self.mechanism, self.cycle.world(self.turned), self.labels)
+        return position_plan(self.mechanism, self.cycle.angles(self.turned), self.labels, self.purpose)
 
     @cached_property
     def velocities(self) -> Velocities:
@@ -91,3 +109,20 @@ class Study:
         loads, couples, _ = self.loads
         every = [load for of_link in loads.values() for load in of_link]
         return lever(self.velocities, every, couples, self.driver)
+
+    @cached_property
+    def balance(self) -> Plan:
+        """Comparison of what drives the crank: ``Δ``, per cent, and ``along``, the force's signed size on its line, N."""
+        by_statics, by_lever, line = self.forces.balancing, self.lever.balancing, self.lever.line
+        plan = Plan("balance", "Сравнение уравновешивающих", "N", self.labels, search=self.positions.plan.search)
+        if line is not None:
+            # The force plan gives a vector along the line of action, the lever its signed size there.
+            by_statics = plan.add("along", ALONG_LINE, by_statics, line)
+        plan.add("Δ", DIFFERENCE, by_statics, by_lever)
+        return plan
+
+
+ALONG_LINE = Rule("size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",
+                  "Проекция силы {0} на линию действия: {value} Н.", unit="N")
+DIFFERENCE = Rule("difference per cent", lambda a, b: 100 * np.abs(a - b) / np.abs(a), ("number", "number"), "number",
+                  "Расхождение {name} = |{0} − {1}|/|{0}|·100 % = {value} %.", unit="%")
