@@ -77,6 +77,12 @@ class Plan:
             self.asides[name] = self._step(name, rule, args, None, symbol)
         return self.asides[name]
 
+    def adopt(self, step: Step) -> None:
+        """Take a step made elsewhere as one that no pencil makes."""
+        self.asides[step.name] = step
+        if self.search is not None:
+            step.__dict__["seconds"] = self.search
+
     def _step(self, name: str, rule: Rule, args: tuple[Any, ...], say: str | None = None, symbol: str = "") -> Step:
         return Step(name, rule, args, say, symbol) if self.search is None else Step(name, rule, args, say, symbol, self.search)
 

@@ -13,7 +13,6 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
 from tmm_sheets.numbers import fixed, number, size
 
-
 UNITS = {"mm": "мм", "m": "м", "m/s": "м/с", "m/s2": "м/с²", "N": "Н", "rad": "рад"}
 """Russian units of plans that no sheet draws."""
 

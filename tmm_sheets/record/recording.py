@@ -12,13 +12,12 @@ from tmm_sheets import results
 from tmm_sheets.construction import protocol
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
-from tmm_sheets.errors import CannotBuild
+from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.record import formulas, sheets, values
 from tmm_sheets.record.book import Book
 from tmm_sheets.record.results_map import leaves
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.given import FoundNumber
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.project import Project
 
@@ -26,8 +25,8 @@ SCHEMA = 1
 """Version of the record; it may grow under it."""
 
 
-def record(project: Project, numbers: Iterable[int] = ()) -> dict[str, Any]:
-    """The record of a project with some of its sheets, all unless told.
+def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any], CannotBuild | None]:
+    """The record of a project with some of its sheets, all unless told, and what could not be built of it.
 
     Raises
     ------
@@ -44,7 +43,8 @@ def record(project: Project, numbers: Iterable[int] = ()) -> dict[str, Any]:
     for composed in attempt.drawn.values():
         scales |= composed.scales
     book = book_of(project)
-    return {
+    lost = refused | attempt.refused
+    found = {
         "schema": SCHEMA, "project": project.variant.project.name, "variant": project.variant.project.variant, "lang": "ru",
         "plans": [_plan(project, book, name) for name in book.plans],
         "rules": book.rules,
@@ -52,13 +52,27 @@ def record(project: Project, numbers: Iterable[int] = ()) -> dict[str, Any]:
         "results": dict(_results(tree, book)),
         "searches": [{"purpose": s.purpose, "plans": s.plans, "steps": s.steps} for s in project.searches],
         "sheets": [sheets.sheet(n, composed, book.steps) for n, composed in attempt.drawn.items()],
-        **({"not_computed": {k: str(v) for k, v in (refused | attempt.refused).items()}} if refused or attempt.refused else {}),
+        **({"not_computed": {name: str(reason) for name, reason in lost.items()}} if lost else {}),
     }  # fmt: skip
+    return found, together(lost, "recorded", others=True) if lost else None
 
 
 def as_json(found: dict[str, Any]) -> str:
-    """The document, a line for each plan, rule, step, result and mark."""
-    return json.dumps(found, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    """The document, a line for each plan, rule, step, result, frame and mark."""
+    return _lines(found, 0)
+
+
+def _lines(value: Any, level: int) -> str:
+    if value and level < 2 and isinstance(value, dict):
+        inner = (f"{json.dumps(k, ensure_ascii=False)}: {_lines(v, level + 1)}" for k, v in value.items())
+        return "{\n" + ",\n".join(inner) + "\n}"
+    if value and level < 4 and isinstance(value, list) and isinstance(value[0], dict):
+        return "[\n" + ",\n".join(_sheet(v, level) for v in value) + "\n]"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def _sheet(value: dict[str, Any], level: int) -> str:
+    return _lines(value, level) if "marks" in value else _lines(value, 4)
 
 
 def book_of(project: Project) -> Book:
@@ -160,4 +174,5 @@ def _helper(h: Helper) -> dict[str, Any]:
 def _results(tree: dict[str, Any], book: Book) -> Iterable[tuple[str, dict[str, Any]]]:
     for path, told in leaves(tree):
         if hasattr(told, "step") and told.step in book:
-            yield path, {"step": book.id(told.step), **({"part": told.part} if told.part else {}), **({"at": list(told.at)} if told.at else {})}
+            part = {"part": told.part} if told.part else {}
+            yield path, {"step": book.id(told.step), **part, **({"at": list(told.at)} if told.at else {})}

@@ -21,6 +21,8 @@ def written(value: Any) -> Any:
     if isinstance(value, str | bool) or value is None:
         return value
     array = np.asarray(value)
+    if array.dtype.kind not in "biufc":
+        return None  # nothing that a record could hold
     if array.dtype.kind == "c":
         array = np.stack((array.real, array.imag), -1)
     found = array.tolist()

@@ -26,8 +26,8 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.methods.linkage.forces import MOMENTS, TANGENTIAL
 from tmm_sheets.methods.linkage import accelerations
+from tmm_sheets.methods.linkage.forces import MOMENTS, TANGENTIAL
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 
 if TYPE_CHECKING:

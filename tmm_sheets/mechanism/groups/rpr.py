@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,10 +9,9 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
+from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, TANGENT, Crossing, measured, span_from_crank
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
@@ -29,8 +27,9 @@ ALONG_TANGENT = Rule(
     "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
     ("point", "point"), "direction", "Проведём прямую {0}{1}.", lambda a, v: (Helper("line", a[0], a[1]),),
 )
+OFFSET = Rule("offset of a slot", np.abs, ("ordinate",), "length", "{name} = {value}.")
 SINE = Rule("sine between slot and perpendicular to the line of pivots", lambda h, d: h / d, (), "number",
-            "Синус угла между пазом и перпендикуляром к линии шарниров {name} = {value}.")
+            "Синус угла между пазом и перпендикуляром к линии шарниров {name} = {value}.", unit="1")
 
 
 class RPRKind(GroupKind):
@@ -46,7 +45,7 @@ class RPRKind(GroupKind):
         p, q = g.outer
         if g.offset:
             # The guide line passes the pivot at the offset: its foot is where the tangent from the pin touches that circle.
-            given = pos.points[p], pos.points[q], abs(g.offset), g.side
+            given = pos.points[p], pos.points[q], pos.plan.aside(f"e {g.name}", OFFSET, g.offset), g.side
             foot = pos.plan.add(pos.plan.free(f"{q}₁"), rules.TANGENT, *given)
             pos.points[foot.name] = foot
             pos.feet[g.links[1]] = foot.name
@@ -142,12 +141,10 @@ class RPRKind(GroupKind):
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """With an offset e the tangent's length sqrt(d^2 - e^2)."""
-        with localcontext(prec=DIGITS):
-            less = span_from_crank(m, g) if g.offset else None
-            if less is None:
-                return None
-            tangent, none = less(Decimal(g.offset)), less(Decimal(0))
-        half, distance = measured(g, phi, lambda phi: np.sqrt(-tangent(phi)), lambda phi: np.sqrt(-none(phi)))
+        span = span_from_crank(m, g) if g.offset else None
+        if span is None:
+            return None
+        half, distance = measured(g, phi, (TANGENT, *span, g.offset), (DISTANCE, *span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance)))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:

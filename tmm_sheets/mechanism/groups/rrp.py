@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,9 +9,8 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
-from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, direction
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, height, measured, on_crank
+from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, Crossing, measured, on_crank
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
@@ -25,7 +23,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.velocities import Velocities
 
 SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
-            "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.")
+            "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.", unit="1")
 
 
 class RRPKind(GroupKind):
@@ -105,15 +103,10 @@ class RRPKind(GroupKind):
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
-        with localcontext(prec=DIGITS):
-            guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
-            if pin is None or isinstance(guide.through, str):
-                return None
-            (l1, ahead), length = pin, Decimal(g.lengths[0])
-            e0 = height(m.fixed[m.crank.pivot], guide)[0]
-            start = direction(guide.direction)[0] - ahead
-            below, above = Cosine(length + e0, l1, start + PI / 2), Cosine(length - e0, l1, start - PI / 2)
-        half, _ = measured(g, phi, lambda phi: np.sqrt(below(phi) * above(phi)))
+        guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
+        if pin is None or isinstance(guide.through, str):
+            return None
+        half, _ = measured(g, phi, (HALF_OF_LINE, *pin, g.lengths[0], m.fixed[m.crank.pivot], guide.through, guide.direction))
         return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:

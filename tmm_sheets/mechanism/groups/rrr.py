@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, measured, span_from_crank
+from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, HALF_OF_ARCS, Crossing, measured, span_from_crank
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, span
@@ -23,7 +19,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.velocities import Velocities
 
 SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
-            "Синус угла между звеньями {name} = {value}.")
+            "Синус угла между звеньями {name} = {value}.", unit="1")
 
 
 class RRRKind(GroupKind):
@@ -107,14 +103,10 @@ class RRRKind(GroupKind):
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
-        with localcontext(prec=DIGITS):
-            less = span_from_crank(m, g)
-            if less is None:
-                return None
-            l2, l3 = (Decimal(x) for x in g.lengths)
-            outer, inner, none = less(l2 + l3), less(l2 - l3), less(Decimal(0))
-        half, distance = measured(g, phi, lambda phi: np.sqrt(outer(phi) * inner(phi) / none(phi)) / 2,
-                                  lambda phi: np.sqrt(-none(phi)))
+        span = span_from_crank(m, g)
+        if span is None:
+            return None
+        half, distance = measured(g, phi, (HALF_OF_ARCS, *span, *g.lengths), (DISTANCE, *span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:

@@ -13,7 +13,6 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.positions import near_point
 
-
 PIN_ANGLE = Rule("angle of a dead position", lambda centre, pin: np.arctan2((pin - centre).imag, (pin - centre).real),
                  ("point", "point"), "angle", "Угол кривошипа в мёртвом положении {1} {name} = {value}.", unit="rad")
 
@@ -45,7 +44,7 @@ def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]
         return plan, _dead_rocker(m, plan, centre, group)
     if len(group.kind.sliders(group)) == 1 and m.guides[group.guides[0]].link == m.frame:
         guide = m.guides[group.guides[0]]
-        through = plan.add(plan.free(f"{guide.name}₀"), rules.GIVEN, near_point(m, guide))
+        through = plan.add(plan.free(f"{guide.name}₀"), *near_point(m, guide))
         along = plan.add(plan.free(guide.name), rules.UNDER, guide.direction)
         radii = reaches(plan, group.lengths[0], c.length)
         ends = [plan.add(f"{group.inner}{prime}", rules.ARC_LINE, centre, radius, through, along, group.side)
