@@ -5,15 +5,21 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterable, Sequence
 from math import cos, pi, sin
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.given import FoundNumber, GivenNumber, GivenPoint
+import numpy as np
+
+from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber, GivenPoint
+from tmm_sheets.construction.step import Rule
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
+    OPPOSED,
+    PISTON,
     Applied,
+    LoadDiagram,
     OutputMotion,
     Table,
     angle_law,
@@ -121,21 +127,43 @@ SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Applied, ...]:
     """Technological forces and moments of a project file."""
-    return (*(_force(variant, f, mechanism, cycle) for f in variant.force),
-            *(_moment(m, mechanism, cycle) for m in variant.moment))
+    of = Givens(variant)
+    return (*(_force(of, i, f, mechanism, cycle) for i, f in enumerate(variant.force)),
+            *(_moment(of, i, m, mechanism, cycle) for i, m in enumerate(variant.moment)))
 
 
-def _force(variant: Variant, f: ForceTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
-    c = variant.cycle
+def _diagrams(of: Givens, load: ForceTable | MomentTable, tables: Sequence[Table | None], period: float, rule: Rule | None,
+              numbers: tuple[Any, ...], *path: str | int) -> tuple[LoadDiagram, ...]:
+    """Diagrams of a load with the places of their numbers, as they are given; ``tables`` have them as they act."""
+    angle = load.over == "angle"
+    found = []
+    for n, (given, acting) in enumerate(zip(load.diagrams(), tables, strict=True)):
+        if given is None or acting is None:
+            continue
+        key = "value" if load.value is not None else "table" if load.tables is None else f"tables[{n}]"
+        name, symbol = f"{place(path)}.{key}", f"{load.name[0]}_{{{load.name[1:]}}}"
+        unit = "Pa" if rule is PISTON else "N" if isinstance(load, ForceTable) else "N*m"
+        source = of.variant.source(*path, key.partition("[")[0])
+        y = (Given(given[1][0], name, symbol, unit, source, "none") if load.value is not None and rule is None
+             else Given(np.array(given[1]), name, symbol, unit, source, "curve"))
+        x = Given(np.array(given[0]), f"{name} arguments", "φ" if angle else "s/H", "rad" if angle else "", source, "curve")
+        found.append(LoadDiagram(acting, x, y, load.curve == "smooth", period, rule, numbers))
+    return tuple(found)
+
+
+def _force(of: Givens, i: int, f: ForceTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
+    c = of.variant.cycle
     named = f.sense or (c.working_sense if c is not None else None)
     area = pi * f.bore**2 / 4 if f.bore is not None else 1.0
     tables = tuple(None if d is None else (d[0], [area * (y - f.ambient) for y in d[1]]) for d in f.diagrams())
+    numbers = () if f.bore is None else (of.number(f.bore, "D", "m", "force", i, "bore"), of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
+    diagrams = _diagrams(of, f, tables, cycle.period, PISTON if numbers else None, numbers, "force", i)
     if f.over == "angle":
         if not isinstance(f.direction, float) or tables[0] is None:
             raise CannotBuild(f"force {f.name}: a diagram over the angle needs a fixed direction",
                               'for example direction = "-90 deg"')
         law, jumps = angle_law(tables[0], cycle.period, f.curve == "smooth")
-        return Applied(f.name, f.link, f.point, unit(f.direction), law, jumps)
+        return Applied(f.name, f.link, f.point, unit(f.direction), law, jumps, None, diagrams, _along(of, i, unit(f.direction)))
     if named is None:
         raise CannotBuild(f"force {f.name}: which way are its working strokes?", 'add for example sense = "+x"')
     sense = SENSES[named] if named in SENSES else _along_guide(mechanism, named, f.name)
@@ -146,7 +174,12 @@ def _force(variant: Variant, f: ForceTable, mechanism: Mechanism, cycle: Cycle) 
     laws, signs = _by_run(motion, f.stroke, tables, against)
     always = against is None and f.tables is not None
     law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", always)
-    return Applied(f.name, f.link, f.point, toward, law, jumps, motion)
+    return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, _along(of, i, toward))
+
+
+def _along(of: Givens, i: int, toward: complex) -> GivenPoint:
+    """Direction of a force."""
+    return GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
 
 
 def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
@@ -157,7 +190,7 @@ def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
     return unit(guide.direction) * (1 if named[0] == "+" else -1)
 
 
-def _moment(m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
+def _moment(of: Givens, i: int, m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
     sense = -1 if m.sense == "clockwise" else 1
     tables = m.diagrams()
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
@@ -167,13 +200,15 @@ def _moment(m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
                               'for example direction = "clockwise"')
         table = (tables[0][0], [fixed * y for y in tables[0][1]])
         law, jumps = angle_law(table, cycle.period, m.curve == "smooth")
-        return Applied(m.name, m.link, None, 1 + 0j, law, jumps)
+        signed = (GivenNumber(fixed, f"moment[{i}].direction"),)
+        return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None,
+                       _diagrams(of, m, (table,), cycle.period, OPPOSED, signed, "moment", i))
     motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
     against = {"against motion": -1.0, "along motion": 1.0}.get(m.direction)
     laws, signs = _by_run(motion, m.stroke, tables, against)
     signs = [s * (fixed if fixed is not None else sense) for s in signs]
     law, jumps = stroke_law(motion, laws, signs, m.curve == "smooth")
-    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion)
+    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, m, tables, cycle.period, None, (), "moment", i))
 
 
 def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[

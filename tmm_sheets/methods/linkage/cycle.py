@@ -70,6 +70,12 @@ class Cycle:
             return self.numbering["φ"]
         return Given(self.world(turned), "crank angles", "φ_1", "rad")
 
+    def turned_row(self, turned: Any) -> Any:
+        """Angles turned from position 0: a step for the numbered positions, a row for others."""
+        if turned is self.turned and self.numbering is not None:
+            return self.numbering["φ_п"]
+        return Given(turned, "angles turned", "φ", "rad")
+
     @property
     def phi(self) -> Floats:
         """World angles of the crank, rad counter-clockwise; a whole multiple of the turn away from (-pi, pi]."""

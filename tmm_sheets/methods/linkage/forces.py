@@ -6,7 +6,7 @@ Source: manual 000, section 4 and table 4.1.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -30,8 +30,7 @@ INERTIA = Rule("inertia force", lambda m, a: -m * a, ("number", "point"), "force
                "Сила инерции {name} = m·a = {0}·a_{1} = {value}, против ускорения {1}.")
 COUPLE = Rule("inertia couple", lambda j, e: -j * e, ("number", "number"), "number",
               "Момент инерции {name} = −J·ε = {value} Н·м, против ε.", unit="N*m")
-GIVEN_MOMENT = Rule("given moment", lambda m: m, ("number",), "number", "Момент {name} = {value} Н·м.", unit="N*m")
-GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {name} = {value}.")
+GIVEN_FORCE = Rule("given force vector", lambda f: f, ("force",), "force", "Сила {name} = {value}.", unit="N")
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.", unit="N")
 OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.", unit="N*m")
 NEGATIVE = Rule("opposite number", lambda x: -x, ("number",), "number", "{name} = {value}.", beyond_paper=True, unit="1")
@@ -327,11 +326,13 @@ def contact_point(pos: Positions, driver: GearForce) -> Step:
 
 
 def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: Iterable[tuple[str, str, str, Any]],
-                   moments: Iterable[tuple[str, str, Any]] = (), carried: float | None = None) -> tuple[
+                   carried: Any = None, recorded: Iterable[tuple[str, str | None, Callable[[Plan], Step]]] = ()) -> tuple[
                        dict[str, list[Load]], dict[str, list[Step]], Plan]:
-    """Weights, inertia forces and couples of every link, applied forces (name, link, point, vectors) and moments.
+    """Weights, inertia forces and couples of every link, and what is applied to them.
 
-    ``carried`` is the moment of inertia of all that turns with the crank, kg m2, where it is more than the crank's own.
+    ``applied`` are forces (name, link, point, vectors), ``recorded`` forces and moments that record themselves on the plan (link,
+    point or None, how). ``carried`` is the moment of inertia of all that turns with the crank, kg m2, where it is more than the
+    crank's own.
     """
     m = pos.mechanism
     plan = Plan("loads", "Внешние силы и силы инерции", "N", pos.plan.labels, search=pos.plan.search)
@@ -352,8 +353,12 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
     for name, link_name, point, vector in applied:
         f = plan.add(name, GIVEN_FORCE, vector)
         loads[link_name].append(Load(symbol(name), link_name, pos.points[point], f, "applied"))
-    for name, link_name, value in moments:
-        couples.setdefault(link_name, []).append(plan.add(name, GIVEN_MOMENT, value))
+    for link_name, at_point, record in recorded:
+        step = record(plan)
+        if at_point is None:
+            couples.setdefault(link_name, []).append(step)
+        else:
+            loads[link_name].append(Load(symbol(step.name), link_name, pos.points[at_point], step, "applied"))
     return loads, couples, plan
 
 

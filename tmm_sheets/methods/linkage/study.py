@@ -92,10 +92,10 @@ class Study:
     @cached_property
     def loads(self) -> tuple[dict[str, list[Load]], dict[str, list[Step]], Plan]:
         """External and inertia forces of every link, inertia couples, and their plan."""
-        forces = [(f.name, f.link, f.point, f.vector(self.turned)) for f in self.applied if f.point is not None]
-        moments = [(f.name, f.link, f.law(self.turned, 0)) for f in self.applied if f.point is None]
+        turned = self.cycle.turned_row(self.turned)
+        recorded = [(f.link, f.point, lambda plan, f=f: f.record(plan, self.positions, turned)) for f in self.applied]
         carried = None if self.running is None else self.running().J_running
-        return external_loads(self.positions, self.accelerations, self.gravity, forces, moments, carried)
+        return external_loads(self.positions, self.accelerations, self.gravity, (), carried, recorded)
 
     @cached_property
     def forces(self) -> Kinetostatics:
