@@ -269,7 +269,7 @@ def _cycle(project: Project, study: Study) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Spread(Told):
-    """A step told for some of ``count`` positions (all unless ``rows`` says which): once for each, also where it depends on none."""
+    """A step told for some of ``count`` positions, all unless ``rows`` says which; the same for each where it depends on none."""
 
     count: int = 1
     rows: tuple[int, ...] | None = None

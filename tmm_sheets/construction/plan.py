@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +24,19 @@ class Segment:
     symbol: str
     tail: Step
     head: Step
+
+
+def asked_for(made: Iterable[Any]) -> dict[str, Plan]:
+    """Plans by their names among what an object has made so far: those of its lazy attributes that somebody has read."""
+    found: dict[str, Plan] = {}
+    for x in made:
+        if isinstance(x, Plan):
+            found.setdefault(x.name, x)
+        elif isinstance(x, dict | tuple | list):
+            found |= {k: v for k, v in asked_for(x.values() if isinstance(x, dict) else x).items() if k not in found}
+        elif isinstance(plan := getattr(x, "plan", None), Plan):
+            found.setdefault(plan.name, plan)
+    return found
 
 
 class Plan:

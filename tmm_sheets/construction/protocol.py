@@ -22,23 +22,28 @@ def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "
 
     A plan that is not drawn has no millimetres: ``to_mm`` leaves its lengths as they are and ``unit`` names theirs.
     """
-    of_sort = sizes(plan, k)
+    sizes = _sizes(plan, k)
     for step in plan:
-        said = sentence(step, k, to_mm, unit, of_sort)
-        segments = [f"|{name}{step.name}| = {_said(vector, 'vector', to_mm, unit, of_sort[_sort(step)])}"
+        said = sentence(step, k, to_mm, unit, sizes)
+        segments = [f"|{name}{step.name}| = {_said(vector, 'vector', to_mm, unit, sizes[_sort(step)])}"
                     for name, vector in _segments(plan, step, k)]
         if segments:
             said += f" {'Отрезки' if len(segments) > 1 else 'Отрезок'} {', '.join(segments)}."
         yield said
 
 
-def sizes(steps: Iterable[Step], k: int) -> dict[str, float]:
+def _sizes(steps: Iterable[Step], k: int) -> dict[str, float]:
     """Size of each sort among some steps, at position ``k``."""
     values: dict[str, list[Any]] = {}
     for step in steps:
         if np.asarray(step.value).dtype.kind in "ifc":
             values.setdefault(_sort(step), []).append(step.value)
     return {sort: size(found, k) for sort, found in values.items()}
+
+
+def sizes_of(plan: Plan, k: int) -> dict[str, float]:
+    """Size of each sort of quantities of a plan at position ``k``, for :func:`sentence`."""
+    return _sizes((*plan, *plan.asides.values()), k)
 
 
 def _sort(step: Step) -> str:
@@ -76,13 +81,13 @@ _OPERAND = re.compile(r"(?<=[·/×+−])( ?)(\{\d\})|(\{\d\})(?=²)")
 
 
 def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "мм",
-             of_sort: Mapping[str, float] | None = None) -> str:
-    """One step as a sentence; ``of_sort`` are the :func:`sizes` of its plan."""
-    if of_sort is None:
-        of_sort = sizes([step], k)
+             sizes: Mapping[str, float] | None = None) -> str:
+    """One step as a sentence; ``sizes`` are those of each sort in its plan."""
+    if sizes is None:
+        sizes = _sizes([step], k)
     wording = step.say if step.say is not None else step.rule.wording
-    shown = [_show(a, kind, k, to_mm, unit, of_sort) for a, kind in zip(step.args, step.rule.takes, strict=False)]
-    value = _said(value_at(step, k), step.rule.gives, to_mm, unit, of_sort.get(_sort(step), 0.0))
+    shown = [_show(a, kind, k, to_mm, unit, sizes) for a, kind in zip(step.args, step.rule.takes, strict=False)]
+    value = _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
 
     def operand(m: re.Match[str]) -> str:
         space, field = m[1] or "", m[2] or m[3]

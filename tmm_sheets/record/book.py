@@ -104,7 +104,9 @@ def rule_json(step: Step) -> dict[str, Any]:
     if isinstance(tree, expression.Operation) and tree.function is not None and [
             getattr(p, "index", None) for p in tree.parts] == list(range(count)):
         return found | {"primitive": tree.name}
-    return found | ({} if tree is None else {"expression": expression.as_json(tree)}) | ({"source": rule.source} if rule.source else {})
+    if tree is not None:
+        found["expression"] = expression.as_json(tree)
+    return found | ({"source": rule.source} if rule.source else {})
 
 
 def _keys(name: str, count: int) -> Iterator[str]:

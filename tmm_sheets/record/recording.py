@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,6 +42,9 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
     scales: dict[str, Scale] = {}
     for composed in attempt.drawn.values():
         scales |= composed.scales
+    behind = dict(leaves(tree))
+    for told in behind.values():
+        _ = getattr(told, "value", None)  # a plan that results come from is recorded, whether or not a sheet shows it
     book = book_of(project)
     lost = refused | attempt.refused
     found = {
@@ -49,7 +52,7 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
         "plans": [_plan(project, book, name) for name in book.plans],
         "rules": book.rules,
         "steps": _steps(book, scales),
-        "results": dict(_results(tree, book)),
+        "results": dict(_results(behind, book)),
         "searches": [{"purpose": s.purpose, "plans": s.plans, "steps": s.steps} for s in project.searches],
         "sheets": [sheets.sheet(n, composed, book.steps) for n, composed in attempt.drawn.items()],
         **({"not_computed": {name: str(reason) for name, reason in lost.items()}} if lost else {}),
@@ -128,13 +131,14 @@ class _Telling:
 
     def __init__(self, plan: Plan, scale: Scale | None) -> None:
         self.plan = plan
-        self.to_mm, self.unit = (scale.mm, "мм") if scale is not None else (float, protocol.UNITS.get(plan.unit, plan.unit))
+        self.to_mm: Any = float if scale is None else scale.mm
+        self.unit = protocol.UNITS.get(plan.unit, plan.unit) if scale is None else "мм"
         self._sizes: dict[int, dict[str, float]] = {}
 
     def sizes(self, k: int) -> dict[str, float]:
         """Sizes of the sorts of quantities of the plan at a position."""
         if k not in self._sizes:
-            self._sizes[k] = protocol.sizes(self.plan, k)
+            self._sizes[k] = protocol.sizes_of(self.plan, k)
         return self._sizes[k]
 
     def told(self, step: Step) -> dict[str, Any]:
@@ -171,8 +175,8 @@ def _helper(h: Helper) -> dict[str, Any]:
     return found if h.kind == "line" else found | {"radius": values.written(float(h.radius))}
 
 
-def _results(tree: dict[str, Any], book: Book) -> Iterable[tuple[str, dict[str, Any]]]:
-    for path, told in leaves(tree):
+def _results(behind: Mapping[str, Any], book: Book) -> Iterable[tuple[str, dict[str, Any]]]:
+    for path, told in behind.items():
         if hasattr(told, "step") and told.step in book:
             part = {"part": told.part} if told.part else {}
             yield path, {"step": book.id(told.step), **part, **({"at": list(told.at)} if told.at else {})}

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 DIGITS = 6
 """Decimals of a millimetre."""
-BY_STYLE = {"construction": "construction", "hatch": "hatch", "axis": "axis", "centre": "axis", "curve": "curve", "vector": "vector",
-            "text": "text"}
+BY_STYLE = {"construction": "construction", "hatch": "hatch", "axis": "axis", "centre": "axis", "curve": "curve",
+            "vector": "vector", "text": "text"}
 """Role of a mark that nobody has given one, by its line type; others are parts of symbols."""
 
 
@@ -33,8 +33,8 @@ def sheet(number: int, composed: Composed, known: Container[str]) -> dict[str, A
         view = bisect_right(starts, i) - 1
         block = 0 <= view < len(parts) and parts[view].draw == "title block"
         marks.append(_mark(i, mark, names[view] if view >= 0 else "", block, known))
-    return {"sheet": number, "title": composed.drawing.title, "size": [composed.drawing.width, composed.drawing.height], "frames": frames,
-            "marks": marks}  # fmt: skip
+    drawing = composed.drawing
+    return {"sheet": number, "title": drawing.title, "size": [drawing.width, drawing.height], "frames": frames, "marks": marks}
 
 
 def _name(part: Part) -> str:

@@ -57,4 +57,5 @@ def given(x: Any, positions: int) -> dict[str, Any]:
 
 
 def _origin(x: Any) -> Mapping[str, str]:
-    return {"name": getattr(x, "name", "constant"), **{key: found for key in ("symbol", "unit", "source") if (found := getattr(x, key, ""))}}
+    told = {key: found for key in ("symbol", "unit", "source") if (found := getattr(x, key, ""))}
+    return {"name": getattr(x, "name", "constant"), **told}

@@ -14,10 +14,9 @@ from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.step import Step, Told, value_at
 from tmm_sheets.errors import BadInput
 from tmm_sheets.numbers import plain
-from tmm_sheets.record import formulas
 from tmm_sheets.record.book import Book, chain
 from tmm_sheets.record.recording import book_of, unit
-from tmm_sheets.record.results_map import SECTIONS, leaves
+from tmm_sheets.record.results_map import leaves
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -37,13 +36,14 @@ def lines(project: Project, result: str) -> Iterator[str]:
     """
     part = result.partition(".")[0].partition("[")[0]
     if part not in project.parts:
-        raise _unknown(project, result, project.parts if part not in SECTIONS else ())
+        raise _unknown(project, result, ())
     found = dict(leaves(results.told(project, [part])))
     if result not in found:
         raise _unknown(project, result, found)
     told = found[result]
     if not isinstance(told, Told):
         raise BadInput(f"{result} has no step behind it: it is a number of the program")
+    _ = told.value
     book = book_of(project)
     at = told.at[0] if told.at else _position(project)
     given: set[str] = set()
@@ -57,12 +57,13 @@ def lines(project: Project, result: str) -> Iterator[str]:
 
 
 def _unknown(project: Project, result: str, known: Any) -> BadInput:
-    names = list(known)
+    name, names = project.variant.project.name, list(known)
     if not names:
-        return BadInput(f'{project.variant.project.name} has no part "{result.partition(".")[0]}"', hint=f"it has {', '.join(project.parts)}")
-    near = get_close_matches(result, names, n=3, cutoff=0.5) or [n for n in names if n.rpartition(".")[2] == result.rpartition(".")[2]][:3]
+        return BadInput(f'{name} has no part "{result.partition(".")[0]}"', hint=f"it has {', '.join(project.parts)}")
+    last = result.rpartition(".")[2]
+    near = get_close_matches(result, names, n=3, cutoff=0.5) or [n for n in names if n.rpartition(".")[2] == last][:3]
     hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(names[:12])}{' ...' if len(names) > 12 else ''}"
-    return BadInput(f'{project.variant.project.name} has no result "{result}"', hint=hint)
+    return BadInput(f'{name} has no result "{result}"', hint=hint)
 
 
 def _position(project: Project) -> str:
@@ -85,7 +86,8 @@ def _given(arg: GivenNumber | GivenPoint | Given, at: str, book: Book, step: Ste
         shown = f"{np.shape(value)[-1] if np.ndim(value) else 1} numbers"
     else:
         shown = _number(value_at(arg, k), arg.unit)
-    origin = f"chosen: {arg.choice}" if isinstance(arg, Given) and arg.choice else "given" + (f": {arg.source}" if arg.source else "")
+    choice = arg.choice if isinstance(arg, Given) else ""
+    origin = f"chosen: {choice}" if choice else f"given: {arg.source}" if arg.source else "given"
     return f"{arg.name}  {arg.symbol or '-'} = {shown}  {origin}"
 
 
@@ -99,9 +101,6 @@ def _line(step: Step, at: str, book: Book) -> str:
 
 
 def _from(step: Step, k: int, plan: Any) -> str:
-    tree = formulas.tree_of(step)
-    if tree is not None:
-        return formulas.symbols(step, tree)
     to_mm: Any = float
     return protocol.sentence(step, k, to_mm, protocol.UNITS.get(plan.unit, plan.unit) if plan is not None else "")
 
@@ -127,7 +126,7 @@ def _number(value: Any, of_unit: str) -> str:
     if not isinstance(value, str) and np.ndim(value):
         return f"{np.shape(value)[0]} numbers"
     if isinstance(value, complex | np.complexfloating):
-        text = f"({plain(value.real)}, {plain(value.imag)})"
+        text = f"({plain(float(value.real))}, {plain(float(value.imag))})"
     elif isinstance(value, int | float | np.number):
         text = plain(float(value))
     else:

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Sequence
 from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.step import Rule
 from tmm_sheets.errors import CannotBuild
@@ -64,7 +62,8 @@ def mechanism_of(variant: Variant, synthesis: Synthesis | None = None) -> Mechan
     fixed: dict[str, complex] = {name: of.point(at, name, "points", name) for name, at in variant.points.items()}
     guides = {}
     for i, g in enumerate(variant.guide):
-        through: str | complex = g.through if isinstance(g.through, str) else of.point(g.through, f"{g.name}₀", "guide", i, "through")
+        through: str | complex = g.through if isinstance(g.through, str) else of.point(
+            g.through, f"{g.name}₀", "guide", i, "through")
         if g.link is None and isinstance(through, str):
             through = fixed[through]
         direction = of.number(g.direction, "", "rad", "guide", i, "direction")
@@ -135,6 +134,8 @@ def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Ap
 def _diagrams(of: Givens, load: ForceTable | MomentTable, tables: Sequence[Table | None], period: float, rule: Rule | None,
               numbers: tuple[Any, ...], *path: str | int) -> tuple[LoadDiagram, ...]:
     """Diagrams of a load with the places of their numbers, as they are given; ``tables`` have them as they act."""
+    import numpy as np
+
     angle = load.over == "angle"
     found = []
     for n, (given, acting) in enumerate(zip(load.diagrams(), tables, strict=True)):
@@ -156,7 +157,8 @@ def _force(of: Givens, i: int, f: ForceTable, mechanism: Mechanism, cycle: Cycle
     named = f.sense or (c.working_sense if c is not None else None)
     area = pi * f.bore**2 / 4 if f.bore is not None else 1.0
     tables = tuple(None if d is None else (d[0], [area * (y - f.ambient) for y in d[1]]) for d in f.diagrams())
-    numbers = () if f.bore is None else (of.number(f.bore, "D", "m", "force", i, "bore"), of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
+    numbers = () if f.bore is None else (of.number(f.bore, "D", "m", "force", i, "bore"),
+                                         of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
     diagrams = _diagrams(of, f, tables, cycle.period, PISTON if numbers else None, numbers, "force", i)
     if f.over == "angle":
         if not isinstance(f.direction, float) or tables[0] is None:

@@ -21,14 +21,14 @@ from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, angle_of, d
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 
-Numbers = tuple[Rule, *tuple[Any, ...]]
+Numbers = tuple[Rule, tuple[Any, ...]]
 """A rule and the numbers of the mechanism it takes besides the crank angle."""
 
 
 def measured(g: StructuralGroup, phi: Any, half: Numbers, distance: Numbers | None = None) -> tuple[Step, Step | None]:
     """Half-chord of a group's crossing and distance of its centres as steps, from the crank angle and numbers of the mechanism."""
-    h = Step(f"h {g.name}", half[0], (phi, *half[1:]))
-    return h, None if distance is None else Step(f"d {g.name}", distance[0], (phi, *distance[1:]))
+    h = Step(f"h {g.name}", half[0], (phi, *half[1]))
+    return h, None if distance is None else Step(f"d {g.name}", distance[0], (phi, *distance[1]))
 
 
 @dataclass(frozen=True)

@@ -144,7 +144,7 @@ class RPRKind(GroupKind):
         span = span_from_crank(m, g) if g.offset else None
         if span is None:
             return None
-        half, distance = measured(g, phi, (TANGENT, *span, g.offset), (DISTANCE, *span))
+        half, distance = measured(g, phi, (TANGENT, (*span, g.offset)), (DISTANCE, span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance)))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:

@@ -106,7 +106,8 @@ class RRPKind(GroupKind):
         guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
         if pin is None or isinstance(guide.through, str):
             return None
-        half, _ = measured(g, phi, (HALF_OF_LINE, *pin, g.lengths[0], m.fixed[m.crank.pivot], guide.through, guide.direction))
+        numbers = (*pin, g.lengths[0], m.fixed[m.crank.pivot], guide.through, guide.direction)
+        half, _ = measured(g, phi, (HALF_OF_LINE, numbers))
         return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:

@@ -106,7 +106,7 @@ class RRRKind(GroupKind):
         span = span_from_crank(m, g)
         if span is None:
             return None
-        half, distance = measured(g, phi, (HALF_OF_ARCS, *span, *g.lengths), (DISTANCE, *span))
+        half, distance = measured(g, phi, (HALF_OF_ARCS, (*span, *g.lengths)), (DISTANCE, span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:

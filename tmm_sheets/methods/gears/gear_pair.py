@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.plan import Plan, asked_for
 from tmm_sheets.construction.scale import Scale, fit_standard
 from tmm_sheets.methods.gears import gear_engagement as ge
 from tmm_sheets.methods.gears import gear_teeth as gt
@@ -40,6 +40,11 @@ class GearPair(PairGeometry):
 
     Plans: ``gear-engagement``, ``gear-involute-1/2``, ``gear-tooth-1/2``, ``gear-sliding``, ``gear-rack``.
     """
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """The plans that were asked for."""
+        return asked_for(vars(self).values())
 
     @cached_property
     def engagement(self) -> Plan:

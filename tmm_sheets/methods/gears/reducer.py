@@ -7,7 +7,7 @@ from functools import cached_property
 from math import gcd, pi, sin
 from typing import Any
 
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.plan import Plan, asked_for
 from tmm_sheets.methods.gears import reducer_speeds
 from tmm_sheets.methods.gears.planetary import SCHEMES, Driver, inner_ratio, least_ring, stage_efficiency, stage_ratio
 from tmm_sheets.methods.gears.reducer_stages import ReducerWheel, Stage
@@ -129,6 +129,11 @@ class Reducer:
     def teeth_of(self, teeth: ToothSet) -> dict[str, int]:
         """Tooth numbers of a set by name, "z1" ..; equal stages are named once."""
         return named_teeth(self.data, teeth)
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """The plans that were asked for."""
+        return asked_for(vars(self).values())
 
     @cached_property
     def velocities(self) -> Plan:

@@ -46,7 +46,8 @@ def _tangential(total: Any, centre: Any, at: Any) -> Any:
 
 
 TANGENTIAL = Rule("component from moments", _tangential, ("number", "point", "point"), "force",
-                  "Из суммы моментов относительно точки {1} найдём составляющую {name} = {value}, перпендикулярную {1}{2}.", unit="N")
+                  "Из суммы моментов относительно точки {1} найдём составляющую {name} = {value}, перпендикулярную {1}{2}.",
+                  unit="N")
 
 
 def _moments(about: Any, *terms: Any) -> Any:

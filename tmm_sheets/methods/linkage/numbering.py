@@ -30,11 +30,13 @@ SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + sense * turned, ("angle", "number", "angle"), "angle",
              "Угол кривошипа {name} = {0} + {1}·{2} = {value}.", unit="rad")
-EQUAL = Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra, ("number", "number", "angle"),
-             "angle", "Разделим оборот кривошипа на {0} равных частей; угол поворота {name} = {value}.", unit="rad")
+EQUAL = Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra,
+             ("number", "number", "angle"), "angle",
+             "Разделим оборот кривошипа на {0} равных частей; угол поворота {name} = {value}.", unit="rad")
 STROKE_OF_K = Rule("crank angle of the working stroke", lambda k: np.pi * (1 + (k - 1) / (k + 1)), ("number",), "angle",
                    "Угол рабочего хода {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}.", unit="rad", source="000, 3.1")
-BETWEEN = Rule("symmetric between the dead positions", lambda dead, sense, exact, stroke: dead + sense * exact / 2 - sense * stroke / 2,
+BETWEEN = Rule("symmetric between the dead positions",
+               lambda dead, sense, exact, stroke: dead + sense * exact / 2 - sense * stroke / 2,
                ("angle", "number", "angle", "angle"), "angle",
                "Рабочий ход отложим симметрично между мёртвыми положениями: угол положения 0 {name} = {value}.", unit="rad")
 

@@ -65,9 +65,10 @@ class Positions:
 
 
 def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), purpose: str = "") -> Positions:
-    """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,): numbers, a row or a step.
+    """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,).
 
-    ``purpose`` is what the plan searches for, when it is neither drawn nor told: it is counted then.
+    They may be numbers, a row or a step. ``purpose`` is what the plan searches for, when it is neither drawn nor told: it is
+    counted then.
     """
     plan = Plan("positions", "Планы положений механизма", "m", labels, search=mechanism.search(purpose))
     inner = {g.inner for g in mechanism.groups if g.inner}
