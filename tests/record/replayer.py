@@ -42,11 +42,19 @@ def defined(value):
 
 
 class Replay:
-    """Steps of a record in its order, each from the values computed before it."""
+    """Steps of a record in its order, each from the values computed before it.
+
+    ``lost`` are those that cannot be computed: by a rule without arithmetic, from something that is no value, or from such steps.
+    """
 
     def __init__(self, record):
-        self.record, self.known, self.values = record, primitives(), {}
+        self.record, self.known, self.values, self.lost = record, primitives(), {}, set()
         for key, step in record["steps"].items():
+            rule = record["rules"][step["rule"]]
+            none = any(a.get("step") in self.lost or ("given" in a and a["given"] is None) for a in step["args"])
+            if none or not {"primitive", "expression"} & rule.keys():
+                self.lost.add(key)
+                continue
             with np.errstate(invalid="ignore", divide="ignore"):
                 self.values[key] = self.step(step)
 
@@ -64,16 +72,34 @@ class Replay:
         return np.asarray(value)[a["map"]] if "map" in a else value
 
 
-def difference(replayed, written):
-    """How far a replayed value is from the one in the record, in the size of the greatest."""
+    def difference(self, key):
+        """How far a replayed value is from the one in the record, in the size of the greatest of it and what it is made of.
+
+        What is zero but for rounding is compared with the lengths it is the difference of.
+        """
+        step = self.record["steps"][key]
+        written = number(step["value"], step["type"])
+        near = [self.values[a["step"]] for a in step["args"] if "step" in a]
+        return difference(self.values[key], written, max(map(largest, near), default=0.0))
+
+
+def largest(value):
+    """Greatest finite magnitude of a value; 0 for a word."""
+    if isinstance(value, str):
+        return 0.0
+    array = np.abs(np.asarray(value.y if isinstance(value, Curve) else value))
+    return float(array[np.isfinite(array)].max(initial=0.0))
+
+
+def difference(replayed, written, size=0.0):
+    """Greatest difference of two values over their size; infinite where they are not defined alike."""
     if isinstance(written, Curve):
         return max(difference(getattr(replayed, k), getattr(written, k)) for k in ("x", "y", "left", "right"))
     if isinstance(written, str):
         return float(replayed != written)
     a, b = np.broadcast_arrays(np.asarray(replayed), np.asarray(written))
-    if not np.array_equal(np.isnan(a), np.isnan(b)):
+    there = np.isfinite(b)
+    if not np.array_equal(np.isfinite(a), there):
         return np.inf
-    there = ~np.isnan(b)
-    finite = np.isfinite(b[there])
-    size = np.abs(b[there][finite]).max(initial=0.0)
-    return float(np.abs(a[there][finite] - b[there][finite]).max(initial=0.0) / size) if size else float(np.abs(a[there]).max(initial=0.0))
+    off = np.abs(a[there] - b[there]).max(initial=0.0)
+    return float(off / max(size, largest(b))) if off else 0.0

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from tests.record.replayer import Replay, difference, number
+from tests.record.replayer import Replay, number
 from tmm_sheets import catalogue, results
 from tmm_sheets.__main__ import run
 from tmm_sheets.project import Project
@@ -77,13 +77,12 @@ def test_every_number_has_its_step(case):
 def test_replay(case):
     """Values follow from the givens, the rules and the primitives: nothing else of the program is asked."""
     _, record, _ = case
-    untold = {key for key, rule in record["rules"].items() if "primitive" not in rule and "expression" not in rule}
-    if untold:
-        pytest.xfail(f"rules without arithmetic: {', '.join(sorted(untold))}")
     replay = Replay(record)
-    off = {key: d for key, step in record["steps"].items()
-           if (d := difference(replay.values[key], number(step["value"], step["type"]))) > 1e-12}
+    off = {key: d for key in replay.values if (d := replay.difference(key)) > 1e-12}
     assert off == {}
+    assert {record["steps"][key]["plan"] for key in replay.lost}.isdisjoint({"positions", "velocities", "loads", "lever", "balance"})
+    if replay.lost:
+        pytest.xfail(f"{len(replay.lost)} steps cannot be replayed: {', '.join(sorted(replay.lost)[:5])} ...")
 
 
 def test_arguments_come_first(case):
@@ -121,7 +120,7 @@ def test_givens_of_the_linkage_have_their_places(case):
             for a in step["args"]:
                 if a.get("name") == "constant":
                     assert a["over"] == "none", key
-                    assert a["given"] in (0.0, 1.0, -1.0, [0.0, 0.0]) or key == "cycle/φ_п", (key, a)
+                    assert a["given"] in (0.0, 1.0, -1.0, [0.0, 0.0]), (key, a)
 
 
 # --- the commands -----------------------------------------------------------------------------------------------------
@@ -163,7 +162,8 @@ def test_why(capsys):
     assert length.startswith("crank.length  l_{AB} = 0.08 m  given")
 
 
-def test_searches_are_counted():
+@pytest.mark.parametrize("numbers", [(1,), (1, 2)])
+def test_searches_are_counted(numbers):
     """Every step that is evaluated is one of a drawn plan or of a search."""
     from tmm_sheets.construction.step import Step
     from tmm_sheets.sheets import sheet
@@ -178,9 +178,9 @@ def test_searches_are_counted():
     project = Project(catalogue.read("sixbar/1:1"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Step, "_computed", counted)
-        sheet.every(project)
+        sheet.every(project, numbers=numbers)
         drawn = sum(step.evaluated for of in project.plans.values() for plan in (of or {}).values()
                     for step in (*plan, *plan.asides.values()))
     searched = sum(search.steps for search in project.searches)
-    assert searched > 1000
+    assert searched > 100
     assert drawn + searched == total

@@ -10,8 +10,9 @@ import numpy as np
 
 from tmm_sheets import results
 from tmm_sheets.construction import protocol
+from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Step, value_at
+from tmm_sheets.construction.step import Helper, Step, value_at, value_of
 from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.record import formulas, sheets, values
 from tmm_sheets.record.book import Book
@@ -142,8 +143,11 @@ class _Telling:
         return self._sizes[k]
 
     def told(self, step: Step) -> dict[str, Any]:
-        """What is said of a step, by the labels of the positions it depends on."""
+        """What is said of a step, by the labels of the positions; once, without a label, of one made of rows that are not over them."""
         labels = self.plan.labels
+        lengths = {np.shape(value_of(a))[0] for a in (*step.args, step) if _is_row(value_of(a))}
+        if lengths - {len(labels)}:
+            labels = ("",)
         tree = formulas.tree_of(step)
         sentence, shown, lines = {}, {}, {}
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -157,6 +161,10 @@ class _Telling:
         if tree is not None:
             told["formula"] = {"symbols": formulas.symbols(step, tree), "numbers": shown}
         return told | ({"helpers": lines} if lines else {})
+
+
+def _is_row(value: Any) -> bool:
+    return not isinstance(value, str | Curve) and np.ndim(value) > 0
 
 
 def _helpers(step: Step, k: int) -> list[dict[str, Any]]:

@@ -131,12 +131,13 @@ def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Ap
             *(_moment(of, i, m, mechanism, cycle) for i, m in enumerate(variant.moment)))
 
 
-def _diagrams(of: Givens, load: ForceTable | MomentTable, tables: Sequence[Table | None], period: float, rule: Rule | None,
+def _diagrams(of: Givens, load: ForceTable | MomentTable, tables: Sequence[Table | None], rule: Rule | None,
               numbers: tuple[Any, ...], *path: str | int) -> tuple[LoadDiagram, ...]:
     """Diagrams of a load with the places of their numbers, as they are given; ``tables`` have them as they act."""
     import numpy as np
 
-    angle = load.over == "angle"
+    angle, cycle = load.over == "angle", of.variant.cycle
+    turns = of.number(1.0 if cycle is None else cycle.turns, "", "", "cycle", "turns")
     found = []
     for n, (given, acting) in enumerate(zip(load.diagrams(), tables, strict=True)):
         if given is None or acting is None:
@@ -148,7 +149,7 @@ def _diagrams(of: Givens, load: ForceTable | MomentTable, tables: Sequence[Table
         y = (Given(given[1][0], name, symbol, unit, source, "none") if load.value is not None and rule is None
              else Given(np.array(given[1]), name, symbol, unit, source, "curve"))
         x = Given(np.array(given[0]), f"{name} arguments", "φ" if angle else "s/H", "rad" if angle else "", source, "curve")
-        found.append(LoadDiagram(acting, x, y, load.curve == "smooth", period, rule, numbers))
+        found.append(LoadDiagram(acting, x, y, load.curve == "smooth", turns, rule, numbers))
     return tuple(found)
 
 
@@ -159,7 +160,7 @@ def _force(of: Givens, i: int, f: ForceTable, mechanism: Mechanism, cycle: Cycle
     tables = tuple(None if d is None else (d[0], [area * (y - f.ambient) for y in d[1]]) for d in f.diagrams())
     numbers = () if f.bore is None else (of.number(f.bore, "D", "m", "force", i, "bore"),
                                          of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
-    diagrams = _diagrams(of, f, tables, cycle.period, PISTON if numbers else None, numbers, "force", i)
+    diagrams = _diagrams(of, f, tables, PISTON if numbers else None, numbers, "force", i)
     if f.over == "angle":
         if not isinstance(f.direction, float) or tables[0] is None:
             raise CannotBuild(f"force {f.name}: a diagram over the angle needs a fixed direction",
@@ -168,7 +169,9 @@ def _force(of: Givens, i: int, f: ForceTable, mechanism: Mechanism, cycle: Cycle
         return Applied(f.name, f.link, f.point, unit(f.direction), law, jumps, None, diagrams, _along(of, i, unit(f.direction)))
     if named is None:
         raise CannotBuild(f"force {f.name}: which way are its working strokes?", 'add for example sense = "+x"')
-    sense = SENSES[named] if named in SENSES else _along_guide(mechanism, named, f.name)
+    told = ("force", i, "sense") if f.sense is not None else ("cycle", "working_sense")
+    sense = GivenPoint(SENSES[named] if named in SENSES else _along_guide(mechanism, named, f.name), place(told), "", "",
+                       of.variant.source(*told))
     motion = straight_motion(mechanism, cycle, f.point, sense, cycle.strokes, f.first)
     toward = unit(f.direction) if isinstance(f.direction, float) else sense
     against = {"against motion": -1.0, "along motion": 1.0}.get(str(f.direction))
@@ -204,13 +207,13 @@ def _moment(of: Givens, i: int, m: MomentTable, mechanism: Mechanism, cycle: Cyc
         law, jumps = angle_law(table, cycle.period, m.curve == "smooth")
         signed = (GivenNumber(fixed, f"moment[{i}].direction"),)
         return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None,
-                       _diagrams(of, m, (table,), cycle.period, OPPOSED, signed, "moment", i))
+                       _diagrams(of, m, (table,), OPPOSED, signed, "moment", i))
     motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
     against = {"against motion": -1.0, "along motion": 1.0}.get(m.direction)
     laws, signs = _by_run(motion, m.stroke, tables, against)
     signs = [s * (fixed if fixed is not None else sense) for s in signs]
     law, jumps = stroke_law(motion, laws, signs, m.curve == "smooth")
-    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, m, tables, cycle.period, None, (), "moment", i))
+    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, m, tables, None, (), "moment", i))
 
 
 def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[

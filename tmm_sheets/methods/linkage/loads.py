@@ -229,7 +229,7 @@ class LoadDiagram:
     x: Given
     y: Given
     smooth: bool
-    period: float = TURN
+    turns: float = 1.0
     rule: Rule | None = None
     numbers: tuple[Any, ...] = ()
 
@@ -268,7 +268,7 @@ class Applied:
         if not isinstance(law, StrokeLaw):
             (d,) = self.diagrams
             rule = SMOOTH_PERIODIC if d.smooth else PERIODIC
-            return plan.aside(name, rule, d.x, d.ordinates(plan, self.name), turned, d.period)
+            return plan.aside(name, rule, d.x, d.ordinates(plan, self.name), turned, d.turns)
         ahead, signs = law.strokes(value_of(turned))
         sense = Given(ahead, f"sense of {self.name}", choice="which way its diagram is passed")
         terms: list[Any] = []
@@ -371,9 +371,9 @@ def _of_table(smooth: bool) -> Callable[..., Any]:
 
 
 def _of_periodic(smooth: bool) -> Callable[..., Any]:
-    def ordinate(x: Any, y: Any, at: Any, period: float) -> Any:
-        """Ordinates of a diagram that repeats itself, at angles turned; at a jump the one after it."""
-        return curve_of((x, y), smooth, period)(at, 0)
+    def ordinate(x: Any, y: Any, at: Any, turns: float) -> Any:
+        """Ordinates of a diagram that repeats itself after some turns, at angles turned; at a jump the one after it."""
+        return curve_of((x, y), smooth, 2 * np.pi * turns)(at, 0)
 
     return ordinate
 

@@ -29,8 +29,8 @@ class CrankMotion(Protocol):
         """Moment of inertia of all that turns with the crank of the finished machine, kg m2."""
         ...
 
-    def acceleration(self, phi: Any) -> Any:
-        """Angular acceleration, rad/s2, positive in the sense of rotation, at angles turned from position 0."""
+    def acceleration_plan(self, phi: Any, labels: tuple[str, ...]) -> Plan:
+        """Angular acceleration as step ``ε1``, rad/s2, positive in the sense of rotation, at angles turned from position 0."""
         ...
 
 
@@ -57,7 +57,9 @@ class Study:
     def plans(self) -> dict[str, Plan]:
         """The plans that were asked for, in the order of construction."""
         made = vars(self)
-        found = [made[name].plan for name in ("positions", "velocities", "accelerations") if name in made]
+        found = [made[name].plan for name in ("positions", "velocities") if name in made]
+        found += [made["uneven"]] if "uneven" in made else []
+        found += [made["accelerations"].plan] if "accelerations" in made else []
         if "loads" in made:
             found.append(made["loads"][2])
         if "forces" in made:
@@ -87,7 +89,13 @@ class Study:
         """Acceleration plans."""
         if self.running is None:
             return acceleration_plan(self.velocities)
-        return acceleration_plan(self.velocities, self.mechanism.crank.sense * self.running().acceleration(self.turned))
+        return acceleration_plan(self.velocities, self.uneven["ε1"])
+
+    @cached_property
+    def uneven(self) -> Plan:
+        """Angular acceleration of a crank that does not turn evenly."""
+        assert self.running is not None
+        return self.running().acceleration_plan(self.turned, self.labels)
 
     @cached_property
     def loads(self) -> tuple[dict[str, list[Load]], dict[str, list[Step]], Plan]:
