@@ -14,6 +14,8 @@ from tmm_sheets.record.results_map import leaves
 
 PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/1:1", "sixbar/8:3", "transport/press@05-ЭПС-123",
             "transport/crusher@12-СДМ-1908", "lugansk/cam_flat")
+OF_LINKAGE = ("dead-positions", "cycle", "positions", "velocities", "loads", "moments", "lever", "balance")
+"""Plans that only the linkage has a part in."""
 LINKAGE = ("positions", "velocities", "accelerations", "forces")
 
 
@@ -80,7 +82,7 @@ def test_replay(case):
     replay = Replay(record)
     off = {key: d for key in replay.values if (d := replay.difference(key)) > 1e-12}
     assert off == {}
-    assert {record["steps"][key]["plan"] for key in replay.lost}.isdisjoint({"positions", "velocities", "loads", "lever", "balance"})
+    assert {record["steps"][key]["plan"] for key in replay.lost}.isdisjoint(OF_LINKAGE)
     if replay.lost:
         pytest.xfail(f"{len(replay.lost)} steps cannot be replayed: {', '.join(sorted(replay.lost)[:5])} ...")
 
@@ -113,10 +115,8 @@ def test_givens_of_the_linkage_have_their_places(case):
     project, record, _ = case
     if project.variant.crank is None:
         pytest.skip("no linkage")
-    plans = {p["id"] for p in record["plans"] if p["id"] in ("positions", "velocities", "loads", "lever", "balance", "cycle", "moments")
-             or p["id"].startswith("force-")}
     for key, step in record["steps"].items():
-        if step["plan"] in plans:
+        if step["plan"] in OF_LINKAGE or step["plan"].startswith("force-"):
             for a in step["args"]:
                 if a.get("name") == "constant":
                     assert a["over"] == "none", key

@@ -48,7 +48,8 @@ def primitive(name: str) -> Callable[[Function], Function]:
 
 def primitives(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
     """The primitives that some modules define, by their names in the record."""
-    return {f.primitive: f for m in modules for f in vars(m).values() if callable(f) and hasattr(f, "primitive") and f.__module__ == m.__name__}
+    return {f.primitive: f for m in modules for f in vars(m).values()
+            if callable(f) and hasattr(f, "primitive") and f.__module__ == m.__name__}
 
 
 class Expression(np.lib.mixins.NDArrayOperatorsMixin):

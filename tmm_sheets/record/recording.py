@@ -143,7 +143,10 @@ class _Telling:
         return self._sizes[k]
 
     def told(self, step: Step) -> dict[str, Any]:
-        """What is said of a step, by the labels of the positions; once, without a label, of one made of rows that are not over them."""
+        """What is said of a step, by the labels of the positions.
+
+        Of one made of rows that are not over the positions it is said once, without a label.
+        """
         labels = self.plan.labels
         lengths = {np.shape(value_of(a))[0] for a in (*step.args, step) if _is_row(value_of(a))}
         if lengths - {len(labels)}:

@@ -37,6 +37,7 @@ TIMES = Rule("part or multiple of a length", lambda ratio, x: ratio * x, ("numbe
 
 @primitive("round to a step")
 def _nearest(x: Any, step: float) -> float:
+    """The nearest whole multiple of a step, half of it upwards, as it is written with 12 significant digits."""
     # A decimal number of steps: 566 steps of 1 mm are 0.566 m and not a neighbour of it.
     return float(f"{floor(x / step + 0.5) * step:.12g}") if isfinite(x / step) else nan
 
@@ -46,6 +47,7 @@ ROUND = Rule("round a length", _nearest, ("length", "length"), "length", "Окр
 
 @primitive("15 digits")
 def _digits(x: float) -> float:
+    """The number as it is written with 15 significant digits."""
     return float(f"{x:.15g}")
 
 
