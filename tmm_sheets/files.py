@@ -39,8 +39,14 @@ def write_all(files: Mapping[Path, bytes]) -> None:
 def put(files: Mapping[Path, bytes]) -> None:
     """Write a set of files into folders that are there: each beside its place under a passing name; all are renamed at the end.
 
-    When anything fails (disk full, no permission) nothing new is left behind, older files stay as they were, and the ``OSError``
-    goes on to the caller with the name of the file.
+    When anything fails nothing new is left behind, and older files stay as they were.
+
+    Raises
+    ------
+    IsADirectoryError
+        when a folder has the name of a file.
+    OSError
+        with the name of the file, when the disk is full or there is no permission.
     """
     with WRITING:
         _put(files)
@@ -105,7 +111,13 @@ def _alive(process: int) -> bool:
 
 
 def check_folder(folder: Path) -> None:
-    """Refuse a folder that cannot be made or written into, before any work is done for it; nothing is made yet."""
+    """Check, before any work is done for it, that a folder can be made and written into; nothing is made yet.
+
+    Raises
+    ------
+    BadInput
+        when it cannot.
+    """
     nearest = next(p for p in (folder, *folder.absolute().parents) if p.exists())
     if not nearest.is_dir():
         raise BadInput(Problem("expected a folder, this is a file", str(nearest), hint="choose another with -o"))

@@ -59,7 +59,13 @@ class Project:
 
     @property
     def diagrams(self) -> tuple[str, ...]:
-        """Points and links whose motion is drawn over the crank angle: those named, the output, or what the last group drives."""
+        """Points and links whose motion is drawn over the crank angle: those named, the output, or what the last group drives.
+
+        Raises
+        ------
+        CannotBuild
+            when there is no [cycle].
+        """
         cycle = self._section("cycle")
         if cycle.diagrams or cycle.output:
             return cycle.diagrams or (cycle.output,)
@@ -85,7 +91,13 @@ class Project:
 
     @cached_property
     def synthesis(self) -> Synthesis:
-        """Lengths found from conditions."""
+        """Lengths found from conditions.
+
+        Raises
+        ------
+        CannotBuild
+            when there is no [synthesis].
+        """
         from tmm_sheets.methods.linkage.synthesis import Synthesis
 
         crank = self.variant.crank
@@ -93,7 +105,13 @@ class Project:
 
     @cached_property
     def cycle(self) -> Cycle:
-        """Numbered positions of one turn."""
+        """Numbered positions of one turn.
+
+        Raises
+        ------
+        CannotBuild
+            when there is no [cycle], or the mechanism has none of this form.
+        """
         from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 
         c = self._section("cycle")
@@ -149,7 +167,13 @@ class Project:
 
     @cached_property
     def force_index(self) -> int:
-        """Number of the position of the force analysis, the highlighted plan."""
+        """Number of the position of the force analysis, the highlighted plan.
+
+        Raises
+        ------
+        CannotBuild
+            when there is no [cycle], or no position of the label it names.
+        """
         return self.cycle.index(self._section("cycle").force_position or self.cycle.labels[0])
 
     @cached_property
@@ -164,7 +188,13 @@ class Project:
 
     @cached_property
     def flywheel(self) -> Flywheel:
-        """Flywheel by the energy-mass curve."""
+        """Flywheel by the energy-mass curve.
+
+        Raises
+        ------
+        CannotBuild
+            when nothing loads the links, or none of them has a mass.
+        """
         if not self.applied:
             raise CannotBuild("a flywheel needs a technological force or moment", "add [[force]] or [[moment]] to the project file")
         if not any(link.mass or link.inertia or link.pivot_inertia for link in self.mechanism.links.values()):
@@ -175,7 +205,13 @@ class Project:
 
     @cached_property
     def gear(self) -> GearPair:
-        """Gear pair."""
+        """Gear pair.
+
+        Raises
+        ------
+        CannotBuild
+            when there is no [gear], or with everything that forbids the pair.
+        """
         from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 
         section = self._section("gear")
@@ -183,14 +219,26 @@ class Project:
 
     @cached_property
     def reducer(self) -> Reducer:
-        """Planetary reducer: the chosen tooth numbers with everything that follows."""
+        """Planetary reducer: the chosen tooth numbers with everything that follows.
+
+        Raises
+        ------
+        CannotBuild
+            when there is no [reducer], or no tooth numbers meet its conditions.
+        """
         from tmm_sheets.methods.gears.reducer import reducer
 
         return reducer(self._section("reducer"))
 
     @cached_property
     def cam(self) -> Cam:
-        """Cam and follower."""
+        """Cam and follower.
+
+        Raises
+        ------
+        CannotBuild
+            when there is no [cam], or none can be built from it.
+        """
         from tmm_sheets.methods.cams.cam_profile import cam
 
         return cam(self._section("cam"))

@@ -17,10 +17,22 @@ def _folder(name: str) -> Path:
 
 
 def template(path: str) -> Path:
-    """Path of a file in ``templates/``, e.g. ``template("linetypes.toml")``; the file itself need not exist."""
+    """Path of a file in ``templates/``, e.g. ``template("linetypes.toml")``; the file itself need not exist.
+
+    Raises
+    ------
+    FileNotFoundError
+        when the folder is missing.
+    """
     return _folder("templates") / path
 
 
 def variants() -> Path:
-    """The folder with the shipped project files."""
+    """The folder with the shipped project files.
+
+    Raises
+    ------
+    FileNotFoundError
+        when it is missing.
+    """
     return _folder("variants")

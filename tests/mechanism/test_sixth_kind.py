@@ -14,15 +14,18 @@ from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.construction import rules
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RRP
+from tmm_sheets.mechanism.groups.dead_centres import PIN_ANGLE
 from tmm_sheets.mechanism.groups.hints import Outline
 from tmm_sheets.mechanism.groups.rrr import RRRKind
 from tmm_sheets.mechanism.model import Crank, Guide, Link, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import acceleration_plan
 from tmm_sheets.methods.linkage.checks import check_turn
+from tmm_sheets.methods.linkage.dead_positions import dead_positions
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 from tmm_sheets.sheets import linkage
+from tmm_sheets.stress.invariants import State
 
 REACH, AHEAD = 0.12, 0.7
 ROD, ROCKER, FRAME, SECOND, AT = 0.28, 0.24, 0.3, 0.35, 0.2
@@ -138,6 +141,45 @@ def test_limits_of_assembly():
     check_turn(machine())
     with pytest.raises(CannotBuild, match=r"group 2-3 does .*BC = 100 mm and CD = 240 mm together are 60 mm too short"):
         check_turn(machine(rod=0.1))  # the crank pin comes 400 mm away from D
+
+
+class Balanced(Triangle):
+    """The same with a dead position where E, not C, is in line with the crank: what a kind says of itself is what is built."""
+
+    number = 7
+
+    def dead_positions(self, m, g, plan, centre):
+        side = plan.add("E′", rules.ALONG, centre, plan.add("u", rules.GIVEN_DIRECTION, 1j), REACH)
+        left = plan.add("W′", rules.ALONG, centre, plan.add("w", rules.GIVEN_DIRECTION, -1 + 0j), REACH)
+        return plan.aside("φ′", PIN_ANGLE, centre, side), plan.aside("φ″", PIN_ANGLE, centre, left)
+
+
+def test_dead_positions():
+    """Crank and rod in line, by the law of cosines."""
+    m = machine()
+    plan, dead = dead_positions(m)
+    angles = [np.arccos((FRAME**2 + ac**2 - ROCKER**2) / (2 * FRAME * ac)) for ac in (ROD + 0.1, ROD - 0.1)]
+    pins = np.exp(1j * np.array([step.value for step in dead]))
+    assert np.abs(pins - np.exp(1j * np.array(angles)) * [1, -1]).max() < 1e-15
+    assert [step.rule.name for step in plan][-2:] == ["arc cuts arc"] * 2
+
+
+def test_dead_positions_are_the_kinds_own():
+    m = machine()
+    plan, dead = dead_positions(replace(m, groups=(replace(m.groups[0], kind=Balanced()), *m.groups[1:])))
+    assert [step.value for step in dead] == pytest.approx([np.pi / 2, np.pi])
+    assert "E′" in plan
+
+
+def test_growth_of_errors_is_the_kinds_own():
+    """1/sine under which the links cross, times size over length, of both groups: from the closed form."""
+    state = State(machine(), PHI)
+    for k, phi in enumerate(PHI):
+        z = {name: complex(value) for name, value in closed(phi).items() if name.isalpha()}
+        corner = np.sin(np.angle((z["B"] - z["C"]) / (FRAME - z["C"])))
+        first = state.size[k] ** 2 / ROCKER / abs(FRAME - z["B"]) / abs(corner)
+        second = state.size[k] / SECOND / abs((z["F"] - z["E"]).imag / SECOND)
+        assert state.condition[k] == pytest.approx(max(first, 1) * max(second, 1), rel=1e-9)
 
 
 def test_structure():

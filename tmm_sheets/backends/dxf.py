@@ -50,7 +50,13 @@ def write(drawing: Drawing, path: Path) -> None:
 
 
 def render(drawing: Drawing) -> bytes:
-    """The bytes of the DXF file."""
+    """The bytes of the DXF file.
+
+    Raises
+    ------
+    ValueError
+        when a mark has no finite place.
+    """
     frame = _frame(drawing.width, drawing.height)
     handles = count(frame.first_handle)
     body = "".join(_entities(drawing.marks, frame.owner, handles))

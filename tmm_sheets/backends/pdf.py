@@ -51,7 +51,13 @@ def write(drawing: Drawing, path: Path) -> None:
 
 
 def render(drawing: Drawing) -> bytes:
-    """The bytes of the PDF file."""
+    """The bytes of the PDF file.
+
+    Raises
+    ------
+    ValueError
+        when a mark has no finite place or a letter is missing from the font.
+    """
     buffer = BytesIO()
     page = _document(drawing, buffer)
     page._code += [SET_UP, _geometry(drawing), _lettering(drawing, page)]
@@ -63,7 +69,13 @@ def render(drawing: Drawing) -> bytes:
 
 
 def render_coloured(layers: Sequence[tuple[Drawing, tuple[float, float, float]]]) -> bytes:
-    """The bytes of a one-page PDF with several drawings over each other, each in a colour of its own (red, green, blue, 0 .. 1)."""
+    """The bytes of a one-page PDF with several drawings over each other, each in a colour of its own (red, green, blue, 0 .. 1).
+
+    Raises
+    ------
+    ValueError
+        when a mark has no finite place or a letter is missing from the font.
+    """
     buffer = BytesIO()
     page = _document(layers[0][0], buffer)
     for drawing, (r, g, b) in layers:
@@ -83,7 +95,13 @@ class Page(NamedTuple):
 
 
 def render_pages(drawing: Drawing, pages: Iterable[Page]) -> bytes:
-    """The bytes of a PDF with parts of one drawing, 1:1; the drawing is in the file once, whatever the number of pages."""
+    """The bytes of a PDF with parts of one drawing, 1:1; the drawing is in the file once, whatever the number of pages.
+
+    Raises
+    ------
+    ValueError
+        when a mark has no finite place or a letter is missing from the font.
+    """
     buffer = BytesIO()
     page = _document(drawing, buffer)
     page.beginForm("sheet", 0, 0, drawing.width * MM, drawing.height * MM)

@@ -94,7 +94,13 @@ class Pylinkage(Program):
         self.name += " + numba" if self.compiled else ""
 
     def prepare(self, mechanism: str, m: Mechanism, turn: Turn) -> Runs:
-        """Components of the mechanism one step before the turn begins, and a run for each quantity."""
+        """Components of the mechanism one step before the turn begins, and a run for each quantity.
+
+        Raises
+        ------
+        CannotBuild
+            when the library has no such groups.
+        """
         with mp.workdps(30):
             before = truth.state(m, mp.mpf(-m.crank.sense * turn.step)).points
         at = {k: complex(z) for k, z in before.items()}

@@ -54,7 +54,13 @@ def _search(most: int) -> list[ToothSet]:
 
 
 def rows(bench: Bench) -> None:
-    """The height of the chosen set against the least of its tier of deviation."""
+    """The height of the chosen set against the least of its tier of deviation.
+
+    Raises
+    ------
+    ValueError
+        when no set is permitted.
+    """
     for most in bench.upto(LIMITS, 40):
         goal = _best(min(most, TRIED))
 

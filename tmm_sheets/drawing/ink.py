@@ -55,7 +55,13 @@ def letters(text: Text) -> Iterator[Points]:
 
 
 def check(mark: Mark) -> None:
-    """Refuse a mark that has no place on the sheet."""
+    """Check that a mark has a place on the sheet.
+
+    Raises
+    ------
+    ValueError
+        when its place is not finite.
+    """
     if isinstance(mark, Line):
         good = isfinite(mark.a) and isfinite(mark.b)
     elif isinstance(mark, Arc):

@@ -77,6 +77,11 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
     Returns
     -------
     The boxes of the title block and of the turned designation, closed to anything else.
+
+    Raises
+    ------
+    ValueError
+        when ``fields`` has a name that is none of them.
     """
     if unknown := sorted(set(fields) - FIELDS):
         raise ValueError(f"title block fields unknown: {', '.join(unknown)}; known are {', '.join(sorted(FIELDS))}")

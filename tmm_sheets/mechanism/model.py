@@ -1,16 +1,28 @@
-"""Structure of a mechanism: links, kinematic pairs and Assur groups; no coordinates."""
+"""Structure of a mechanism: links, kinematic pairs, Assur groups and what a kind of them has to know; no coordinates."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 from tmm_sheets.construction.tally import Tally
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.groups.kind import GroupKind
+    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.mechanism.groups.contexts import AccelerationPlan, ForcePlans, PositionPlan, VelocityPlan
+    from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
+    from tmm_sheets.mechanism.groups.limits import AssemblyLimit
+
+    # The plans as a kind of group sees them.
+    Positions: TypeAlias = PositionPlan["Mechanism", "StructuralGroup"]
+    Velocities: TypeAlias = VelocityPlan["Mechanism", "StructuralGroup"]
+    Accelerations: TypeAlias = AccelerationPlan["Mechanism", "StructuralGroup"]
+    Kinetostatics: TypeAlias = ForcePlans["Mechanism", "StructuralGroup"]
 
 Motion = Literal["rotation", "translation"]
+
 
 @dataclass(frozen=True)
 class Link:
@@ -60,6 +72,112 @@ class Guide:
     towards: str | None = None
 
 
+class GroupKind(ABC):
+    """A kind of two-link group (вид группы Ассура; manual 000, table 3.1); a kind has no state of its own.
+
+    ``number`` and ``form`` are the manual's: the pairs in Russian letters, outer, inner, outer, В turning, П sliding.
+    ``orders`` are the same pairs as R and P, in every order the two links can be met in.
+    """
+
+    number: ClassVar[int]
+    form: ClassVar[str]
+    orders: ClassVar[tuple[str, ...]]
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other)
+
+    def __hash__(self) -> int:
+        return hash(type(self))
+
+    def __repr__(self) -> str:
+        return type(self).__name__
+
+    @abstractmethod
+    def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
+        """Outer, inner and outer kinematic pair of a group in a mechanism."""
+
+    def carried(self, g: StructuralGroup) -> dict[str, str]:
+        """Points the group brings along, each with the link it is fixed on."""
+        return {g.inner: g.links[0]} if g.inner else {}
+
+    @abstractmethod
+    def position(self, pos: Positions, g: StructuralGroup) -> None:
+        """Construct the inner point and the directions of both links in the position plan."""
+
+    @abstractmethod
+    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
+        """Solve the vector equations of the velocities by two lines (manual 000, table 3.1)."""
+
+    @abstractmethod
+    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
+        """Solve the vector equations of the accelerations by two lines (manual 000, table 3.6)."""
+
+    @abstractmethod
+    def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
+        """Reactions in the group's pairs from force plans and moment equations (manual 000, table 4.1)."""
+
+    @abstractmethod
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        """Conditions of assembly."""
+
+    @abstractmethod
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        """By how much errors of what comes before the group may grow in it, shape (n,), one number a position.
+
+        It is 1 over the sine of the angle under which the group's lines cross, times ``size`` of the mechanism, m, over the
+        shortest length that they are measured on.
+        """
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """Crossing of a group between crank and frame from the crank angles ``phi``, rad, shape (n,); None without such a form."""
+        return None
+
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
+        """Crank vectors (m, from the crank pivot ``centre``) of the dead positions of a group on the crank pin, on ``plan``.
+
+        None where this kind knows no construction of them, or none for this mechanism.
+        """
+        return None
+
+    def check_dead_positions(self, m: Mechanism, g: StructuralGroup) -> None:
+        """A cycle that begins at a dead position needs a group on the crank pin that has some.
+
+        Raises
+        ------
+        CannotBuild
+            when the group surely has none.
+        """
+        return None
+
+    @abstractmethod
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        """How both links look."""
+
+    @abstractmethod
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
+        """Reactions from outside, in order of the links."""
+
+    def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
+        """Names of the force plans, in the order they are drawn: that of the whole group, or one of each link."""
+        return (g.name,)
+
+    def about(self, g: StructuralGroup) -> str:
+        """Point of the moment equations: the middle hinge, unless a kind says otherwise."""
+        return str(g.inner)
+
+    def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
+        """Links that are blocks at the inner point, each with its guide."""
+        return ()
+
+    def ram(self, g: StructuralGroup) -> str | None:
+        """The guided link with a slot for the other's stone."""
+        return None
+
+    def rocker(self, g: StructuralGroup) -> str | None:
+        """The link that turns about the second outer hinge and guides the other's stone."""
+        return None
+
+
 @dataclass(frozen=True)
 class StructuralGroup:
     """An Assur group of class II, order 2 (группа Ассура).
@@ -103,7 +221,7 @@ class LinkPoint:
 
 @dataclass(frozen=True)
 class Crank:
-    """The initial link; ``sense`` is +1 for counter-clockwise, ``speed`` rad/s and ``acceleration`` rad/s2 unsigned sense."""
+    """The initial link; ``sense`` is +1 counter-clockwise, ``speed`` (rad/s) and ``acceleration`` (rad/s2) count that way."""
 
     link: str
     pivot: str
@@ -147,7 +265,13 @@ class Mechanism:
         return tuple(pairs)
 
     def owner(self, point: str) -> str:
-        """Link on which a point is fixed; the frame for fixed points, the first to carry it for hinges, the slider for its pin."""
+        """Link on which a point is fixed; the frame for fixed points, the first to carry it for hinges, the slider for its pin.
+
+        Raises
+        ------
+        KeyError
+            when no link has a point of this name.
+        """
         if point in self.fixed:
             return self.frame
         if point == self.crank.pin:

@@ -10,7 +10,12 @@ def decompose(m: Mechanism) -> tuple[StructuralGroup, ...]:
     """Groups found from links and pairs alone, the farthest from the crank first.
 
     From the frame and the crank outwards, two links that touch each other and the links already placed form a group;
-    detaching starts at the other end. Raises ValueError when what remains is no mechanism of class II.
+    detaching starts at the other end.
+
+    Raises
+    ------
+    ValueError
+        when what remains is no mechanism of class II.
     """
     placed, order = {m.frame, m.crank.link}, []
     pairs = [p for p in m.pairs if set(p.links) != placed]

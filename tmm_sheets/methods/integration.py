@@ -99,6 +99,11 @@ def integrate(plan: Plan, prefix: str, edges: Sequence[float] | Floats, heights:
     -------
     n + 1 steps: the origin and the ends of the chords, points of the lower graph, mm.
 
+    Raises
+    ------
+    ValueError
+        when there are not as many ordinates as intervals, or the pole distance is not positive.
+
     Source: manual 002, 1.6 (ordinates in the middle) and 4.2.3 (equal areas).
     """
     if len(edges) != len(heights) + 1:
@@ -136,6 +141,11 @@ def differentiate(plan: Plan, prefix: str, points: Sequence[Any], pole_distance:
     Returns
     -------
     n steps: points of the derivative in the middles of the intervals (manual 000, 5.2), mm.
+
+    Raises
+    ------
+    ValueError
+        when the pole distance is not positive.
     """
     if not pole_distance > 0:
         raise ValueError(f"the pole distance must be positive, not {pole_distance}")

@@ -117,7 +117,12 @@ def processors() -> int:
 def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> Iterator[Outcome]:
     """Build projects in ``workers`` processes; outcomes as they come.
 
-    A signal that asks for the end lets each process finish the project in its hands; :class:`Stopped` comes after their outcomes.
+    A signal that asks for the end lets each process finish the project in its hands.
+
+    Raises
+    ------
+    Stopped
+        after the outcomes, when such a signal came.
     """
     workers = min(workers, len(projects))
     if workers <= 1:
@@ -166,7 +171,13 @@ def _signals(act: Callable[[], None]) -> Iterator[list[int]]:
 
 
 def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: str) -> Iterator[Outcome]:
-    """Build projects on a dask cluster whose workers have this program and see the same output folder."""
+    """Build projects on a dask cluster whose workers have this program and see the same output folder.
+
+    Raises
+    ------
+    BadInput
+        when dask is not installed or no scheduler answers at the address.
+    """
     try:
         from distributed import Client
         from distributed import as_completed as finished

@@ -111,7 +111,13 @@ class Archive:
         self.place = path if path.suffix == ".zip" else path.with_name(f"{path.name}.zip")
 
     def check(self) -> None:
-        """Refuse a place that cannot be written, before any work is done for it."""
+        """Check, before any work is done for it, that the place can be written.
+
+        Raises
+        ------
+        BadInput
+            when it cannot, or is something else than a zip file.
+        """
         files.check_folder(self.place.parent)
         if self.place.exists() and not zipfile.is_zipfile(self.place):
             raise BadInput(Problem("expected a zip file", str(self.place), hint="choose another place with -o"))

@@ -198,7 +198,13 @@ def _refuse_idle_scales(variant: Variant, used: set[str]) -> None:
 
 
 def chosen(variant: Variant, sheets: tuple[int, ...]) -> list[int]:
-    """Numbers of the sheets asked for, all of them for none; BadInput for one that is not there."""
+    """Numbers of the sheets asked for, all of them for none.
+
+    Raises
+    ------
+    BadInput
+        when one is not there.
+    """
     count = len(variant.drawable())
     for n in sheets:
         if not 1 <= n <= count:

@@ -154,7 +154,13 @@ def _corners(box: Box) -> str:
 
 
 def ready(path: Path) -> Job:
-    """A finished plot file or PDF, to be sent or shown as it is."""
+    """A finished plot file or PDF, to be sent or shown as it is.
+
+    Raises
+    ------
+    BadInput
+        when it cannot be read.
+    """
     try:
         data = path.read_bytes()
     except OSError as e:

@@ -22,8 +22,9 @@ from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, 
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
+    from tmm_sheets.mechanism.groups.force_plan import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
-    from tmm_sheets.methods.linkage.forces import ForcePlan, GearForce, Kinetostatics
+    from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
@@ -127,27 +128,25 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
     """External and inertia forces of a group's links and the reactions of the links outside it."""
     forces, pos = project.study.forces, project.study.positions
     m = project.mechanism
-    internal = {f"F{pair_index(a, b)}" for a in g.links for b in g.links}
     shown: list[Shown] = []
     couples: list[Couple] = []
     members = [complex(step.at(k)) for step in pos.points.values()]
     size = max(abs(a - b) for a in members for b in members)
     for link in g.links:
         for load in forces.loads[link]:
-            name = next((n for n, step in forces.reactions.items() if step is load.vector), "")
-            if name in internal:
-                continue
-            shown.append(Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))))
+            if load.source not in g.links:
+                shown.append(Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k))))
 
-    def hinge(link: str, point: str, parts: tuple[Step, Step] | None = None) -> None:
+    def hinge(link: str, point: str) -> None:
         """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
         name = pair_index(link, m.owner(point))
         at = complex(pos.points[point].at(k))
         total = complex(forces.reactions[f"F{name}"].at(k))
-        if parts is None:
+        part = forces.tangential_part(link, point)
+        if part is None:
             shown.append(Shown(f"F̅_{{{name}}}", at, total))
             return
-        tangential = complex(parts[1].at(k)) - complex(parts[0].at(k))
+        tangential = complex(part.at(k))
         shown.append(Shown(f"F̅_{{{name}}}^n", at, total - tangential))
         shown.append(Shown(f"F̅_{{{name}}}^τ", at, tangential))
 
@@ -168,9 +167,9 @@ def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sh
             offset = 0.0
         shown.append(Shown(f"F̅_{{{name}}}", foot + u * offset, f if acts else 0j))
 
-    for reaction in g.kind.outer_reactions(forces, g):
+    for reaction in g.kind.outer_reactions(g):
         if reaction.guide is None:
-            hinge(reaction.link, reaction.point, reaction.parts)
+            hinge(reaction.link, reaction.point)
         else:
             guided(reaction.link, reaction.guide, reaction.point)
     return acting(shown, forces.force_size(k)), couples
@@ -240,11 +239,10 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
     """What the moment equations of a group gave: tangential parts of its reactions, arms of its outer guides' reactions."""
     forces, m = project.study.forces, project.mechanism
     said = []
-    own = {f"F{pair_index(link, other)}τ" for link in g.links for other in (m.frame, *m.links)}
-    for step in forces.from_moments:
-        if step.name in own:
-            sign = f"F_{{{step.name[1:-1]}}}^τ"
-            said.append(f"ΣM_{step.args[1].name} = 0: {sign} = {newtons(clean(abs(complex(step.at(k))), forces.force_size(k)))} Н")
+    for part in forces.from_moments:
+        if part.link in g.links:
+            value = newtons(clean(abs(complex(part.vector.at(k))), forces.force_size(k)))
+            said.append(f"ΣM_{part.centre} = 0: F_{{{pair_index(part.link, part.source)}}}^τ = {value} Н")
     about = g.kind.about(g)
     for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")

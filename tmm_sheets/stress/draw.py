@@ -24,7 +24,13 @@ class Unlucky(Exception):
 
 
 def want(holds: bool) -> None:
-    """Draw again where this does not hold."""
+    """Draw again where this does not hold.
+
+    Raises
+    ------
+    Unlucky
+        when it does not hold.
+    """
     if not holds:
         raise Unlucky
 
@@ -262,7 +268,13 @@ def crank_of(rng: np.random.Generator, size: float) -> Crank:
 
 
 def chain(rng: np.random.Generator, hard: str = "", kinds: tuple[int, ...] | None = None) -> tuple[Mechanism, float]:
-    """A mechanism of one to three groups of any kinds and a crank angle where it assembles; ``hard`` befalls the last group."""
+    """A mechanism of one to three groups of any kinds and a crank angle where it assembles; ``hard`` befalls the last group.
+
+    Raises
+    ------
+    AssertionError
+        when no mechanism of these kinds is found.
+    """
     for _ in range(1000):
         chosen = kinds or tuple(int(k) for k in rng.integers(1, 6, int(rng.integers(1, 4))))
         try:

@@ -12,13 +12,15 @@ afterwards. So the condition is that of the size, and what it multiplies is a sh
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.indices import on_link, pair_index
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, GroupKind
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
@@ -110,24 +112,11 @@ class State:
         return total
 
     def _condition(self, g: StructuralGroup) -> Any:
-        size = self.size
         with np.errstate(divide="ignore", invalid="ignore"):
-            turned: Any = 1.0
+            found: Any = g.kind.condition(self.positions, g, self.size)
             for name in g.guides:
-                turned = turned * size / self._base(name)
-            if g.kind.number == 1:
-                (p, q), c = g.outer, str(g.inner)
-                r, t = self.z[c] - self.z[p], self.z[c] - self.z[q]
-                return size / min(g.lengths) * size / np.abs(self.z[p] - self.z[q]) / np.abs(cross(r, t) / np.abs(r * t))
-            if g.kind.number == 2:
-                r = self.z[str(g.inner)] - self.z[g.outer[0]]
-                return turned * size / g.lengths[0] / np.abs(dot(r, self.guide(g.guides[0])[1]) / np.abs(r))
-            if g.kind.number == 3:
-                r = self.z[g.outer[0]] - self.z[g.outer[1]]
-                return size / np.abs(r) / np.abs(dot(r, self.u[g.links[1]]) / np.abs(r))
-            u = self.guide(g.guides[0])[1]
-            v = self.guide(g.guides[1])[1] if g.kind.number == 4 else self.u[g.links[0]]
-            return turned / np.abs(cross(u, v))
+                found = found * self.size / self._base(name)
+            return found
 
     def _base(self, name: str) -> Any:
         """Distance of the points that tell the direction of a guide; the size for one that is given by its angle."""
@@ -138,32 +127,76 @@ class State:
         return np.abs(self.z[towards] - self.z[guide.through]) if towards in self.z else self._base(towards)
 
 
+@dataclass(frozen=True)
+class Loop:
+    """What a kind of group is by its definition: ``residuals``, and by what ``margin`` it assembles, m, beside what reach, m.
+
+    Said here again, in the plainest way, and not asked of the kind: its own construction and conditions of assembly are on trial.
+    """
+
+    residuals: Callable[[State, StructuralGroup], Iterator[Residual]]
+    margin: Callable[[State, StructuralGroup], tuple[Any, Any]] | None = None
+
+
+def _two_rods(s: State, g: StructuralGroup) -> Iterator[Residual]:
+    (p, q), c = (s.z[name] for name in g.outer), s.z[str(g.inner)]
+    for at, length in zip((p, q), g.lengths, strict=True):
+        yield "link lengths", np.abs(np.abs(c - at) - length) / s.reach
+    yield "assembly side", np.maximum(0, -g.side * cross(q - p, c - p)) / s.size / s.reach
+
+
+def _two_rods_reach(s: State, g: StructuralGroup) -> tuple[Any, Any]:
+    d = np.abs(s.z[g.outer[1]] - s.z[g.outer[0]])
+    return np.minimum(sum(g.lengths) - d, d - abs(g.lengths[0] - g.lengths[1])), s.reach + sum(g.lengths)
+
+
+def _rod_on_guide(s: State, g: StructuralGroup) -> Iterator[Residual]:
+    (through, u), p, c = s.guide(g.guides[0]), s.z[g.outer[0]], s.z[str(g.inner)]
+    # The direction of a guide is rounded: a turn of 1e-16 about a point far away.
+    yield "link lengths", np.abs(np.abs(c - p) - g.lengths[0]) / (s.reach + np.abs(through - c))
+    yield "assembly side", np.maximum(0, -g.side * dot(u, c - p)) / s.reach
+
+
+def _rod_reach(s: State, g: StructuralGroup) -> tuple[Any, Any]:
+    (through, u), p = s.guide(g.guides[0]), s.z[g.outer[0]]
+    return g.lengths[0] - np.abs(cross(u, through - p)), s.reach + np.abs(through - p) + g.lengths[0]
+
+
+def _stone_on_rocker(s: State, g: StructuralGroup) -> Iterator[Residual]:
+    u, r = s.u[g.links[1]], s.z[g.outer[0]] - s.z[g.outer[1]]
+    yield "closure on guides", np.abs(cross(u, r) + g.side * g.offset) / s.reach
+    # The stone stays on its side of the rocker's pivot.
+    yield "assembly side", np.maximum(0, -dot(u, r)) / s.reach
+
+
+def _stone_reach(s: State, g: StructuralGroup) -> tuple[Any, Any]:
+    return np.abs(s.z[g.outer[1]] - s.z[g.outer[0]]) - g.offset, s.reach + g.offset
+
+
+def _on_two_guides(s: State, g: StructuralGroup) -> Iterator[Residual]:
+    """Nothing beside its guides."""
+    return iter(())
+
+
+def _stone_in_slot(s: State, g: StructuralGroup) -> Iterator[Residual]:
+    yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - s.z[g.outer[0]])) / s.reach
+
+
+LOOPS: dict[GroupKind, Loop] = {
+    RRR: Loop(_two_rods, _two_rods_reach), RRP: Loop(_rod_on_guide, _rod_reach), RPR: Loop(_stone_on_rocker, _stone_reach),
+    PRP: Loop(_on_two_guides), RPP: Loop(_stone_in_slot),
+}
+
+
 def geometry(s: State) -> Iterator[Residual]:
     """Lengths of links, closures on guides, sides of assembly, points fixed on links."""
     for g in s.m.groups:
-        at = [s.z[name] for name in g.outer]
-        if g.kind.number in (1, 2):
-            c = s.z[str(g.inner)]
-            # The direction of a guide is rounded: a turn of 1e-16 about a point far away.
-            reach = s.reach if g.kind.number == 1 else s.reach + np.abs(s.guide(g.guides[0])[0] - c)
-            for p, length in zip(at, g.lengths, strict=True):
-                yield "link lengths", np.abs(np.abs(c - p) - length) / reach
-        if g.kind.number == 1:
-            yield "assembly side", np.maximum(0, -g.side * cross(at[1] - at[0], c - at[0])) / s.size / s.reach
-        if g.kind.number == 2:
-            u = s.guide(g.guides[0])[1]
-            yield "assembly side", np.maximum(0, -g.side * dot(u, c - at[0])) / s.reach
-        if g.kind.number == 3:
-            yield "closure on guides", np.abs(cross(s.u[g.links[1]], at[0] - at[1]) + g.side * g.offset) / s.reach
-            # The stone stays on its side of the rocker's pivot.
-            yield "assembly side", np.maximum(0, -dot(s.u[g.links[1]], at[0] - at[1])) / s.reach
+        yield from LOOPS[g.kind].residuals(s, g)
         if g.inner:
             for name in g.guides:
                 p, u = s.guide(name)
                 reach = s.reach + np.abs(s.z[g.inner] - p)
                 yield "closure on guides", np.abs(cross(u, s.z[g.inner] - p)) / reach
-        if g.kind.number == 5:
-            yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - at[0])) / s.reach
         for link in g.links:
             yield "link lengths", np.abs(np.abs(s.u[link]) - 1)
     for point in s.m.points:
@@ -204,26 +237,12 @@ def rigidity(s: State) -> Iterator[Residual]:
 def assembled(s: State) -> Iterator[Residual]:
     """NaN exactly where a group cannot assemble: how far from its limit it is where the plan says otherwise."""
     for g in s.m.groups:
-        at = [s.z[name] for name in g.outer]
-        there = ~np.isnan(sum(at)) if at else np.ones(s.phi.shape, dtype=bool)
-        reach = s.reach
-        if g.kind.number == 1:
-            d = np.abs(at[1] - at[0])
-            margin = np.minimum(sum(g.lengths) - d, d - abs(g.lengths[0] - g.lengths[1]))
-            built = ~np.isnan(s.z[str(g.inner)])
-            reach = s.reach + sum(g.lengths)
-        elif g.kind.number == 2:
-            p, u = s.guide(g.guides[0])
-            margin = g.lengths[0] - np.abs(cross(u, p - at[0]))
-            there = there & ~np.isnan(p * u)
-            built = ~np.isnan(s.z[str(g.inner)])
-            reach = s.reach + np.abs(p - at[0]) + g.lengths[0]
-        elif g.kind.number == 3:
-            margin = np.abs(at[1] - at[0]) - g.offset
-            built = ~np.isnan(s.u[g.links[1]])
-            reach = s.reach + g.offset
-        else:
+        loop = LOOPS[g.kind]
+        if loop.margin is None:
             continue
+        margin, reach = loop.margin(s, g)
+        there = ~np.isnan(margin)
+        built = ~np.isnan(s.z[g.inner] if g.inner else s.u[g.links[1]])
         yield "NaN exactly where it cannot assemble", np.where(there & (built != (margin >= 0)), np.abs(margin) / reach, 0.0)
     # Nor may a velocity or acceleration be missing where the lines cross.
     missing = np.isnan(sum(s.v.values()) + sum(s.a.values()))

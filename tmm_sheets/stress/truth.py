@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from decimal import Decimal, localcontext
 
 from tmm_sheets.construction.limit_angles import PI, cos_sin, direction
+from tmm_sheets.mechanism.groups import RRR
 from tmm_sheets.mechanism.model import Mechanism
 
 DIGITS = 60
@@ -66,14 +67,14 @@ def motion(m: Mechanism, phi: float) -> Motion | None:
         w, e = Decimal(c.omega), Decimal(c.sense * c.acceleration)
         b, vb = vector(m.fixed[c.pivot]) + arm, arm.turned() * w
         ab = arm.turned() * e - arm * (w * w)
-        found = (_arcs if g.kind.number == 1 else _line)(m, b)
+        found = (_arcs if g.kind == RRR else _line)(m, b)
         if found is None:
             return None
         z, (r1, r2) = found
         v = _solved(r1, r2, r1.dot(vb), Decimal(0))
         relative = v - vb
         # On a line the second condition has no normal part.
-        own = v.dot(v) if g.kind.number == 1 else Decimal(0)
+        own = v.dot(v) if g.kind == RRR else Decimal(0)
         a = _solved(r1, r2, r1.dot(ab) - relative.dot(relative), -own)
         return Motion(complex(z), complex(v), complex(a))
 

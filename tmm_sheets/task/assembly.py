@@ -125,7 +125,13 @@ SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
 def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Applied, ...]:
-    """Technological forces and moments of a project file."""
+    """Technological forces, N, and moments, N m, of a project file.
+
+    Raises
+    ------
+    CannotBuild
+        when the sense of the working strokes is not told or unknown, or a diagram over the angle has no fixed direction.
+    """
     of = Givens(variant)
     return (*(_force(of, i, f, mechanism, cycle) for i, f in enumerate(variant.force)),
             *(_moment(of, i, m, mechanism, cycle) for i, m in enumerate(variant.moment)))

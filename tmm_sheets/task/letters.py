@@ -19,7 +19,7 @@ _HINT = "it has those of Russian and other Cyrillic alphabets, Latin ones with a
 
 
 def freed(value: Any) -> Any:
-    r"""Tables with their texts freed of signs nobody sees, such as stand there as ``\u200b``; breaks of lines are spaces."""
+    r"""Tables whose texts have no invisible signs, such as ``\u200b``, and spaces instead of line breaks."""
     if isinstance(value, str):
         return cleaned(re.sub(r"\s", " ", value))
     if isinstance(value, list):

@@ -49,7 +49,10 @@ from tmm_sheets.task.values import (
 
 
 class Table(BaseModel):
-    """A table of the project file: no key but the declared ones, nothing changes after reading."""
+    """A table of the project file: no key but the declared ones, nothing changes after reading.
+
+    Numbers are in SI then, whatever units the file has: m, kg, s, rad, N. A key left out is its default, None where it has none.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
 
@@ -398,12 +401,12 @@ class FlywheelTable(Table):
 
     method: Literal["wittenbauer", "mertsalov"] = Field(description='"wittenbauer" or "mertsalov"')
     """energy-mass curve, or the energy of the crank's group"""
-    delta: InnerFraction = Field(description="coefficient of non-uniformity, for example 0.025")
+    delta: InnerFraction = Field(description="permitted coefficient of non-uniformity, for example 0.025")
     form: Literal["rim", "disc"] = "rim"
     """a rim with spokes, or a disc"""
     density: Density = Field(description='density, for example "7300 kg/m3"')
     width_ratio: InnerFraction = Field(description="B/D, for example 0.2")
-    thickness_ratio: InnerFraction = Field(description="H/D, for example 0.12")
+    thickness_ratio: InnerFraction = Field(description="H/D of a rim, for example 0.12")
     rim_share: Annotated[float, si(units.NUMBER), in_range("a number above 0, 1 at most", lambda x: 0 < x <= 1)] = 1.0
     """part of the moment of inertia that the rim has"""
     weights: bool = False
@@ -411,7 +414,7 @@ class FlywheelTable(Table):
     accepted: bool = False
     """true: delta is our own assumption, marked "принято" on the sheet"""
     motor: MotorTable | None = None
-    """table `[flywheel.motor]`"""
+    """table `[flywheel.motor]`; left out: no motor is checked"""
 
 
 class GearTable(Table):
@@ -460,9 +463,9 @@ class SynthesisTable(Table):
     kind: Literal["quick return", "engine"] = Field(description='"quick return" or "engine"')
     """crank and rocker, or crank and slider"""
     coefficient: Annotated[float, si(units.NUMBER), in_range("K greater than 1", lambda x: x > 1)] | None = None
-    """quick return: K, the ratio of mean velocities"""
+    """quick return: coefficient of travel time K, the ratio of the mean velocities"""
     stroke: Length | None = None
-    """quick return: of the rocker's end"""
+    """quick return: of the rocker's end, across the line of the pivots"""
     centre_distance: Length | None = None
     """quick return: between the pivots of crank and rocker"""
     mean_velocity: Annotated[float, si(units.VELOCITY), positive("velocity")] | None = None
@@ -472,7 +475,7 @@ class SynthesisTable(Table):
     centre_ratio: PositiveNumber | None = None
     """place of the centre of mass on rocker or rod, as a share of its length"""
     round: Length | None = None
-    """found lengths are rounded to this step"""
+    """found lengths are rounded to this step; left out: not at all"""
 
     @model_validator(mode="after")
     def _conditions_of_the_kind(self) -> Self:

@@ -17,7 +17,13 @@ LEAST, GREATEST = 1e-12, 1e12
 
 
 def parsed(value: Any, quantity: units.Quantity) -> float:
-    """A number with its unit in SI; ValueError where it is none or of no size that a machine has."""
+    """A number with its unit in SI.
+
+    Raises
+    ------
+    ValueError
+        when it is no such number, or of no size that a machine has.
+    """
     found = units.parse(value, quantity)
     if found and not LEAST <= abs(found) <= GREATEST:
         raise ValueError(f"expected a {quantity.name} of {LEAST:g} to {GREATEST:g} in SI units, not {value!r}; is the unit right?")
@@ -156,7 +162,13 @@ Pressure = Annotated[float, si(units.PRESSURE)]
 
 
 def diagram(pairs: Sequence[tuple[Any, Any]], argument: units.Quantity, value: units.Quantity) -> tuple[list[float], list[float]]:
-    """Arguments and values of a diagram in SI; ValueError where a unit is wrong or the arguments do not rise."""
+    """Arguments and values of a diagram in SI, n numbers each.
+
+    Raises
+    ------
+    ValueError
+        when a unit is wrong or the arguments do not rise.
+    """
     x = [parsed(p[0], argument) for p in pairs]
     y = [parsed(p[1], value) for p in pairs]
     if any(b < a for a, b in pairwise(x)):

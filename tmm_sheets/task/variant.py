@@ -107,7 +107,13 @@ class Variant(Table):
         return tuple(name for name in self.project.sheets if name not in _SECTIONS or getattr(self, name) is not None)
 
     def drawable(self) -> tuple[str, ...]:
-        """The same; CannotBuild when there are none."""
+        """The same where at least one sheet is needed.
+
+        Raises
+        ------
+        CannotBuild
+            when there are none.
+        """
         if not self.sheets:
             raise CannotBuild(str(self.problem("the file has nothing of what these sheets show", "project", "sheets",
                                                hint="leave sheets out: then the file's tables tell which there are")))
@@ -179,7 +185,13 @@ def read(path: Path | str) -> Variant:
 
 
 def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
-    """Read the text of a project file; ``file`` is its name in messages, ``warnings`` are kept for the user."""
+    """Read the text of a project file; ``file`` is its name in messages, ``warnings`` are kept for the user.
+
+    Raises
+    ------
+    BadInput
+        naming file, line and key of everything that is wrong.
+    """
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as e:

@@ -27,7 +27,7 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.linkage import accelerations
-from tmm_sheets.methods.linkage.forces import MOMENTS, TANGENTIAL
+from tmm_sheets.methods.linkage.forces import MOMENTS
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 
 if TYPE_CHECKING:
@@ -229,9 +229,8 @@ def _loads(project: Project, found: Measurables) -> None:
         if step.rule.gives in ("force", "number") and step.name not in given:
             unit = "Н" if step.rule.gives == "force" else "Н·м"
             found.add(size("Силы тяжести и инерции", f"{RESULTS}/{label}/{step.name}", label, step.name, unit, k, step, by=step))
-    for step in study.forces.plan:
-        if step.rule is TANGENTIAL:
-            found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
+    for step in (part.vector for part in study.forces.from_moments):
+        found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
 
 
 def _force_plans(project: Project, found: Measurables) -> None:

@@ -1,4 +1,4 @@
-"""Half-chords of the crossings that a group on the crank makes, exact up to its dead positions.
+"""Dead positions of a group on the crank, and half-chords of the crossings it makes, exact up to them.
 
 The half-chord of two arcs, or of an arc and a line, vanishes in a dead position, and so does a tangent. Taken from the rounded
 crank pin it loses as many digits as the gap is small; taken from the crank angle it loses none, and the sine of the angle under
@@ -9,46 +9,32 @@ such a form.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, angle_of, direction
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
 Numbers = tuple[Rule, tuple[Any, ...]]
 """A rule and the numbers of the mechanism it takes besides the crank angle."""
 
 
 def measured(g: StructuralGroup, phi: Any, half: Numbers, distance: Numbers | None = None) -> tuple[Step, Step | None]:
-    """Half-chord of a group's crossing and distance of its centres as steps, from the crank angle and numbers of the mechanism."""
+    """Half-chord of a group's crossing and distance of its centres, m, as steps on crank angles ``phi``, rad, shape (n,)."""
     h = Step(f"h {g.name}", half[0], (phi, *half[1]))
     return h, None if distance is None else Step(f"d {g.name}", distance[0], (phi, *distance[1]))
 
 
-@dataclass(frozen=True)
-class Crossing:
-    """What the crank angle knows of the crossing of a group, as steps: half of the chord (or the tangent's length), the distance
-    of the centres (none for a line), the sine between the group's lines in the plans of velocities.
-    """
-
-    half: Step
-    distance: Step | None
-    sine: Step
-
-    @property
-    def lengths(self) -> tuple[Step, ...]:
-        """Further arguments of the rule that makes the crossing."""
-        return (self.half,) if self.distance is None else (self.half, self.distance)
-
-
 def on_crank(m: Mechanism, point: str) -> tuple[float, float] | None:
-    """Radius of a point on the crank, m, and its angle ahead of the crank, rad; None when it is elsewhere."""
+    """Radius of a point on the crank, m, and its angle ahead of the crank, rad; None when the point is elsewhere."""
     c = m.crank
     if point == c.pin:
         return c.length, 0.0
@@ -143,3 +129,61 @@ def foot_on_guide(at: complex, through: complex, guide: float) -> complex:
     with localcontext(prec=DIGITS):
         above, cos, sin = height(at, through, guide)
         return complex(float(Decimal(at.real) + above * sin), float(Decimal(at.imag) - above * cos))
+
+
+AWAY = 4.0
+"""So many times the mechanism's size away a guide's own point is not drawn."""
+
+
+NEAREST = Rule("nearest point of a guide", foot_on_guide, ("point", "point", "angle"), "point", "Отметим точку {name}.")
+
+
+def near_point(m: Mechanism, guide: Guide) -> tuple[Any, ...]:
+    """A point of a fixed guide to draw it through: its own, or the one nearest to the crank's pivot when its own is far away.
+
+    It is the rule that gives the point, and the numbers it takes.
+
+    A direction is known to 1e-16 rad: about a point a thousand lengths away that shifts the guide by 1e-13 of a length, which the
+    half-chords taken from the crank angle do not share. The nearest point comes from the numbers of the guide as they are given.
+    """
+    assert not isinstance(guide.through, str)
+    pivot = m.fixed[m.crank.pivot]
+    from_foot = (guide.through - pivot) / ar.unit(guide.direction)
+    fixed = max(abs(z - pivot) for z in m.fixed.values())
+    size = m.crank.length + sum(sum(g.lengths) for g in m.groups) + fixed + abs(from_foot.imag)
+    if abs(from_foot.real) <= AWAY * size:
+        return rules.GIVEN, guide.through
+    return NEAREST, pivot, guide.through, guide.direction
+
+
+PIN_ANGLE = Rule("angle of a dead position", lambda centre, pin: np.arctan2((pin - centre).imag, (pin - centre).real),
+                 ("point", "point"), "angle", "Угол кривошипа в мёртвом положении {1} {name} = {value}.", unit="rad")
+
+
+def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
+    v = fold * (end - centre) / np.abs(end - centre) * crank
+    return np.arctan2(v.imag, v.real)
+
+
+IN_LINE_ANGLE = Rule("angle of a crank in line with the rod", _in_line, ("point", "point", "number", "length"), "angle",
+                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad")
+REACH = Rule("reach of crank and rod in line", lambda rod, crank, sign: np.abs(rod + sign * crank), ("length", "length", "number"),
+             "length", "{name} = {value}.")
+
+
+def reaches(plan: Plan, rod: float, crank: float) -> tuple[tuple[str, Step], ...]:
+    """How far from the crank pivot the rod ends, with crank and rod stretched and folded, with the prime of each."""
+    return tuple((prime, plan.aside(f"r{prime}", REACH, rod, crank, sign)) for prime, sign in (("′", 1.0), ("″", -1.0)))
+
+
+def fold_and_stretch(m: Mechanism, plan: Plan, rod: float, centre: Step, ends: tuple[Step, Step]) -> tuple[Step, Step] | None:
+    """Crank angles, rad, with crank and rod in line; ``ends`` are where the rod ends, rod + crank and |rod - crank| from the pivot.
+
+    None where the rod's end cannot come there, or comes to the pivot itself.
+    """
+    far, near = (complex(e.value - centre.value) for e in ends)
+    if np.isnan(far) or np.isnan(near) or not abs(far) or not abs(near):
+        return None
+    length = m.crank.length
+    return (plan.aside("φ′", IN_LINE_ANGLE, centre, ends[0], 1.0, length),
+            plan.aside("φ″", IN_LINE_ANGLE, centre, ends[1], -1.0 if rod > length else 1.0, length))

@@ -1,4 +1,4 @@
-"""What a drawing asks a kind of group for: outlines of its links, reactions from outside; names and steps, no ink."""
+"""What a kind of group tells of one: how the crank angle knows its crossing, outlines of its links, reactions from outside."""
 
 from __future__ import annotations
 
@@ -8,11 +8,27 @@ from tmm_sheets.construction.step import Step
 
 
 @dataclass(frozen=True)
+class Crossing:
+    """What the crank angle knows of the crossing of a group, as steps: half of the chord (or the tangent's length), the distance
+    of the centres (none for a line), the sine between the group's lines in the plans of velocities.
+    """
+
+    half: Step
+    distance: Step | None
+    sine: Step
+
+    @property
+    def lengths(self) -> tuple[Step, ...]:
+        """Further arguments of the rule that makes the crossing."""
+        return (self.half,) if self.distance is None else (self.half, self.distance)
+
+
+@dataclass(frozen=True)
 class Outline:
     """A link as a bar through points, or as a block at a point along a direction.
 
-    ``aim`` is a point the bar's line passes besides, ``arms`` are further lines by the names of their ends; ``slot`` is the
-    direction of the slot in a ram, ``slotted`` says that a block may carry the slot of another group's stone.
+    ``aim`` is a further point that the bar's line passes through, ``arms`` are further lines by the names of their ends;
+    ``slot`` is the direction of the slot in a ram, ``slotted`` says that a block may carry the slot of another group's stone.
     """
 
     link: str
@@ -27,12 +43,8 @@ class Outline:
 
 @dataclass(frozen=True)
 class OuterReaction:
-    """Reaction on a link from outside its group: in the hinge at ``point``, or from ``guide``, balancing moments about ``point``.
-
-    ``parts`` are the ends of its tangential part on the force plan, where the method splits it.
-    """
+    """Reaction on a link from outside its group: in the hinge ``point``, or from ``guide``, balancing moments about ``point``."""
 
     link: str
     point: str
     guide: str | None = None
-    parts: tuple[Step, Step] | None = None

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.mechanism.model import StructuralGroup
+from tmm_sheets.mechanism.groups.contexts import PositionPlan
 
 SWEEP = 720
 """Crank angles of the fine sweep; between them the narrowest places are searched for."""
@@ -27,31 +27,30 @@ class AssemblyLimit:
     place is named when it is ``measured``; ``hint`` words what would help, from the positions of the whole turn.
     """
 
-    group: StructuralGroup
     unit: float
-    margin: Callable[[Any], Any]
+    margin: Callable[[PositionPlan[Any, Any]], Any]
     say: Callable[[float], str]
-    hint: Callable[[Any], str]
+    hint: Callable[[PositionPlan[Any, Any]], str]
     measured: bool = True
 
 
 def mm(length: float) -> str:
-    """A length in words."""
+    """A length, m, in words."""
     return f"{length * 1000:.4g} mm"
 
 
 def lacking(length: float) -> str:
-    """A lack in words."""
+    """A lack, m, in words."""
     return mm(length) if length >= 1e-6 else "less than 0.001 mm"
 
 
 def more(length: float) -> str:
-    """A length to four significant digits that is surely greater."""
+    """A length to four significant digits, surely greater than the given one, m."""
     return _rounded(length * (1 + 1e-6), ceil)
 
 
 def less(length: float) -> str:
-    """A length to four significant digits that is surely less."""
+    """A length to four significant digits, surely less than the given one, m."""
     return _rounded(length * (1 - 1e-6), floor)
 
 
@@ -62,13 +61,16 @@ def _rounded(length: float, to: Callable[[float], int]) -> str:
     return f"{to(length * 1000 / unit) * unit:.6g} mm"
 
 
-def span(pos: Any, p: str, q: str) -> Any:
-    """Distance of two points of the position plan, m."""
+def span(pos: PositionPlan[Any, Any], p: str, q: str) -> Any:
+    """Distance of two points of the position plan, m, shape (n,)."""
     return np.abs(pos.points[q].value - pos.points[p].value)
 
 
 def extremes(lengths: Any) -> tuple[float, float]:
-    """Least and greatest length over the turn; between the angles of the sweep by parabolas of the smooth squares."""
+    """Least and greatest of ``lengths`` over the turn, m: a number, or shape (n,) that ends with the sweep.
+
+    Between the angles of the sweep their squares, which are smooth, are taken as parabolas.
+    """
     y = np.broadcast_to(lengths, max(np.size(lengths), SWEEP))[-SWEEP:] ** 2
     before, after = np.roll(y, 1), np.roll(y, -1)
     bend = before - 2 * y + after
@@ -79,5 +81,5 @@ def extremes(lengths: Any) -> tuple[float, float]:
 
 
 def sine(u: Any, v: Any) -> Any:
-    """Magnitude of the sine of the angle between two directions."""
+    """Magnitude of the sine of the angle between two unit directions, shape (n,)."""
     return np.abs(ar.cross(u, v))

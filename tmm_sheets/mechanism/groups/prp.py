@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
-from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
-    from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 
 class PRPKind(GroupKind):
@@ -78,14 +74,18 @@ class PRPKind(GroupKind):
 
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
         a, b = g.guides
-        return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.guide_directions[a].value, pos.guide_directions[b].value) - TOUCH,
+        return [AssemblyLimit(1.0, lambda pos: sine(pos.guide_directions[a].value, pos.guide_directions[b].value) - TOUCH,
                               lambda lack: f"the guides {a} and {b} are parallel there",
                               lambda pos: "turn one of the guides so that they cross at every position", measured=False)]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        a, b = (pos.guide_directions[name].value for name in g.guides)
+        return 1 / sine(a, b)
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         return [Outline(link, block=str(g.inner), along=pos.guide_directions[name]) for link, name in self.sliders(g)]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
         return [OuterReaction(link, str(g.inner), name) for link, name in self.sliders(g)]
 
     def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:

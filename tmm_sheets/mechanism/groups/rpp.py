@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
-from tmm_sheets.mechanism.groups.kind import GroupKind
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
-    from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 
 class RPPKind(GroupKind):
@@ -130,16 +126,19 @@ class RPPKind(GroupKind):
 
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
         i, j = g.links
-        return [AssemblyLimit(g, 1.0, lambda pos: sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
+        return [AssemblyLimit(1.0, lambda pos: sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
                               lambda lack: f"the slot of link {j} is parallel to its guide {g.guides[0]}",
                               lambda pos: 'try slot = "90 deg"', measured=False)]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        return 1 / sine(pos.guide_directions[g.guides[0]].value, pos.directions[g.links[0]].value)
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), slot = g.links, pos.directions[g.links[0]]
         return [Outline(i, block=g.outer[0], along=slot),
                 Outline(j, block=str(g.inner), along=pos.guide_directions[g.guides[0]], slot=slot)]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
         (i, j), p = g.links, g.outer[0]
         return [OuterReaction(i, p), OuterReaction(j, p, g.guides[0])]
 

@@ -9,19 +9,16 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, TANGENT, Crossing, measured, span_from_crank
-from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
-from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGENT, measured, span_from_crank
+from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
-    from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 ALONG_TANGENT = Rule(
     "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
@@ -132,12 +129,16 @@ class RPRKind(GroupKind):
         p, q = g.outer
         offset = abs(g.offset)
         if not offset:
-            return [AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - TOUCH * m.crank.length,
+            return [AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - TOUCH * m.crank.length,
                                   lambda lack: f"{p} passes through {q}, so that the guide {q}{p} has no direction",
                                   lambda pos: f"move {q} off the path of {p}", measured=False)]
-        return [AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - offset - TOUCH * m.crank.length,
+        return [AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - offset - TOUCH * m.crank.length,
                               lambda lack: f"{p} comes {lacking(lack)} too near to {q} for the offset of {mm(offset)}",
                               lambda pos: f"try an offset below {less(extremes(span(pos, p, q))[0])}")]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        r = pos.points[g.outer[0]].value - pos.points[g.outer[1]].value
+        return size / np.abs(r) / np.abs(ar.dot(pos.directions[g.links[1]].value, r) / np.abs(r))
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """With an offset e the tangent's length sqrt(d^2 - e^2)."""
@@ -147,6 +148,31 @@ class RPRKind(GroupKind):
         half, distance = measured(g, phi, (TANGENT, (*span, g.offset)), (DISTANCE, span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance)))
 
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
+        """Tangents from the rocker's pivot to the crank circle (manual 000, 3.1), for a rocker that swings, without an offset."""
+        c, q = m.crank, g.outer[1]
+        if g.offset or q not in m.fixed or _inside(m, q) >= 0:
+            return None
+        pivot = plan.add(q, rules.GIVEN, m.fixed[q])
+        a, b = (plan.add(f"{c.pin}{prime}", rules.TANGENT, pivot, centre, c.length, side) for prime, side in (("′", 1), ("″", -1)))
+        return plan.aside("φ′", PIN_ANGLE, centre, a), plan.aside("φ″", PIN_ANGLE, centre, b)
+
+    def check_dead_positions(self, m: Mechanism, g: StructuralGroup) -> None:
+        """A cycle that begins at a dead position needs a rocker that swings.
+
+        Raises
+        ------
+        CannotBuild
+            when the rocker's pivot lies inside the crank circle.
+        """
+        c, q = m.crank, g.outer[1]
+        if c.pin not in g.outer or q not in m.fixed or (lack := _inside(m, q)) < 0:
+            return
+        raise CannotBuild(
+            f"pivot {q} of rocker {g.links[1]} lies {mm(lack)} inside the crank circle: "
+            f"{c.pivot}{q} = {mm(c.length - lack)}, {c.pivot}{c.pin} = {mm(c.length)}; the rocker has no dead positions",
+            f"make {c.pivot}{q} longer than the crank, or give the crank angle of position 0 instead of start = \"dead\"")
+
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), (p, q) = g.links, g.outer
         foot = pos.feet.get(j)
@@ -154,10 +180,9 @@ class RPRKind(GroupKind):
         rocker = Outline(j, (q, p), p) if foot is None else Outline(j, (q,), p, ((q, foot), (foot, p)))
         return [Outline(i, block=p, along=pos.directions[j]), rocker]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
         (i, j), (p, q) = g.links, g.outer
-        plan = forces.plans[i].plan
-        return [OuterReaction(i, p, parts=(plan["2"], plan["3"])), OuterReaction(j, q)]
+        return [OuterReaction(i, p), OuterReaction(j, q)]
 
     def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
         return g.links
@@ -167,6 +192,11 @@ class RPRKind(GroupKind):
 
     def rocker(self, g: StructuralGroup) -> str | None:
         return g.links[1]
+
+
+def _inside(m: Mechanism, pivot: str) -> float:
+    """How far a fixed pivot lies inside the crank circle, m; negative outside."""
+    return m.crank.length - abs(m.fixed[pivot] - m.fixed[m.crank.pivot])
 
 
 RPR = RPRKind()

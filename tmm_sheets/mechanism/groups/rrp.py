@@ -9,18 +9,15 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, Crossing, measured, on_crank
-from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
-from tmm_sheets.mechanism.groups.kind import GroupKind
+from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, fold_and_stretch, measured, near_point, on_crank, reaches
+from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
-    from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
             "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.", unit="1")
@@ -97,9 +94,13 @@ class RRPKind(GroupKind):
         def away(pos: Positions) -> Any:
             return np.abs(ar.cross(pos.guide_directions[guide].value, pos.guide_points[guide].value - pos.points[p].value))
 
-        return [AssemblyLimit(g, m.crank.length, lambda pos: length - away(pos),
+        return [AssemblyLimit(m.crank.length, lambda pos: length - away(pos),
                               lambda lack: f"rod {rod} = {mm(length)} is {lacking(lack)} too short to reach the guide {guide}",
                               lambda pos: f"try {rod} >= {more(extremes(away(pos))[1])}")]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        rod = pos.points[str(g.inner)].value - pos.points[g.outer[0]].value
+        return size / g.lengths[0] / np.abs(ar.dot(pos.guide_directions[g.guides[0]].value, rod) / np.abs(rod))
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
@@ -110,13 +111,24 @@ class RRPKind(GroupKind):
         half, _ = measured(g, phi, (HALF_OF_LINE, numbers))
         return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
 
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
+        """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the guide."""
+        guide, rod = m.guides[g.guides[0]], g.lengths[0]
+        if guide.link != m.frame:
+            return None
+        through = plan.add(plan.free(f"{guide.name}₀"), *near_point(m, guide))
+        along = plan.add(plan.free(guide.name), rules.UNDER, guide.direction)
+        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_LINE, centre, reach, through, along, g.side)
+                     for prime, reach in reaches(plan, rod, m.crank.length))
+        return fold_and_stretch(m, plan, rod, centre, (far, near))
+
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), c = g.links, str(g.inner)
         return [Outline(i, (g.outer[0], c)), Outline(j, block=c, along=pos.guide_directions[g.guides[0]], slotted=True)]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
-        plan, (i, j) = forces.plans[g.name].plan, g.links
-        return [OuterReaction(i, g.outer[0], parts=(plan["2"], plan["3"])), OuterReaction(j, str(g.inner), g.guides[0])]
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
+        i, j = g.links
+        return [OuterReaction(i, g.outer[0]), OuterReaction(j, str(g.inner), g.guides[0])]
 
     def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
         return ((g.links[1], g.guides[0]),)

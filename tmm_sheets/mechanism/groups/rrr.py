@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, HALF_OF_ARCS, Crossing, measured, span_from_crank
-from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
-from tmm_sheets.mechanism.groups.kind import GroupKind
-from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, span
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup, turning
+from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, HALF_OF_ARCS, fold_and_stretch, measured, reaches, span_from_crank
+from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, sine, span
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, turning
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
-    from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
             "Синус угла между звеньями {name} = {value}.", unit="1")
@@ -95,11 +95,15 @@ class RRRKind(GroupKind):
             return f"try {first} = {second} = {more(high / 2)} or longer"
 
         return [
-            AssemblyLimit(g, m.crank.length, lambda pos: l1 + l2 - span(pos, p, q),
+            AssemblyLimit(m.crank.length, lambda pos: l1 + l2 - span(pos, p, q),
                           lambda lack: f"{first} = {mm(l1)} and {second} = {mm(l2)} together are {lacking(lack)} too short", hint),
-            AssemblyLimit(g, m.crank.length, lambda pos: span(pos, p, q) - (a - b),
+            AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - (a - b),
                           lambda lack: f"{long} = {mm(a)} is {lacking(lack)} too long beside {short} = {mm(b)}", hint),
         ]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        (p, q), c = (pos.points[name].value for name in g.outer), pos.points[str(g.inner)].value
+        return size / min(g.lengths) * size / np.abs(p - q) / sine(ar.ray(p, c), ar.ray(q, c))
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
@@ -109,14 +113,23 @@ class RRRKind(GroupKind):
         half, distance = measured(g, phi, (HALF_OF_ARCS, (*span, *g.lengths)), (DISTANCE, span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
 
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
+        """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the arc of the rocker."""
+        c, q = m.crank, g.outer[1]
+        # About the crank's own pivot rod and rocker turn with it.
+        if g.outer[0] != c.pin or q not in m.fixed or m.fixed[q] == m.fixed[c.pivot]:
+            return None
+        pivot = plan.add(q, rules.GIVEN, m.fixed[q])
+        rod, rocker = g.lengths
+        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_ARC, centre, reach, pivot, rocker, g.side)
+                     for prime, reach in reaches(plan, rod, c.length))
+        return fold_and_stretch(m, plan, rod, centre, (far, near))
+
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         return [Outline(link, (end, str(g.inner))) for link, end in zip(g.links, g.outer, strict=True)]
 
-    def outer_reactions(self, forces: Kinetostatics, g: StructuralGroup) -> list[OuterReaction]:
-        plan, (i, j), (p, q) = forces.plans[g.name].plan, g.links, g.outer
-        last = max(int(n) for n in plan.steps if n.isdigit())
-        return [OuterReaction(i, p, parts=(plan["2"], plan["3"])),
-                OuterReaction(j, q, parts=(plan[str(last - 1)], plan[str(last)]))]
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
+        return [OuterReaction(link, hinge) for link, hinge in zip(g.links, g.outer, strict=True)]
 
 
 RRR = RRRKind()

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import degrees, floor, isfinite, log10, pi
-from typing import Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,9 @@ from tmm_sheets.methods.cams.cam_laws import LAWS, Law, Phase, PositionFunction,
 from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
 from tmm_sheets.methods.cams.cam_zone import Plate, Zone
 
+if TYPE_CHECKING:
+    from tmm_sheets.task.schema import CamTable
+
 Reals = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
@@ -40,62 +43,6 @@ SHARE_OF_RHO = (0.7, 0.8)
 """r_p <= (0.7 .. 0.8) rho_min (manual 000, 7.3); manual 003 takes 0.5."""
 DENSE = 128
 """Least number of parts of each phase in curves and in tables of results; the numbered positions are among them."""
-
-
-class CamData(Protocol):
-    """What a project file says of a cam: angles in rad, lengths in m, None for what it leaves out."""
-
-    @property
-    def follower(self) -> str: ...  # noqa: D102
-    @property
-    def law(self) -> str: ...  # noqa: D102
-    @property
-    def fall_law(self) -> str | None: ...  # noqa: D102
-    @property
-    def rise(self) -> float: ...  # noqa: D102
-    @property
-    def upper_dwell(self) -> float: ...  # noqa: D102
-    @property
-    def fall(self) -> float: ...  # noqa: D102
-    @property
-    def parts(self) -> int: ...  # noqa: D102
-    @property
-    def stroke(self) -> float | None: ...  # noqa: D102
-    @property
-    def eccentricity(self) -> float | None: ...  # noqa: D102
-    @property
-    def arm(self) -> float | None: ...  # noqa: D102
-    @property
-    def swing(self) -> float | None: ...  # noqa: D102
-    @property
-    def rotation(self) -> Literal["same", "opposite"]: ...  # noqa: D102
-    @property
-    def pressure_angle(self) -> float | None: ...  # noqa: D102
-    @property
-    def limit(self) -> Literal["rise", "both"]: ...  # noqa: D102
-    @property
-    def centre(self) -> Literal["vertex", "least"]: ...  # noqa: D102
-    @property
-    def base_radius(self) -> float | None: ...  # noqa: D102
-    @property
-    def sense(self) -> Literal["clockwise", "counter-clockwise"]: ...  # noqa: D102
-    @property
-    def roller(self) -> float | None: ...  # noqa: D102
-    @property
-    def curvature_share(self) -> float | None: ...  # noqa: D102
-    @property
-    def closure(self) -> Literal["force", "geometric"]: ...  # noqa: D102
-    @property
-    def speed(self) -> float | None: ...  # noqa: D102
-    @property
-    def follower_mass(self) -> float | None: ...  # noqa: D102
-    @property
-    def follower_inertia(self) -> float | None: ...  # noqa: D102
-    @property
-    def spring_factor(self) -> float: ...  # noqa: D102
-    @property
-    def preload(self) -> float: ...  # noqa: D102
-    def diagram(self, table: str) -> tuple[list[float], list[float]]: ...  # noqa: D102
 
 
 def _peak(f: Callable[[float], Any], lo: float, hi: float) -> float:
@@ -168,7 +115,7 @@ class RollerRule:
 class Cam:
     """A disc cam; every part is built when it is first asked for. The kinds of followers are its subclasses."""
 
-    data: CamData
+    data: CamTable
     law: PositionFunction
 
     @property
@@ -371,7 +318,13 @@ class RollerCam(Cam):
 
     @cached_property
     def roller(self) -> float:
-        """Radius of the roller, m: the given one, or by both rules, rounded down to 0.5 mm."""
+        """Radius of the roller, m: the given one, or by both rules, rounded down to 0.5 mm.
+
+        Raises
+        ------
+        CannotBuild
+            when the given one is too large for the profile.
+        """
         given = self.data.roller
         if given is None:
             # Where another part of the profile is in the way, it limits the roller as a radius of curvature does.
@@ -550,7 +503,7 @@ def _rounded_down(radius: float) -> float:
     return floor(radius / unit * (1 + 1e-12)) * unit
 
 
-def cam(data: CamData) -> Cam:
+def cam(data: CamTable) -> Cam:
     """Synthesis of a disc cam.
 
     Raises
@@ -576,7 +529,7 @@ def cam(data: CamData) -> Cam:
     return follower(data, law)
 
 
-def _check_phases(data: CamData) -> None:
+def _check_phases(data: CamTable) -> None:
     """The phase angles: a rise and a fall there must be, and a turn of the cam holds all three."""
     turn = data.rise + data.upper_dwell + data.fall
     for name, value in (("rise", data.rise), ("fall", data.fall)):
@@ -589,7 +542,7 @@ def _check_phases(data: CamData) -> None:
                           "shorten a phase: what is left of 360 deg is the lower dwell")
 
 
-def _check_displacement(data: CamData, angular: bool) -> None:
+def _check_displacement(data: CamTable, angular: bool) -> None:
     """The stroke, or of a rocker arm and swing."""
     for name, length in (("arm", data.arm),) if angular else (("stroke", data.stroke),):
         if length is None or not (length > 0 and isfinite(length)):
@@ -599,7 +552,7 @@ def _check_displacement(data: CamData, angular: bool) -> None:
                           f"not {degrees(data.swing or 0.0):g} deg")
 
 
-def _law(data: CamData, name: str, table: str) -> Law:
+def _law(data: CamTable, name: str, table: str) -> Law:
     if name == "table":
         return table_law(*data.diagram(table), key=f"cam.{table}")
     if name not in LAWS:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tmm_sheets.methods.flywheel import mertsalov, wittenbauer
-from tmm_sheets.methods.flywheel.flywheel import Flywheel, FlywheelData, ReducedData
+from tmm_sheets.methods.flywheel.flywheel import Flywheel, ReducedData
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.schema import FlywheelTable
 
 
-def flywheel(reduced: ReducedData, data: FlywheelData) -> Flywheel:
+def flywheel(reduced: ReducedData, data: FlywheelTable) -> Flywheel:
     """Flywheel of a linkage by the method its data name.
 
     Raises

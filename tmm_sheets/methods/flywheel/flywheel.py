@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise, product
 from math import pi, prod
-from typing import Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from tmm_sheets.methods.flywheel.energy_mass import ConvergedWheel, limit, speed
 from tmm_sheets.methods.flywheel.running import Energy, Running, steady
 from tmm_sheets.methods.integration import ORIGIN, Floats, Quadrature, differentiate, integrate, ordinates, smooth
 
+if TYPE_CHECKING:
+    from tmm_sheets.task.schema import FlywheelTable
+
 RIM_SPEED = 30.0
 """Speed of the rim up to which a rim with spokes is used, m/s (manual 000, 5.7)."""
 
@@ -32,7 +35,8 @@ RIM_SPEED = 30.0
 class ReducedData(Protocol):
     """What the flywheel asks of the linkage: its quantities reduced to the crank, over the crank's turn.
 
-    Angles are turned from position 0 in the sense of rotation, rad.
+    Angles are turned from position 0 in the sense of rotation, rad. Implemented by plans (``reduced.Reduced``) and, in the tests,
+    by formulas of a known machine, the truth the methods are held against.
     """
 
     @property
@@ -101,99 +105,6 @@ class ReducedData(Protocol):
     @property
     def crank_inertia(self) -> float:
         """The crank's own constant part of it, kg m2."""
-        ...
-
-
-class MotorData(Protocol):
-    """A motor and the gear train to the crank, ``[flywheel.motor]``."""
-
-    @property
-    def name(self) -> str:
-        """Type of the motor."""
-        ...
-
-    @property
-    def accepted(self) -> bool:
-        """True: our own assumption."""
-        ...
-
-    @property
-    def power(self) -> float:
-        """Power, W."""
-        ...
-
-    @property
-    def synchronous(self) -> float:
-        """Synchronous speed, rad/s."""
-        ...
-
-    @property
-    def rated(self) -> float:
-        """Speed under the full load, rad/s."""
-        ...
-
-    @property
-    def efficiency(self) -> float:
-        """Efficiency of the gear train."""
-        ...
-
-    @property
-    def rotor_inertia(self) -> float:
-        """Moment of inertia of the rotor, kg m2."""
-        ...
-
-    @property
-    def ratio(self) -> float | None:
-        """How many times as fast as the crank the rotor runs; None: at its rated speed."""
-        ...
-
-
-class FlywheelData(Protocol):
-    """The flywheel's own numbers, section ``[flywheel]`` of the project file."""
-
-    @property
-    def method(self) -> str:
-        """Name of the method."""
-        ...
-
-    @property
-    def delta(self) -> float:
-        """Permitted coefficient of non-uniformity."""
-        ...
-
-    @property
-    def accepted(self) -> bool:
-        """True: delta is our own assumption."""
-        ...
-
-    @property
-    def form(self) -> str:
-        """``"rim"`` (with spokes) or ``"disc"``."""
-        ...
-
-    @property
-    def density(self) -> float:
-        """Density of the wheel, kg/m3."""
-        ...
-
-    @property
-    def width_ratio(self) -> float:
-        """Ratio kappa = B/D."""
-        ...
-
-    @property
-    def thickness_ratio(self) -> float:
-        """Ratio c = H/D of a rim."""
-        ...
-
-    @property
-    def rim_share(self) -> float:
-        """Part of the moment of inertia that the rim has."""
-        ...
-
-    @property
-    def motor(self) -> MotorData | None:
-        """The motor to be checked; None when the task has none."""
         ...
 
 
@@ -336,7 +247,7 @@ class Flywheel(ABC):
     """
 
     reduced: ReducedData
-    data: FlywheelData
+    data: FlywheelTable
     space: DiagramSpace | None = None
     fixed_scales: FlywheelScales | None = None
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import asin, atan, atan2, cbrt, ceil, cos, floor, hypot, pi, sin, sqrt, tan
-from typing import Any, Literal, Protocol, TypeVar
+from typing import Any, Literal, TypeVar
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.rack import Rack
@@ -21,28 +21,26 @@ LEAST_TIP = 0.2
 """Least tooth thickness at the tip circle in modules (GOST 16532, appendix)."""
 LOW_CONTACT_RATIO = 1.1
 
+Sense = Literal["clockwise", "counter-clockwise"]
+Profile = Literal["fillet", "rack"]
 
-class GearData(Protocol):
-    """What a gear pair is given by: the ``[gear]`` section of a project file, SI units."""
 
-    @property
-    def teeth(self) -> Sequence[int]: ...  # noqa: D102
-    @property
-    def module(self) -> float: ...  # noqa: D102
-    @property
-    def shift(self) -> Sequence[float]: ...  # noqa: D102
-    @property
-    def pressure_angle(self) -> float: ...  # noqa: D102
-    @property
-    def addendum(self) -> float: ...  # noqa: D102
-    @property
-    def clearance(self) -> float: ...  # noqa: D102
-    @property
-    def driver(self) -> int: ...  # noqa: D102
-    @property
-    def sense(self) -> str: ...  # noqa: D102
-    @property
-    def profile(self) -> str: ...  # noqa: D102
+@dataclass(frozen=True)
+class MeshingPair:
+    """A gear pair as it is to be built: the ``[gear]`` section of a project file with every number settled.
+
+    Lengths in m, angles in rad; ``shift`` in modules, ``driver`` the number of the wheel that drives.
+    """
+
+    teeth: tuple[int, int]
+    module: float
+    shift: tuple[float, float]
+    pressure_angle: float
+    addendum: float
+    clearance: float
+    driver: int
+    sense: Sense
+    profile: Profile
 
 
 def involute(angle: float) -> float:
@@ -125,8 +123,8 @@ class PairGeometry:
     g_alpha: float
     eps_alpha: float
     driver: int
-    sense: Literal["clockwise", "counter-clockwise"]
-    profile: Literal["fillet", "rack"]
+    sense: Sense
+    profile: Profile
     wheels: tuple[GearWheel, GearWheel]
 
     def results(self) -> dict[str, Any]:
@@ -149,8 +147,14 @@ class PairGeometry:
 Pair = TypeVar("Pair", bound=PairGeometry)
 
 
-def pair_geometry(data: GearData, kind: type[Pair]) -> Pair:
-    """Geometry of the pair as an instance of ``kind``; raises :class:`CannotBuild` with all that forbids it."""
+def pair_geometry(data: MeshingPair, kind: type[Pair]) -> Pair:
+    """Geometry of the pair as an instance of ``kind``.
+
+    Raises
+    ------
+    CannotBuild
+        with everything that forbids it.
+    """
     m, alpha, ha, c = data.module, data.pressure_angle, data.addendum, data.clearance
     z1, z2 = data.teeth
     x1, x2 = data.shift
@@ -180,9 +184,7 @@ def pair_geometry(data: GearData, kind: type[Pair]) -> Pair:
     )
     pair = kind(
         m=m, alpha=alpha, addendum=ha, clearance=c, alpha_w=alpha_w, a=a, a_w=a_w, y=y, dy=dy, p=pi * m, pb=pb, g_alpha=g_alpha,
-        eps_alpha=g_alpha / pb, driver=data.driver,
-        sense="clockwise" if data.sense == "clockwise" else "counter-clockwise",
-        profile="rack" if data.profile == "rack" else "fillet", wheels=(wheels[0], wheels[1]),
+        eps_alpha=g_alpha / pb, driver=data.driver, sense=data.sense, profile=data.profile, wheels=(wheels[0], wheels[1]),
     )
     found = list(problems_of(pair))
     if found:
@@ -190,7 +192,7 @@ def pair_geometry(data: GearData, kind: type[Pair]) -> Pair:
     return pair
 
 
-def _wheel(i: int, data: GearData, alpha_w: float, ra: float, t_tip: float, t_low: float, g_alpha: float) -> GearWheel:
+def _wheel(i: int, data: MeshingPair, alpha_w: float, ra: float, t_tip: float, t_low: float, g_alpha: float) -> GearWheel:
     m, alpha, ha, c = data.module, data.pressure_angle, data.addendum, data.clearance
     z, x = data.teeth[i], data.shift[i]
     r = m * z / 2

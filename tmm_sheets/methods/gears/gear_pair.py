@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -15,8 +14,8 @@ from tmm_sheets.methods.gears import gear_engagement as ge
 from tmm_sheets.methods.gears import gear_teeth as gt
 from tmm_sheets.methods.gears import rack
 from tmm_sheets.methods.gears.gear_geometry import (
-    GearData,
     GearWheel,
+    MeshingPair,
     PairGeometry,
     pair_geometry,
     shift_without_undercut,
@@ -160,21 +159,6 @@ class GearPair(PairGeometry):
         return warnings_of(self)
 
 
-@dataclass(frozen=True)
-class MeshingPair:
-    """A gear pair as it is to be built: :class:`GearData` with every number settled."""
-
-    teeth: tuple[int, int]
-    module: float
-    shift: tuple[float, float]
-    pressure_angle: float
-    addendum: float
-    clearance: float
-    driver: int
-    sense: str
-    profile: str
-
-
 def settled(section: Any, reducer: Any = None) -> MeshingPair:
     """Data of a ``[gear]`` section whose teeth may come from the reducer's simple stage, and its shifts from the rule."""
     if section.teeth == "reducer":
@@ -190,6 +174,6 @@ def settled(section: Any, reducer: Any = None) -> MeshingPair:
                        section.profile)
 
 
-def gear_pair(data: GearData) -> GearPair:
+def gear_pair(data: MeshingPair) -> GearPair:
     """Gear pair of a project; raises :class:`tmm_sheets.errors.CannotBuild` with everything that forbids it."""
     return pair_geometry(data, GearPair)

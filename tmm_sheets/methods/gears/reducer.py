@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from math import gcd, pi, sin
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction.plan import Plan, asked_for
 from tmm_sheets.methods.gears import reducer_speeds
 from tmm_sheets.methods.gears.planetary import SCHEMES, Driver, inner_ratio, least_ring, stage_efficiency, stage_ratio
 from tmm_sheets.methods.gears.reducer_stages import ReducerWheel, Stage
 from tmm_sheets.methods.gears.tooth_search import (
-    ReducerData,
     ToothSet,
     asked_ratio,
     named_teeth,
@@ -22,11 +21,14 @@ from tmm_sheets.methods.gears.tooth_search import (
 )
 from tmm_sheets.numbers import number
 
+if TYPE_CHECKING:
+    from tmm_sheets.task.schema import ReducerTable
+
 
 class Reducer:
     """A planetary reducer with its simple stage: the chosen tooth numbers, the runners-up, and what follows from them."""
 
-    def __init__(self, data: ReducerData, sets: Sequence[ToothSet]) -> None:
+    def __init__(self, data: ReducerTable, sets: Sequence[ToothSet]) -> None:
         self.data = data
         self.scheme = SCHEMES[data.scheme]
         self.driver: Driver = data.driver or self.scheme.drivers[0]
@@ -198,6 +200,6 @@ def rpm(speed: float) -> float:
     return speed * 30 / pi
 
 
-def reducer(data: ReducerData) -> Reducer:
+def reducer(data: ReducerTable) -> Reducer:
     """Reducer of a project; raises :class:`CannotBuild` naming the nearest tooth set when none is within the tolerance."""
     return Reducer(data, search(data))

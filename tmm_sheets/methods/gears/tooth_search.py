@@ -5,9 +5,9 @@ Manual 003: coaxiality, assembly, neighbourhood, 15 teeth at least, 5 % of the r
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,9 @@ from tmm_sheets.methods.gears.planetary import (
     stage_ratio,
 )
 
+if TYPE_CHECKING:
+    from tmm_sheets.task.schema import ReducerTable
+
 Ints = npt.NDArray[np.int64]
 Given = tuple[int | None, int | None, int | None, int | None]
 
@@ -38,49 +41,6 @@ GREATEST_SIMPLE = 4.0
 """Greatest ratio of the simple stage."""
 BOUNDS = (36, 48, 64, 90)
 """Tooth numbers up to which sets are tried, one after the other, until no larger wheel can do better."""
-
-
-class ReducerData(Protocol):
-    """What a reducer is given by: the ``[reducer]`` section of a project file, SI units."""
-
-    @property
-    def scheme(self) -> str: ...  # noqa: D102
-    @property
-    def simple(self) -> str: ...  # noqa: D102
-    @property
-    def stages(self) -> int: ...  # noqa: D102
-    @property
-    def driver(self) -> Driver | None: ...  # noqa: D102
-    @property
-    def ratio(self) -> float | None: ...  # noqa: D102
-    @property
-    def input_speed(self) -> float: ...  # noqa: D102
-    @property
-    def output_speed(self) -> float | None: ...  # noqa: D102
-    @property
-    def teeth(self) -> Mapping[str, int]: ...  # noqa: D102
-    @property
-    def module(self) -> float: ...  # noqa: D102
-    @property
-    def simple_module(self) -> float: ...  # noqa: D102
-    @property
-    def satellites(self) -> int: ...  # noqa: D102
-    @property
-    def addendum(self) -> float: ...  # noqa: D102
-    @property
-    def clearance(self) -> float: ...  # noqa: D102
-    @property
-    def pair_efficiency(self) -> float: ...  # noqa: D102
-    @property
-    def tolerance(self) -> float: ...  # noqa: D102
-    @property
-    def simple_ratio(self) -> Sequence[float] | None: ...  # noqa: D102
-    @property
-    def least_teeth(self) -> int: ...  # noqa: D102
-    @property
-    def most_teeth(self) -> int | None: ...  # noqa: D102
-    @property
-    def strict_internal(self) -> bool: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -111,7 +71,7 @@ class _Task:
     pinion: int
     wheel: int | None
     span: tuple[float, float]
-    data: ReducerData
+    data: ReducerTable
 
     @property
     def most(self) -> int:
@@ -232,12 +192,12 @@ def _sets(task: _Task) -> list[ToothSet]:
     return found
 
 
-def asked_ratio(data: ReducerData) -> float:
+def asked_ratio(data: ReducerTable) -> float:
     """Ratio of the whole reducer that is asked for, without sign."""
     return data.ratio if data.ratio is not None else data.input_speed / (data.output_speed or data.input_speed)
 
 
-def stage_numbers(data: ReducerData, k: int) -> tuple[str, str, str, str]:
+def stage_numbers(data: ReducerTable, k: int) -> tuple[str, str, str, str]:
     """Numbers of wheels 1 to 4 of planetary stage ``k`` in the reducer; in a single row wheels 2 and 3 are one."""
     scheme = SCHEMES[data.scheme]
     first = (3 if data.simple == "before" else 1) + k * scheme.wheels
@@ -245,19 +205,19 @@ def stage_numbers(data: ReducerData, k: int) -> tuple[str, str, str, str]:
     return str(first), str(first + 1), str(first + block), str(first + last)
 
 
-def simple_numbers(data: ReducerData) -> tuple[str, str]:
+def simple_numbers(data: ReducerTable) -> tuple[str, str]:
     """Numbers of pinion and wheel of the simple stage."""
     first = 1 if data.simple == "before" else data.stages * SCHEMES[data.scheme].wheels + 1
     return str(first), str(first + 1)
 
 
-def named_teeth(data: ReducerData, teeth: ToothSet) -> dict[str, int]:
+def named_teeth(data: ReducerTable, teeth: ToothSet) -> dict[str, int]:
     """Tooth numbers of a set by name, "z1" ..; equal stages are named once."""
     out = dict(zip((*stage_numbers(data, 0), *simple_numbers(data)), (*teeth.stage, teeth.pinion, teeth.wheel), strict=True))
     return {f"z{n}": out[n] for n in sorted(out, key=int)}
 
 
-def search(data: ReducerData) -> list[ToothSet]:
+def search(data: ReducerTable) -> list[ToothSet]:
     """The chosen tooth set and its runners-up.
 
     Raises
@@ -286,7 +246,7 @@ def search(data: ReducerData) -> list[ToothSet]:
         f"gives {nearest.ratio:.4g} ({nearest.deviation * 100:+.1f} %)", hint)
 
 
-def _given(data: ReducerData) -> tuple[Given, tuple[int, int | None]]:
+def _given(data: ReducerTable) -> tuple[Given, tuple[int, int | None]]:
     """Given tooth numbers of wheels 1 to 4, of the pinion and of its wheel."""
     names = [f"z{n}" for n in stage_numbers(data, 0)]
     pair = [f"z{n}" for n in simple_numbers(data)]

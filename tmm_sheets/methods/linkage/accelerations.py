@@ -139,8 +139,8 @@ class Accelerations:
 def acceleration_plan(vel: Velocities, epsilon1: Any = None) -> Accelerations:
     """Record the acceleration plans of all positions.
 
-    ``epsilon1`` is the angular acceleration of the crank, rad/s2: signed, or as a step, positive in the sense of rotation; that of
-    the mechanism unless told.
+    ``epsilon1`` is the angular acceleration of the crank, rad/s2: a number or of shape (n,), signed, or a step, positive in the
+    sense of rotation; that of the mechanism unless told.
     """
     pos = vel.positions
     m = pos.mechanism

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.limits import SWEEP, TOUCH, AssemblyLimit
-from tmm_sheets.mechanism.model import Mechanism
+from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import Floats
@@ -35,9 +35,9 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
         naming every group that does not assemble, the positions or crank angles (world frame, counter-clockwise from the
         x axis), the lack in millimetres and what to try.
     """
-    limits = [limit for g in mechanism.groups for limit in g.kind.limits(mechanism, g)]
-    search = _Search(mechanism, cycle, limits)
-    failures = [(search.failure(i), limit) for i, limit in enumerate(limits)]
+    limits = [(g, limit) for g in mechanism.groups for limit in g.kind.limits(mechanism, g)]
+    search = _Search(mechanism, cycle, [limit for _, limit in limits])
+    failures = [(search.failure(i, g), limit) for i, (g, limit) in enumerate(limits)]
     said = [message for message, _ in failures if message]
     hints = [limit.hint(search.whole_turn) for message, limit in failures if message]
     if said:
@@ -89,8 +89,8 @@ class _Search:
             centres, step = turned[np.arange(len(which)), best], step / 16
         return extra, found
 
-    def failure(self, i: int) -> str:
-        """What to say about limit ``i``; nothing when it holds wherever the groups before it assemble."""
+    def failure(self, i: int, group: StructuralGroup) -> str:
+        """What to say about limit ``i``, of a group; nothing when it holds wherever the groups before it assemble."""
         limit, margin = self.limits[i], self.margins[i]
         fails = margin < 0
         if not fails.any():
@@ -105,7 +105,7 @@ class _Search:
             ranges = self._ranges(fails, i)
             at = f"at crank angle{'s' * ('.' in ranges.replace('.', '', 1))} {ranges}"
         worst = int(np.nanargmin(margin))
-        text = f"group {'-'.join(limit.group.links)} does not assemble {at}: {limit.say(float(-margin[worst]))}"
+        text = f"group {'-'.join(group.links)} does not assemble {at}: {limit.say(float(-margin[worst]))}"
         if limit.measured and not fails.all():
             text += f" at worst ({self._place(worst, i)})"
         if limit.measured and reachable.any():

@@ -31,7 +31,10 @@ class Strokes:
     runs: tuple[Run, ...]
 
     def working(self, turned: Any, side: int = 0) -> Any:
-        """True on the working stroke; at a dead position itself ``side`` -1 or +1 tells from where it is approached."""
+        """True on the working stroke, at angles ``turned`` from position 0, rad, of any shape.
+
+        In a dead position ``side`` says which of the strokes that meet there counts: -1 the one before, +1 the one after, 0 none.
+        """
         t = np.mod(np.asarray(turned, dtype=float) - self.begin, 2 * np.pi)
         width = np.mod(self.end - self.begin, 2 * np.pi)
         near = 1e-12
@@ -45,7 +48,7 @@ class Strokes:
 
 @dataclass(frozen=True)
 class Cycle:
-    """Numbered positions: ``turned`` rad from position 0 in the sense of rotation, ``phi`` world angles of the crank.
+    """Numbered positions: angles ``turned`` from position 0 in the sense of rotation, world angles ``phi``, rad, shape (n,).
 
     ``plan`` constructs the dead positions, ``numbering`` has the crank angles as steps.
     """
@@ -78,7 +81,7 @@ class Cycle:
 
     @property
     def phi(self) -> Floats:
-        """World angles of the crank, rad counter-clockwise; a whole multiple of the turn away from (-pi, pi]."""
+        """World angles of the crank, rad counter-clockwise, shape (n,); a whole multiple of the turn away from (-pi, pi]."""
         return np.asarray(self.world(self.turned), dtype=np.float64)
 
     @property
@@ -92,11 +95,17 @@ class Cycle:
         return tuple(found)
 
     def world(self, turned: Any) -> Any:
-        """World angle of the crank for an angle turned from position 0."""
+        """World angles of the crank for angles turned from position 0, rad, of any shape."""
         return self.start + self.sense * np.asarray(turned)
 
     def index(self, label: str) -> int:
-        """Number of the position with this label."""
+        """Number of the position with this label.
+
+        Raises
+        ------
+        CannotBuild
+            when no position has it.
+        """
         try:
             return self.labels.index(label)
         except ValueError:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -18,12 +18,11 @@ from tmm_sheets.construction.given import FoundNumber
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role, TangentialPart
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.numbers import size
-
-Role = Literal["weight", "inertia", "applied", "reaction"]
 
 WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force", "Вес {name} = m·g = {0}·{1} = {value}, вниз.")
 INERTIA = Rule("inertia force", lambda m, a: -m * a, ("number", "point"), "force",
@@ -34,8 +33,6 @@ GIVEN_FORCE = Rule("given force vector", lambda f: f, ("force",), "force", "Си
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.", unit="N")
 OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.", unit="N*m")
 NEGATIVE = Rule("opposite number", lambda x: -x, ("number",), "number", "{name} = {value}.", beyond_paper=True, unit="1")
-CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point"), "force",
-             "Замкнём план: {name} = |{0}–{1}|·μ_F = {value}.")
 ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), "length",
            "Плечо {name} = {value} из уравнения моментов.")
 
@@ -61,52 +58,13 @@ MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма м�
                unit="N*m")
 
 
-@dataclass(frozen=True)
-class Load:
-    """A force on a link: symbol in sheet markup, the link, its point, the vector, and a couple carried with it (N m)."""
-
-    symbol: str
-    link: str
-    at: Step
-    vector: Step
-    role: Role
-    couple: Step | None = None
-
-
-@dataclass
-class ForcePlan:
-    """Force plan of one link or of a whole group: polygon 1-2-...-1 of ``plan`` with its forces in order."""
-
-    name: str
-    links: tuple[str, ...]
-    plan: Plan
-    sides: list[tuple[str, Step, Step, bool]] = field(default_factory=list)
-
-    def side(self, symbol: str, tail: Step, head: Step, unknown: bool = False) -> None:
-        """Record a side of the polygon; ``unknown`` sides are found by closing it."""
-        self.sides.append((symbol, tail, head, unknown))
-        self.plan.vector(symbol, tail, head)
-
-    def chain(self, start: int, tail: Step, loads: Iterable[Load]) -> Step:
-        """Lay the loads off one after another; returns the end of the chain."""
-        for n, load in enumerate(loads, start + 1):
-            head = self.plan.add(str(n), rules.SHIFT, tail, load.vector)
-            self.side(load.symbol, tail, head)
-            tail = head
-        return tail
-
-    def between(self, name: str, tail: Step, head: Step) -> Step:
-        """The force that closes the polygon from ``tail`` to ``head``."""
-        return self.plan.add(name, CLOSE, tail, head)
-
-
 @dataclass
 class Kinetostatics:
     """Force analysis of all groups and the crank.
 
     ``loads`` are all forces on each link, reactions included, as they were used; ``reactions`` by name ("F54", "F11,10");
     ``couples`` and ``arms`` of sliding pairs by name ("h50"); ``link_couples`` are inertia couples and applied
-    moments of each link.
+    moments of each link; ``from_moments`` are the parts of reactions that moment equations gave, in the order they were found.
     """
 
     positions: Positions
@@ -118,6 +76,7 @@ class Kinetostatics:
     couples: dict[str, Step] = field(default_factory=dict)
     arms: dict[str, Step] = field(default_factory=dict)
     plans: dict[str, ForcePlan] = field(default_factory=dict)
+    from_moments: list[TangentialPart] = field(default_factory=list)
     balancing: Step | None = None
 
     @property
@@ -125,10 +84,9 @@ class Kinetostatics:
         """Weights, inertia forces and applied forces of all links, without reactions."""
         return [load for loads in self.loads.values() for load in loads if load.role != "reaction"]
 
-    @property
-    def from_moments(self) -> list[Step]:
-        """Parts of outer reactions that the moment equations gave, across their links, in the order they were found."""
-        return [step for step in self.plan if step.rule is TANGENTIAL]
+    def tangential_part(self, link: str, at: str) -> Step | None:
+        """Part of the reaction on a link in a hinge that a moment equation gave, N; None where the reaction is not split."""
+        return next((part.vector for part in self.from_moments if (part.link, part.at) == (link, at)), None)
 
     def force_size(self, k: int) -> float:
         """Size of the forces at position ``k``, N: beside it a force is something or nothing."""
@@ -159,7 +117,7 @@ class Kinetostatics:
     @staticmethod
     def contact(j: str, k: str, at: Step, vector: Step, couple: Step | None = None) -> Load:
         """Reaction on link ``j`` from link ``k`` as a load."""
-        return Load(symbol(f"F{pair_index(j, k)}"), j, at, vector, "reaction", couple)
+        return Load(symbol(f"F{pair_index(j, k)}"), j, at, vector, "reaction", couple, k)
 
     @staticmethod
     def order(loads: list[Load], first: Role) -> list[Load]:
@@ -181,7 +139,9 @@ class Kinetostatics:
     def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
         """Part of F_jk at a point across its line to the centre of the moments, from their sum."""
         z = self.positions.points
-        return self.plan.add(f"F{pair_index(j, k)}τ", TANGENTIAL, total, z[centre], z[at])
+        step = self.plan.add(f"F{pair_index(j, k)}τ", TANGENTIAL, total, z[centre], z[at])
+        self.from_moments.append(TangentialPart(j, k, at, centre, step))
+        return step
 
     def plan_of(self, name: str, links: tuple[str, ...]) -> ForcePlan:
         """New force plan of a link or of a whole group."""
@@ -241,27 +201,27 @@ class Kinetostatics:
             pending.append((sign, tail, head))
             tail = head
 
-        one, two = (f"F{pair_index(link, carrier)}" for link, carrier in zip(g.links, carriers, strict=True))
+        one, two = (pair_index(link, carrier) for link, carrier in zip(g.links, carriers, strict=True))
         if first is not None:
-            lay(f"F̅_{{{one[1:]}}}^τ", first)
+            lay(f"F̅_{{{one}}}^τ", first)
         after_first = tail
         for link in (i, j):
             for load in self.order(self.loads[link], "weight"):
                 lay(load.symbol, load.vector)
         before_last = tail
         if last is not None:
-            lay(f"F̅_{{{two[1:]}}}^τ", last)
+            lay(f"F̅_{{{two}}}^τ", last)
         closing = fp.plan.add("1", rules.LINE_LINE, start, u, tail, v, *sine)
-        fp.side(f"F̅_{{{one[1:]}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
+        fp.side(f"F̅_{{{one}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
         for sign, a, b in pending:
             fp.side(sign, a, b)
-        fp.side(f"F̅_{{{two[1:]}}}" + ("^n" if last is not None else ""), tail, closing, unknown=True)
-        f_one = self.reaction(i, carriers[0], fp.between(one, closing, after_first))
-        f_two = self.reaction(j, carriers[1], fp.between(two, before_last, closing))
+        fp.side(f"F̅_{{{two}}}" + ("^n" if last is not None else ""), tail, closing, unknown=True)
+        f_one = self.reaction(i, carriers[0], fp.between(f"F{one}", closing, after_first))
+        f_two = self.reaction(j, carriers[1], fp.between(f"F{two}", before_last, closing))
         if first is not None:
-            fp.plan.vector(symbol(one), closing, after_first)
+            fp.plan.vector(symbol(f"F{one}"), closing, after_first)
         if last is not None:
-            fp.plan.vector(symbol(two), before_last, closing)
+            fp.plan.vector(symbol(f"F{two}"), before_last, closing)
         # The inner reaction closes the forces of the first link: the same drawing, one more line.
         split = pending[(first is not None) + len(self.loads[i]) - 1][2] if len(self.loads[i]) + (first is not None) else start
         name = f"F{pair_index(i, j)}"
@@ -329,11 +289,11 @@ def contact_point(pos: Positions, driver: GearForce) -> Step:
 def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: Iterable[tuple[str, str, str, Any]],
                    carried: Any = None, recorded: Iterable[tuple[str, str | None, Callable[[Plan], Step]]] = ()) -> tuple[
                        dict[str, list[Load]], dict[str, list[Step]], Plan]:
-    """Weights, inertia forces and couples of every link, and what is applied to them.
+    """Weights and inertia forces of every link, N, its couples, N m, and the plan of both; ``gravity`` in m/s2.
 
-    ``applied`` are forces (name, link, point, vectors), ``recorded`` forces and moments that record themselves on the plan (link,
-    point or None, how). ``carried`` is the moment of inertia of all that turns with the crank, kg m2, where it is more than the
-    crank's own.
+    ``applied`` are forces (name, link, point, vectors, N, shape (n,)), ``recorded`` forces and moments that record themselves on
+    the plan (link, point or None, how). ``carried`` is the moment of inertia of all that turns with the crank, kg m2, where it is
+    more than the crank's own.
     """
     m = pos.mechanism
     plan = Plan("loads", "Внешние силы и силы инерции", "N", pos.plan.labels, search=pos.plan.search)

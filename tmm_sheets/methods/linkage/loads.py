@@ -81,7 +81,10 @@ class OutputMotion:
     path: Path | None = None
 
     def number(self, turned: Any, side: int = 0) -> Any:
-        """Index of the run at each angle; -1 where there is none, and at an end unless ``side`` tells from where it is seen."""
+        """Index of the run at each angle ``turned``, rad, of any shape; -1 where there is none.
+
+        Where two runs meet ``side`` says which of them counts: -1 the one before, +1 the one after, 0 none.
+        """
         t = np.asarray(turned, dtype=float)
         found = np.full(t.shape, -1)
         for i, r in enumerate(self.runs):
@@ -96,7 +99,7 @@ class OutputMotion:
         return found
 
     def crossings(self, run: Run, fraction: float) -> list[float]:
-        """Angles inside a run where it passes a fraction of the way, an endless link in any of its turns."""
+        """Angles inside a run, rad, where it passes a fraction of the way, an endless link in any of its turns."""
         sense = run.sense * self.way
         if not sense:
             return []
@@ -120,7 +123,10 @@ class OutputMotion:
         return replace(self, runs=tuple(runs))
 
     def fraction(self, turned: Any) -> Any:
-        """The way as a fraction of the whole, 0..1; the end of an endless link's turn is the beginning of the next."""
+        """The way at angles ``turned``, rad, of any shape, as a fraction of the whole, 0..1.
+
+        The end of an endless link's turn is the beginning of the next.
+        """
         x = np.asarray(self.travelled(np.asarray(turned, dtype=float)))
         if self.endless:
             x = np.mod(x, 1.0)
@@ -145,7 +151,10 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
                     first: float = 0.0) -> OutputMotion:
     """Strokes of a point that moves to and fro; working strokes go along the unit vector ``sense``.
 
-    Raises :class:`CannotBuild` when the mechanism does not assemble all the way round or the point does not move that way.
+    Raises
+    ------
+    CannotBuild
+        when the mechanism does not assemble all the way round or the point does not move that way.
     """
 
     def along(turned: Floats) -> Any:
@@ -169,7 +178,13 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
 
 
 def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: float = 0.0) -> OutputMotion:
-    """Strokes of a link that swings, or of a link that turns all the way round, which may go back for a while as well."""
+    """Strokes of a link that swings, or of a link that turns all the way round, which may go back for a while as well.
+
+    Raises
+    ------
+    CannotBuild
+        when the mechanism does not assemble all the way round or the link does not turn.
+    """
 
     def speed(turned: Floats) -> Any:
         w = velocity_plan(position_plan(m, cycle.world(turned), purpose=STROKES)).omega[link].value
@@ -293,11 +308,11 @@ class Applied:
         return plan.aside(f"s {path.name} {self.name}", path.rule, step, *path.numbers)
 
     def vector(self, turned: Any, side: int = 0) -> Any:
-        """Force vector, N, complex."""
+        """Force vectors, N, complex, in the shape of the angles ``turned``, rad."""
         return self.law(turned, side) * self.toward
 
     def magnitude(self, turned: Any, side: int = 0) -> Any:
-        """Absolute value, N or N m."""
+        """Absolute values, N or N m, in the shape of the angles ``turned``, rad."""
         return np.abs(self.law(turned, side))
 
 
@@ -486,9 +501,9 @@ class StrokeLaw:
 
 def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequence[float], smooth: bool = False,
                always: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
-    """Law over the runs in their order, and the angles where it is not smooth.
+    """Law, N or N m, over the runs in their order, and the angles, rad, where it is not smooth.
 
-    A table over the travelled fraction (None: no force) and a sign for each run. A resistance has no value at a dead point
+    Each run has a table over the travelled fraction (None: no force) and a sign. A resistance has no value in a dead point
     itself; a pressure acts ``always``, there with the stroke that begins.
     """
     runs, law = motion.runs, StrokeLaw(motion, tuple(tables), tuple(signs), smooth, always)
@@ -510,5 +525,5 @@ def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequ
 
 
 def angle_law(table: Table, period: float, smooth: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
-    """Law over the angle turned from position 0, periodic, and the angles of its points."""
+    """Periodic law, N or N m, over the angle turned from position 0, and the angles of its points, rad."""
     return curve_of(table, smooth, period), distinct((float(np.mod(t, period)) for t in table[0]), period)

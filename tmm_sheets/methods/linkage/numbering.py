@@ -19,7 +19,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
-from tmm_sheets.methods.linkage.dead_positions import dead_positions, refuse_turning_rocker
+from tmm_sheets.methods.linkage.dead_positions import check_dead_positions, dead_positions
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.velocities import velocity_plan
@@ -65,8 +65,13 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
 
     With ``coefficient`` K the working stroke is laid off as 180 (1 + (K-1)/(K+1)) degrees, symmetric between the dead
     positions, as the manual does with rounded lengths; without it the exact dead positions are divided.
+
+    Raises
+    ------
+    CannotBuild
+        when the mechanism does not assemble all the way round, or the output never turns back, or not along its working sense.
     """
-    refuse_turning_rocker(m)
+    check_dead_positions(m)
     sense, dead = m.crank.sense, _dead_of(m, output, SENSES[working_sense])
     labels = tuple(str(i) for i in range(working + idle))
     plan = Plan("cycle", "Разметка положений", "rad", labels)
@@ -86,6 +91,11 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
 
     ``zero`` is the label of the position at the beginning (manual 003 calls it 12: a second turn then begins with 24),
     ``extra`` further positions by label and angle turned (rad), sorted in among the others.
+
+    Raises
+    ------
+    CannotBuild
+        when a further position has the label of another one.
     """
     count = positions * turns
     late = positions if zero == str(positions) else 0

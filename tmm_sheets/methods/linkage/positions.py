@@ -8,11 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Rule, Step, value_of
-from tmm_sheets.mechanism.groups.dead_centres import Crossing, foot_on_guide
+from tmm_sheets.construction.step import Step, value_of
+from tmm_sheets.mechanism.groups.dead_centres import near_point
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
 
@@ -55,7 +54,7 @@ class Positions:
 
     def crossing(self, group: StructuralGroup) -> tuple[Step, ...]:
         """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
-        found: Crossing | None = group.kind.crossing(self.mechanism, group, self.angle)
+        found = group.kind.crossing(self.mechanism, group, self.angle)
         if found is None:
             return ()
         self.sines[group.links[0]] = found.sine
@@ -99,29 +98,6 @@ def _fixed_guide(pos: Positions, guide: Guide) -> None:
     pos.guide_points[guide.name] = point
     pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.UNDER, guide.direction,
                                                     say=f"Через точку {point.name} проведём направляющую {{name}}.")
-
-
-NEAREST = Rule("nearest point of a guide", foot_on_guide, ("point", "point", "angle"), "point", "Отметим точку {name}.")
-AWAY = 4.0
-"""So many times the mechanism's size away a guide's own point is not drawn."""
-
-
-def near_point(m: Mechanism, guide: Guide) -> tuple[Any, ...]:
-    """A point of a fixed guide to draw it through: its own, or the one nearest to the crank's pivot when its own is far away.
-
-    It is the rule that gives the point, and the numbers it takes.
-
-    A direction is known to 1e-16 rad: about a point a thousand lengths away that shifts the guide by 1e-13 of a length, which the
-    half-chords taken from the crank angle do not share. The nearest point comes from the numbers of the guide as they are given.
-    """
-    assert not isinstance(guide.through, str)
-    pivot = m.fixed[m.crank.pivot]
-    from_foot = (guide.through - pivot) / ar.unit(guide.direction)
-    fixed = max(abs(z - pivot) for z in m.fixed.values())
-    size = m.crank.length + sum(sum(g.lengths) for g in m.groups) + fixed + abs(from_foot.imag)
-    if abs(from_foot.real) <= AWAY * size:
-        return rules.GIVEN, guide.through
-    return NEAREST, pivot, guide.through, guide.direction
 
 
 def _moving_guide(pos: Positions, guide: Guide) -> None:

@@ -51,7 +51,7 @@ class Run:
 
 
 def runs_of(speed: Callable[[Floats], Any], turn: float = TURN) -> list[Run]:
-    """Runs of one turn from the sign of a speed, a vectorised periodic function of the angle turned.
+    """Runs of one turn from the sign of a speed, a periodic function of the angles turned, rad, shape (n,) to shape (n,).
 
     One run if the output never turns back, none where the speed is not defined all the way round.
     """
@@ -101,8 +101,9 @@ def _with_dips(speed: Callable[[Floats], Any], t: Floats, v: Floats, still: floa
 
 
 def in_strokes(runs: Sequence[Run], ways: Sequence[float] | Floats) -> list[Run]:
-    """The runs of one turn with their strokes; ``ways`` is how far the output is in the working sense where each begins.
+    """The runs of one turn with their strokes; ``ways``, one a run, m or rad, tell how far the output is where it begins.
 
+    They are counted in the working sense.
     Runs without a way from one extreme to another are one idle stroke.
     """
     low, high = float(np.min(ways)), float(np.max(ways))
@@ -147,7 +148,10 @@ def over_cycle(runs: Sequence[Run], period: float, first: float = 0.0) -> tuple[
 
 
 def root(f: Callable[[Floats], Floats], low: float, high: float) -> float:
-    """Zero of a continuous function between two arguments of opposite sign, by vectorised section to the last bit."""
+    """Zero of a continuous function (shape (n,) to shape (n,)) between two arguments where its signs differ, to the last bit.
+
+    Each step divides the interval into eight.
+    """
     sign = float(np.sign(f(np.array([high]))[0]))
     for _ in range(20):
         x = np.linspace(low, high, 9)

@@ -11,10 +11,11 @@ import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.groups.force_plan import Load
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
-from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics, Load, external_loads, kinetostatics
+from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics, external_loads, kinetostatics
 from tmm_sheets.methods.linkage.loads import Applied
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan

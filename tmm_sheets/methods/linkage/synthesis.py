@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, floor, inf, isfinite, nan, pi
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.schema import SynthesisTable
 
 SWING = Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",), "angle",
              "Угол между крайними положениями кулисы {name} = 180°·(K − 1)/(K + 1) = {value}.")
@@ -55,50 +58,6 @@ AS_WRITTEN = Rule("length as it is used", lambda share, x: _digits(share * x), (
                   "{name} = {0}·{1} = {value}.")
 
 
-class Conditions(Protocol):
-    """Section ``[synthesis]`` of the project file; what the other kind of mechanism needs is None."""
-
-    @property
-    def kind(self) -> str:
-        """``"quick return"`` or ``"engine"``."""
-        ...
-
-    @property
-    def coefficient(self) -> float | None:
-        """Coefficient of travel time K."""
-        ...
-
-    @property
-    def stroke(self) -> float | None:
-        """Stroke of the rocker's end across the line of the pivots, m."""
-        ...
-
-    @property
-    def centre_distance(self) -> float | None:
-        """Distance of the pivots of crank and rocker, m."""
-        ...
-
-    @property
-    def mean_velocity(self) -> float | None:
-        """Mean velocity of the piston, m/s."""
-        ...
-
-    @property
-    def rod_ratio(self) -> float | None:
-        """Length of the rod over the crank's."""
-        ...
-
-    @property
-    def centre_ratio(self) -> float | None:
-        """Distance of the centre of mass over the length of its link (rocker or rod)."""
-        ...
-
-    @property
-    def round(self) -> float | None:
-        """Length to which the results are rounded, m; None: not at all."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class Synthesis:
     """Lengths from conditions: ``plan`` has the steps, the found lengths under their names and rounded with a prime.
@@ -106,7 +65,7 @@ class Synthesis:
     Raises :class:`CannotBuild` when a length is rounded to nothing.
     """
 
-    conditions: Conditions
+    conditions: SynthesisTable
     speed: float
 
     @cached_property
@@ -126,7 +85,13 @@ class Synthesis:
 
     @cached_property
     def lengths(self) -> dict[str, float]:
-        """Lengths as they are used, m: given ones as they are, found ones rounded."""
+        """Lengths as they are used, m: given ones as they are, found ones rounded.
+
+        Raises
+        ------
+        CannotBuild
+            when no length follows from the conditions, or one is rounded to nothing.
+        """
         found = {}
         for name, exact in self.exact.items():
             found[name] = float(self.plan[f"{name}′"].value) if f"{name}′" in self.plan else exact
@@ -179,12 +144,12 @@ class Synthesis:
         return f"{number(exact, 5)} м" + ("" if abs(used - exact) < 1e-12 else f";  принято {number(used, 6)} м")
 
 
-def _rounded(plan: Plan, name: str, c: Conditions) -> Step:
+def _rounded(plan: Plan, name: str, c: SynthesisTable) -> Step:
     """The length as it is used further on."""
     return plan[name] if c.round is None else plan.add(f"{name}′", ROUND, plan[name], _given(c, "round", "", "m"))
 
 
-def _given(c: Conditions, name: str, symbol: str, unit: str = "") -> GivenNumber:
+def _given(c: SynthesisTable, name: str, symbol: str, unit: str = "") -> GivenNumber:
     return GivenNumber(getattr(c, name), f"synthesis.{name}", symbol, unit)
 
 
@@ -193,7 +158,7 @@ HALF_OFF = Rule("lay off half a length", lambda p, length: p + length / 2, ("poi
                 "От точки {0} перпендикулярно CA отложим половину хода H: точка {name}.", lambda a, v: (Helper("line", a[0], v),))
 
 
-def _quick_return(c: Conditions) -> Plan:
+def _quick_return(c: SynthesisTable) -> Plan:
     plan = Plan("synthesis", "Геометрический синтез кулисного механизма", "m")
     a = plan.add("A", rules.GIVEN, 0j)
     pivot = plan.add("C", BELOW, _given(c, "centre_distance", "l_{AC}", "m"))
@@ -216,7 +181,7 @@ def _quick_return(c: Conditions) -> Plan:
     return plan
 
 
-def _engine(c: Conditions, speed: float) -> Plan:
+def _engine(c: SynthesisTable, speed: float) -> Plan:
     plan = Plan("synthesis", "Геометрический синтез кривошипно-ползунного механизма", "m")
     a = plan.add("A", rules.GIVEN, 0j)
     period = plan.add("T", PERIOD, GivenNumber(speed, "crank.speed", "ω_1", "rad/s"))

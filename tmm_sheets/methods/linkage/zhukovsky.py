@@ -16,7 +16,8 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.methods.linkage.forces import GearForce, Load, contact_point
+from tmm_sheets.mechanism.groups.force_plan import Load
+from tmm_sheets.methods.linkage.forces import GearForce, contact_point
 from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
 
 TURNED = Rule("turned plan point", lambda v: 1j * v, ("point",), "point",
@@ -67,7 +68,7 @@ class Lever:
 
 
 def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]], driver: GearForce | None) -> Lever:
-    """Record the lever from the velocity plan, the external and inertia forces and the couples."""
+    """Record the lever from the velocity plan, the external and inertia forces, N, and the couples of each link, N m."""
     pos = vel.positions
     m = pos.mechanism
     c = m.crank

@@ -147,7 +147,13 @@ def read(name: str, corrected: bool = False) -> Variant:
 
 
 def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ...]]:
-    """Text of the project file of a machine and a cipher, and what is doubtful in it."""
+    """Text of the project file of a machine and a cipher, and what is doubtful in it.
+
+    Raises
+    ------
+    BadInput
+        when the machine is unknown or there is no cipher.
+    """
     machine, at, code = name.removeprefix("transport/").partition("@")
     if machine not in MACHINES:
         near = get_close_matches(machine, MACHINES, n=1)
@@ -279,14 +285,14 @@ class Condition:
 
 @dataclass(frozen=True)
 class TurnOfMachine:
-    """Points of a machine over one turn from position 12 on (m, world frame) and its conditions in order of attachment."""
+    """Points of a machine over one turn from position 12 on (m, world frame, shape (SWEEP,)), conditions in order of attachment."""
 
     points: dict[str, Any]
     conditions: tuple[Condition, ...]
 
     @property
     def failure(self) -> Condition | None:
-        """The first condition that fails; what is attached behind it cannot be judged."""
+        """The first condition that fails; those of the links attached after it cannot be judged."""
         return next((c for c in self.conditions if c.fails), None)
 
 
@@ -367,7 +373,13 @@ ASSEMBLED: dict[str, Callable[[Any, Mapping[str, float]], TurnOfMachine]] = {
 
 
 def refuse(machine: str, values: Mapping[str, Value]) -> None:
-    """Raise :class:`CannotBuild` naming the condition that fails, by how much, and where first in the sense of rotation."""
+    """Refuse dimensions that fail a condition.
+
+    Raises
+    ------
+    CannotBuild
+        naming the condition, by how much it fails, and where first in the sense of rotation.
+    """
     condition = turn(machine, _numbers(values)).failure
     if condition is None:
         return
