@@ -179,12 +179,12 @@ class Project:
     @cached_property
     def reduced(self) -> Reduced:
         """Reduced moment and reduced moment of inertia."""
-        self.check_assembly()
+        study = self.study  # assembled all round the turn
         from tmm_sheets.methods.flywheel.reduced import Reduced
 
         f = self.variant.flywheel
         gravity = self.gravity if f is not None and f.weights else 0.0
-        return Reduced(self.mechanism, self.cycle, self.applied, gravity)
+        return Reduced(self.mechanism, self.cycle, self.applied, gravity, lambda: study.velocities)
 
     @cached_property
     def flywheel(self) -> Flywheel:

@@ -37,8 +37,8 @@ def lines(project: Project, name: str | None) -> Iterator[str]:
             raise BadInput(f'{project.variant.project.name} has no plan "{name}"', hint=hint)
         found = {name: found[name]}
     else:
-        # What lies between the numbered positions only smooths the curves.
-        found = {key: drawn for key, drawn in found.items() if not key.endswith("-between")}
+        # What lies between the numbered positions only smooths the curves, and what has "@" in its name nobody draws.
+        found = {key: drawn for key, drawn in found.items() if not key.endswith("-between") and "@" not in key}
     for i, (plan, scale) in enumerate(found.values()):
         if i:
             yield ""

@@ -36,6 +36,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Step, value_of
 
 Floats = npt.NDArray[np.float64]
@@ -96,6 +97,8 @@ class Errors:
         self._known: dict[int, _Known | None] = {}
         self._numbers: dict[int, int] = {}
         self._steps: list[Step] = []
+        self._elsewhere: dict[tuple[int, int], int] = {}
+        self._single: set[int] = set()
         self._links: dict[int, dict[int, Any]] = {}
 
     # --- what is asked for --------------------------------------------------------------------------------------------
@@ -133,12 +136,15 @@ class Errors:
         known = self._of(step)
         return np.ones(1, dtype=bool) if known is None else known.linear
 
-    def sensitivity(self, step: Step, source: Step) -> Matrices:
+    def sensitivity(self, step: Step, source: Step, at: int | None = None) -> Matrices:
         """Displacement of a step for a unit displacement of an earlier one, d(x, y)/d(x, y), shape (n, 2, 2) or (1, 2, 2).
 
-        Of a number the first row or column counts. Zero when the step does not depend on the other.
+        Of a number the first row or column counts. Zero when the step does not depend on the other. ``at`` is the source's
+        position where the step took a single one from another plan.
         """
         known, number = self._of(step), self._numbers.get(id(source))
+        if at is not None and number is not None:
+            number = self._elsewhere.get((number, at), number)
         if known is None or number is None or number not in known.sources:
             return np.zeros((1, 2, 2))
         i = 2 * int(np.searchsorted(known.sources, number))
@@ -154,7 +160,8 @@ class Errors:
 
         Returns
         -------
-        The error and the gradient of the quantity by every step it goes back to, in the order of drawing.
+        The error and the gradient of the quantity by every step it goes back to, in the order of drawing. What was taken from
+        single positions of other plans counts in the error only.
         """
         found = [(known, k, g) for step, k, g in terms if (known := self._of(step)) is not None]
         sources = np.unique(np.concatenate([known.sources for known, _, _ in found] or [np.zeros(0, dtype=np.intp)]))
@@ -164,7 +171,8 @@ class Errors:
             row[at] += np.array([g.real, g.imag]) @ known.jacobian[j]
             scaled[at] += np.array([g.real, g.imag]) @ known.scaled[j]
         pairs = row.reshape(-1, 2)
-        return float(np.sqrt(scaled @ scaled)), [(self._steps[n], complex(*g)) for n, g in zip(sources, pairs, strict=True)]
+        return float(np.sqrt(scaled @ scaled)), [(self._steps[n], complex(*g)) for n, g in zip(sources, pairs, strict=True)
+                                                 if n not in self._single]
 
     def displaced(self, source: Step, k: int, shift: complex) -> Callable[[Step], Any]:
         """The construction drawn with one step off by ``shift`` at position ``k``: a function that gives any step's value then.
@@ -176,7 +184,8 @@ class Errors:
         values: dict[int, Any] = {id(source): moved}
 
         def value(step: Step) -> Any:
-            self._of(step)  # which lengths are known
+            for s in step.ancestors():
+                self._note_lengths(s)
             for s in step.ancestors() if id(step) not in values else ():
                 if id(s) in values:
                     continue
@@ -185,7 +194,7 @@ class Errors:
                     values[id(s)] = s.value
                 else:
                     with np.errstate(all="ignore"):
-                        now = [values[id(a)] if isinstance(a, Step) else a for a in args]
+                        now = [values[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
                         values[id(s)] = _replayed(s, now, self._snapped(s, args))
             return values[id(step)]
 
@@ -214,6 +223,8 @@ class Errors:
         self._note_lengths(step)
         if not _numeric(step.value) or _beyond_paper(step):
             return None
+        if step.rule.compute is take:
+            return self._taken(step)
         args = _on_paper(step)
         base = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {}))
         if base.shape != (np.size(step.value),):
@@ -228,6 +239,40 @@ class Errors:
             own = np.where(np.isnan(base)[:, None, None], np.nan, own)
         source = step.rule.gives != "direction" and id(step) not in self._poles
         return self._joined(step, columns, own, bend, source) if columns or source else None
+
+    def _taken(self, step: Step) -> _Known | None:
+        """What is known of values taken from positions of another plan.
+
+        A single value has sources of its own for what differs from position to position: with values of other positions it
+        has only the other sources in common.
+        """
+        row, at = step.args[0], np.asarray(value_of(step.args[1]), dtype=int)
+        known = self._known[id(row)]
+        if known is None:
+            return None
+
+        def picked(x: Any) -> Any:
+            return x if len(x) == 1 else x[np.atleast_1d(at)]
+
+        jacobian, scaled = picked(known.jacobian), picked(known.scaled)
+        sources = known.sources
+        if not at.ndim:
+            sources = np.array([self._at(int(n), int(at)) for n in sources], dtype=np.intp)
+            order = np.argsort(sources)
+            columns = np.stack((2 * order, 2 * order + 1), axis=-1).ravel()
+            sources, jacobian, scaled = sources[order], jacobian[:, :, columns], scaled[:, :, columns]
+        return _Known(sources, jacobian, scaled, picked(known.covariance), picked(known.linear))
+
+    def _at(self, source: int, k: int) -> int:
+        """Number of a source at one position: its own where it is the same at all."""
+        step = self._steps[source]
+        if np.size(step.value) == 1 or source in self._single:
+            return source
+        if (source, k) not in self._elsewhere:
+            self._elsewhere[source, k] = len(self._steps)
+            self._single.add(len(self._steps))
+            self._steps.append(step)
+        return self._elsewhere[source, k]
 
     def _moves(self, step: Step, args: tuple[Any, ...], ends: set[int]) -> list[tuple[int, Floats]]:
         """By how much each argument is moved: its own error, and a pencil's width at the ``ends`` of lines and lengths."""

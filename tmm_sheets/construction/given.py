@@ -87,3 +87,8 @@ class FoundNumber(float):
     def __reduce__(self) -> Any:
         """Pickled as a bare number: a construction stays where it was made."""
         return float, (float(self),)
+
+
+def named(value: float, name: str, symbol: str = "", unit: str = "") -> float:
+    """A number with its origin; one that knows it already stays as it is."""
+    return value if isinstance(value, GivenNumber) else GivenNumber(value, name, symbol, unit)

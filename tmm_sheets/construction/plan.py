@@ -93,11 +93,14 @@ class Plan:
     def adopt(self, step: Step) -> None:
         """Take a step made elsewhere as one that no pencil makes."""
         self.asides[step.name] = step
+        step.__dict__["plan"] = self.name
         if self.search is not None:
             step.__dict__["seconds"] = self.search
 
     def _step(self, name: str, rule: Rule, args: tuple[Any, ...], say: str | None = None, symbol: str = "") -> Step:
-        return Step(name, rule, args, say, symbol) if self.search is None else Step(name, rule, args, say, symbol, self.search)
+        if self.search is None:
+            return Step(name, rule, args, say, symbol, plan=self.name)
+        return Step(name, rule, args, say, symbol, self.search, self.name)
 
     def free(self, name: str) -> str:
         """The name itself, or with as many primes as it takes when the plan has it already or keeps it for a later step."""

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
 from tmm_sheets.numbers import fixed, number, size
 
@@ -86,7 +87,9 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "Ğ
     if sizes is None:
         sizes = _sizes([step], k)
     wording = step.say if step.say is not None else step.rule.wording
-    shown = [_show(a, kind, k, to_mm, unit, sizes) for a, kind in zip(step.args, step.rule.takes, strict=False)]
+    # What is taken from another plan has other positions there.
+    args = () if step.rule.compute is take else step.args
+    shown = [_show(a, kind, k, to_mm, unit, sizes) for a, kind in zip(args, step.rule.takes, strict=False)]
     value = _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
 
     def operand(m: re.Match[str]) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.step import Helper, Rule
 
 
@@ -30,7 +31,23 @@ def _difference(p: Any, q: Any) -> Any:
     return q - p
 
 
+@primitive("values at positions")
+def take(row: Any, at: Any) -> Any:
+    """Values of a row at the positions with these numbers, or at one; of what is the same at all positions, as often."""
+    at = np.asarray(at, dtype=int)
+    return row[at] if np.ndim(row) else row + np.zeros(at.shape)
+
+
+def taken(name: str, unit: str, wording: str) -> Rule:
+    """Rule that takes numbers from a plan with other positions: arguments are a row and the numbers of its positions.
+
+    Each has the error of the very position it was taken from.
+    """
+    return Rule(name, take, ("number", "number"), "number", wording, unit=unit)
+
+
 GIVEN = Rule("given point", _same, ("point",), "point", "Отметим точку {name}.")
+GIVEN_NUMBER = Rule("given number", _same, ("number",), "number", "Дано: {name} = {value}.")
 GIVEN_LENGTH = Rule("given length", _same, ("length",), "length", "Возьмём отрезок {name} = {value}.")
 GIVEN_DIRECTION = Rule("given direction", _same, ("direction",), "direction", "Проведём направление {name}.")
 

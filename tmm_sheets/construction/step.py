@@ -91,7 +91,7 @@ class Step:
 
     ``value`` is a scalar or an array with one entry per position, complex for points, directions and vectors.
     ``say`` replaces the rule's sentence where the manual's wording names more than the rule can know; ``symbol`` is the letter of
-    its value in lettering markup, the name unless told.
+    its value in lettering markup, the name unless told; ``plan`` is the name of the plan it is a step of, empty for none.
     """
 
     name: str
@@ -100,6 +100,12 @@ class Step:
     say: str | None = None
     symbol: str = ""
     seconds: list[float] | Tally = field(default_factory=list, repr=False)
+    plan: str = ""
+
+    @property
+    def path(self) -> str:
+        """Where it stands among all steps: plan/name."""
+        return f"{self.plan}/{self.name}" if self.plan else ""
 
     def __repr__(self) -> str:
         """Name and rule only: the arguments would print the whole construction before this step."""

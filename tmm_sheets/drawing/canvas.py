@@ -86,7 +86,7 @@ class MarkGroup(NamedTuple):
 Drawn = TypeVar("Drawn", bound=Callable[..., Any])
 
 
-def _in_role(role: Role) -> Callable[[Drawn], Drawn]:
+def in_role(role: Role) -> Callable[[Drawn], Drawn]:
     """Decorator of what draws marks of one role, whatever they are drawn for."""
     def made(draw: Drawn) -> Drawn:
         @wraps(draw)
@@ -126,9 +126,9 @@ class Canvas:
         self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box, len(self.scales)))
 
     @contextmanager
-    def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1) -> Iterator[None]:
-        """The marks drawn inside have this role and come from that step."""
-        before, self.by = self.by, Trace(role, step, position, frame)
+    def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Iterator[None]:
+        """The marks drawn inside have this role and come from that step, see :class:`Trace`."""
+        before, self.by = self.by, Trace(role, step, position, frame, name)
         try:
             yield
         finally:
@@ -226,7 +226,7 @@ class Canvas:
         self.fill((tip, tip - head * u + 1j * half * u, tip - head * u - 1j * half * u), style)
         self._one("arrow", first)
 
-    @_in_role("hatch")
+    @in_role("hatch")
     def hatch(self, a: complex, b: complex, side: int = 1, depth: float = 2.5, step: float = 2.5) -> None:
         """Short strokes at 45 degrees along ``a`` .. ``b``, on its left (``side`` +1) or right: a fixed surface."""
         length = abs(b - a)
@@ -282,7 +282,7 @@ class Canvas:
             self.text(complex(x, y), factor, 3.5 if len(factor) > 60 else 5.0, "centre")
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 
-    @_in_role("dimension")
+    @in_role("dimension")
     def dimension(self, a: complex, b: complex, offset: float, markup: str, height: float = 3.5) -> None:
         """Linear dimension of ``a`` .. ``b`` with extension lines; the dimension line lies ``offset`` mm to the left."""
         if not abs(b - a) > 0:
@@ -309,7 +309,7 @@ class Canvas:
         # Indices hang below the baseline: they must clear the dimension line too.
         self.text((p + q) / 2 + 1j * u * (0.7 + letter(markup, height).descent), markup, height, "centre", angle)
 
-    @_in_role("table")
+    @in_role("table")
     def table(self, corner: complex, widths: Sequence[float], rows: Sequence[Sequence[str]], row: float = 7.0,
               height: float = 3.5, header: int = 1) -> Box:
         """Table with its upper left corner at ``corner``; the first ``header`` rows are ruled off with a main line."""
@@ -332,7 +332,7 @@ class Canvas:
                 x += w
         return Box(x0, y0, x0 + total, y1)
 
-    @_in_role("dimension")
+    @in_role("dimension")
     def angle_mark(self, vertex: complex, start: float, end: float, radius: float, markup: str, height: float = 3.5,
                    share: float = 0.5) -> None:
         """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its sign at ``share`` of it."""
@@ -348,7 +348,7 @@ class Canvas:
         self.label(vertex + radius * mid, markup, mid, height)
 
 
-@_in_role("hatch")
+@in_role("hatch")
 def hatch_polygon(canvas: Canvas, outline: Points, step: float = 3.0, angle: float = pi / 4) -> None:
     """Hatch a polygon, clipped exactly (shapely)."""
     from shapely import LineString, MultiLineString, Polygon, intersection

@@ -25,13 +25,15 @@ class Trace(NamedTuple):
     """Where a mark comes from.
 
     ``step`` is "plan/name" of the construction step that left it, ``position`` the label of the position, ``frame`` the number of
-    the :class:`PlacedFrame` it was drawn in (-1: none).
+    the :class:`PlacedFrame` it was drawn in (-1: none). ``name`` is what it is called where the step's own name does not say it: a
+    vector by its ends, a link by its points.
     """
 
     role: Role
     step: str = ""
     position: str = ""
     frame: int = -1
+    name: str = ""
 
 
 class PlacedFrame(NamedTuple):

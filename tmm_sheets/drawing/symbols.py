@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import pairwise
 
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import Canvas, in_role
 
 HINGE = 1.6
 """Radius of a hinge's circle, mm."""
@@ -13,11 +13,13 @@ BLOCK = (10.0, 6.0)
 """Length and width of a sliding block, mm."""
 
 
+@in_role("symbol")
 def hinge(canvas: Canvas, at: complex, style: str = "main", radius: float = HINGE) -> None:
     """Turning pair: a small circle; link lines end on it."""
     canvas.circle(at, radius, style)
 
 
+@in_role("symbol")
 def pivot(canvas: Canvas, at: complex, down: complex = -1j, style: str = "main") -> None:
     """Turning pair on the frame: circle, two legs to a base line, hatched; ``down`` points to the base."""
     r, u = HINGE, down / abs(down)
@@ -33,6 +35,7 @@ def pivot(canvas: Canvas, at: complex, down: complex = -1j, style: str = "main")
     hinge(canvas, at, style)
 
 
+@in_role("link")
 def bar(canvas: Canvas, points: Iterable[complex], hinges: Iterable[complex], style: str = "main", radius: float = HINGE) -> None:
     """Link line through points; it is interrupted inside every hinge circle it passes or ends at."""
     p = list(points)
@@ -58,6 +61,7 @@ def bar(canvas: Canvas, points: Iterable[complex], hinges: Iterable[complex], st
             canvas.line(a + start * u, b, style)
 
 
+@in_role("symbol")
 def block(canvas: Canvas, at: complex, along: complex, style: str = "main", size: tuple[float, float] = BLOCK) -> None:
     """Sliding block: a rectangle along its guide."""
     u = along / abs(along)
@@ -65,12 +69,14 @@ def block(canvas: Canvas, at: complex, along: complex, style: str = "main", size
     canvas.polyline((at + dx + dy, at - dx + dy, at - dx - dy, at + dx - dy), style, closed=True)
 
 
+@in_role("symbol")
 def fixed_guide(canvas: Canvas, a: complex, b: complex, side: int, style: str = "main") -> None:
     """Fixed surface: a line hatched on one side (+1 left of a .. b)."""
     canvas.line(a, b, style)
     canvas.hatch(a, b, side)
 
 
+@in_role("symbol")
 def centre_of_mass(canvas: Canvas, at: complex, radius: float = 1.6, style: str = "thin") -> None:
     """Centre of mass: a circle with two opposite quarters filled."""
     canvas.circle(at, radius, style)
@@ -82,6 +88,7 @@ def centre_of_mass(canvas: Canvas, at: complex, radius: float = 1.6, style: str 
 _QUARTER = ((1.0, 0.0), (0.9239, 0.3827), (0.7071, 0.7071), (0.3827, 0.9239), (0.0, 1.0))
 
 
+@in_role("symbol")
 def rotation_arrow(canvas: Canvas, about: complex, radius: float, towards: complex, sense: float, text: str) -> None:
     """Curved arrow of an angular velocity or acceleration round ``about``, open towards the label's direction."""
     from cmath import phase

@@ -8,12 +8,15 @@ distance. Any other unit will do as long as the pole distance has the unit of th
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, RAY
 from tmm_sheets.construction.step import Helper, Rule, Step
@@ -35,6 +38,44 @@ def _between(p: Any, q: Any, ordinate: Any) -> Any:
     return (np.real(p) + np.real(q)) / 2 + 1j * np.imag(ordinate)
 
 
+@primitive("smooth curve")
+def smooth_curve(*of: Any) -> Curve:
+    """Smooth curve through n + 1 points, then its slopes at the beginnings of the n intervals, then those at their ends."""
+    n = len(of) // 3
+    x, y = (np.array([part(p) for p in of[:n + 1]], dtype=float) for part in (np.real, np.imag))
+    return Curve(x, y, np.array(of[n + 1:2 * n + 1], dtype=float), np.array(of[2 * n + 1:], dtype=float))
+
+
+@primitive("ordinate of a curve")
+def ordinate_of(curve: Any, x: Any) -> Any:
+    """Ordinate of a curve at an abscissa."""
+    return curve(x)[()]
+
+
+@primitive("weighted sum")
+def weighted(row: Any, weights: Any) -> Any:
+    """Sum of a row's numbers, each times its weight: the integral over the nodes of a quadrature."""
+    return float(row @ weights)
+
+
+@primitive("running integral")
+def running(row: Any, halves: Any, weights: Any, ends: Any) -> Any:
+    """Integral from the first border to those with the numbers ``ends``.
+
+    ``row`` is the integrand at the nodes of all panels one after another, ``halves`` are half the widths of the panels, ``weights``
+    those of the nodes of one panel.
+    """
+    parts = halves * (np.reshape(row, (len(halves), -1)) @ weights)
+    return np.concatenate(([0.0], np.cumsum(parts)))[np.asarray(ends, dtype=int)]
+
+
+SMOOTH = Rule("smooth curve through the ends of chords", smooth_curve, (), "curve",
+              "Через концы хорд по лекалу проведём плавную кривую {name}; её касательные на границах интервалов параллельны лучам "
+              "к ординатам подынтегральной кривой.")
+ON_CURVE = Rule("ordinate of a curve", ordinate_of, ("curve", "length"), "ordinate",
+                "На абсциссе {1} измерим ординату кривой {name} = {value}.")
+AREA = Rule("area under a graph", running, ("number",) * 4, "number",
+            "Площадь под кривой (квадратура Гаусса – Лежандра): {name} = {value}.", beyond_paper=True)
 POLE = Rule(
     "pole", lambda distance: -distance + 0j, ("length",), "point",
     "На продолжении оси абсцисс влево от начала координат отложим полюсное расстояние {0}: полюс {name}.",
@@ -167,17 +208,8 @@ def ordinates(steps: Sequence[Step]) -> Floats:
 
 
 def smooth(edges: Floats, values: Floats, left: Floats, right: Floats, x: Any) -> Any:
-    """Smooth curve through the chord ends (плавная кривая): a cubic in every interval with the integrand as its slope.
-
-    ``values`` at the n + 1 ``edges``; ``left`` and ``right`` are the slopes at the beginning and at the end of the n
-    intervals, so the curve has a corner where the integrand jumps. ``x`` may be of any shape within the edges.
-    """
-    x = np.asarray(x, dtype=float)
-    k = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2)
-    h = edges[k + 1] - edges[k]
-    t = (x - edges[k]) / h
-    s = 1 - t
-    return s * s * (values[k] * (1 + 2 * t) + h * t * left[k]) + t * t * (values[k + 1] * (1 + 2 * s) - h * s * right[k])
+    """Ordinates at ``x`` of the smooth curve with these ordinates and slopes, see :class:`Curve`."""
+    return Curve(edges, values, left, right)(x)
 
 
 class Quadrature:
@@ -193,20 +225,57 @@ class Quadrature:
         equal panels per interval.
     order
         Gauss points per panel.
+    whole
+        the same integrand where all nodes are asked at once (its values may be kept); ``f`` unless told.
     """
 
-    def __init__(self, f: Callable[[Floats], Floats], edges: Floats, panels: int = 1, order: int = 16) -> None:
+    def __init__(self, f: Callable[[Floats], Floats], edges: Floats, panels: int = 1, order: int = 16,
+                 whole: Callable[[Floats], Floats] | None = None) -> None:
         self.f = f
+        self.whole = whole or f
         self.nodes, self.weights = np.polynomial.legendre.leggauss(order)
         part = np.arange(panels) / panels
         starts = (edges[:-1, None] + np.diff(edges)[:, None] * part).ravel()
+        self.panels = panels
         self.borders = np.append(starts, edges[-1])
-        self.sums = np.concatenate(([0.0], np.cumsum(self._over(self.borders[:-1], self.borders[1:]))))
+
+    @cached_property
+    def sums(self) -> Floats:
+        """Integrals from the first border to each border of a panel."""
+        rows = self.whole(self.at).reshape(-1, len(self.nodes))
+        return np.concatenate(([0.0], np.cumsum(self.halves * (rows @ self.weights))))
 
     def _over(self, a: Floats, b: Floats) -> Floats:
-        half = (b - a) / 2
-        x = (a + b)[..., None] / 2 + half[..., None] * self.nodes
-        return np.asarray(half * (self.f(x.ravel()).reshape(x.shape) @ self.weights))
+        x = self._nodes(a, b)
+        return np.asarray((b - a) / 2 * (self.f(x.ravel()).reshape(x.shape) @ self.weights))
+
+    def _nodes(self, a: Floats, b: Floats) -> Floats:
+        return np.asarray((a + b)[..., None] / 2 + ((b - a) / 2)[..., None] * self.nodes)
+
+    @property
+    def at(self) -> Floats:
+        """Nodes of all panels, one after another."""
+        return self._nodes(self.borders[:-1], self.borders[1:]).ravel()
+
+    @property
+    def halves(self) -> Floats:
+        """Half the width of each panel."""
+        return np.asarray(np.diff(self.borders) / 2)
+
+    def excess_weights(self, x: Floats) -> tuple[Floats, list[tuple[Floats, Floats]]]:
+        """Weights of the integral from the first border to each of the ``x`` less the mean's, which is the change of energy.
+
+        The nodes of the panels that are not full there, and for each of the ``x`` the weights of :attr:`at` and of these nodes.
+        """
+        k = np.clip(np.searchsorted(self.borders, x, side="right") - 1, 0, len(self.borders) - 2)
+        parts, each = self._nodes(self.borders[k], x), self.halves[:, None] * self.weights
+        found = []
+        for i, (panel, end) in enumerate(zip(k, x, strict=True)):
+            further = np.zeros(parts.shape)
+            further[i] = (end - self.borders[panel]) / 2 * self.weights
+            share = (end - self.borders[0]) / (self.borders[-1] - self.borders[0])
+            found.append(((each * ((np.arange(len(each)) < panel)[:, None] - share)).ravel(), further.ravel()))
+        return parts.ravel(), found
 
     @property
     def total(self) -> float:

@@ -16,15 +16,17 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from tmm_sheets.construction.scale import fit_standard, times
-from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
+from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import graphs
+from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
+    from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
 Options = dict[str, Any]
@@ -44,22 +46,27 @@ def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     graphs.heading(canvas, box, options, title, f"{s.force}")
     g = graphs.Graph(complex(options["axis"], box.y0 + _BELOW))
     top = 0.0
+    of = stage(canvas, r.numbered.plan, None, g.place(s.angle.mu, s.force.mu))
+    steps = dict(zip(names, r.force_steps, strict=True))
     for name in names:
         for line in _acting(fw, name):
             curve = g(line)
             axis = g.origin.imag
-            canvas.polyline(np.concatenate(([complex(curve[0].real, axis)], curve, [complex(curve[-1].real, axis)])))
+            with of.of(steps[name], "curve"):
+                canvas.polyline(np.concatenate(([complex(curve[0].real, axis)], curve, [complex(curve[-1].real, axis)])))
             highest = curve[int(np.argmax(line.imag))]
             top = max(top, float(line.imag.max()))
             if len(names) > 1 and line.imag.max() > 4.0:
                 canvas.label(highest, name, 1 + 0.3j, 3.5)
     graphs.check_room(box, g.origin.imag + top, "flywheel.force_graph")
-    graphs.axes(canvas, g, s.angle.mm(r.period), 0.0, top, f"{names[0] if len(names) == 1 else letter_of}, {unit}")
-    graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.ones(len(fw.labels)))
+    with of.of(r.force_steps[0], "axis"):
+        graphs.axes(canvas, g, s.angle.mm(r.period), 0.0, top, f"{names[0] if len(names) == 1 else letter_of}, {unit}")
+        graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.ones(len(fw.labels)))
     for k, x in enumerate(s.angle.mm(r.phi)):
         if top and k:
-            here = max(graphs.one(values) for values in r.forces_at(r.phi[k]).values())
-            canvas.line(g(x), g(x + 1j * s.force.mm(here)), "thin")
+            here, name = max((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items())
+            with canvas.traced("construction", steps[name].path, fw.labels[k % len(r.labels)], of.number):
+                canvas.line(g(x), g(x + 1j * s.force.mm(here)), "thin")
 
 
 def _acting(fw: Flywheel, name: str) -> list[Any]:
@@ -95,23 +102,27 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     g = graphs.Graph(complex(options["axis"], box.y0 + 4.0 - low))
     graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "flywheel.moments")
     canvas.of = plan.name
-    canvas.polyline(g(np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))))
+    of, drive = (stage(canvas, p, None, g.place()) for p in (fw.moment_plan, fw.driving_plan))
+    with of.of("M", "curve"):
+        canvas.polyline(g(np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))))
     length = s.angle.mm(r.period)
-    canvas.line(g(1j * level), g(length + 1j * level), "curve")
-    graphs.axes(canvas, g, length, low, high, "M, Н·м")
+    with drive.of("dK", "curve"):
+        canvas.line(g(1j * level), g(length + 1j * level), "curve")
     points = fw.moment_plan["M"].value
     # Where the curve runs along the axis its numbers stand on the side the graph leaves free.
     body = line.imag[int(np.argmax(np.abs(line.imag)))]
-    graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.where(np.abs(points.imag) < 1.0, body, points.imag))
-    for p in points:
-        canvas.line(g(p.real), g(p), "thin")
+    with of.of("M", "axis"):
+        graphs.axes(canvas, g, length, low, high, "M, Н·м")
+        graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.where(np.abs(points.imag) < 1.0, body, points.imag))
+    uprights(of, "M")
     pole = plan["P"].value
-    _rays(canvas, fw, g, drawn)
-    cut = fw.driving_plan["K′"].value
-    canvas.line(g(pole), g(cut), "construction")
-    canvas.label(g(cut), "K′", -1 + 0.6j if level > 0 else -1 - 0.6j)
-    canvas.dot(g(pole), 0.6)
-    canvas.label(g(pole), "P", -1 + 1j)
+    rays = stage(canvas, plan, None, g.place())
+    _rays(rays, fw, drawn)
+    with drive.of("K′", "construction"):
+        canvas.line(g(pole), drive.at("K′"), "construction")
+    drive.letters("K′", "K′", -1 + 0.6j if level > 0 else -1 - 0.6j)
+    rays.dot("P", 0.6, "main")
+    rays.letters("P", "P", -1 + 1j)
     canvas.dimension(g(pole.real + 1j * low), g(1j * low), -3.0 if low > -12 else 5.0, "H")
     size = np.abs(line.imag)
     peak = int(np.argmax(size))
@@ -120,37 +131,42 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.label(g(0.78 * length + 1j * level), f"M_{constant}^пр", -1j if level > 0 else 1j, height=5)
 
 
+def uprights(s: Stage, step: str) -> None:
+    """Ordinates of the points of a graph, one for each position."""
+    for k in range(len(s.plan.labels)):
+        play(s.position(k), [step], "thin")
+
+
 def _moment_curve(fw: Flywheel) -> Any:
     """The varying moment over the crank angle, mm, with both values where it jumps."""
-    s, r = fw.scales, fw.reduced
+    s, r, values = fw.scales, fw.reduced, fw.at_samples.moment().value
     stretches = []
     for a, b in _stretches(fw):
         p = _inside(fw, a, b)
         ends = [graphs.one(r.moment(p[0], side=1)), graphs.one(r.moment(p[-1], side=-1))]
-        stretches.append(s.angle.mm(p) + 1j * s.moment.mm(np.concatenate((ends[:1], r.moment(p[1:-1]), ends[1:]))))
+        inside = values[(fw.samples > a) & (fw.samples < b)]
+        stretches.append(s.angle.mm(p) + 1j * s.moment.mm(np.concatenate((ends[:1], inside, ends[1:]))))
     return np.concatenate(stretches)
 
 
-def _rays(canvas: Canvas, fw: Flywheel, g: graphs.Graph, intervals: list[str]) -> None:
+def _rays(s: Stage, fw: Flywheel, intervals: list[str]) -> None:
     """Ordinates in the middles of the intervals, carried over to the ordinate axis, and the rays from the pole to them."""
-    plan = fw.work_plan
+    plan = s.plan
     shown: dict[float, list[str]] = {}
     for name in intervals:
         middle = plan[f"m{name}"].value
         if abs(middle.imag) > 0.05:
             same = next((y for y in shown if abs(y - middle.imag) < 1e-6), middle.imag)
             shown.setdefault(same, []).append(f"{name}{fw.mark}")
-            canvas.line(g(middle.real), g(middle), "construction")
-            canvas.line(g(middle), g(plan[f"{name}{fw.mark}"].value), "construction")
-    pole = plan["P"].value
-    canvas.line(g(pole), g(0j), "axis")
+            play(s, [f"m{name}", f"{name}{fw.mark}"])
+    play(s, ["P"], "axis")
     labelled: list[float] = []
     for y, names in sorted(shown.items(), key=lambda item: -abs(item[0])):
-        canvas.line(g(pole), g(1j * y), "construction")
+        play(s, [f"P{names[0]}"])
         # Points of the ordinate axis that nearly coincide cannot all be lettered; the rays tell them apart.
         if all(abs(y - other) >= 4.5 for other in labelled):
             labelled.append(y)
-            canvas.label(g(1j * y), ", ".join(names), -1 - 0.6j if y < 0 else -1 + 0.6j)
+            s.letters(names[0], ", ".join(names), -1 - 0.6j if y < 0 else -1 + 0.6j)
 
 
 def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -166,22 +182,26 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     low, high = min(0.0, end.imag, curve.imag.min()), max(0.0, end.imag, curve.imag.max())
     g = graphs.Graph(complex(options["axis"], (box.y0 + box.y1 - (low + high)) / 2))
     graphs.check_room(box, g.origin.imag + high, "flywheel.works")
-    canvas.polyline(g(curve))
-    canvas.line(g(0j), g(end), "curve")
-    for a, b in pairwise(ends):
-        canvas.line(g(a), g(b), "construction")
+    of, drive = (stage(canvas, p, None, g.place()) for p in (fw.work_plan, fw.driving_plan))
+    with of.of("A(φ)", "curve"):
+        canvas.polyline(g(curve))
+    with drive.of("K", "curve"):
+        canvas.line(g(0j), g(end), "curve")
+    play(of, fw.borders[1:])
     uprights = []
-    for k in fw.at_positions:
+    for k, label in zip(fw.at_positions, fw.labels, strict=True):
         x = ends[k].real
         heights = (0.0, ends[k].imag, x * end.imag / end.real)
         uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
-        canvas.line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
-    graphs.axes(canvas, g, end.real, low, high, "A, Дж")
-    graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, np.zeros(len(fw.labels)))
+        with canvas.traced("construction", fw.total_plan["ΣA"].path, label):
+            canvas.line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
+    with of.of("A(φ)", "axis"):
+        graphs.axes(canvas, g, end.real, low, high, "A, Дж")
+        graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, np.zeros(len(fw.labels)))
     k = len(curve) // 2
     canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
-    canvas.label(g(end), "K", 1j if end.imag > 0 else -1j)
+    drive.letters("K", "K", 1j if end.imag > 0 else -1j)
     share = fixed(100 * fw.work_error, 2)
     note = (f"A_{varying}({fw.labels[-1]}) = {fixed(float(fw.work[-1]), 1)} Дж по ординатам середин интервалов,",
             f"по площади графика {fixed(float(fw.work_converged[-1]), 1)} Дж ({'' if share.startswith('−') else '+'}{share} %)")
@@ -198,13 +218,15 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
              f"{s.energy}{_enlarged(ratio)}")
     canvas.of = fw.total_plan.name
     g = _energy_graph(fw, box, options)
-    points = s.angle.mm(fw.reduced.phi) + 1j * fw.total_plan["ΔE"].value
+    points = fw.total_plan["points"].value
     curve = s.angle.mm(fw.samples) + 1j * fw.energy_curve(fw.samples)
-    canvas.polyline(g(curve))
-    for p in points:
-        canvas.line(g(p.real), g(p), "thin")
-    graphs.axes(canvas, g, points[-1].real, curve.imag.min(), curve.imag.max(), "ΔE, Дж")
-    graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, points.imag)
+    of = stage(canvas, fw.total_plan, None, g.place())
+    with of.of("points", "curve"):
+        canvas.polyline(g(curve))
+    uprights(of, "points")
+    with of.of("points", "axis"):
+        graphs.axes(canvas, g, points[-1].real, curve.imag.min(), curve.imag.max(), "ΔE, Дж")
+        graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, points.imag)
 
 
 def _enlarged(ratio: float) -> str:
@@ -226,21 +248,24 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     graphs.check_room(Box(box.x0, 0, box.x1, left.y1), g.origin.imag + 3, "flywheel.inertia")
     graphs.check_room(Box(0, -g.origin.imag, 0, -box.y0), length - g.origin.imag, "flywheel.inertia")
     phi = fw.samples[fw.samples <= turn * (1 + 1e-12)]
-    curve = angle.mm(phi) + 1j * s.inertia.mm(fw.reduced.inertia(phi))
-    canvas.polyline(g(curve))
+    curve = angle.mm(phi) + 1j * s.inertia.mm(fw.inertia(fw.samples)[:len(phi)])
+    of = stage(canvas, fw.inertia_plan, None, g.place())
+    with of.of("points", "curve"):
+        canvas.polyline(g(curve))
     joint: dict[float, list[str]] = {}
-    for p, name in zip(fw.inertia_plan["points"].value, fw.labels, strict=True):
+    for k, (p, name) in enumerate(zip(fw.inertia_plan["points"].value, fw.labels, strict=True)):
         same = next((x for x in joint if abs(x - p.real) < 1e-6), p.real)
         joint.setdefault(same, []).append(name)
         if len(joint[same]) == 1:
-            canvas.line(g(p.real), g(p), "thin")
+            play(of.position(k), ["points"], "thin")
     for x, names in joint.items():
         # The first number stands above the axis of J, which begins to the left of the curve.
         canvas.text(g(x) - 2.0 + (-1.2j if x > 0 else 0.8j), ", ".join(names), 3.5, "right")
-    canvas.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
-    canvas.text(g(length + graphs.OVER) - 2, "φ_1", 5, "right")
     reach = curve.imag.max() + graphs.OVER
-    canvas.arrow(g(-4j), g(1j * reach), "axis", 3.0)
+    with of.of("points", "axis"):
+        canvas.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
+        canvas.text(g(length + graphs.OVER) - 2, "φ_1", 5, "right")
+        canvas.arrow(g(-4j), g(1j * reach), "axis", 3.0)
     canvas.text(g(1j * reach) - 2 + 2j, "J^пр, кг·м^2", 3.5, "right")
 
 
@@ -258,43 +283,51 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     widest = int(np.argmax(np.diff(cuts)))
     title = _narrow_title(canvas, Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), f"{s.energy}", f"{s.inertia}")
     curve = fw.energy_mass_curve(fw.samples)
-    canvas.polyline(g(curve))
+    of = stage(canvas, plan, None, g.place())
+    with of.of("points", "curve"):
+        canvas.polyline(g(curve))
     middle = complex(np.mean(curve.real), np.mean(curve.imag))
     x, masses = s.angle.mm(fw.reduced.phi), fw.inertia_plan["points"].value
     seen: dict[complex, list[str]] = {}
     for k, p in enumerate(points[:-1]):
-        canvas.line(energy(complex(x[k], p.imag)), g(p), "construction")
-        canvas.line(turned(masses[k]), g(p), "construction")
-        canvas.dot(g(p), 0.7)
+        # Produced to the graphs that they come from.
+        with canvas.traced("construction", plan["points"].path, fw.labels[k]):
+            canvas.line(energy(complex(x[k], p.imag)), g(p), "construction")
+            canvas.line(turned(masses[k]), g(p), "construction")
+        of.position(k).dot("points", 0.7, "main")
         near = next((q for q in seen if abs(q - p) < 1.0), p)
         seen.setdefault(near, []).append(fw.labels[k])
     for p, names in seen.items():
-        canvas.label(g(p), ", ".join(names), (p - middle) / abs(p - middle))
+        of.position(fw.labels.index(names[0])).letters("points", ", ".join(names), (p - middle) / abs(p - middle))
     reach = curve.real.max() + graphs.OVER
     low, high = _energy_range(fw)
-    canvas.arrow(g(-12.0), g(reach), "axis", 3.0)
-    canvas.label(g(reach), "J^пр, кг·м^2", -1 + 1j, 3.5, 1.5, leader=False)
-    canvas.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
-    canvas.text(g(1j * (high + graphs.OVER)) + 2, "ΔE, Дж", 3.5)
+    with of.of("points", "axis"):
+        canvas.arrow(g(-12.0), g(reach), "axis", 3.0)
+        canvas.label(g(reach), "J^пр, кг·м^2", -1 + 1j, 3.5, 1.5, leader=False)
+        canvas.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
+        canvas.text(g(1j * (high + graphs.OVER)) + 2, "ΔE, Дж", 3.5)
     beside = abs(fw.ab_mm) < 12.0
     for name, end in (("max", "a"), ("min", "b")):
-        contact, cut, u = plan[f"T_{name}"].value, plan[end].value, plan[f"t_{name}"].value
+        cut, u = plan[end].value, plan[f"t_{name}"].value
         room = (curve.real.max() - cut.real) / u.real
         for bound in (title.y1, box.y0 + 2):
             t = (bound - g.origin.imag - cut.imag) / u.imag
             room = min(room, t) if t > 0 else room
-        canvas.line(g(cut - 6 * u), g(cut + room * u), "axis")
+        with canvas.traced("construction", plan[end].path):
+            canvas.line(g(cut - 6 * u), g(cut + room * u), "axis")
         # The angles of tangents close together are marked one above the other.
         vertex = cut + (0.7 if beside and name == "max" else 0.45) * room * u
-        canvas.line(g(vertex), g(vertex + 45), "thin")
-        canvas.angle_mark(complex(g(vertex)), 0.0, float(plan[f"ψ_{name}"].value), 40.0,
-                          f"ψ_{name} = {fixed(degrees(plan[f'ψ_{name}'].value), 2)}°")
-        canvas.dot(g(contact), 0.7)
-        canvas.label(g(cut), end, -1 + (1j if (end == "a") == (fw.ab_mm >= 0) else -1j), height=5)
+        with of.of(f"ψ_{name}", "dimension"):
+            canvas.line(g(vertex), g(vertex + 45), "thin")
+            canvas.angle_mark(complex(g(vertex)), 0.0, float(plan[f"ψ_{name}"].value), 40.0,
+                              f"ψ_{name} = {fixed(degrees(plan[f'ψ_{name}'].value), 2)}°")
+        of.dot(f"T_{name}", 0.7, "main")
+        of.letters(end, end, -1 + (1j if (end == "a") == (fw.ab_mm >= 0) else -1j), height=5)
     ends = sorted((plan["a"].value, plan["b"].value), key=lambda z: float(z.imag))
     length = fixed(fw.ab_mm, 1) if abs(fw.ab_mm) >= 1 else number(fw.ab_mm, 2)
     text = f"|ab| = {length}" if fw.ab_mm >= 0 else f"ab = {length}"
-    _segment(canvas, g, ends[0], ends[1], [p.imag for p in points], text)
+    with of.of("ab", "dimension"):
+        _segment(canvas, g, ends[0], ends[1], [p.imag for p in points], text)
 
 
 def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
@@ -320,7 +353,12 @@ def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     w = fw.wheel
     if w is None:
         _no_wheel(fw, canvas, box)
-        return
+    else:
+        with canvas.as_role("symbol"):
+            _sketch(w, canvas, box)
+
+
+def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
     rim = w.form == "rim"
     d, b, h = 1000 * w.diameter, 1000 * w.width, 1000 * w.thickness if rim else 0.0
     outer = d + h
@@ -533,6 +571,7 @@ def _segment(canvas: Canvas, g: graphs.Graph, b: complex, a: complex, levels: li
         canvas.label(middle, text, -1)
 
 
+@in_role("symbol")
 def _spoke(canvas: Canvas, centre: complex, u: complex, inner: float, outer: float, half: float) -> None:
     for sign in (1, -1):
         a, b = sign * half, sign * 0.75 * half
@@ -541,6 +580,7 @@ def _spoke(canvas: Canvas, centre: complex, u: complex, inner: float, outer: flo
         canvas.line(centre + u * p, centre + u * q, "main")
 
 
+@in_role("symbol")
 def _cut(canvas: Canvas, at: complex, half: float, low: float, top: float) -> None:
     outline = at + np.array([complex(-half, low), complex(half, low), complex(half, top), complex(-half, top)])
     canvas.polyline(outline, "main", closed=True)

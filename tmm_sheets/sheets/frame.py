@@ -34,14 +34,28 @@ class ScaleBook(Protocol):
 
 @dataclass(frozen=True)
 class Frame:
-    """``origin`` is where the plan's zero lies on the sheet, mm."""
+    """Place of a plan on the sheet, see :class:`~tmm_sheets.drawing.marks.PlacedFrame`.
+
+    ``origin`` is where the plan's zero lies, mm; ``along`` is the scale factor of abscissae where it differs from that of
+    ordinates; ``turn`` counter-clockwise, rad; ``mirror``: the plan's y axis is turned over first.
+    """
 
     scale: Scale
     origin: complex
+    along: Scale | None = None
+    turn: float = 0.0
+    mirror: bool = False
+
+    @property
+    def mu(self) -> tuple[float, float]:
+        """Scale factors along both axes of the plan."""
+        return (self.scale if self.along is None else self.along).mu, self.scale.mu
 
     def __call__(self, z: Any) -> Any:
         """Sheet point of a plan point."""
-        return self.origin + self.scale.mm(z)
+        w = self.scale.mm(z) if self.along is None else self.along.mm(np.real(z)) + 1j * self.scale.mm(np.imag(z))
+        w = np.conj(w) if self.mirror else w
+        return self.origin + (complex(np.exp(1j * self.turn)) * w if self.turn else w)
 
 
 def extent(points: Any) -> Box:

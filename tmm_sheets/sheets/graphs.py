@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, PlacedFrame
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 
@@ -32,6 +32,10 @@ class Graph:
     def __call__(self, p: Any) -> Any:
         """Point of the sheet of a point of the diagram, mm."""
         return self.origin + self.turn * np.asarray(p)
+
+    def place(self, along: float = 1.0, across: float = 1.0) -> PlacedFrame:
+        """Where a plan with these scale factors of its abscissae and ordinates lies on the sheet; 1 for a plan in millimetres."""
+        return PlacedFrame(-1, "", "", self.origin, (along, across), float(np.angle(self.turn)))
 
 
 def one(values: Any) -> float:

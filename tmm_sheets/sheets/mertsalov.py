@@ -21,8 +21,10 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
+from tmm_sheets.sheets.player import Stage, stage
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
 
 Options = dict[str, Any]
@@ -52,7 +54,7 @@ def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw = _procedure(project)
     s = fw.scales
     work = np.append(fw.work_curve(fw.samples), (0.0, fw.driving_plan["K"].value.imag))
-    moment = np.concatenate(([0.0, fw.M_constant], fw.reduced.moment(fw.samples, side=1), fw.reduced.moment(fw.samples, side=-1)))
+    moment = np.concatenate(([0.0, fw.M_constant], *(fw.at_samples.moment(side).value for side in (1, -1))))
     energy = np.concatenate(([0.0], fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))))
     views: list[tuple[Callable[..., None], float, float]] = [
         # The constant moment is lettered above its line.
@@ -82,49 +84,58 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     x = s.angle.mm(fw.samples)
     curve = s.inertia.mm(fw.inertia(fw.samples))
     graphs.check_room(box, g.origin.imag + float(curve.max()) + graphs.HEAD, "mertsalov.inertia")
-    canvas.polyline(g(x + 1j * curve))
+    of, terms = (stage(canvas, p, None, g.place()) for p in (fw.inertia_plan, fw.reduced.numbered.plan))
+    with of.of("points", "curve"):
+        canvas.polyline(g(x + 1j * curve))
     parts = _terms(fw)
-    for n, (name, part) in enumerate(parts, 1):
-        canvas.polyline(g(x + 1j * part), "main")
+    for n, (name, step, part) in enumerate(parts, 1):
+        with terms.of(step, "curve"):
+            canvas.polyline(g(x + 1j * part), "main")
         # A narrow peak is named at its left flank, where there is room.
         k = int(np.argmax(part[: len(part) // 2] > 0.7 * part[: len(part) // 2].max()))
         canvas.label(g(x[k] + 1j * part[k]), name if len(parts) <= NAMED else str(n), -1 if k else 1 - 1j, 3.5)
     if len(parts) > NAMED:
-        legend = ";  ".join(f"{n} – {name}" for n, (name, _) in enumerate(parts, 1))
+        legend = ";  ".join(f"{n} – {name}" for n, (name, *_) in enumerate(parts, 1))
         canvas.text(complex((box.x0 + box.x1) / 2, box.y1 - 13.0), legend, _height(legend, box.width), "centre")
     at = s.angle.mm(fw.reduced.phi)
     points = fw.inertia_plan["points"].value
-    for p in points:
-        canvas.line(g(p.real), g(p), "thin")
+    flywheel.uprights(of, "points")
     length = s.angle.mm(fw.reduced.period)
-    graphs.axes(canvas, g, length, 0.0, float(curve.max()), f"{sign}, кг·м^2")
-    graphs.numbers(canvas, g, at, fw.labels, np.ones(len(at)))
+    with of.of("points", "axis"):
+        graphs.axes(canvas, g, length, 0.0, float(curve.max()), f"{sign}, кг·м^2")
+        graphs.numbers(canvas, g, at, fw.labels, np.ones(len(at)))
     k = int(np.argmax(curve))
     canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
-    _tangent(canvas, project, fw, g, points, box)
+    _tangent(canvas, project, fw, of, points, box)
 
 
-def _terms(fw: Mertsalov) -> list[tuple[str, Any]]:
-    """Terms of the reduced moment of inertia with their ordinates at the samples, mm; what would run along the axis is left out."""
-    found = [(f"{name.removesuffix('²')}^2/ω_1^2", fw.scales.inertia.mm(values))
-             for name, values in fw.reduced.inertia_parts(fw.samples).items()]
-    return [(name, part) for name, part in found if part.max() > 4.0]
+def _terms(fw: Mertsalov) -> list[tuple[str, Step, Any]]:
+    """Terms of the reduced moment of inertia with their ordinates at the samples, mm; what would run along the axis is left out.
+
+    Each with its step at the positions.
+    """
+    steps = fw.reduced.numbered.terms
+    found = [(f"{name.removesuffix('²')}^2/ω_1^2", steps[name], fw.scales.inertia.mm(values))
+             for name, values in fw.reduced.parts(fw.at_samples).items()]
+    return [(name, step, part) for name, step, part in found if part.max() > 4.0]
 
 
-def _tangent(canvas: Canvas, project: Any, fw: Mertsalov, g: graphs.Graph, points: Any, box: Box) -> None:
+def _tangent(canvas: Canvas, project: Any, fw: Mertsalov, of: Stage, points: Any, box: Box) -> None:
     """Tangent of the graph of inertia at the position of the force analysis, which gives the acceleration of the crank there."""
     k = project.force_index
     plan = fw.position_acceleration
     psi = float(plan["ψ"].value[k])
-    at, u = complex(g(points[k])), complex(np.cos(psi), np.sin(psi))
+    at, u = complex(of.frame(points[k])), complex(np.cos(psi), np.sin(psi))
     # As long as its place allows: a steep one ends under the heading and above the numbers of the axis.
     low, high = segment_inside(box.inset(2.0, 2.0, 2.0, graphs.HEAD), at - 26.0 * u, at + 26.0 * u) or (at, at)
-    canvas.line(low, high, "axis")
-    canvas.dot(at, 0.7)
+    with canvas.traced("construction", plan["ψ"].path, fw.labels[k]):
+        canvas.line(low, high, "axis")
+    of.position(k).dot("points", 0.7, "main")
     # The vertex of the angle lies on the tangent, away from the curve's own label.
     vertex = at + 0.8 * ((low if psi > 0 else high) - at)
     side = 1 if psi > 0 else -1
-    canvas.line(vertex, vertex + side * 20, "thin")
+    with canvas.traced("dimension", plan["ψ"].path, fw.labels[k]):
+        canvas.line(vertex, vertex + side * 20, "thin")
     start, end = (0.0, psi) if psi > 0 else (np.pi + psi, np.pi)
     if abs(psi) > 0.02:
         canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {fixed(degrees(psi), 2)}°")
@@ -149,25 +160,32 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     g = graphs.Graph(complex(options["axis"], box.y0 + 8.0 - low))
     graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "mertsalov.energies")
     canvas.of = fw.total_plan.name
-    canvas.polyline(g(x + 1j * total))
+    sums, of, speed = (stage(canvas, p, None, g.place()) for p in (fw.total_plan, plan, fw.speed_plan))
+    with sums.of("points", "curve"):
+        canvas.polyline(g(x + 1j * total))
     canvas.of = plan.name
-    canvas.polyline(g(x + 1j * own))
+    with of.of("points", "curve"):
+        canvas.polyline(g(x + 1j * own))
     points, upper = plan["points"].value, fw.total_plan["ΔE"].value
-    for p, top in zip(points, upper, strict=True):
-        canvas.line(g(complex(p.real, min(0.0, p.imag, top))), g(complex(p.real, max(0.0, p.imag, top))), "thin")
+    for p, top, label in zip(points, upper, fw.labels, strict=True):
+        with canvas.traced("construction", plan["T_I"].path, label):
+            canvas.line(g(complex(p.real, min(0.0, p.imag, top))), g(complex(p.real, max(0.0, p.imag, top))), "thin")
     length = s.angle.mm(fw.reduced.period)
-    graphs.axes(canvas, g, length, low, high, f"{change}, {first}, Дж")
-    graphs.numbers(canvas, g, points.real, fw.labels, np.where(upper > 1e-6, 1.0, -1.0))
+    with of.of("points", "axis"):
+        graphs.axes(canvas, g, length, low, high, f"{change}, {first}, Дж")
+        graphs.numbers(canvas, g, points.real, fw.labels, np.where(upper > 1e-6, 1.0, -1.0))
     for name, end in (("max", "a"), ("min", "b")):
-        contact, cut = plan[f"M_{name}"].value, plan[end].value
-        canvas.line(g(cut), g(contact + 10), "construction")
-        canvas.dot(g(contact), 0.7)
-        canvas.label(g(cut), end, -1 + (1j if end == "a" else -1j), height=5)
-    p, q = g(plan["b"].value), g(plan["a"].value)
-    canvas.dimension(p, q, 9.0, f"|ab| = {fixed(fw.ab_mm, 1)}")
+        # The tangent runs on beyond the point where it touches.
+        with canvas.traced("construction", plan[f"M_{name}"].path):
+            canvas.line(of.at(end), g(plan[f"M_{name}"].value + 10), "construction")
+        of.dot(f"M_{name}", 0.7, "main")
+        of.letters(end, end, -1 + (1j if end == "a" else -1j), 5)
+    with of.of("ab", "dimension"):
+        canvas.dimension(of.at("b"), of.at("a"), 9.0, f"|ab| = {fixed(fw.ab_mm, 1)}")
     axis = fw.speed_plan["O"].value
-    canvas.line(g(axis - 5), g(axis + length + graphs.OVER), "centre")
-    canvas.label(g(axis + length + 2), "ω_{1ср}", 1j, height=5)
+    with speed.of("O", "axis"):
+        canvas.line(g(axis - 5), g(axis + length + graphs.OVER), "centre")
+        canvas.label(g(axis + length + 2), "ω_{1ср}", 1j, height=5)
     k = int(np.argmax(total))
     canvas.label(g(x[k] + 1j * total[k]), change, 1 + 1j, height=5)
     k = int(np.argmax(np.abs(np.gradient(own))))

@@ -6,9 +6,9 @@ are drawn here, once for all views, and every mark knows its step. What a view a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,45 +16,81 @@ import numpy as np
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Role
+from tmm_sheets.drawing.marks import PlacedFrame, Role
+from tmm_sheets.sheets.frame import Frame
+
+Place = Frame | PlacedFrame
+"""Place of a plan on the sheet."""
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A plan at one position, placed on the sheet: ``frame`` turns its points into those of the sheet, ``number`` is that
-    frame's among the canvas's frames.
+    """A plan at one position (or at all, ``k`` None), placed on the sheet: ``frame`` turns its points into those of the sheet,
+    ``number`` is that frame's among the canvas's frames.
     """
 
     canvas: Canvas
     plan: Plan
-    k: int
-    frame: Callable[[Any], Any]
+    k: int | None
+    frame: Place
     number: int
 
     @property
     def label(self) -> str:
         """Label of the position."""
-        return self.plan.labels[self.k] if len(self.plan.labels) > 1 else ""
+        return _label(self.plan, self.k)
+
+    def position(self, k: int) -> Stage:
+        """The same plan in the same place, at another position."""
+        return replace(self, k=k)
 
     @contextmanager
-    def of(self, step: Step | str, role: Role) -> Iterator[None]:
-        """The marks drawn inside come from that step of the plan."""
-        name = step if isinstance(step, str) else step.name
-        with self.canvas.traced(role, f"{self.plan.name}/{name}", self.label, self.number):
+    def of(self, step: Step | str, role: Role, name: str = "") -> Iterator[None]:
+        """The marks drawn inside come from that step; see :class:`~tmm_sheets.drawing.marks.Trace`.
+
+        It may be a step of another plan that is drawn in this frame: a force on a link in its position.
+        """
+        with self.canvas.traced(role, self.step(step).path, self.label, self.number, name):
             yield
+
+    def step(self, step: Step | str) -> Step:
+        """Step of the plan by its name."""
+        return self.plan[step] if isinstance(step, str) else step
+
+    def value(self, step: Step | str) -> Any:
+        """Value of a step at the stage's position."""
+        found = self.step(step)
+        return found.value if self.k is None else found.at(self.k)
 
     def at(self, step: Step | str) -> complex:
         """Point of the sheet of a step."""
-        return complex(self.frame(complex((self.plan[step] if isinstance(step, str) else step).at(self.k))))
+        return complex(self.frame(complex(self.value(step))))
+
+    def vector(self, tail: Step | str, head: Step | str, style: str = "vector") -> None:
+        """Arrow between the points of two steps; it is a mark of the second."""
+        a, b = self.step(tail), self.step(head)
+        with self.of(b, "vector", f"{a.name}–{b.name}"):
+            self.canvas.arrow(self.at(a), self.at(b), style)
+
+    def letters(self, step: Step | str, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
+                at: complex | None = None, leader: bool = True) -> None:
+        """Ask for lettering that belongs to a step, at its point unless told; see :meth:`Canvas.label`."""
+        with self.of(step, "text"):
+            self.canvas.label(self.at(step) if at is None else at, markup, away, height, gap, leader)
+
+    def dot(self, step: Step | str, radius: float = 0.6, style: str = "vector") -> None:
+        """Dot at the point of a step."""
+        with self.of(step, "point"):
+            self.canvas.dot(self.at(step), radius, style)
 
 
-def stage(canvas: Canvas, plan: Plan, k: int, frame: Any) -> Stage:
-    """Place a plan at position ``k`` on the sheet; ``frame`` is a :class:`~tmm_sheets.sheets.frame.Frame` or alike.
+def _label(plan: Plan, k: int | None) -> str:
+    return plan.labels[k] if k is not None and len(plan.labels) > 1 else ""
 
-    The frame's origin and scale factor are noted for whoever reads the sheet again.
-    """
-    label = plan.labels[k] if len(plan.labels) > 1 else ""
-    number = canvas.placed(plan.name, label, complex(frame.origin), float(frame.scale.mu))
+
+def stage(canvas: Canvas, plan: Plan, k: int | None, frame: Place) -> Stage:
+    """Place a plan on the sheet, at position ``k`` or, with None, one for all positions; its frame is noted on the canvas."""
+    number = canvas.placed(plan.name, _label(plan, k), complex(frame.origin), frame.mu, frame.turn, frame.mirror)
     return Stage(canvas, plan, k, frame, number)
 
 
@@ -62,21 +98,30 @@ def helpers(s: Stage, step: Step) -> tuple[Helper, ...]:
     """Helper lines that a step leaves at the stage's position, in the unit of the plan; none where it cannot be built."""
     if step.rule.helpers is None:
         return ()
-    value = step.at(s.k)
-    if np.ndim(value) or np.isnan(value):
+    args, value = (tuple(value_at(a, s.k or 0) for a in step.args), step.at(s.k or 0))
+    if step.rule.gives != "curve" and (np.ndim(value) or np.isnan(value)):
         return ()
-    return step.rule.helpers(tuple(value_at(a, s.k) for a in step.args), value)
+    return step.rule.helpers(args, value)
 
 
-def play(s: Stage, steps: Iterable[Step | str] | None = None, style: str = "construction", cut: float = 3.0) -> None:
-    """Draw the helper lines of steps, of all in the plan unless told, in order: compass cuts as arcs ``cut`` mm to both sides."""
-    for step in s.plan if steps is None else steps:
-        found = s.plan[step] if isinstance(step, str) else step
-        with s.of(found, "construction"):
-            for h in helpers(s, found):
+def play(s: Stage, steps: Iterable[Step | str] | None = None, style: str = "construction", cut: float = 3.0,
+         over: float = 0.0, only: str = "") -> None:
+    """Draw the helper lines of steps, of all in the plan unless told, in order.
+
+    Lines are produced ``over`` mm beyond their ends, compass cuts are arcs ``cut`` mm to both sides; ``only`` is one kind of them.
+    """
+    for step in map(s.step, s.plan if steps is None else steps):
+        for h in (h for h in helpers(s, step) if only in ("", h.kind)):
+            with s.of(step, "construction", _ends(s, step, h)):
                 if h.kind == "line":
-                    s.canvas.line(s.frame(h.a), s.frame(h.b), style)
+                    s.canvas.ray_line(s.frame(h.a), s.frame(h.b), style, over)
                 elif h.kind == "circle":
                     s.canvas.circle(s.frame(h.a), abs(s.frame(h.a + h.radius) - s.frame(h.a)), style)
                 else:
                     s.canvas.arc_mark(s.frame(h.a), s.frame(h.b), cut, style)
+
+
+def _ends(s: Stage, step: Step, h: Helper) -> str:
+    """A helper line from the point of another step is called by both."""
+    starts = (a for a in step.args if isinstance(a, Step) and a.rule.gives in ("point", "vector"))
+    return next((f"{a.name}–{step.name}" for a in starts if a.at(s.k or 0) == h.a), "")

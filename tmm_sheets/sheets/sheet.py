@@ -134,7 +134,8 @@ def composed(project: Project, n: int) -> Composed:
         "institution": block.institution,
         "group": block.group,
     }
-    draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(sheets))
+    with canvas.as_role("frame"):
+        draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(sheets))
     for view in plan.views:
         canvas.of = view.draw
         canvas.begin(view.box, "", view.draw)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan, highest, limit, speed
+from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan, highest, limit, speed, touched
 from tmm_sheets.methods.flywheel.flywheel import LAY_DOWN
 
 
@@ -36,8 +36,15 @@ def test_tangents_of_a_circle(x, y, r, delta):
     phi = np.linspace(0, 2 * pi, 3)
     energy = given_.add("ΔE", LAY_DOWN, y + r * np.sin(phi))
     inertia = given_.add("J", LAY_DOWN, x + r * np.cos(phi))
-    plan = energy_mass_plan(labels, energy, inertia, lambda t: x + r * np.cos(t) + 1j * (y + r * np.sin(t)),
-                            np.linspace(0, 2 * pi, 101), 0.1, 10.0, 8.0, delta)
+
+    def circle(t):
+        return x + r * np.cos(t) + 1j * (y + r * np.sin(t))
+
+    def contact(name, angle):
+        at = circle(touched(circle, angle, 1 if name == "max" else -1, np.linspace(0, 2 * pi, 101)))
+        return given_.add(f"E_{name}", LAY_DOWN, at.imag), given_.add(f"J_{name}", LAY_DOWN, at.real)
+
+    plan = energy_mass_plan(labels, energy, inertia, contact, 0.1, 10.0, 8.0, delta)
     angles = [np.arctan(0.1 / 20 * (8.0 * (1 + s * delta / 2)) ** 2) for s in (1, -1)]
     assert [plan["ψ_max"].value, plan["ψ_min"].value] == pytest.approx(angles, rel=1e-15)
     upper = y - x * tan(angles[0]) + r / cos(angles[0])

@@ -20,7 +20,8 @@ from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.methods.flywheel.energy_mass import limit
-from tmm_sheets.methods.flywheel.flywheel import DiagramSpace, FlywheelScales, wheel
+from tmm_sheets.methods.flywheel.flywheel import DiagramSpace, FlywheelScales
+from tmm_sheets.methods.flywheel.wheel import wheel
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
 MANUALS = Path(__file__).parents[2] / "manuals"
@@ -228,9 +229,11 @@ def test_nothing_is_computed_before_it_is_read():
 def test_every_plan_speaks_and_can_be_built():
     for reduced in (truth.Shaper(), Cutting(), Engine()):
         plans = flywheel(reduced, DATA).plans
-        assert list(plans) == ["reduced-moment", "work", "driving-moment", "total-work", "reduced-inertia", "energy-mass"]
+        diagrams = ["reduced-moment", "work", "driving-moment", "total-work", "reduced-inertia", "energy-mass"]
+        formulas = ["flywheel-inertia", "flywheel-limit", "flywheel-wheel", "crank-acceleration"]
+        assert [name for name in plans if "@" not in name and name != "reduction"] == [*diagrams, *formulas]
         for plan in plans.values():
-            assert plan.unit == "mm"
+            assert (plan.unit == "mm") == (plan.name in diagrams or plan.name.startswith(("ordinates@", "slopes@")))
             assert plan.check() is None
             for k in range(len(plan.labels)):
                 assert all(s.endswith(".") and "nan" not in s for s in sentences(plan, k, lambda mm: mm))

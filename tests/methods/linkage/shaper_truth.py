@@ -11,6 +11,8 @@ from math import acos, pi, radians
 
 import numpy as np
 
+from tests.methods.flywheel.as_steps import AsSteps
+
 AB, AC, CD, CS3 = 0.08, 0.26, 0.566, 0.283
 M2, M3, M4, M5, J_S3 = 2.8, 5.66, 3.0, 80.0, 0.15110
 F5 = 2800.0
@@ -54,7 +56,7 @@ def ram_stroke():
 
 
 @dataclass(frozen=True)
-class Shaper:
+class Shaper(AsSteps):
     """The reduced quantities a flywheel is designed from."""
 
     positions: int = 10

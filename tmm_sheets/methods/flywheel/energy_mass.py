@@ -6,16 +6,17 @@ The curve is the change of kinetic energy over the reduced moment of inertia, th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.rules import LINE_LINE
+from tmm_sheets.construction.rules import LINE_LINE, taken
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.methods.integration import Floats, Quadrature
+from tmm_sheets.methods.integration import Floats, Quadrature, weighted
 
 Curve = Callable[[Any], Any]
 
@@ -44,22 +45,26 @@ def highest(f: Callable[[Floats], Floats], samples: Floats) -> float:
     return float(best)
 
 
-def _touch(angle: Any, side: Any, curve: Curve, samples: Floats) -> Any:
+def touched(curve: Curve, angle: float, side: int, samples: Floats) -> float:
+    """Argument of the point of a complex curve where a tangent under an angle touches it from above (``side`` +1) or below (-1)."""
     slope = np.tan(angle)
 
     def height(t: Floats) -> Floats:
         p = curve(t)
         return np.asarray(side * (np.imag(p) - slope * np.real(p)))
 
-    return complex(curve(np.array([highest(height, samples)]))[0])
+    return highest(height, samples)
 
 
 SEGMENT = Rule("segment of the energy axis", lambda a, b: np.imag(a) - np.imag(b), ("point", "point"), "ordinate",
                "На оси ΔE измерим отрезок от {1} до {0}, вверх положительный: {name} = {value}.")
-TANGENT_ANGLE = Rule(
-    "angle of a tangent", lambda k, omega, delta: np.arctan(k * (omega * (1 + delta / 2)) ** 2), (), "angle",
-    "Вычислим угол наклона касательной {name} = {value}.",
-)
+_ANGLE = ("Вычислим угол наклона касательной {name} = arctg[μ_J/(2μ_E)·ω1²(1 ", " δ/2)²] = {value}.")
+UPPER_ANGLE = Rule(
+    "angle of the upper tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 + delta / 2)) ** 2),
+    ("number",) * 4, "angle", "+".join(_ANGLE), source="000, 5.5")
+LOWER_ANGLE = Rule(
+    "angle of the lower tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 - delta / 2)) ** 2),
+    ("number",) * 4, "angle", "−".join(_ANGLE), source="000, 5.5")
 UNDER_ANGLE = Rule("direction under an angle", lambda angle: np.cos(angle) + 1j * np.sin(angle), ("angle",), "direction",
                    "Под углом {0} к оси приведённых моментов инерции возьмём направление {name}.")
 PROJECT = Rule(
@@ -68,12 +73,12 @@ PROJECT = Rule(
     "на их пересечении точка кривой энергомасс.",
     lambda a, v: (Helper("line", complex(0, v.imag), v), Helper("line", complex(v.real, 0), v)),
 )
-TOUCH = Rule("touch a curve", _touch, ("angle",), "point",
-             "Под углом {0} к оси приведённых моментов инерции проведём касательную к кривой: точка касания {name}.")
+TOUCH = Rule("point of contact", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
+             "Проведём касательную этого направления к кривой: точка касания {name} с ординатой {0} и абсциссой {1}.")
 
 
-def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, curve: Curve, samples: Floats,
-                     mu_j: float, mu_e: float, omega: float, delta: float) -> Plan:
+def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, contact: Callable[[str, float], tuple[Step, Step]],
+                     mu_j: float, mu_e: float, omega: float, delta: float, where: str = "") -> Plan:
     """Construction of the segment ``ab`` on paper, mm.
 
     Parameters
@@ -82,14 +87,15 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, curve
         numbers of the positions.
     energy, inertia
         ordinates of the graphs dE(phi) and J(phi) at the positions, arrays, mm.
-    curve
-        the smooth closed curve through the points: angle -> complex, abscissa J, ordinate dE, mm.
-    samples
-        angles between which every hump of the curve is seen, corners among them.
+    contact
+        ordinates of these graphs, mm, where the tangent "max" or "min" under an angle (rad) touches the curve. A tangent that
+        shifts along the curve stays where it was to first order, so the angle of the crank there may be chosen once.
     mu_j, mu_e
         scale factors, kg m2/mm and J/mm.
     omega, delta
         mean angular velocity, rad/s, and coefficient of non-uniformity.
+    where
+        behind the plan's name.
 
     Returns
     -------
@@ -97,14 +103,13 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, curve
     ``b`` (intercepts on the energy axis) and ``ab`` (from b up to a, mm: negative where the upper tangent cuts the axis below the
     lower one, so that no flywheel is needed).
     """
-    plan = Plan("energy-mass", "Диаграмма энергомасс", "mm", labels)
+    plan = Plan(f"energy-mass{where}", "Диаграмма энергомасс", "mm", labels)
     plan.add("points", PROJECT, energy, inertia)
-    k = mu_j / (2 * mu_e)
-    for name, sign, side, intercept in (("max", 1.0, 1, "a"), ("min", -1.0, -1, "b")):
-        angle = plan.add(f"ψ_{name}", TANGENT_ANGLE, k, omega, sign * delta)
+    for name, rule, intercept in (("max", UPPER_ANGLE, "a"), ("min", LOWER_ANGLE, "b")):
+        angle = plan.add(f"ψ_{name}", rule, mu_j, mu_e, omega, delta)
         direction = plan.add(f"t_{name}", UNDER_ANGLE, angle)
-        contact = plan.add(f"T_{name}", TOUCH, angle, side, curve, samples)
-        plan.add(intercept, LINE_LINE, contact, direction, 0j, 1j,
+        touching = plan.add(f"T_{name}", TOUCH, *contact(name, float(angle.value)))
+        plan.add(intercept, LINE_LINE, touching, direction, 0j, 1j,
                  say="Касательная в точке {0} пересечёт ось ΔE в точке {name}.")
     plan.add("ab", SEGMENT, plan["a"], plan["b"])
     return plan
@@ -115,7 +120,8 @@ class ConvergedWheel:
     """The limit of the construction for vanishing intervals.
 
     ``segment`` is ``ab mu_E``, J; ``inertia`` that of the flywheel, kg m2, both negative when none is needed; ``error`` the
-    relative difference of the last two refinements; ``phi_max`` and ``phi_min`` the angles of the two contacts, rad.
+    relative difference of the last two refinements; ``phi_max`` and ``phi_min`` the angles of the two contacts, rad;
+    ``panels`` those of the quadrature in each interval.
     """
 
     segment: float
@@ -123,20 +129,23 @@ class ConvergedWheel:
     error: float
     phi_max: float
     phi_min: float
+    panels: int = 1
 
 
-def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: float, tolerance: float = 1e-13) -> ConvergedWheel:
+def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: float, tolerance: float = 1e-13,
+          whole: Curve | None = None) -> ConvergedWheel:
     """Flywheel without chords: max(dE - J omega_max^2/2) - min(dE - J omega_min^2/2) = delta omega^2 J_flywheel.
 
-    ``moment`` (without the constant one, N m) and ``inertia`` (without the flywheel, kg m2) are vectorised functions of
-    the angle, smooth between the ``borders``. Work by Gauss-Legendre panels, the contacts found between the nodes; the
-    panels are halved until two results agree to ``tolerance``.
+    ``moment`` (without the constant one, N m; ``whole`` where it is asked at all nodes at once) and ``inertia`` (without the
+    flywheel, kg m2) are vectorised functions of the angle, smooth between the ``borders``. Work by Gauss-Legendre panels, the
+    contacts found between the nodes; the panels are halved until two results agree to ``tolerance``.
+    This is the search for the contacts and the panels; what is told of it is a step of :func:`limit_segment`.
     """
     samples = np.unique(np.concatenate((np.linspace(borders[0], borders[-1], 721), borders)))
     j = np.asarray(inertia(samples))
     result = None
     for panels in (1, 2, 4, 8, 16):
-        work = Quadrature(moment, borders, panels)
+        work = Quadrature(moment, borders, panels, whole=whole)
         mean = work.total / (borders[-1] - borders[0])
         done = work(samples)
         segment, contact = 0.0, []
@@ -151,11 +160,103 @@ def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: f
             contact.append(highest(height, samples))
             segment += float(height(np.array(contact[-1:]))[0])
         error = abs(segment - result.segment) / (abs(segment) or 1.0) if result else np.inf
-        result = ConvergedWheel(segment, segment / (delta * omega**2), error, contact[0], contact[1])
+        result = ConvergedWheel(segment, segment / (delta * omega**2), error, contact[0], contact[1], panels)
         if error <= tolerance:
             break
     assert result is not None
     return result
+
+
+SEGMENT_LIMIT = Rule(
+    "excess of energy for vanishing intervals",
+    lambda m, up, low, end, end_up, end_low, j_up, j_low, omega, delta: (
+        weighted(m, up) + weighted(end, end_up) - (omega * (1 + delta / 2)) ** 2 / 2 * j_up
+        - (weighted(m, low) + weighted(end, end_low) - (omega * (1 - delta / 2)) ** 2 / 2 * j_low)),
+    ("number",) * 10, "number", "", beyond_paper=True, unit="J")
+EVEN_SEGMENT_LIMIT = Rule(
+    "excess of energy at an even speed for vanishing intervals",
+    lambda m, up, low, end, end_up, end_low, j_up, j_low, omega: (
+        weighted(m, up) + weighted(end, end_up) - omega**2 / 2 * j_up
+        - (weighted(m, low) + weighted(end, end_low) - omega**2 / 2 * j_low)),
+    ("number",) * 9, "number", "", beyond_paper=True, unit="J")
+AT_CONTACT = taken("moment of inertia at a contact", "kg*m2", "Приведённый момент инерции в точке касания {name} = {value} кг·м².")
+
+
+class AtAngles(Protocol):
+    """Reduced quantities at some angles, as steps on velocity plans (:class:`~tmm_sheets.methods.flywheel.reduced.Reduction`)."""
+
+    @property
+    def plan(self) -> Plan:
+        """Plan of the reduced quantities."""
+        ...
+
+    @property
+    def plans(self) -> tuple[Plan, ...]:
+        """All plans of these angles, in order."""
+        ...
+
+    @property
+    def phi(self) -> Any:
+        """The angles, rad."""
+        ...
+
+    def moment(self, side: int = 1) -> Step:
+        """Reduced moment of the technological forces, N m; ``side`` as in :meth:`ReducedData.moment`."""
+        ...
+
+    @property
+    def inertia(self) -> Step:
+        """Reduced moment of inertia without the flywheel, kg m2."""
+        ...
+
+    @property
+    def terms(self) -> Mapping[str, Step]:
+        """Twice the kinetic energy of each link, term by term, kg m2/s2, by names in lettering markup."""
+        ...
+
+    @property
+    def others(self) -> Step:
+        """The same without the crank's own."""
+        ...
+
+    @property
+    def slope(self) -> Step:
+        """Its derivative over the angle, kg m2/rad."""
+        ...
+
+
+def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callable[[str, Floats], AtAngles],
+                  mass: Callable[[AtAngles], Step], omega: float, delta: float | None) -> Step:
+    """Segment ``ab mu_E`` for vanishing intervals, J, as one formula: step ``ab·μ_E`` of the plan.
+
+    Parameters
+    ----------
+    plan
+        receives the steps.
+    found
+        angles of the contacts and panels of the quadrature, found by a search.
+    borders
+        of the intervals, rad.
+    at, mass
+        reduced quantities at some angles, by a name for their plans, and the moment of inertia that counts of them.
+    omega, delta
+        mean angular velocity, rad/s, and coefficient of non-uniformity: with it the links run at the extremes, without it evenly.
+    """
+    contacts = np.array([found.phi_max, found.phi_min])
+    quadrature = Quadrature(np.zeros_like, borders, found.panels)
+    nodes, ends = quadrature.at, quadrature.excess_weights(contacts)
+    args: list[Any] = []
+    for name, angles, i in (("limit", nodes, 0), ("limit-ends", ends[0], 1)):
+        args += [at(name, angles).moment(0), *(Given(of[i], f"weights up to the contact {which}", over="curve")
+                                               for of, which in zip(ends[1], ("max", "min"), strict=True))]
+    inertia = mass(at("limit-contacts", contacts))
+    j = [plan.add(f"J_{name}", AT_CONTACT, inertia, k) for k, name in enumerate(("max", "min"))]
+    error = "" if np.isinf(found.error) else f", относительная погрешность {found.error:.0e}"
+    say = (f"При n → ∞ избыток энергии между точками касания – квадратурой Гаусса – Лежандра (панелей на интервал {found.panels}, "
+           f"узлов {len(nodes) + len(ends[0])}{error}): {{name}} = {{value}} Дж.")
+    if delta is None:
+        return plan.add("ab·μ_E", EVEN_SEGMENT_LIMIT, *args, *j, omega, say=say)
+    return plan.add("ab·μ_E", SEGMENT_LIMIT, *args, *j, omega, delta, say=say)
 
 
 def speed(moment: Curve, inertia: Curve, borders: Floats, flywheel: float, fastest: tuple[float, float],

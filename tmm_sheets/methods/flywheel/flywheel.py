@@ -9,27 +9,38 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise, product
-from math import pi, prod
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from math import prod
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given, named
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Helper, Rule, Step, Told
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.energy_mass import ConvergedWheel, limit, speed
+from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, speed
 from tmm_sheets.methods.flywheel.running import Energy, Running, steady
-from tmm_sheets.methods.integration import ORIGIN, Floats, Quadrature, differentiate, integrate, ordinates, smooth
+from tmm_sheets.methods.flywheel.wheel import MotorCheck, RimWheel, motor_check, wheel
+from tmm_sheets.methods.integration import (
+    AREA,
+    ON_CURVE,
+    ORIGIN,
+    SMOOTH,
+    Floats,
+    Quadrature,
+    differentiate,
+    integrate,
+)
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import FlywheelTable
-
-RIM_SPEED = 30.0
-"""Speed of the rim up to which a rim with spokes is used, m/s (manual 000, 5.7)."""
 
 
 class ReducedData(Protocol):
@@ -70,6 +81,39 @@ class ReducedData(Protocol):
         ...
 
     @property
+    def numbered(self) -> AtAngles:
+        """Reduced quantities at the n positions, as steps."""
+        ...
+
+    def at(self, where: str, phi: Any, labels: tuple[str, ...] | None = None) -> AtAngles:
+        """The same at any angles; the plans are kept under the name "@where"."""
+        ...
+
+    @property
+    def crank(self) -> Step:
+        """The crank's own constant part of the reduced moment of inertia, kg m2."""
+        ...
+
+    @property
+    def force_steps(self) -> tuple[Step, ...]:
+        """Steps of the forces that ``forces_at`` tells, in its order, at the positions."""
+        ...
+
+    @property
+    def crank_plans(self) -> tuple[Plan, ...]:
+        """Plans behind it."""
+        ...
+
+    @property
+    def kept(self) -> Mapping[str, AtAngles]:
+        """Reduced quantities that were asked for by :meth:`at`, by their names."""
+        ...
+
+    def parts(self, at: Any) -> Mapping[str, Floats]:
+        """Terms of the reduced moment of inertia without the crank's, kg m2, by their names in :attr:`inertia_terms`."""
+        ...
+
+    @property
     def inertia_terms(self) -> Mapping[str, Floats]:
         """Rows of the table of the reduced moment of inertia, n + 1 numbers each."""
         ...
@@ -92,14 +136,6 @@ class ReducedData(Protocol):
 
     def inertia(self, phi: Any) -> Floats:
         """Reduced moment of inertia without the flywheel, kg m2."""
-        ...
-
-    def inertia_parts(self, phi: Any) -> Mapping[str, Floats]:
-        """Its terms without the crank's, by their names in :attr:`inertia_terms`."""
-        ...
-
-    def inertia_slope(self, phi: Any) -> Floats:
-        """Its derivative over the angle, kg m2/rad."""
         ...
 
     @property
@@ -144,61 +180,6 @@ class FlywheelScales:
             raise ValueError(f"mu_A = {self.work.mu} is not mu_M mu_phi H = {expected}")
 
 
-@dataclass(frozen=True)
-class RimWheel:
-    """Sizes: diameter D (of the middle of the rim, or of the disc), width B, thickness of the rim H, m; mass, kg.
-
-    ``speed`` is that of the rim at D/2, m/s; H is NaN for a disc.
-    """
-
-    form: Literal["rim", "disc"]
-    diameter: float
-    width: float
-    thickness: float
-    mass: float
-    speed: float
-
-
-@dataclass(frozen=True)
-class MotorCheck:
-    """Power asked for, W, and non-uniformity permitted by the motor's slip, beside what it has and what is left.
-
-    ``permitted`` = 2 (n_synchronous - n_rated)/n_rated: a smaller slip would drive the motor as a generator.
-    """
-
-    power: float
-    permitted: float
-    rated_power: float
-    delta: float
-
-    @property
-    def strong(self) -> bool:
-        """True when the motor has the power."""
-        return self.power <= self.rated_power
-
-    @property
-    def steady(self) -> bool:
-        """True when the motor stays a motor all round the turn."""
-        return self.delta <= self.permitted
-
-
-def wheel(inertia: float, omega: float, form: str, density: float, width_ratio: float, thickness_ratio: float,
-          rim_share: float = 1.0) -> RimWheel:
-    """Sizes of a cast wheel with that moment of inertia, kg m2 (manual 000, 5.7).
-
-    Rim with spokes: D = (4 J/(pi rho kappa c))^(1/5), m = 4 J/D^2; disc: D = (32 J/(pi rho kappa))^(1/5), m = 8 J/D^2;
-    kappa = B/D, c = H/D. A rim that would run at 30 m/s or more becomes a disc. ``rim_share`` of J is counted for the rim
-    (manual 001: 0.9), the rest for spokes and hub.
-    """
-    if form == "rim":
-        rim = rim_share * inertia
-        d = (4 * rim / (pi * density * width_ratio * thickness_ratio)) ** 0.2
-        if omega * d / 2 < RIM_SPEED:
-            return RimWheel("rim", d, width_ratio * d, thickness_ratio * d, 4 * rim / d**2, omega * d / 2)
-    d = (32 * inertia / (pi * density * width_ratio)) ** 0.2
-    return RimWheel("disc", d, width_ratio * d, float("nan"), 8 * inertia / d**2, omega * d / 2)
-
-
 def lettered(n: int) -> str:
     """Letters of the n-th point between two numbers: none, a, b ... z, aa, ab ..."""
     text = ""
@@ -208,10 +189,25 @@ def lettered(n: int) -> str:
     return text
 
 
+@primitive("gather ordinates")
 def _gather(*points: Any) -> Any:
     return np.array([np.imag(p) for p in points])
 
 
+MOMENT_AT = taken("reduced moment at the positions", "N*m", "Приведённый момент сил {name} = {value} Н·м.")
+INERTIA_AT = taken("reduced moment of inertia at the positions", "kg*m2", "Приведённый момент инерции {name} = {value} кг·м².")
+SLOPE_AT = taken("slope of the moment of inertia at the positions", "kg*m2", "Производная {name} = {value} кг·м².")
+ORDINATE_AT = taken("ordinate of an interval", "mm", "Ордината {name} = {value} мм.")
+SLOPE_OF_CHORD = taken("slope at the border of an interval", "", "Наклон кривой на границе интервала {name} = {value}.")
+WORK_AT = taken("work of the cycle", "J", "Работа за цикл {name} = {value} Дж.")
+TO_PAPER = Rule("to scale", lambda value, mu: value / mu, ("number", "number"), "number",
+                "Её ордината {name} = {0}/{1} = {value} мм.", unit="mm")
+FROM_PAPER = Rule("from scale", lambda y, mu: y * mu, ("ordinate", "number"), "number",
+                  "{name} = {0}·{1} = {value} Дж.", unit="J")
+TO_SLOPE = Rule("slope on paper", lambda value, mu, pole: value / (mu * pole), ("number",) * 3, "number",
+                "Наклон {name} = M/(μ_M·H) = {value}.")
+ABSCISSA = Rule("abscissa of an angle", lambda phi, mu: phi / mu, ("number", "number"), "number",
+                "Абсцисса угла {name} = {value} мм.", unit="mm")
 PLOT = Rule(
     "plot a point", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
     "На абсциссе {0} отложим ординату {1}: точка графика.",
@@ -223,19 +219,46 @@ BALANCE = Rule(
     "график работы постоянного момента.",
     lambda a, v: (Helper("line", a[0], v), Helper("line", 0j, v)),
 )
+CONSTANT_MOMENT = Rule("constant moment", lambda p, mu: np.imag(p) * mu, ("point", "number"), "number",
+                       "Постоянный приведённый момент, уравновешивающий цикл: {name} = y·μ_M = {value} Н·м.", unit="N*m",
+                       source="000, 5.3")
 MEASURE = Rule("measure ordinates", _gather, (), "ordinate", "Измерим ординату графика работ {name} = {value}.")
 ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / np.real(end), ("ordinate", "point"), "ordinate",
                "На абсциссе {0} измерим ординату прямой {name} = {value}.")
 SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
            "Сложим ординаты {0} и {1} с их знаками: {name} = {value}.")
-AREA = Rule("ordinate from an area", lambda y: y, ("ordinate",), "ordinate",
-            "Для проверки: площадь графика момента даёт конечную ординату работы {name} = {value}.", beyond_paper=True)
+AREA_ORDINATE = Rule("ordinate from an area", lambda a, mu: a / mu, ("number", "number"), "ordinate",
+                     "Для проверки: площадь графика момента даёт конечную ординату работы {name} = {value}.", beyond_paper=True)
 BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
                    "Построенная конечная ордината {0} отличается от неё на {name} = {value}: ордината в середине интервала – "
                    "не средняя ордината кривой.", beyond_paper=True)
-ENLARGE = Rule("enlarge ordinates", lambda y, times: y * times, ("ordinate", "number"), "ordinate",
-               "Умножим ординату {0} на {1}: {name} = {value}.")
+MEAN_MOMENT = Rule("mean moment from the work", lambda a, period: -a / period, ("number", "number"), "number",
+                   "По площади {name} = {value} Н·м.", beyond_paper=True, unit="N*m")
+ENLARGE = Rule("enlarge ordinates", lambda y, mu, other: y * (mu / other), ("ordinate", "number", "number"), "ordinate",
+               "Пересчитаем ординату {0} из масштаба μ_A = {1} в масштаб μ_E = {2}, умножив на μ_A/μ_E: {name} = {value}.")
 LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", "Отложим ординату {name} = {value}.")
+OF_SEGMENT = Rule("moment of inertia from the segment", lambda ab, mu, delta, omega: ab * mu / (delta * omega**2),
+                  ("ordinate", "number", "number", "number"), "number",
+                  "{name} = ab·μ_E/(δ·ω1²) = {0}·{1}/({2}·{3}²) = {value} кг·м².", unit="kg*m2", source="000, 5.6")
+OF_EXCESS = Rule("moment of inertia from the excess of energy", lambda excess, delta, omega: excess / (delta * omega**2),
+                 ("number",) * 3, "number", "{name} = {0}/({1}·{2}²) = {value} кг·м².", beyond_paper=True, unit="kg*m2",
+                 source="000, 5.6")
+TOGETHER = Rule("moments of inertia together", lambda a, b: a + b, ("number", "number"), "number",
+                "Всё, что вращается с начальным звеном: {name} = {0} + {1} = {value} кг·м².", unit="kg*m2")
+BARE = Rule("moment of inertia of the flywheel", lambda first, crank: first - crank, ("number", "number"), "number",
+            "Момент инерции маховика {name} = {0} − {1} = {value} кг·м².", unit="kg*m2")
+BARE_OF_ROTOR = Rule("moment of inertia of the flywheel beside a rotor", lambda first, crank, rotor: first - crank - rotor,
+                     ("number",) * 3, "number",
+                     "Момент инерции маховика {name} = {0} − {1} − {2} = {value} кг·м².", unit="kg*m2")
+RATIO = Rule("ratio of angular velocities", lambda rotor, crank: rotor / crank, ("number", "number"), "number",
+             "Передаточное отношение от двигателя {name} = {0}/{1} = {value}.")
+ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("number", "number"), "number",
+             "Момент инерции ротора, приведённый к начальному звену: {name} = {0}·{1}² = {value} кг·м².", unit="kg*m2")
+RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maximum(-wheel, 0.0), ("number", "number"), "number",
+               "У готовой машины с начальным звеном вращаются {name} = {value} кг·м².", unit="kg*m2")
+TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
+DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"),
+                  "number", "Построение отличается от предела на {name} = {value} %.", beyond_paper=True, unit="%")
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,6 +273,8 @@ class Flywheel(ABC):
     data: FlywheelTable
     space: DiagramSpace | None = None
     fixed_scales: FlywheelScales | None = None
+    where: str = ""
+    """Behind the names of the plans, where a project has two flywheels."""
 
     # --- division of the angle axis -------------------------------------------------------------
     @property
@@ -309,10 +334,19 @@ class Flywheel(ABC):
         """Mark of the points carried to the ordinate axis: ″ where there are positions named 1′."""
         return "″" if len(self._numbered) < len(self.labels) else "′"
 
-    def _moment_at_edges(self) -> tuple[Floats, Floats]:
-        """Moment at the beginning and at the end of each interval, N m."""
-        return (np.asarray(self.reduced.moment(self.edges[:-1], side=1)),
-                np.asarray(self.reduced.moment(self.edges[1:], side=-1)))
+    def at(self, where: str, phi: Any, labels: tuple[str, ...] | None = None) -> AtAngles:
+        """Reduced quantities at angles of this flywheel only."""
+        return self.reduced.at(f"{where}{self.where}", phi, labels)
+
+    @cached_property
+    def at_borders(self) -> AtAngles:
+        """Reduced quantities at the borders of the intervals."""
+        return self.reduced.at("borders", self.edges, self.borders)
+
+    @cached_property
+    def at_samples(self) -> AtAngles:
+        """Reduced quantities at the :attr:`samples`."""
+        return self.reduced.at("samples", self.samples)
 
     @cached_property
     def samples(self) -> Floats:
@@ -329,8 +363,8 @@ class Flywheel(ABC):
         space, reduced = self.space or self._space(), self.reduced
         work = Quadrature(reduced.moment, self.edges)
         constant = -work.total / reduced.period
-        moment = np.append(np.concatenate(self._moment_at_edges()), (0.0, constant))
-        moment = np.append(moment, reduced.moment(self.samples))
+        edges = self.at_borders.moment(1).value, self.at_borders.moment(-1).value
+        moment = np.concatenate((*edges, (0.0, constant), self.at_samples.moment().value))
         done = np.append(work(self.samples), (0.0, -work.total))
         excess = work(self.samples) + constant * self.samples
         mass = self.inertia(self.samples)
@@ -360,9 +394,50 @@ class Flywheel(ABC):
     def _energies(self, excess: Floats, mass: Floats) -> Iterable[float]:
         """Energies the method needs room for besides dE, J; ``excess`` and ``mass`` are dE and J at the samples."""
 
+    # --- given numbers -------------------------------------------------------------------------------
+    def mu(self, name: str) -> float:
+        """Scale factor of a quantity, by the name of its field in :class:`FlywheelScales`."""
+        scale: Scale = getattr(self.scales, name)
+        return named(scale.mu, f"scales.{_FACTORS[name][0]}", scale.symbol.replace("_", "_{") + "}", _FACTORS[name][1])
+
+    @property
+    def omega1(self) -> float:
+        """Mean angular velocity of the crank, rad/s."""
+        return named(self.reduced.omega1, "crank.speed", "ω_1", "rad/s")
+
+    @property
+    def delta(self) -> float:
+        """Permitted coefficient of non-uniformity."""
+        return named(self.data.delta, "flywheel.delta", "δ")
+
+    @cached_property
+    def closing(self) -> Given:
+        """Numbers of the positions over the closed cycle: the last is the first again."""
+        n = len(self.reduced.labels)
+        return Given(np.append(np.arange(n), 0), "positions of the closed cycle")
+
+    @cached_property
+    def across(self) -> Given:
+        """Abscissae of the positions, mm."""
+        return Given(self.scales.angle.mm(self.reduced.phi), "abscissae of the positions", "x", "mm")
+
+    @cached_property
+    def data_plan(self) -> Plan:
+        """What is given: angles ``φ1`` of the positions and ``δ``."""
+        plan = Plan(f"flywheel-data@given{self.where}", "Исходные данные маховика", "", self.labels)
+        plan.add("φ1", GIVEN_NUMBER, Given(self.reduced.phi, "cycle", "φ_1", "rad"))
+        plan.add("δ", GIVEN_NUMBER, self.delta)
+        return plan
+
     # --- the construction ---------------------------------------------------------------------------
-    def inertia(self, phi: Any) -> Floats:
+    def mass(self, at: AtAngles) -> Step:
         """Reduced moment of inertia whose graph is drawn, kg m2: of all links without the flywheel."""
+        return at.inertia
+
+    def inertia(self, phi: Any) -> Floats:
+        """The same at any angles."""
+        if phi is self.samples:
+            return np.asarray(self.mass(self.at_samples).value)
         return np.asarray(self.reduced.inertia(phi))
 
     @cached_property
@@ -372,9 +447,10 @@ class Flywheel(ABC):
 
     @cached_property
     def moment_plan(self) -> Plan:
-        """Graph of the reduced moment: step ``M`` holds its points at the positions, mm."""
-        plan = Plan("reduced-moment", "График приведённого момента", "mm", self.labels)
-        plan.add("M", PLOT, self.scales.angle.mm(self.reduced.phi), self.scales.moment.mm(self.M_reduced))
+        """Graph of the reduced moment: step ``M`` holds its points at the positions, mm, ``M_пр`` the moment, N m."""
+        plan = Plan(f"reduced-moment{self.where}", "График приведённого момента", "mm", self.labels)
+        moment = plan.add("M_пр", MOMENT_AT, self.reduced.numbered.moment(), self.closing)
+        plan.add("M", PLOT, self.across, plan.add("y_M", TO_PAPER, moment, self.mu("moment")))
         return plan
 
     @cached_property
@@ -383,34 +459,83 @@ class Flywheel(ABC):
         return tuple(self.work_plan[name] for name in self.borders)
 
     @cached_property
+    def middles_plan(self) -> Plan:
+        """Ordinates of the moment in the middles of the intervals, mm: ``y``."""
+        plan = Plan(f"ordinates@middles{self.where}", "Ординаты момента в серединах интервалов", "mm", self.intervals)
+        at = self.reduced.at("middles", (self.edges[:-1] + self.edges[1:]) / 2, self.intervals)
+        plan.add("y", TO_PAPER, at.moment(), self.mu("moment"))
+        return plan
+
+    @cached_property
+    def slopes_plan(self) -> Plan:
+        """Slopes of the work curve on paper at the borders of the intervals, behind each (``+``) and before it (``−``)."""
+        plan = Plan(f"slopes@borders{self.where}", "Наклоны графика работы на границах интервалов", "mm", self.borders)
+        for name, side in (("+", 1), ("−", -1)):
+            plan.add(name, TO_SLOPE, self.at_borders.moment(side), self.mu("moment"), self.pole)
+        return plan
+
+    @cached_property
+    def intervals_plan(self) -> Plan:
+        """The same interval by interval: ``y``, ``+`` (at its beginning), ``−`` (at its end) with its name."""
+        plan = Plan(f"ordinates@intervals{self.where}", "Ординаты момента по интервалам", "mm")
+        slopes = self.slopes_plan
+        for name, row, rule, first in (("y", self.middles_plan["y"], ORDINATE_AT, 0), ("+", slopes["+"], SLOPE_OF_CHORD, 0),
+                                       ("−", slopes["−"], SLOPE_OF_CHORD, 1)):
+            for k, interval in enumerate(self.intervals):
+                plan.add(f"{name}{interval}", rule, row, k + first)
+        return plan
+
+    @property
+    def pole(self) -> float:
+        """Pole distance, mm."""
+        return named(self.scales.pole, "scales.H", "H", "mm")
+
+    @cached_property
     def work_plan(self) -> Plan:
-        """Graphical integration of the moment: see :func:`integrate` for the names of its steps."""
-        plan = Plan("work", "График работы", "mm")
-        middles = (self.edges[:-1] + self.edges[1:]) / 2
-        heights = self.scales.moment.mm(self.reduced.moment(middles))
-        integrate(plan, "", self.abscissae, heights, self.scales.pole, borders=self.borders, intervals=self.intervals,
-                  mark=self.mark)
-        area = plan.add("∫M", AREA, self.scales.work.mm(float(self.work_converged[-1])))
-        plan.add("ΔA", BESIDE_AREA, plan[self.borders[-1]], area)
+        """Graphical integration of the moment: see :func:`integrate` for the names of its steps; ``A(φ)`` is the smooth curve."""
+        plan, of = Plan(f"work{self.where}", "График работы", "mm"), self.intervals_plan
+        ends = integrate(plan, "", self.abscissae, [of[f"y{name}"] for name in self.intervals], self.pole,
+                         borders=self.borders, intervals=self.intervals, mark=self.mark)
+        plan.add("A(φ)", SMOOTH, *ends, *(of[f"{side}{name}"] for side in "+−" for name in self.intervals))
+        area = plan.add("∫M", AREA_ORDINATE, self.area_plan["A_Σ"], self.mu("work"))
+        plan.add("ΔA", BESIDE_AREA, ends[-1], area)
+        return plan
+
+    @cached_property
+    def area_plan(self) -> Plan:
+        """Work by the area of the graph of the moment: ``A`` at the positions, ``A_Σ`` of the cycle, J; ``M`` its mean, N m."""
+        plan = Plan(f"area@limit{self.where}", "Работа по площади графика момента", "", self.labels)
+        q = Quadrature(np.zeros_like, self.edges, 4)
+        moment = self.reduced.at("area", q.at).moment()
+        ends = Given(q.panels * np.array(self.at_positions), "borders of the positions")
+        row = plan.add("A", AREA, moment, Given(q.halves, "half widths of the panels", unit="rad", over="curve"),
+                       Given(q.weights, "weights of the quadrature", over="curve"), ends)
+        total = plan.add("A_Σ", WORK_AT, row, len(self.labels) - 1)
+        plan.add("M", MEAN_MOMENT, total, self.reduced.period)
         return plan
 
     @cached_property
     def driving_plan(self) -> Plan:
-        """Work of the constant moment (step ``K``, end of its line) and its differentiation (step ``dK``), mm."""
-        plan = Plan("driving-moment", "График постоянного момента", "mm")
+        """Work of the constant moment (step ``K``, end of its line) and its differentiation (step ``dK``), mm; ``M``, N m."""
+        plan = Plan(f"driving-moment{self.where}", "График постоянного момента", "mm")
         origin = plan.add("0", ORIGIN, 0.0)
         end = plan.add("K", BALANCE, self.work_ends[-1])
-        differentiate(plan, "", [origin, end], self.scales.pole, intervals=["K"])
+        (found,) = differentiate(plan, "", [origin, end], self.pole, intervals=["K"])
+        plan.add("M", CONSTANT_MOMENT, found, self.mu("moment"))
         return plan
 
     @cached_property
     def total_plan(self) -> Plan:
-        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at the scale of energy, mm."""
-        plan = Plan("total-work", "График суммарной работы", "mm", self.labels)
-        line = plan.add("y_1", ON_LINE, self.scales.angle.mm(self.reduced.phi), self.driving_plan["K"])
+        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at the scale of energy, mm; ``A`` and ``E``, J."""
+        plan = Plan(f"total-work{self.where}", "График суммарной работы", "mm", self.labels)
+        line = plan.add("y_1", ON_LINE, self.across, self.driving_plan["K"])
         curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
         total = plan.add("ΣA", SUM, curve, line)
-        plan.add("ΔE", ENLARGE, total, self.scales.work.mu / self.scales.energy.mu)
+        energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("energy"))
+        plan.add("points", PLOT, self.across, energy)
+        plan.add("A", FROM_PAPER, curve, self.mu("work"), say="Работа переменного момента {name} = y_2·μ_A = {0}·{1} = {value} Дж.")
+        plan.add("E", FROM_PAPER, energy, self.mu("energy"),
+                 say="Изменение кинетической энергии {name} = ΔE·μ_E = {0}·{1} = {value} Дж.")
         return plan
 
     @cached_property
@@ -425,33 +550,58 @@ class Flywheel(ABC):
 
     @cached_property
     def inertia_plan(self) -> Plan:
-        """Graph of the reduced moment of inertia: ``J`` the ordinates, ``points`` the points at the positions, mm."""
-        plan = Plan("reduced-inertia", "График приведённого момента инерции", "mm", self.labels)
-        ordinate = plan.add("J", LAY_DOWN, self.scales.inertia.mm(self.J_reduced))
-        plan.add("points", PLOT, self.inertia_angle.mm(_within(self.reduced.phi, self.inertia_turn)), ordinate)
+        """Graph of the reduced moment of inertia: ``J`` the ordinates, ``points`` at the positions, mm; ``J_пр``, kg m2."""
+        plan = Plan(f"reduced-inertia{self.where}", "График приведённого момента инерции", "mm", self.labels)
+        inertia = plan.add("J_пр", INERTIA_AT, self.mass(self.reduced.numbered), self.closing)
+        ordinate = plan.add("J", LAY_DOWN, plan.add("y_J", TO_PAPER, inertia, self.mu("inertia")))
+        across = Given(self.inertia_angle.mm(_within(self.reduced.phi, self.inertia_turn)), "abscissae of the positions", "x", "mm")
+        plan.add("points", PLOT, across, ordinate)
         return plan
+
+    @cached_property
+    def contacts_plan(self) -> Plan:
+        """Ordinates of the graphs at the angles of the contacts, see :meth:`contact`."""
+        return Plan(f"ordinates@contacts{self.where}", "Ординаты графиков в точках касания", "mm")
+
+    def contact(self, name: str, phi: float, criterion: str) -> tuple[Step, Step, Step]:
+        """Abscissa, and ordinates of dE and J, mm, at the angle of a contact, chosen by a criterion."""
+        plan = self.contacts_plan
+        angle = Given(phi, f"angle of the contact {name}", f"φ_{{{name}}}", "rad", over="none", choice=criterion)
+        x = plan.add(f"x_{name}", ABSCISSA, angle, self.mu("angle"))
+        work = plan.add(f"A_{name}", ON_CURVE, self.work_plan["A(φ)"], x)
+        total = plan.add(f"ΣA_{name}", SUM, work, plan.add(f"K_{name}", ON_LINE, x, self.driving_plan["K"]))
+        energy = plan.add(f"ΔE_{name}", ENLARGE, total, self.mu("work"), self.mu("energy"))
+        at = self.at(f"contact-{name}", np.array([phi]), (name,))
+        mass = plan.add(f"J_пр_{name}", AT_CONTACT, self.mass(at), 0)
+        return x, energy, plan.add(f"J_{name}", TO_PAPER, mass, self.mu("inertia"))
 
     @property
     def plans(self) -> dict[str, Plan]:
-        """The plans by name, in drawing order."""
-        plans = (self.moment_plan, self.work_plan, self.driving_plan, self.total_plan, self.inertia_plan, *self.own_plans)
-        return {p.name: p for p in plans}
+        """The plans by name, in drawing order, after those of the reduced quantities."""
+        r = self.reduced
+        shown = (self.moment_plan, self.middles_plan, self.slopes_plan, self.intervals_plan, self.area_plan, self.work_plan,
+                 self.driving_plan, self.total_plan, self.inertia_plan, self.contacts_plan, *self.own_plans)
+        rotor, check = self.rotor_plan, self.motor
+        last = (*((rotor,) if rotor.steps else ()), self.first_plan, self.limit_plan, *self.later_plans,
+                *((self.wheel.plan,) if self.wheel else ()), *((check.plan,) if check else ()), self.position_acceleration)
+        before = (*r.crank_plans, self.data_plan, *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
+        return {p.name: p for p in (*before, *shown, *last)}
 
     @property
     @abstractmethod
     def own_plans(self) -> tuple[Plan, ...]:
-        """Plans of this method alone."""
+        """Plans of this method that lead to the segment ab."""
+
+    @property
+    def later_plans(self) -> tuple[Plan, ...]:
+        """Plans of this method that follow from the flywheel."""
+        return ()
 
     # --- curves on paper, mm, over the angle ----------------------------------------------------------
-    @cached_property
-    def _work_curve(self) -> tuple[Floats, Floats, Floats, Floats]:
-        before, after = self._moment_at_edges()
-        slope = self.scales.moment.mu * self.scales.pole
-        return self.abscissae, ordinates(self.work_ends), before / slope, after / slope
-
     def work_curve(self, phi: Any) -> Floats:
         """Ordinate of the smooth work curve through the ends of the chords, mm."""
-        return np.asarray(smooth(*self._work_curve, self.scales.angle.mm(np.asarray(phi, dtype=float))))
+        curve: Curve = self.work_plan["A(φ)"].value
+        return np.asarray(curve(self.scales.angle.mm(np.asarray(phi, dtype=float))))
 
     def energy_curve(self, phi: Any) -> Floats:
         """Ordinate of the graph dE(phi), mm."""
@@ -460,20 +610,20 @@ class Flywheel(ABC):
         return np.asarray((self.work_curve(phi) + line) * (self.scales.work.mu / self.scales.energy.mu))
 
     # --- results, SI ------------------------------------------------------------------------------------
-    @cached_property
+    @property
     def M_reduced(self) -> Floats:
         """Reduced moment of the technological forces at the positions, N m."""
-        return np.asarray(self.reduced.moment(self.reduced.phi, side=1))
+        return np.asarray(self.moment_plan["M_пр"].value)
 
-    @cached_property
+    @property
     def work(self) -> Floats:
         """Work of that moment from position 0, J: ends of the chords."""
-        return np.asarray(self.scales.work.real(ordinates(self.work_ends)[list(self.at_positions)]))
+        return np.asarray(self.total_plan["A"].value)
 
-    @cached_property
+    @property
     def work_converged(self) -> Floats:
         """The same work by the area of the graph of the moment, for vanishing intervals, J."""
-        return Quadrature(self.reduced.moment, self.edges, 4)(self.reduced.phi)
+        return np.asarray(self.area_plan["A"].value)
 
     @property
     def work_error(self) -> float:
@@ -481,51 +631,97 @@ class Flywheel(ABC):
         area = float(self.work_converged[-1])
         return float(self.work[-1]) / area - 1 if area else 0.0
 
-    @cached_property
+    @property
     def M_constant(self) -> float:
         """Constant moment that balances the cycle, N m: the driving one of a working machine."""
-        return float(self.scales.moment.real(self.driving_plan["dK"].value.imag))
+        return float(self.driving_plan["M"].value)
 
-    @cached_property
+    @property
     def delta_E(self) -> Floats:
         """Change of kinetic energy at the positions, J."""
-        return np.asarray(self.scales.energy.real(self.total_plan["ΔE"].value))
+        return np.asarray(self.total_plan["E"].value)
 
-    @cached_property
+    @property
     def J_reduced(self) -> Floats:
         """Reduced moment of inertia at the positions, kg m2."""
-        return self.inertia(self.reduced.phi)
+        return np.asarray(self.inertia_plan["J_пр"].value)
 
     @property
     @abstractmethod
+    def ab(self) -> Step:
+        """Segment ab, mm."""
+
+    @property
     def ab_mm(self) -> float:
-        """Segment ab on the drawing, mm."""
+        """Segment ab on the drawing, mm; negative where a lies below b: then no flywheel is needed."""
+        return float(self.ab.value)
+
+    @abstractmethod
+    def _first(self, plan: Plan) -> Step:
+        """Record the moment of inertia of all that turns with the crank by the drawn construction: step ``J_I``."""
+
+    @abstractmethod
+    def _first_converged(self, plan: Plan) -> Step:
+        """Record the same for vanishing intervals: step ``J_I∞``."""
+
+    @cached_property
+    def first_plan(self) -> Plan:
+        """From the segment ab to the flywheel: ``J_I`` all that turns with the crank, ``J_м`` the flywheel, ``J_вр`` what runs."""
+        plan = Plan(f"flywheel-inertia{self.where}", "Момент инерции маховика", "")
+        first = self._first(plan)
+        flywheel = self._bare(plan, "J_м", first, BARE, BARE_OF_ROTOR)
+        plan.add("J_вр", RUNNING, first, flywheel)
+        return plan
+
+    @cached_property
+    def limit_plan(self) -> Plan:
+        """The same for vanishing intervals: ``J_I∞``, ``J_м∞``, and ``разность``, by how many per cent the drawn one is off."""
+        plan = Plan(f"flywheel-limit{self.where}", "Маховик при n → ∞", "")
+        flywheel = self._bare(plan, "J_м∞", self._first_converged(plan), BARE_LIMIT, BARE_OF_ROTOR_LIMIT)
+        plan.add("разность", DIFFERENCE, self.first_plan["J_м"], flywheel)
+        return plan
+
+    def _bare(self, plan: Plan, name: str, first: Step, without: Rule, with_rotor: Rule) -> Step:
+        """What of all that turns with the crank is left for the flywheel."""
+        if "J_рот" not in self.rotor_plan:
+            return plan.add(name, without, first, self.reduced.crank)
+        return plan.add(name, with_rotor, first, self.reduced.crank, self.rotor_plan["J_рот"])
+
+    @cached_property
+    def rotor_plan(self) -> Plan:
+        """Moment of inertia of the motor's rotor reduced to the crank: ``J_рот``."""
+        plan, motor = Plan(f"rotor{self.where}", "Ротор двигателя", ""), self.data.motor
+        if motor is None or not motor.rotor_inertia:
+            return plan
+        u: Any = motor.ratio and named(motor.ratio, "flywheel.motor.ratio", "u")
+        u = u or plan.add("u", RATIO, named(motor.rated, "flywheel.motor.rated", "ω_н", "rad/s"), self.omega1)
+        plan.add("J_рот", ROTOR, named(motor.rotor_inertia, "flywheel.motor.rotor_inertia", "J_р", "kg*m2"), u)
+        return plan
 
     @property
-    @abstractmethod
     def J_first(self) -> float:
         """Moment of inertia of all that turns with the crank, flywheel included, by the drawn construction, kg m2."""
+        return float(self.first_plan["J_I"].value)
 
     @property
-    @abstractmethod
     def J_first_converged(self) -> float:
         """The same for vanishing intervals, kg m2."""
+        return float(self.limit_plan["J_I∞"].value)
 
     @property
     def J_rotor(self) -> float:
         """Moment of inertia of the motor's rotor reduced to the crank, kg m2."""
-        motor = self.data.motor
-        return 0.0 if motor is None else motor.rotor_inertia * (motor.ratio or motor.rated / self.reduced.omega1) ** 2
+        return float(self.rotor_plan["J_рот"].value) if "J_рот" in self.rotor_plan else 0.0
 
     @property
     def J_flywheel(self) -> float:
         """Moment of inertia of the flywheel itself by the drawn construction, kg m2."""
-        return self.J_first - self.reduced.crank_inertia - self.J_rotor
+        return float(self.first_plan["J_м"].value)
 
     @property
     def J_flywheel_converged(self) -> float:
         """Moment of inertia of the flywheel for vanishing intervals, kg m2."""
-        return self.J_first_converged - self.reduced.crank_inertia - self.J_rotor
+        return float(self.limit_plan["J_м∞"].value)
 
     @property
     def needed(self) -> bool:
@@ -535,7 +731,7 @@ class Flywheel(ABC):
     @property
     def J_running(self) -> float:
         """Moment of inertia of what turns with the crank of the finished machine, with a flywheel only if it is needed, kg m2."""
-        return self.J_first + max(-self.J_flywheel, 0.0)
+        return float(self.first_plan["J_вр"].value)
 
     def running(self, first: float) -> Running:
         """Exact running when all that turns with the crank has the moment of inertia ``first``, kg m2."""
@@ -559,15 +755,19 @@ class Flywheel(ABC):
         return (f"the drawn construction {one} flywheel ({self.J_flywheel:.4g} kg m2), in the limit of many positions {other} "
                 f"({self.J_flywheel_converged:.4g} kg m2): the difference is the construction's error")
 
-    @cached_property
+    @property
+    @abstractmethod
     def limit(self) -> ConvergedWheel:
         """Exact flywheel, with its error: that of the energy-mass curve for vanishing intervals."""
-        return limit(self.reduced.moment, self.reduced.inertia, self.edges, self.reduced.omega1, self.data.delta)
+
+    def _limit_row(self, nodes: Floats) -> Floats:
+        """Moment at the nodes of the quadrature, from plans that are kept."""
+        return np.asarray(self.at("limit", nodes).moment(0).value)
 
     @property
     def difference_percent(self) -> float:
         """How much the drawn construction differs from the limit, % of the limit."""
-        return 100 * (self.J_flywheel / self.J_flywheel_converged - 1) if self.J_flywheel_converged else float("nan")
+        return float(self.limit_plan["разность"].value)
 
     @cached_property
     def wheel(self) -> RimWheel | None:
@@ -575,7 +775,9 @@ class Flywheel(ABC):
         d = self.data
         if not self.needed:
             return None
-        return wheel(self.J_flywheel, self.reduced.omega1, d.form, d.density, d.width_ratio, d.thickness_ratio, d.rim_share)
+        return wheel(self.first_plan["J_м"], self.omega1, d.form, named(d.density, "flywheel.density", "ρ", "kg/m3"),
+                     named(d.width_ratio, "flywheel.width_ratio", "κ"), named(d.thickness_ratio, "flywheel.thickness_ratio", "c"),
+                     named(d.rim_share, "flywheel.rim_share"), self.where)
 
     @cached_property
     def motor(self) -> MotorCheck | None:
@@ -583,8 +785,9 @@ class Flywheel(ABC):
         m = self.data.motor
         if m is None:
             return None
-        return MotorCheck(self.M_constant * self.reduced.omega1 / m.efficiency, 2 * (m.synchronous - m.rated) / m.rated,
-                          m.power, self.data.delta)
+        return motor_check(self.driving_plan["M"], self.omega1, named(m.efficiency, "flywheel.motor.efficiency", "η"),
+                           named(m.synchronous, "flywheel.motor.synchronous", "ω_с", "rad/s"),
+                           named(m.rated, "flywheel.motor.rated", "ω_н", "rad/s"), m.power, self.data.delta, self.where)
 
     def speed(self, phi: Floats, inertia: float | None = None) -> Floats:
         """Angular velocity of the crank over the angle with the exact flywheel (or another, kg m2), rad/s.
@@ -596,21 +799,34 @@ class Flywheel(ABC):
         return speed(self.reduced.moment, self.reduced.inertia, self.edges, j, (self.limit.phi_max, fastest), phi)
 
     # --- acceleration of the crank ------------------------------------------------------------------------
-    def acceleration_plan(self, phi: Any, labels: tuple[str, ...] = ("",)) -> Plan:
+    def acceleration_plan(self, phi: Any, labels: tuple[str, ...] = ("",), name: str = "@angles") -> Plan:
         """Angular acceleration of the crank at any angles, from the tangent to the graph J(phi) (manual 002, 1.12).
 
         Steps ``ψ`` (angle of the tangent on paper, rad), ``dJ/dφ`` (kg m2/rad), ``M`` (sum of the reduced moments, N m), ``J``
         (kg m2) and ``ε1`` (rad/s2, positive in the sense of rotation), one entry for each of the ``phi``.
         """
-        plan = Plan("crank-acceleration", "Угловое ускорение начального звена", "rad/s2", labels)
-        s, r = self.scales, self.reduced
-        at = np.asarray(phi, dtype=float)
-        touch = np.arctan(r.inertia_slope(at) * (s.angle.mu / s.inertia.mu))
-        angle = plan.add("ψ", TANGENT, touch)
-        slope = plan.add("dJ/dφ", SLOPE, angle, s.inertia.mu / s.angle.mu)
-        moment = plan.add("M", SUM_OF_MOMENTS, r.moment(at, side=1), self.M_constant)
-        mass = plan.add("J", ALL_INERTIA, self.J_running, np.asarray(r.inertia(at)) - r.crank_inertia)
-        plan.add("ε1", ACCELERATION, moment, slope, mass, r.omega1)
+        at, numbered = np.asarray(phi, dtype=float), self.reduced.numbered
+        there = numbered if np.array_equal(at, numbered.phi) else self.reduced.at("acceleration", at)
+        return self._acceleration(there, labels, name)
+
+    @cached_property
+    def position_acceleration(self) -> Plan:
+        """The same at the numbered positions, on their velocity plans."""
+        return self._acceleration(self.reduced.numbered, self.labels, "", (self.closing,))
+
+    def _acceleration(self, at: AtAngles, labels: tuple[str, ...], name: str, closing: tuple[Given, ...] = ()) -> Plan:
+        plan = Plan(f"crank-acceleration{name}{self.where}", "Угловое ускорение начального звена", "rad/s2", labels)
+        mu_phi, mu_j = self.mu("angle"), self.mu("inertia")
+        slope, moment, others = at.slope, at.moment(), at.others
+        if closing:
+            slope = plan.add("J′", SLOPE_AT, slope, *closing)
+            moment = plan.add("M_пр", MOMENT_AT, moment, *closing)
+            others = plan.add("J_II", INERTIA_AT, others, *closing)
+        angle = plan.add("ψ", TANGENT, slope, mu_phi, mu_j)
+        slope = plan.add("dJ/dφ", SLOPE, angle, mu_phi, mu_j)
+        moment = plan.add("M", SUM_OF_MOMENTS, moment, self.driving_plan["M"])
+        mass = plan.add("J", ALL_INERTIA, self.first_plan["J_вр"], others)
+        plan.add("ε1", ACCELERATION, moment, slope, mass, self.omega1)
         return plan
 
     def acceleration(self, phi: Any) -> Floats:
@@ -618,50 +834,57 @@ class Flywheel(ABC):
         return np.asarray(self.acceleration_plan(phi)["ε1"].value)
 
     @property
-    def drawn(self) -> dict[str, float]:
+    def drawn(self) -> dict[str, Any]:
         """Lengths and angles as they stand on the sheet, mm and rad."""
-        return {"ab": self.ab_mm, "H": self.scales.pole}
+        return {"ab": self.ab, "H": Told(self.work_plan["P"], "abs")}
 
     def results(self) -> dict[str, Any]:
-        """The results in SI units, as ``solve`` tells them."""
+        """The results in SI units, as ``solve`` tells them: numbers are steps."""
         w = self.wheel
+
+        def size(name: str) -> Step | None:
+            return w.plan[name] if w and name in w.plan else None
+
         return {
             "method": self.method,
             "labels": list(self.labels),
-            "phi": self.reduced.phi,
-            "delta": self.data.delta,
-            "M_reduced": self.M_reduced,
-            "work": self.work,
-            "work_converged": self.work_converged,
-            "M_constant": self.M_constant,
-            "M_constant_converged": -float(self.work_converged[-1]) / self.reduced.period,
-            "delta_E": self.delta_E,
-            "J_reduced": self.J_reduced,
-            "ab_mm": self.ab_mm,
-            "J_first": self.J_first,
-            "J_flywheel": self.J_flywheel,
-            "J_flywheel_converged": self.J_flywheel_converged,
-            "difference_percent": self.difference_percent,
+            "phi": self.data_plan["φ1"],
+            "delta": self.data_plan["δ"],
+            "M_reduced": self.moment_plan["M_пр"],
+            "work": self.total_plan["A"],
+            "work_converged": self.area_plan["A"],
+            "M_constant": self.driving_plan["M"],
+            "M_constant_converged": self.area_plan["M"],
+            "delta_E": self.total_plan["E"],
+            "J_reduced": self.inertia_plan["J_пр"],
+            "ab_mm": self.ab,
+            "J_first": self.first_plan["J_I"],
+            "J_flywheel": self.first_plan["J_м"],
+            "J_flywheel_converged": self.limit_plan["J_м∞"],
+            "difference_percent": self.limit_plan["разность"],
             "needed": self.needed,
             "form": w and w.form,
-            "D": w and w.diameter,
-            "B": w and w.width,
-            "H": w and w.thickness,
-            "m": w and w.mass,
-            "v": w and w.speed,
-            "epsilon1": self.acceleration(self.reduced.phi),
+            "D": size("D"),
+            "B": size("B"),
+            "H": size("H"),
+            "m": size("m"),
+            "v": size("V"),
+            "epsilon1": self.position_acceleration["ε1"],
             "drawn": self.drawn,
         }
 
 
-TANGENT = Rule("tangent of a graph", lambda angle: angle, ("inclination",), "inclination",
+_FACTORS = {"angle": ("mu_phi", "rad/mm"), "force": ("mu_F", "N/mm"), "moment": ("mu_M", "N*m/mm"), "work": ("mu_A", "J/mm"),
+            "energy": ("mu_E", "J/mm"), "inertia": ("mu_J", "kg*m2/mm")}  # fmt: skip
+"""Names and units of the scale factors in the record."""
+TANGENT = Rule("tangent of a graph", lambda slope, mu_phi, mu_j: np.arctan(slope * (mu_phi / mu_j)), ("number",) * 3, "inclination",
                "В точке графика J(φ1) проведём касательную; угол её наклона {name} = {value}.")
-SLOPE = Rule("slope of a graph", lambda angle, factor: np.tan(angle) * factor, ("inclination", "number"), "number",
-             "{name} = tg ψ·μ_J/μ_φ = {value} кг·м².")
+SLOPE = Rule("slope of a graph", lambda angle, mu_phi, mu_j: np.tan(angle) * (mu_j / mu_phi), ("inclination", "number", "number"),
+             "number", "{name} = tg ψ·μ_J/μ_φ = {value} кг·м².", unit="kg*m2", source="002, 1.12")
 SUM_OF_MOMENTS = Rule("add moments", lambda a, b: a + b, ("number", "number"), "number",
-                      "Сложим приведённые моменты {0} и {1} с их знаками: {name} = {value} Н·м.")
+                      "Сложим приведённые моменты {0} и {1} с их знаками: {name} = {value} Н·м.", unit="N*m")
 ALL_INERTIA = Rule("add moments of inertia", lambda a, b: a + b, ("number", "number"), "number",
-                   "Момент инерции всех звеньев {name} = {0} + {1} = {value} кг·м².")
+                   "Момент инерции всех звеньев {name} = {0} + {1} = {value} кг·м².", unit="kg*m2")
 ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m - omega * omega / 2 * slope) / j,
                     ("number", "number", "number", "number"), "number",
                     "{name} = (M − ω²/2·dJ/dφ)/J = ({0} − {3}²/2·{1})/{2} = {value} рад/с².")

@@ -17,12 +17,13 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import DISTANCE
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.construction.step import Rule
-from tmm_sheets.methods.flywheel.energy_mass import Curve, highest
-from tmm_sheets.methods.flywheel.flywheel import PLOT, DiagramSpace, Flywheel
+from tmm_sheets.construction.step import Rule, Step, Told
+from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, highest, limit_segment
+from tmm_sheets.methods.flywheel.flywheel import FROM_PAPER, OF_EXCESS, OF_SEGMENT, PLOT, DiagramSpace, Flywheel
 from tmm_sheets.methods.flywheel.running import Running
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
@@ -31,31 +32,42 @@ SPACE = DiagramSpace(moment=100.0, work=130.0, energy=220.0, inertia=175.0, stac
 """Room for the diagrams: all four stand one under another over a common angle axis, mm."""
 
 
-def _level(curve: Curve, side: Any, samples: Floats) -> Any:
-    return complex(curve(np.array([highest(lambda t: np.asarray(side * np.imag(curve(t))), samples)]))[0])
-
-
-CONVERT = Rule("convert ordinates", lambda y, factor: y * factor, ("ordinate", "number"), "ordinate",
-               "Ординату {0} графика J_II(φ1) пересчитаем в масштаб энергий, умножив на μ_J·ω²/(2μ_E) = {1}: {name} = {value}.")
+CONVERT = Rule("convert ordinates", lambda y, mu_j, omega, mu_e: y * (mu_j * omega**2 / 2 / mu_e),
+               ("ordinate", "number", "number", "number"), "ordinate",
+               "Ординату {0} графика J_II(φ1) пересчитаем в масштаб энергий, умножив на μ_J·ω1²/(2μ_E) = {1}·{2}²/(2·{3}): "
+               "{name} = {value}.", source="002, 1.9")
 LAY_BELOW = Rule("lay off below a curve", lambda a, b: a - b, ("ordinate", "ordinate"), "ordinate",
                  "От конца ординаты {0} отложим вниз {1}: остаётся {name} = {value}.")
-EXTREME = Rule("horizontal tangent", _level, (), "point",
-               "Проведём горизонтальную касательную к кривой T_I(φ1): точка касания {name}.")
+EXTREME = Rule("horizontal tangent", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
+               "Проведём горизонтальную касательную к кривой T_I(φ1): точка касания {name} с абсциссой {0} и ординатой {1}.")
 MIDDLE = Rule("middle", lambda a, b: (a + b) / 2, ("point", "point"), "point",
               "Через середину отрезка {0}{1} проведём ось средней угловой скорости: точка {name}.")
 FROM_AXIS = Rule("ordinate from an axis", lambda y, axis: y - np.imag(axis), ("ordinate", "point"), "ordinate",
                  "От оси средней угловой скорости измерим ординату {name} = {value}.")
+SPEED_SCALE = Rule("scale factor of the angular velocity", lambda mu, j, omega: mu / (j * omega), ("number",) * 3, "number",
+                   "Масштаб угловой скорости {name} = μ_E/(J_I·ω1) = {0}/({1}·{2}) = {value} рад/(с·мм).", unit="rad/s/mm",
+                   source="002, 1.11")
 ANGULAR_SPEED = Rule("angular velocity from its graph", lambda y, mu, mean: mean + mu * y, ("ordinate", "number", "number"),
-                     "number", "{name} = {2} + {1}·y = {value} рад/с.")
+                     "number", "{name} = {2} + {1}·y = {value} рад/с.", unit="rad/s")
+EXTREME_SPEED = Rule("angular velocity at an extreme", lambda at, axis, mu, mean: mean + mu * (np.imag(at) - np.imag(axis)),
+                     ("point", "point", "number", "number"), "number",
+                     "В точке {0} угловая скорость {name} = {3} + {2}·y = {value} рад/с.", unit="rad/s")
+FOUND = Rule("found by the exact running", lambda w: w, ("number",), "number",
+             "Точное движение по закону изменения энергии даёт {name} = {value} рад/с.", unit="rad/s", beyond_paper=True)
+NON_UNIFORMITY = Rule("non-uniformity of a running", lambda fast, slow: (fast - slow) / ((fast + slow) / 2), ("number", "number"),
+                      "number", "{name} = (ω_max − ω_min)/ω_ср = {value}.", beyond_paper=True)
+EXCESS = Rule("mean of two moments of inertia", lambda a, b: (a + b) / 2, ("number", "number"), "number",
+              "По теории метод завышает на {name} = ({0} + {1})/2 = {value} кг·м².", unit="kg*m2", beyond_paper=True)
 
 
 @dataclass(frozen=True)
 class Compared:
-    """One flywheel and the exact running with it: ``name`` of the method, what turns with the crank in all, kg m2."""
+    """One flywheel and the exact running with it: ``name`` of the method, what turns with the crank in all, kg m2 (``step``)."""
 
     name: str
     first: float
     running: Running
+    step: Step
 
 
 class Mertsalov(Flywheel):
@@ -66,8 +78,14 @@ class Mertsalov(Flywheel):
         """Name of the method, as in the project file."""
         return "mertsalov"
 
-    def inertia(self, phi: Any) -> Floats:
+    def mass(self, at: AtAngles) -> Step:
         """Reduced moment of inertia of the links without the crank, kg m2."""
+        return at.others
+
+    def inertia(self, phi: Any) -> Floats:
+        """The same at any angles."""
+        if phi is self.samples:
+            return np.asarray(self.mass(self.at_samples).value)
         return np.asarray(self.reduced.inertia(phi)) - self.reduced.crank_inertia
 
     def _energies(self, excess: Floats, mass: Floats) -> Iterable[float]:
@@ -85,36 +103,51 @@ class Mertsalov(Flywheel):
         """The curve T_I and its extremes, mm.
 
         ``T_II`` and ``T_I`` (ordinates at the positions), ``points`` of the curve, ``M_max`` and ``M_min`` (points of contact of
-        the horizontal tangents), ``a`` and ``b`` (on the ordinate axis), ``ab`` (their distance).
+        the horizontal tangents), ``a`` and ``b`` (on the ordinate axis), ``ab`` (their distance); ``E_II`` and ``E_I``, J.
         """
-        plan = Plan("first-energy", "График кинетической энергии звеньев первой группы", "mm", self.labels)
-        second = plan.add("T_II", CONVERT, self.inertia_plan["J"], self.convert)
+        plan = Plan(f"first-energy{self.where}", "График кинетической энергии звеньев первой группы", "mm", self.labels)
+        convert = self.mu("inertia"), self.omega1, self.mu("energy")
+        second = plan.add("T_II", CONVERT, self.inertia_plan["J"], *convert)
         first = plan.add("T_I", LAY_BELOW, self.total_plan["ΔE"], second)
-        plan.add("points", PLOT, self.scales.angle.mm(self.reduced.phi), first)
+        plan.add("points", PLOT, self.across, first)
         for name, side, end in (("max", 1, "a"), ("min", -1, "b")):
-            contact = plan.add(f"M_{name}", EXTREME, self.first_curve, side, self.samples)
-            plan.add(end, CARRY, contact)
+            phi = highest(lambda t, side=side: np.asarray(side * np.imag(self.first_curve(t))), self.samples)  # type: ignore[misc]
+            x, energy, mass = self.contact(name, phi, f"{'highest' if side > 0 else 'lowest'} point of the curve T_I")
+            of = self.contacts_plan
+            level = of.add(f"T_I_{name}", LAY_BELOW, energy, of.add(f"T_II_{name}", CONVERT, mass, *convert))
+            plan.add(end, CARRY, plan.add(f"M_{name}", EXTREME, x, level))
         plan.add("ab", DISTANCE, plan["a"], plan["b"])
+        for name, of_group, ordinate in (("E_II", "второй", second), ("E_I", "первой", first)):
+            plan.add(name, FROM_PAPER, ordinate, self.mu("energy"),
+                     say=f"Энергия звеньев {of_group} группы {{name}} = {{0}}·{{1}} = {{value}} Дж.")
         return plan
 
     @cached_property
     def speed_plan(self) -> Plan:
-        """The same curve read as the angular velocity: ``O`` (its axis), ``y`` (ordinates, mm), ``ω1`` (rad/s) at the positions."""
-        plan = Plan("crank-speed", "График угловой скорости начального звена", "mm", self.labels)
-        axis = plan.add("O", MIDDLE, self.energy_plan["a"], self.energy_plan["b"])
-        y = plan.add("y", FROM_AXIS, self.energy_plan["T_I"], axis)
-        plan.add("ω1", ANGULAR_SPEED, y, self.speed_scale.mu, self.reduced.omega1)
-        return plan
+        """The same curve read as the angular velocity: ``O`` (its axis), ``y`` (ordinates, mm), ``ω1`` (rad/s) at the positions.
 
-    @cached_property
-    def position_acceleration(self) -> Plan:
-        """Angular acceleration of the crank at the numbered positions: see :meth:`acceleration_plan`."""
-        return self.acceleration_plan(self.reduced.phi, self.labels)
+        ``μ_ω`` is its scale factor, ``ω_max`` and ``ω_min`` the angular velocity at the tangents.
+        """
+        plan = Plan(f"crank-speed{self.where}", "График угловой скорости начального звена", "mm", self.labels)
+        energy = self.energy_plan
+        mu = plan.add("μ_ω", SPEED_SCALE, self.mu("energy"), self.first_plan["J_вр"], self.omega1)
+        axis = plan.add("O", MIDDLE, energy["a"], energy["b"])
+        y = plan.add("y", FROM_AXIS, energy["T_I"], axis)
+        plan.add("ω1", ANGULAR_SPEED, y, mu, self.omega1)
+        for name in ("max", "min"):
+            plan.add(f"ω_{name}", EXTREME_SPEED, energy[f"M_{name}"], axis, mu, self.omega1)
+        return plan
 
     @property
     def own_plans(self) -> tuple[Plan, ...]:
-        """Energy of the crank's group, angular velocity, angular acceleration."""
-        return self.energy_plan, self.speed_plan, self.position_acceleration
+        """Energy of the crank's group."""
+        return (self.energy_plan,)
+
+    @property
+    def later_plans(self) -> tuple[Plan, ...]:
+        """Angular velocity, the other method, comparison with the exact running."""
+        other = (p for p in self.other.plans.values() if p.name.endswith(self.other.where))
+        return self.speed_plan, *other, self.comparison_plan
 
     def second_curve(self, phi: Any) -> Floats:
         """Ordinate of the graph T_II(phi) in the scale of energies, mm."""
@@ -128,40 +161,37 @@ class Mertsalov(Flywheel):
     @property
     def speed_scale(self) -> Scale:
         """Scale factor of the angular velocity on the curve T_I: mu_E/(J_I omega), J_I that of the finished machine."""
-        return Scale("μ_ω", self.scales.energy.mu / (self.J_running * self.reduced.omega1), "с^{−1}/мм")
+        return Scale("μ_ω", float(self.speed_plan["μ_ω"].value), "с^{−1}/мм")
 
     @property
-    def ab_mm(self) -> float:
-        """Segment ab on the drawing, mm."""
-        return float(self.energy_plan["ab"].value)
+    def ab(self) -> Step:
+        """Segment ab, mm."""
+        return self.energy_plan["ab"]
 
-    @property
-    def J_first(self) -> float:
-        """Moment of inertia of all that turns with the crank by the drawn construction: ab mu_E/(delta omega^2), kg m2."""
-        return self.ab_mm * self.scales.energy.mu / (self.data.delta * self.reduced.omega1**2)
+    def _first(self, plan: Plan) -> Step:
+        return plan.add("J_I", OF_SEGMENT, self.ab, self.mu("energy"), self.delta, self.omega1)
 
-    @cached_property
-    def J_first_converged(self) -> float:
-        """The same for vanishing intervals, kg m2."""
-        work = Quadrature(self.reduced.moment, self.edges, 8)
+    def _first_converged(self, plan: Plan) -> Step:
+        work = Quadrature(self.reduced.moment, self.edges, 8, whole=self._limit_row)
         mean, half = work.total / self.reduced.period, self.reduced.omega1**2 / 2
 
         def first(phi: Floats) -> Floats:
             return np.asarray(work(phi) - mean * phi - half * self.inertia(phi))
 
-        at = np.array([highest(lambda phi, side=side: side * first(phi), self.samples) for side in (1, -1)])  # type: ignore[misc]
-        high, low = first(at)
-        return float((high - low) / (self.data.delta * self.reduced.omega1**2))
+        fast, slow = (highest(lambda phi, side=side: side * first(phi), self.samples) for side in (1, -1))  # type: ignore[misc]
+        found = ConvergedWheel(np.nan, np.nan, np.inf, fast, slow, work.panels)
+        excess = limit_segment(plan, found, self.edges, self.at, self.mass, self.omega1, None)
+        return plan.add("J_I∞", OF_EXCESS, excess, self.delta, self.omega1)
 
     @property
     def T_second(self) -> Floats:
         """Energy of the links without the crank at the positions as the procedure takes it, J."""
-        return np.asarray(self.scales.energy.real(self.energy_plan["T_II"].value))
+        return np.asarray(self.energy_plan["E_II"].value)
 
     @property
     def T_first(self) -> Floats:
         """Energy of the crank's group at the positions from its unknown level at position 0, J."""
-        return np.asarray(self.scales.energy.real(self.energy_plan["T_I"].value))
+        return np.asarray(self.energy_plan["E_I"].value)
 
     @property
     def omega(self) -> Floats:
@@ -171,40 +201,61 @@ class Mertsalov(Flywheel):
     @property
     def extremes(self) -> tuple[float, float]:
         """Angular velocity at the upper and at the lower tangent, rad/s: omega (1 +- delta/2) with a flywheel."""
-        axis, mu = self.speed_plan["O"].value.imag, self.speed_scale.mu
-        high, low = (self.reduced.omega1 + mu * (self.energy_plan[f"M_{name}"].value.imag - axis) for name in ("max", "min"))
-        return float(high), float(low)
+        return float(self.speed_plan["ω_max"].value), float(self.speed_plan["ω_min"].value)
 
     # --- how good it is -----------------------------------------------------------------------------------
     @cached_property
+    def other(self) -> Wittenbauer:
+        """Wittenbauer's flywheel for the same machine."""
+        return Wittenbauer(self.reduced, self.data, self.space, where="@wittenbauer")
+
+    @property
+    def limit(self) -> ConvergedWheel:
+        """Exact flywheel: that of the energy-mass curve for vanishing intervals."""
+        return self.other.limit
+
+    @cached_property
     def compared(self) -> tuple[Compared, ...]:
         """Both methods, drawn and for vanishing intervals, each with the exact running of a machine that has its flywheel."""
-        other = Wittenbauer(self.reduced, self.data, self.space)
-        found = (("Мерцалов, построение", self.J_first), ("Виттенбауэр, построение", other.J_first),
-                 ("Мерцалов, n → ∞", self.J_first_converged), ("Виттенбауэр, n → ∞", other.J_first_converged))
+        found = (("Мерцалов, построение", self.first_plan["J_I"]), ("Виттенбауэр, построение", self.other.first_plan["J_I"]),
+                 ("Мерцалов, n → ∞", self.limit_plan["J_I∞"]), ("Виттенбауэр, n → ∞", self.other.limit_plan["J_I∞"]))
         # No flywheel takes away from what turns with the crank without it.
         least = self.reduced.crank_inertia + self.J_rotor
-        return tuple(Compared(name, first, self.running(max(first, least))) for name, first in found)
+        return tuple(Compared(name, float(first.value), self.running(max(float(first.value), least)), first)
+                     for name, first in found)
+
+    @cached_property
+    def comparison_plan(self) -> Plan:
+        """Exact running with each of these flywheels: ``ω_max``, ``ω_min``, ``δ`` with its number; ``e`` theory's difference."""
+        plan = Plan(f"comparison{self.where}", "Сравнение с точным движением", "")
+        for i, c in enumerate(self.compared, 1):
+            criterion = f"steady running with {c.first:.6g} kg m2 on the crank whose extremes have the mean omega1"
+            fast, slow = (plan.add(f"ω_{name}{i}", FOUND, Given(value, f"running {i}", unit="rad/s", over="none", choice=criterion))
+                          for name, value in (("max", c.running.fastest), ("min", c.running.slowest)))
+            plan.add(f"δ{i}", NON_UNIFORMITY, fast, slow)
+        contacts = self.mass(self.at("exact-contacts", np.array([self.limit.phi_max, self.limit.phi_min])))
+        plan.add("e", EXCESS, *(plan.add(f"J_{name}", AT_CONTACT, contacts, k) for k, name in enumerate(("max", "min"))))
+        return plan
 
     @property
     def excess(self) -> float:
         """How much the procedure takes too much by theory: (J_II(phi_max) + J_II(phi_min))/2, kg m2; terms in delta left out."""
-        return float(np.mean(self.inertia(np.array([self.limit.phi_max, self.limit.phi_min]))))
+        return float(self.comparison_plan["e"].value)
 
     @property
-    def drawn(self) -> dict[str, float]:
+    def drawn(self) -> dict[str, Any]:
         """Lengths as they stand on the sheet, mm."""
-        return {**super().drawn, "axis": float(self.speed_plan["O"].value.imag)}
+        return {**super().drawn, "axis": Told(self.speed_plan["O"], "y")}
 
     def results(self) -> dict[str, Any]:
-        """The results in SI units, as ``solve`` tells them."""
+        """The results in SI units, as ``solve`` tells them: numbers are steps."""
+        of = self.comparison_plan
         return {
             **super().results(),
-            "T_second": self.T_second,
-            "T_first": self.T_first,
-            "omega1": self.omega,
-            "mu_omega": self.speed_scale.mu,
-            "compared": [{"first": c.first, "omega_max": c.running.fastest, "omega_min": c.running.slowest,
-                          "delta": c.running.delta}
-                         for c in self.compared],
+            "T_second": self.energy_plan["E_II"],
+            "T_first": self.energy_plan["E_I"],
+            "omega1": self.speed_plan["ω1"],
+            "mu_omega": self.speed_plan["μ_ω"],
+            "compared": [{"first": c.step, "omega_max": of[f"ω_max{i}"], "omega_min": of[f"ω_min{i}"], "delta": of[f"δ{i}"]}
+                         for i, c in enumerate(self.compared, 1)],
         }

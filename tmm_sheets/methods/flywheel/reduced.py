@@ -1,31 +1,218 @@
-"""Reduced moment of forces and reduced moment of inertia over the crank angle.
+"""Reduced moment of forces and reduced moment of inertia over the crank angle, as steps on velocity plans.
 
-Every call draws the plans it needs at the asked angles, so the flywheel may ask for ten positions or a million.
+At the numbered positions the velocity plans are those of the study; at other angles (middles of intervals, borders, contacts,
+nodes of a quadrature) plans of their own are drawn, so the flywheel may ask for ten positions or a million.
 Source: manual 000, section 5.
 """
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Callable, Mapping
+from functools import cached_property, reduce
+from operator import add
 from typing import Any
 
 import numpy as np
 
-from tmm_sheets.mechanism.model import Mechanism
-from tmm_sheets.methods.linkage.accelerations import acceleration_plan
+from tmm_sheets.construction.given import Given, named
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
+from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.mechanism.model import Link, Mechanism
+from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import Applied, distinct
-from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
+
+_SOURCE = "000, 5"
+
+GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {name} = {value}.", unit="N")
+GIVEN_MOMENT = Rule("given moment", lambda m: m, ("number",), "number", "Момент {name} = {value} Н·м.", unit="N*m")
+POWER = Rule("power of a force", lambda f, v: (f * np.conj(v)).real, ("force", "point"), "number",
+             "Мощность силы {0} по плану скоростей, отрезок p{1}: {name} = F·V·cos(F̅, V̅) = {value} Вт.", unit="W", source=_SOURCE)
+MOMENT_POWER = Rule("power of a moment", lambda m, w: m * w, ("number", "number"), "number",
+                    "Мощность момента: {name} = M·ω = {0}·{1} = {value} Вт.", unit="W", source=_SOURCE)
+WEIGHT_POWER = Rule("power of a weight", lambda m, g, v: -(m * g * np.imag(v)), ("number", "number", "point"), "number",
+                    "Мощность силы тяжести {0}·{1} Н по плану скоростей, отрезок p{2}: {name} = {value} Вт.", unit="W",
+                    source="002, 1.5")
+REDUCED_MOMENT = Rule("reduced moment", lambda omega, *powers: reduce(add, powers) / omega, ("number",) * 9, "number",
+                      "Приведённый момент сил {name} = ΣN/ω1 = {value} Н·м.", unit="N*m", source=_SOURCE)
+TRANSLATION = Rule("twice the energy of a centre of mass", lambda m, v: m * (v * np.conj(v)).real, ("number", "point"), "number",
+                   "{name} = {0}·V² = {value} Дж, V – по отрезку p{1}.", unit="J", source=_SOURCE)
+ROTATION = Rule("twice the energy of rotation", lambda j, w: j * w * w, ("number", "number"), "number",
+                "{name} = {0}·{1}² = {value} Дж.", unit="J", source=_SOURCE)
+REDUCED_INERTIA = Rule("reduced moment of inertia", lambda omega, *terms: reduce(add, terms) / omega**2, ("number",) * 20, "number",
+                       "Приведённый момент инерции {name} = Σ/ω1² = {value} кг·м².", unit="kg*m2", source=_SOURCE)
+WITHOUT_CRANK = Rule("without the crank", lambda j, crank: j - crank, ("number", "number"), "number",
+                     "Без начального звена {name} = {0} − {1} = {value} кг·м².", unit="kg*m2", source="002, 1.7")
+TURNING_SLOPE = Rule("power of the inertia of rotation", lambda j, w, e: j * w * e, ("number",) * 3, "number",
+                     "{name} = {0}·{1}·{2} = {value} Вт.", unit="W")
+MOVING_SLOPE = Rule("power of the inertia of a centre of mass", lambda m, a, v: m * (a * np.conj(v)).real,
+                    ("number", "point", "point"), "number", "{name} = {0}·a·V·cos(a̅, V̅) = {value} Вт.", unit="W")
+INERTIA_SLOPE = Rule("slope of the reduced moment of inertia", lambda omega, *parts: 2 * reduce(add, parts) / omega**3,
+                     ("number",) * 20, "number", "{name} = 2Σ/ω1³ = {value} кг·м².", unit="kg*m2", source="002, 1.12")
+CRANK_INERTIA = Rule("moment of inertia about the pivot", lambda j, m, s, o: j + m * np.abs(s - o) ** 2,
+                     ("number", "number", "point", "point"), "number", "{name} = {0} + {1}·|{3}{2}|² = {value} кг·м².",
+                     unit="kg*m2")
+AT_START = taken("moment of inertia of the crank", "kg*m2", "В любом положении {name} = {value} кг·м².")
+EVERYWHERE = Rule("the same at all positions", lambda x, phi: x + 0 * phi, ("number", "number"), "number",
+                  "{name} = {0} во всех положениях.")
+
+
+TRIED = "@search"
+"""Behind the names of plans that nobody keeps: they are counted."""
+
+
+class Reduction:
+    """Reduced quantities at some angles; steps are recorded when they are asked for, nothing is computed before it is read.
+
+    Parameters
+    ----------
+    reduced
+        of the mechanism.
+    where
+        what the angles are, behind the names of the plans: "@middles"; nothing for the numbered positions.
+    phi
+        angles turned from position 0, rad, of any shape.
+    labels
+        their names.
+    drawn
+        the velocity plans where there are some already.
+    """
+
+    def __init__(self, reduced: Reduced, where: str, phi: Any, labels: tuple[str, ...] = ("",),
+                 drawn: Callable[[], Velocities] | None = None) -> None:
+        self.reduced = reduced
+        self.where = where
+        self.phi = phi
+        self.labels = labels
+        self._drawn = drawn
+        self.purpose = "reduced quantities" if where == TRIED else ""
+        self.plan = Plan(f"reduction{where}", "Приведение сил и масс", "", labels, search=reduced.mechanism.search(self.purpose))
+        self._moments: dict[int, Step] = {}
+        self.loads: dict[str, Step] = {}
+
+    @cached_property
+    def velocities(self) -> Velocities:
+        """Velocity plans at the angles."""
+        if self._drawn is not None:
+            return self._drawn()
+        r = self.reduced
+        return velocity_plan(position_plan(r.mechanism, r.cycle.world(self.phi), self.labels, self.where, self.purpose))
+
+    @cached_property
+    def accelerations(self) -> Accelerations:
+        """Acceleration plans of the evenly turning crank at the angles."""
+        return acceleration_plan(self.velocities, 0.0, "" if self.where else "@even")
+
+    @property
+    def plans(self) -> tuple[Plan, ...]:
+        """The plans that were drawn for these angles, in order."""
+        own = vars(self).get("velocities") if self._drawn is None else None
+        further = vars(self).get("accelerations")
+        return (*((own.positions.plan, own.plan) if own else ()), *((further.plan,) if further else ()), self.plan)
+
+    def moment(self, side: int = 1) -> Step:
+        """Reduced moment of the technological forces, and of the weights where they count, N m; ``side`` picks the limit at a jump.
+
+        Step ``M``; before a jump ``M(−)``, between two jumps that fall together ``M(0)``.
+        """
+        if side not in self._moments:
+            self._moments[side] = self._moment(side)
+        return self._moments[side]
+
+    def _moment(self, side: int) -> Step:
+        mark = {1: "", 0: "(0)", -1: "(−)"}[side]
+        vel, r, plan = self.velocities, self.reduced, self.plan
+        powers: list[Any] = []
+        numbers = {"force": 0, "moment": 0}
+        for f in r.forces:
+            kind = "moment" if f.point is None else "force"
+            origin = f"{kind}[{numbers[kind]}]"
+            numbers[kind] += 1
+            letters = f"{f.name[0]}_{{{f.name[1:]}}}"
+            if f.point is None:
+                given = plan.add(f"{f.name}{mark}", GIVEN_MOMENT, Given(f.law(self.phi, side), origin, letters, "N*m"))
+                powers.append(plan.add(f"N_{f.name}{mark}", MOMENT_POWER, given, vel.omega[f.link]))
+            else:
+                given = plan.add(f"{f.name}{mark}", GIVEN_FORCE, Given(f.vector(self.phi, side), origin, letters, "N"))
+                powers.append(plan.add(f"N_{f.name}{mark}", POWER, given, vel.points[f.point]))
+            self.loads[given.name] = given
+        if r.gravity:
+            for i, link in enumerate(r.mechanism.links.values()):
+                if link.mass and link.centre is not None:
+                    powers.append(plan.add(f"N_G{link.name}{mark}", WEIGHT_POWER, r.mass(i, link),
+                                           named(r.gravity, "forces.gravity", "g", "m/s2"), vel.points[link.centre]))
+        nothing = () if powers else (Given(np.zeros(np.shape(self.phi)), "force", unit="W"),)
+        return plan.add(f"M{mark}", REDUCED_MOMENT, r.omega, *powers, *nothing)
+
+    @cached_property
+    def terms(self) -> Mapping[str, Step]:
+        """Twice the kinetic energy of each link, term by term, kg m2/s2, by names in lettering markup."""
+        found: dict[str, Step] = {}
+        vel, r = self.velocities, self.reduced
+        for i, link in enumerate(r.mechanism.links.values()):
+            n = link.name
+            if link.pivot_inertia is not None:
+                found[f"J_{{{n}}}·ω_{n}²"] = self.plan.add(f"J{n}ω{n}²", ROTATION, r.turning(i, link), vel.omega[n])
+                continue
+            if r.moves(link):
+                assert link.centre is not None
+                found[f"m_{n}·V_{{{link.centre}}}²"] = self.plan.add(
+                    f"m{n}V_{link.centre}²", TRANSLATION, r.mass(i, link), vel.points[link.centre])
+            if link.inertia:
+                found[f"J_{{S{n}}}·ω_{n}²"] = self.plan.add(f"J_S{n}ω{n}²", ROTATION, r.turning(i, link), vel.omega[n])
+        return found
+
+    @cached_property
+    def inertia(self) -> Step:
+        """Reduced moment of inertia of the moving links without the flywheel, kg m2: step ``J``."""
+        return self._sum("J", REDUCED_INERTIA, list(self.terms.values()))
+
+    @cached_property
+    def others(self) -> Step:
+        """The same without the crank's: step ``J_II``."""
+        return self.plan.add("J_II", WITHOUT_CRANK, self.inertia, self.reduced.crank)
+
+    @cached_property
+    def slope(self) -> Step:
+        """Derivative of the reduced moment of inertia over the crank angle, kg m2/rad: step ``dJ/dφ``.
+
+        From the acceleration plan of the evenly turning crank: half the derivative of each term of twice the energy is force
+        of inertia times velocity.
+        """
+        vel, acc, r = self.velocities, self.accelerations, self.reduced
+        parts: list[Step] = []
+        for i, link in enumerate(r.mechanism.links.values()):
+            n = link.name
+            if link.inertia if link.pivot_inertia is None else link.pivot_inertia:
+                parts.append(self.plan.add(f"J{n}ω{n}ε{n}", TURNING_SLOPE, r.turning(i, link), vel.omega[n], acc.epsilon[n]))
+            if link.pivot_inertia is None and r.moves(link):
+                assert link.centre is not None
+                parts.append(self.plan.add(f"m{n}a_{link.centre}V_{link.centre}", MOVING_SLOPE, r.mass(i, link),
+                                           acc.points[link.centre], vel.points[link.centre]))
+        return self._sum("dJ/dφ", INERTIA_SLOPE, parts)
+
+    def _sum(self, name: str, rule: Rule, parts: list[Step]) -> Step:
+        """Sum of terms by a rule, a number at every angle also where no term changes."""
+        over = Given(self.phi, "cycle", "φ_1", "rad")
+        if not parts:
+            parts = [self.plan.add(f"{name}0", EVERYWHERE, 0.0, over)]
+        elif np.shape(self.phi) and all(self.reduced.even(step) for step in parts):
+            parts = [self.plan.add(f"{step.name}′", EVERYWHERE, step, over) for step in parts]
+        return self.plan.add(name, rule, self.reduced.omega, *parts)
 
 
 class Reduced:
     """Reduced quantities of a mechanism over one period (see the flywheel's methods for how they are used).
 
     ``labels``, ``phi`` (n+1 angles turned from position 0, rad, the last one ``period``), ``omega1`` rad/s unsigned.
+    ``drawn`` gives the velocity plans of the numbered positions; they are drawn when none are given.
     """
 
-    def __init__(self, mechanism: Mechanism, cycle: Cycle, forces: tuple[Applied, ...], gravity: float = 0.0) -> None:
+    def __init__(self, mechanism: Mechanism, cycle: Cycle, forces: tuple[Applied, ...], gravity: float = 0.0,
+                 drawn: Callable[[], Velocities] | None = None) -> None:
         self.mechanism = mechanism
         self.cycle = cycle
         self.forces = forces
@@ -34,7 +221,21 @@ class Reduced:
         self.phi = np.append(cycle.turned, cycle.period)
         self.period = cycle.period
         self.omega1 = mechanism.crank.speed
+        self.omega = named(self.omega1, "crank.speed", "ω_1", "rad/s")
         self.breaks = tuple(x for x in distinct((x for f in forces for x in f.jumps), cycle.period) if x > 0)
+        self.numbered = Reduction(self, "" if drawn else "@positions", cycle.turned, cycle.labels, drawn)
+        self.kept: dict[str, Reduction] = {}
+
+    def at(self, where: str, phi: Any, labels: tuple[str, ...] | None = None) -> Reduction:
+        """Reduced quantities at some angles with plans that are kept under the name ``@where``."""
+        found = self.kept.get(where)
+        if found is None or not np.array_equal(found.phi, phi):
+            found = self.kept[where] = Reduction(self, f"@{where}", phi, labels or tuple(map(str, range(np.size(phi)))))
+        return found
+
+    def _search(self, phi: Any) -> Reduction:
+        """Reduced quantities at angles that are only tried: plans that nobody keeps."""
+        return Reduction(self, TRIED, phi)
 
     @cached_property
     def resisting(self) -> bool:
@@ -42,26 +243,12 @@ class Reduced:
         middles = (np.arange(360) + 0.5) * self.period / 360
         return float(np.sum(self.moment(middles))) <= 0
 
-    def _velocities(self, turned: Any) -> Velocities:
-        return velocity_plan(position_plan(self.mechanism, self.cycle.world(turned), purpose="reduced quantities"))
-
     def moment(self, phi: Any, side: int = 0) -> Any:
         """Reduced moment of the technological forces, and of the weights where ``gravity`` is not zero, N m.
 
         Resistances are negative; ``side`` picks the limit at a jump.
         """
-        vel = self._velocities(phi)
-        power: Any = np.zeros(np.shape(phi))
-        for f in self.forces:
-            if f.point is None:
-                power = power + f.law(phi, side) * vel.omega[f.link].value
-            else:
-                power = power + (f.vector(phi, side) * np.conj(vel.points[f.point].value)).real
-        if self.gravity:
-            for link in self.mechanism.links.values():
-                if link.mass and link.centre is not None:
-                    power = power - link.mass * self.gravity * np.imag(vel.points[link.centre].value)
-        return power / self.omega1
+        return self._search(phi).moment(side).value
 
     @property
     def forces_are_moments(self) -> bool:
@@ -73,65 +260,86 @@ class Reduced:
         shown = [f for f in self.forces if f.point is not None] or self.forces
         return {f"{f.name[0]}_{{{f.name[1:]}}}": np.asarray(f.magnitude(phi, side)) for f in shown}
 
+    @property
+    def force_steps(self) -> tuple[Step, ...]:
+        """Steps of the forces that :meth:`forces_at` tells, in its order, at the numbered positions."""
+        _ = self.numbered.moment()
+        shown = [f for f in self.forces if f.point is not None] or self.forces
+        return tuple(self.numbered.loads[f.name] for f in shown)
+
     def inertia(self, phi: Any) -> Any:
         """Reduced moment of inertia of the moving links without the flywheel, kg m2."""
-        vel = self._velocities(phi)
-        return sum((terms for _, terms in self._terms(vel)), np.zeros(np.shape(vel.positions.phi))) / self.omega1**2
+        return self._search(phi).inertia.value
 
     def inertia_slope(self, phi: Any) -> Any:
-        """Derivative of the reduced moment of inertia over the crank angle, kg m2/rad.
-
-        From the acceleration plan of the evenly turning crank: half the derivative of each term of twice the energy is force
-        of inertia times velocity.
-        """
-        vel = self._velocities(phi)
-        acc = acceleration_plan(vel, 0.0)
-        half: Any = np.zeros(np.shape(vel.positions.phi))
-        for link in self.mechanism.links.values():
-            turning = link.inertia if link.pivot_inertia is None else link.pivot_inertia
-            if turning:
-                half = half + turning * vel.omega[link.name].value * acc.epsilon[link.name].value
-            if link.pivot_inertia is None and link.mass and link.centre is not None and link.centre not in self.mechanism.fixed:
-                half = half + link.mass * (acc.points[link.centre].value * np.conj(vel.points[link.centre].value)).real
-        return 2 * half / self.omega1**3
+        """Derivative of the reduced moment of inertia over the crank angle, kg m2/rad."""
+        return self._search(phi).slope.value
 
     @property
     def crank_inertia(self) -> float:
         """The crank's own part of the reduced moment of inertia, constant, kg m2."""
-        m = self.mechanism
-        crank = m.links[m.crank.link]
-        if crank.pivot_inertia is not None:
-            return crank.pivot_inertia
-        if not crank.mass or crank.centre is None or crank.centre in m.fixed:
-            return crank.inertia
-        pos = position_plan(m, np.array([self.cycle.start]), purpose="reduced quantities")
-        arm = abs(complex(pos.points[crank.centre].value[0]) - m.fixed[m.crank.pivot])
-        return crank.inertia + crank.mass * arm**2
+        return float(self.crank.value)
 
-    def _terms(self, vel: Velocities) -> list[tuple[str, Any]]:
-        found: list[tuple[str, Any]] = []
-        for link in self.mechanism.links.values():
-            if link.pivot_inertia is not None:
-                w = vel.omega[link.name].value
-                found.append((f"J_{{{link.name}}}·ω_{link.name}²", link.pivot_inertia * w * w))
-                continue
-            if link.mass and link.centre is not None and link.centre not in self.mechanism.fixed:
-                v = vel.points[link.centre].value
-                found.append((f"m_{link.name}·V_{{{link.centre}}}²", link.mass * (v * np.conj(v)).real))
-            if link.inertia:
-                w = vel.omega[link.name].value
-                found.append((f"J_{{S{link.name}}}·ω_{link.name}²", link.inertia * w * w))
-        # A link that turns evenly has one number for all angles.
-        return [(name, np.broadcast_to(term, np.shape(vel.positions.phi))) for name, term in found]
+    @cached_property
+    def crank(self) -> Step:
+        """The same as a step: ``J_кр`` of the plan "crank-inertia"."""
+        m, plan = self.mechanism, self.crank_plan
+        i = list(m.links).index(m.crank.link)
+        crank = m.links[m.crank.link]
+        if crank.pivot_inertia is not None or not self.moves(crank):
+            return plan.add("J_кр", GIVEN_NUMBER, self.turning(i, crank))
+        assert crank.centre is not None
+        pos = self._at_start
+        at_start = plan.add("J_1", CRANK_INERTIA, self.turning(i, crank), self.mass(i, crank), pos.points[crank.centre],
+                            pos.points[m.crank.pivot])
+        return plan.add("J_кр", AT_START, at_start, 0)
+
+    @cached_property
+    def crank_plan(self) -> Plan:
+        """Plan of the crank's own moment of inertia."""
+        return Plan("crank-inertia", "Момент инерции начального звена", "")
+
+    @cached_property
+    def _at_start(self) -> Positions:
+        return position_plan(self.mechanism, np.array([self.cycle.start]), where="@start")
+
+    @property
+    def crank_plans(self) -> tuple[Plan, ...]:
+        """Plans behind :attr:`crank`."""
+        _ = self.crank
+        start = vars(self).get("_at_start")
+        return (*((start.plan,) if start else ()), self.crank_plan)
+
+    def mass(self, i: int, link: Link) -> float:
+        """Mass of the i-th link, with its place in the project file."""
+        return named(link.mass, f"link[{i}].mass", f"m_{link.name}", "kg")
+
+    def turning(self, i: int, link: Link) -> float:
+        """Moment of inertia of the i-th link that counts for its energy of rotation."""
+        if link.pivot_inertia is not None:
+            return named(link.pivot_inertia, f"link[{i}].pivot_inertia", f"J_{link.name}", "kg*m2")
+        return named(link.inertia, f"link[{i}].inertia", f"J_{{S{link.name}}}", "kg*m2")
+
+    def moves(self, link: Link) -> bool:
+        """True for a link whose centre of mass has a velocity to be counted."""
+        return bool(link.mass) and link.centre is not None and link.centre not in self.mechanism.fixed
+
+    def even(self, step: Step) -> bool:
+        """True for a term that is one number for all angles: of a link that turns evenly or not at all."""
+        return not any(np.ndim(a.value) for a in step.args if isinstance(a, Step))
 
     def inertia_parts(self, phi: Any) -> dict[str, Any]:
         """The terms of the reduced moment of inertia without the crank's, kg m2, by the names of :attr:`inertia_terms`."""
+        return self.parts(self._search(phi))
+
+    def parts(self, at: Reduction) -> dict[str, Any]:
+        """The same of a reduction that was made already."""
         crank = self.mechanism.crank.link
-        vel = self._velocities(phi)
         mine = {f"J_{{{crank}}}·ω_{crank}²", f"J_{{S{crank}}}·ω_{crank}²", f"m_{crank}·V_{{{self.mechanism.links[crank].centre}}}²"}
-        return {name: term / self.omega1**2 for name, term in self._terms(vel) if name not in mine}
+        return {name: np.broadcast_to(term.value / self.omega1**2, np.shape(at.phi))
+                for name, term in at.terms.items() if name not in mine}
 
     @property
     def inertia_terms(self) -> dict[str, Any]:
         """Twice the kinetic energy of each link, term by term, at the numbered positions, kg m2/s2."""
-        return dict(self._terms(self._velocities(self.phi[:-1])))
+        return {name: np.broadcast_to(term.value, np.shape(self.numbered.phi)) for name, term in self.numbered.terms.items()}

@@ -9,8 +9,9 @@ from typing import Any
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
-from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan
-from tmm_sheets.methods.flywheel.flywheel import DiagramSpace, Flywheel
+from tmm_sheets.construction.step import Step
+from tmm_sheets.methods.flywheel.energy_mass import ConvergedWheel, energy_mass_plan, limit, limit_segment, touched
+from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, TOGETHER, TOGETHER_LIMIT, DiagramSpace, Flywheel
 from tmm_sheets.methods.integration import Floats
 
 TURN = 2 * pi
@@ -51,9 +52,15 @@ class Wittenbauer(Flywheel):
     @cached_property
     def energy_mass_plan(self) -> Plan:
         """Energy-mass curve, tangents, segment ``ab``: see :func:`energy_mass_plan`."""
-        return energy_mass_plan(
-            self.labels, self.total_plan["ΔE"], self.inertia_plan["J"], self.energy_mass_curve, self.samples,
-            self.scales.inertia.mu, self.scales.energy.mu, self.reduced.omega1, self.data.delta)
+
+        def contact(name: str, angle: float) -> tuple[Step, Step]:
+            side = 1 if name == "max" else -1
+            phi = touched(self.energy_mass_curve, angle, side, self.samples)
+            criterion = f"{'highest' if side > 0 else 'lowest'} point of the energy-mass curve across the direction ψ_{name}"
+            return self.contact(name, phi, criterion)[1:]
+
+        return energy_mass_plan(self.labels, self.total_plan["ΔE"], self.inertia_plan["J"], contact, self.mu("inertia"),
+                                self.mu("energy"), self.omega1, self.delta, self.where)
 
     @property
     def own_plans(self) -> tuple[Plan, ...]:
@@ -65,9 +72,9 @@ class Wittenbauer(Flywheel):
         return self.scales.inertia.mm(self.inertia(phi)) + 1j * self.energy_curve(phi)
 
     @property
-    def ab_mm(self) -> float:
-        """Segment ab on the drawing, mm; negative where a lies below b: then no flywheel is needed."""
-        return float(self.energy_mass_plan["ab"].value)
+    def ab(self) -> Step:
+        """Segment ab, mm."""
+        return self.energy_mass_plan["ab"]
 
     @property
     def psi(self) -> tuple[float, float]:
@@ -77,19 +84,24 @@ class Wittenbauer(Flywheel):
     @property
     def J_added(self) -> float:
         """What has to be added to the drawn J(phi): ab mu_E/(delta omega^2), kg m2."""
-        return self.ab_mm * self.scales.energy.mu / (self.data.delta * self.reduced.omega1**2)
+        return float(self.first_plan["J_доб"].value)
+
+    def _first(self, plan: Plan) -> Step:
+        added = plan.add("J_доб", OF_SEGMENT, self.ab, self.mu("energy"), self.delta, self.omega1)
+        return plan.add("J_I", TOGETHER, added, self.reduced.crank)
+
+    @cached_property
+    def limit(self) -> ConvergedWheel:
+        """The same for vanishing intervals, with its error."""
+        r = self.reduced
+        return limit(r.moment, r.inertia, self.edges, r.omega1, self.data.delta, whole=self._limit_row)
+
+    def _first_converged(self, plan: Plan) -> Step:
+        excess = limit_segment(plan, self.limit, self.edges, self.at, self.mass, self.omega1, self.delta)
+        return plan.add("J_I∞", TOGETHER_LIMIT, plan.add("J_доб∞", OF_EXCESS, excess, self.delta, self.omega1), self.reduced.crank)
 
     @property
-    def J_first(self) -> float:
-        """All that turns with the crank, flywheel included, by the drawn construction, kg m2."""
-        return self.J_added + self.reduced.crank_inertia
-
-    @property
-    def J_first_converged(self) -> float:
-        """The same for vanishing intervals, kg m2."""
-        return self.limit.inertia + self.reduced.crank_inertia
-
-    @property
-    def drawn(self) -> dict[str, float]:
+    def drawn(self) -> dict[str, Any]:
         """Lengths and angles as they stand on the sheet, mm and rad."""
-        return {**super().drawn, "psi_max": self.psi[0], "psi_min": self.psi[1]}
+        plan = self.energy_mass_plan
+        return {**super().drawn, "psi_max": plan["ψ_max"], "psi_min": plan["ψ_min"]}

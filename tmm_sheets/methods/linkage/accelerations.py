@@ -136,15 +136,15 @@ class Accelerations:
         self.epsilon[link] = self.plan.add(f"ε{link}", SAME, self.epsilon[other])
 
 
-def acceleration_plan(vel: Velocities, epsilon1: Any = None) -> Accelerations:
+def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") -> Accelerations:
     """Record the acceleration plans of all positions.
 
     ``epsilon1`` is the angular acceleration of the crank, rad/s2: a number or of shape (n,), signed, or a step, positive in the
-    sense of rotation; that of the mechanism unless told.
+    sense of rotation; that of the mechanism unless told. ``where`` stands behind the plan's name.
     """
     pos = vel.positions
     m = pos.mechanism
-    plan = Plan("accelerations", "План ускорений", "m/s2", pos.plan.labels, "π", pos.plan.search)
+    plan = Plan(f"accelerations{pos.where}{where}", "План ускорений", "m/s2", pos.plan.labels, "π", pos.plan.search)
     acc = Accelerations(pos, vel, plan)
     pole = plan.add("π", POLE, 0j)
     for name in m.fixed:

@@ -27,6 +27,7 @@ class Positions:
     mechanism: Mechanism
     plan: Plan
     angle: Any
+    where: str = ""
     points: dict[str, Step] = field(default_factory=dict)
     directions: dict[str, Step] = field(default_factory=dict)
     guide_points: dict[str, Step] = field(default_factory=dict)
@@ -63,16 +64,16 @@ class Positions:
         return found.lengths
 
 
-def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), purpose: str = "") -> Positions:
+def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), where: str = "", purpose: str = "") -> Positions:
     """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,).
 
-    They may be numbers, a row or a step. ``purpose`` is what the plan searches for, when it is neither drawn nor told: it is
-    counted then.
+    They may be numbers, a row or a step. ``where`` stands behind the names of this plan and of those made on it: "@middles" for
+    angles between the positions. ``purpose`` is what the plan searches for, when it is neither drawn nor told: it is counted then.
     """
-    plan = Plan("positions", "Планы положений механизма", "m", labels, search=mechanism.search(purpose))
+    plan = Plan(f"positions{where}", "Планы положений механизма", "m", labels, search=mechanism.search(purpose))
     inner = {g.inner for g in mechanism.groups if g.inner}
     plan.reserved = frozenset({*mechanism.fixed, mechanism.crank.pin, *inner, *(p.name for p in mechanism.points)})
-    pos = Positions(mechanism, plan, phi)
+    pos = Positions(mechanism, plan, phi, where)
     for name, at in mechanism.fixed.items():
         pos.points[name] = plan.add(name, rules.GIVEN, at)
     for guide in mechanism.guides.values():

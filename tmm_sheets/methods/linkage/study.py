@@ -26,8 +26,8 @@ class CrankMotion(Protocol):
     """What the forces need of a crank that does not turn evenly: the flywheel says it."""
 
     @property
-    def J_running(self) -> float:
-        """Moment of inertia of all that turns with the crank of the finished machine, kg m2."""
+    def first_plan(self) -> Plan:
+        """Moment of inertia of all that turns with the crank of the finished machine as step ``J_вр``, kg m2."""
         ...
 
     def acceleration_plan(self, phi: Any, labels: tuple[str, ...]) -> Plan:
@@ -78,7 +78,7 @@ class Study:
     @cached_property
     def positions(self) -> Positions:
         """Position plan."""
-        return position_plan(self.mechanism, self.cycle.angles(self.turned), self.labels, self.purpose)
+        return position_plan(self.mechanism, self.cycle.angles(self.turned), self.labels, purpose=self.purpose)
 
     @cached_property
     def velocities(self) -> Velocities:
@@ -103,7 +103,7 @@ class Study:
         """External and inertia forces of every link, inertia couples, and their plan."""
         turned = self.cycle.turned_row(self.turned)
         recorded = [(f.link, f.point, lambda plan, f=f: f.record(plan, self.positions, turned)) for f in self.applied]
-        carried = None if self.running is None else self.running().J_running
+        carried = None if self.running is None else self.running().first_plan["J_вр"]
         return external_loads(self.positions, self.accelerations, self.gravity, (), carried, recorded)
 
     @cached_property

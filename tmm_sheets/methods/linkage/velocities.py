@@ -123,7 +123,7 @@ def plan_name(plan: Plan, point: str) -> str:
 def velocity_plan(pos: Positions) -> Velocities:
     """Record the velocity plans of all positions of ``pos``."""
     m = pos.mechanism
-    plan = Plan("velocities", "Планы скоростей", "m/s", pos.plan.labels, "p", pos.plan.search)
+    plan = Plan(f"velocities{pos.where}", "Планы скоростей", "m/s", pos.plan.labels, "p", pos.plan.search)
     vel = Velocities(pos, plan)
     pole = plan.add("p", POLE, 0j)
     for name in m.fixed:
