@@ -14,7 +14,8 @@ from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.positions import near_point
 
 PIN_ANGLE = Rule("angle of a dead position", lambda centre, pin: np.arctan2((pin - centre).imag, (pin - centre).real),
-                 ("point", "point"), "angle", "Угол кривошипа в мёртвом положении {1} {name} = {value}.", unit="rad")
+                 ("point", "point"), "angle", "Угол кривошипа в мёртвом положении {1} {name} = {value}.", unit="rad",
+                 exact=True)
 
 
 def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
@@ -23,7 +24,7 @@ def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
 
 
 IN_LINE_ANGLE = Rule("angle of a crank in line with the rod", _in_line, ("point", "point", "number", "length"), "angle",
-                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad")
+                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad", exact=True)
 
 
 def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]:
