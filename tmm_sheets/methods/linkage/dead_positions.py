@@ -24,7 +24,8 @@ def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
 
 
 IN_LINE_ANGLE = Rule("angle of a crank in line with the rod", _in_line, ("point", "point", "number", "length"), "angle",
-                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad", exact=True)
+                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad",
+                     exact=True)
 
 
 def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]:
