@@ -185,7 +185,7 @@ class Errors:
                     values[id(s)] = s.value
                 else:
                     with np.errstate(all="ignore"):
-                        now = [values[id(a)] if isinstance(a, Step) else a for a in args]
+                        now = [values[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
                         values[id(s)] = _replayed(s, now, self._snapped(s, args))
             return values[id(step)]
 
@@ -212,7 +212,7 @@ class Errors:
     def _analysed(self, step: Step) -> _Known | None:
         """None for what has no error: given numbers and directions, what no pencil draws, and values that are no numbers."""
         self._note_lengths(step)
-        if not _numeric(step.value) or _beyond_paper(step):
+        if not _numeric(step.value) or _beyond_paper(step) or step.rule.exact:
             return None
         args = _on_paper(step)
         base = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {}))

@@ -43,7 +43,7 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
     if said:
         # What lies upstream decides what the groups after it need: only the first advice is sure.
         raise CannotBuild("\n".join(said), hints[0])
-    missing = position_plan(mechanism, cycle.phi, cycle.labels, ASSEMBLY).plan.check()
+    missing = position_plan(mechanism, cycle.phi, cycle.labels, purpose=ASSEMBLY).plan.check()
     if missing:
         name, labels = missing
         raise CannotBuild(f"{name} cannot be constructed at positions {', '.join(labels)}")

@@ -78,7 +78,7 @@ class Study:
     @cached_property
     def positions(self) -> Positions:
         """Position plan."""
-        return position_plan(self.mechanism, self.cycle.angles(self.turned), self.labels, self.purpose)
+        return position_plan(self.mechanism, self.cycle.angles(self.turned), self.labels, purpose=self.purpose)
 
     @cached_property
     def velocities(self) -> Velocities:
