@@ -221,7 +221,7 @@ class Errors:
     def _analysed(self, step: Step) -> _Known | None:
         """None for what has no error: given numbers and directions, what no pencil draws, and values that are no numbers."""
         self._note_lengths(step)
-        if not _numeric(step.value) or _beyond_paper(step):
+        if not _numeric(step.value) or _beyond_paper(step) or step.rule.exact:
             return None
         if step.rule.compute is take:
             return self._taken(step)

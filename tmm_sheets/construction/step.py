@@ -66,6 +66,8 @@ class Rule:
         unit of the result where it is not that of the plan.
     source
         manual and section a formula is taken from.
+    exact
+        True for a number that is computed, not drawn: the error analysis takes it as a given one.
 
     The arithmetic of a rule is read off ``compute`` itself, see :mod:`~tmm_sheets.construction.expression`.
     """
@@ -79,6 +81,7 @@ class Rule:
     beyond_paper: bool = False
     unit: str = ""
     source: str = ""
+    exact: bool = False
 
     def tree(self, count: int) -> Expression | None:
         """The rule's arithmetic on ``count`` arguments as an expression."""

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.project import Project
 
+MOST = 72
+"""Most positions that are told in words: as many as a sheet shows."""
 SCHEMA = 1
 """Version of the record; it may grow under it."""
 
@@ -145,11 +147,12 @@ class _Telling:
     def told(self, step: Step) -> dict[str, Any]:
         """What is said of a step, by the labels of the positions.
 
-        Of one made of rows that are not over the positions it is said once, without a label.
+        Of one made of rows that are not over the positions it is said once, without a label; of more positions than any sheet shows
+        only the first is told.
         """
-        labels = self.plan.labels
+        labels = self.plan.labels if len(self.plan.labels) <= MOST else self.plan.labels[:1]
         lengths = {np.shape(value_of(a))[0] for a in (*step.args, step) if _is_row(value_of(a))}
-        if lengths - {len(labels)}:
+        if lengths - {len(self.plan.labels)}:
             labels = ("",)
         tree = formulas.tree_of(step)
         sentence, shown, lines = {}, {}, {}

@@ -157,7 +157,8 @@ def near_point(m: Mechanism, guide: Guide) -> tuple[Any, ...]:
 
 
 PIN_ANGLE = Rule("angle of a dead position", lambda centre, pin: np.arctan2((pin - centre).imag, (pin - centre).real),
-                 ("point", "point"), "angle", "Угол кривошипа в мёртвом положении {1} {name} = {value}.", unit="rad")
+                 ("point", "point"), "angle", "Угол кривошипа в мёртвом положении {1} {name} = {value}.", unit="rad",
+                 exact=True)
 
 
 def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
@@ -166,7 +167,8 @@ def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
 
 
 IN_LINE_ANGLE = Rule("angle of a crank in line with the rod", _in_line, ("point", "point", "number", "length"), "angle",
-                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad")
+                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad",
+                 exact=True)
 REACH = Rule("reach of crank and rod in line", lambda rod, crank, sign: np.abs(rod + sign * crank), ("length", "length", "number"),
              "length", "{name} = {value}.")
 

@@ -49,7 +49,7 @@ class Path:
 
 WAY = Rule("fraction of a straight way",
            lambda p, sense, low, way: np.minimum(np.maximum(((p * np.conjugate(sense)).real - low) / way, 0.0), 1.0),
-           ("point", "direction", "length", "length"), "number", "Доля пройденного пути {name} = {value}.")
+           ("point", "direction", "length", "length"), "number", "Доля пройденного пути {name} = {value}.", exact=True)
 
 
 @primitive("fraction of a swing")
@@ -60,7 +60,7 @@ def _swung(u: Any, sense: float, low: float, swing: float) -> Any:
 
 
 SWING = Rule("fraction of a swing", _swung, ("direction", "number", "angle", "angle"), "number",
-             "Доля угла качания {name} = {value}.")
+             "Доля угла качания {name} = {value}.", exact=True)
 
 
 @dataclass(frozen=True)
@@ -327,10 +327,10 @@ def _signed_sum(*terms: Any) -> Any:
     return total
 
 
-SIGNED_SUM = Rule("values by stroke", _signed_sum, ("number", "number"), "number", "{name} = {value}.")
+SIGNED_SUM = Rule("values by stroke", _signed_sum, ("number", "number"), "number", "{name} = {value}.", exact=True)
 PISTON = Rule("force of a pressure on a piston", lambda p, bore, ambient: np.pi * bore**2 / 4 * (p - ambient),
-              ("number", "length", "number"), "number", "{name} = π·D²/4·(p − p_0).", unit="N")
-OPPOSED = Rule("ordinates with a sign", lambda y, sign: sign * y, ("number", "number"), "number", "{name} = {value}.")
+              ("number", "length", "number"), "number", "{name} = π·D²/4·(p − p_0).", unit="N", exact=True)
+OPPOSED = Rule("ordinates with a sign", lambda y, sign: sign * y, ("number", "number"), "number", "{name} = {value}.", exact=True)
 
 Table = tuple[Sequence[float], Sequence[float]]
 """Arguments and values of a diagram, straight lines between them."""
@@ -398,11 +398,11 @@ smooth_ordinate = primitive("ordinate of a smooth diagram")(_of_table(True))
 periodic_ordinate = primitive("ordinate of a periodic diagram")(_of_periodic(False))
 smooth_periodic_ordinate = primitive("ordinate of a smooth periodic diagram")(_of_periodic(True))
 _TAKEN: tuple[Kind, ...] = ("number", "number", "number", "number")
-STRAIGHT = Rule("ordinate of a load diagram", ordinate, _TAKEN, "number", "{name} = {value}.")
-SMOOTH = Rule("ordinate of a smooth load diagram", smooth_ordinate, _TAKEN, "number", "{name} = {value}.")
-PERIODIC = Rule("ordinate of a load diagram over the angle", periodic_ordinate, _TAKEN, "number", "{name} = {value}.")
+STRAIGHT = Rule("ordinate of a load diagram", ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
+SMOOTH = Rule("ordinate of a smooth load diagram", smooth_ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
+PERIODIC = Rule("ordinate of a load diagram over the angle", periodic_ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
 SMOOTH_PERIODIC = Rule("ordinate of a smooth load diagram over the angle", smooth_periodic_ordinate, _TAKEN, "number",
-                       "{name} = {value}.")
+                       "{name} = {value}.", exact=True)
 
 
 def _slopes(x: Any, y: Any, closed: bool) -> tuple[Any, Any]:

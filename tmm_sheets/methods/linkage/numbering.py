@@ -29,16 +29,17 @@ SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
 WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + sense * turned, ("angle", "number", "angle"), "angle",
-             "Угол кривошипа {name} = {0} + {1}·{2} = {value}.", unit="rad")
+             "Угол кривошипа {name} = {0} + {1}·{2} = {value}.", unit="rad", exact=True)
 EQUAL = Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra,
              ("number", "number", "angle"), "angle",
-             "Разделим оборот кривошипа на {0} равных частей; угол поворота {name} = {value}.", unit="rad")
+             "Разделим оборот кривошипа на {0} равных частей; угол поворота {name} = {value}.", unit="rad", exact=True)
 STROKE_OF_K = Rule("crank angle of the working stroke", lambda k: np.pi * (1 + (k - 1) / (k + 1)), ("number",), "angle",
-                   "Угол рабочего хода {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}.", unit="rad", source="000, 3.1")
+                   "Угол рабочего хода {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}.", unit="rad", source="000, 3.1", exact=True)
 BETWEEN = Rule("symmetric between the dead positions",
                lambda dead, sense, exact, stroke: dead + sense * exact / 2 - sense * stroke / 2,
                ("angle", "number", "angle", "angle"), "angle",
-               "Рабочий ход отложим симметрично между мёртвыми положениями: угол положения 0 {name} = {value}.", unit="rad")
+               "Рабочий ход отложим симметрично между мёртвыми положениями: угол положения 0 {name} = {value}.",
+               unit="rad", exact=True)
 
 
 @primitive("angle turned")
@@ -55,9 +56,9 @@ def _parts(stroke: float, working: float, idle: float) -> Floats:
 
 
 TURNED = Rule("angle between dead positions", _turned, ("angle", "angle", "number"), "angle",
-              "Угол рабочего хода между мёртвыми положениями {name} = {value}.", unit="rad")
+              "Угол рабочего хода между мёртвыми положениями {name} = {value}.", unit="rad", exact=True)
 PARTS = Rule("equal parts of both strokes", _parts, ("angle", "number", "number"), "angle",
-             "Рабочий ход разделим на {1} равных частей, холостой на {2}; угол поворота {name} = {value}.", unit="rad")
+             "Рабочий ход разделим на {1} равных частей, холостой на {2}; угол поворота {name} = {value}.", unit="rad", exact=True)
 
 
 def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle: int, coefficient: float | None) -> Cycle:
