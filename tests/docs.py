@@ -18,6 +18,7 @@ from pydantic import AfterValidator, BeforeValidator, WrapValidator
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+from tests.record import replayer
 from tmm_sheets import catalogue, cli, resources
 from tmm_sheets.backends import dxf
 from tmm_sheets.drawing import marks, styles
@@ -218,6 +219,27 @@ def arrangements() -> str:
     return table(("arrangement", "code", "title", "views"), *rows)
 
 
+# --- primitives of the record ----------------------------------------------------------------------------------------
+
+
+def primitives() -> str:
+    """Every primitive with its arguments and what its docstring says."""
+    rows = ((f"`{name}`", ", ".join(arguments(f)), what_it_is(f)) for name, f in sorted(replayer.primitives().items()))
+    return table(("primitive", "takes", "is"), *rows)
+
+
+def what_it_is(function: Any) -> str:
+    """First paragraph of a docstring, with the names in it set as code."""
+    first = (inspect.getdoc(function) or "").split("\n\n")[0].replace("``", "`")
+    return " ".join(re.sub(r":\w+:`~?([^`]*)`", r"`\1`", first).split())
+
+
+def arguments(function: Any) -> Iterator[str]:
+    """Arguments of a function by name, in italics where they may be left out."""
+    for p in inspect.signature(function).parameters.values():
+        yield f"{p.name} ..." if p.kind is p.VAR_POSITIONAL else p.name if p.default is p.empty else f"*{p.name}*"
+
+
 # --- one crank angle through the code -------------------------------------------------------------------------------
 
 
@@ -266,7 +288,7 @@ def path(module: ModuleType) -> str:
     return Path(module.__file__).relative_to(ROOT).as_posix()
 
 
-MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, example, options, arrangements, walk)}
+MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, example, options, arrangements, primitives, walk)}
 
 
 def current(text: str) -> str:

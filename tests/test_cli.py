@@ -287,14 +287,13 @@ def test_output_folder_that_is_a_file(tmp_path, capsys):
 ALONE = """
 import sys
 from tmm_sheets import catalogue
-from tmm_sheets.explain import parts
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 project = Project(catalogue.read("lugansk/shaper"))
 sheet.compose(project, {n})
 print(" ".join(m for m in sys.modules if m.startswith("tmm_sheets.")))
-print(" ".join(name for name, plans in parts(project).items() if plans is not None))
-print(" ".join(p.name for plans in parts(project).values() if plans for p in plans if any(s.evaluated for s in p)))
+print(" ".join(name for name, plans in project.plans.items() if plans is not None))
+print(" ".join(p.name for plans in project.plans.values() if plans for p in plans.values() if any(s.evaluated for s in p)))
 """
 
 

@@ -15,7 +15,7 @@ METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.i
 
 RULES = {
     # room: (what it imports at run time, what else it names in annotations)
-    "mechanism": ("", "construction mechanism.groups"),
+    "mechanism": ("construction.tally", "construction mechanism.groups"),
     "mechanism.groups": ("construction mechanism", ""),
     "mechanism.structure": ("mechanism", ""),
     "construction": ("", ""),
@@ -26,27 +26,29 @@ RULES = {
     "methods.gears": ("construction", "task.schema"),
     "methods.cams": ("construction methods.integration", "task.schema"),
     "task": ("", ""),
-    "task.assembly": ("mechanism methods.linkage task", ""),
+    "task.assembly": ("construction mechanism methods.linkage task", ""),
     "task.variant": ("methods.linkage.synthesis task", ""),
     "task.names": ("construction.indices task", ""),
     "task.letters": ("drawing.lettering task", ""),
     "task.families": ("task", ""),
-    "project": (f"task {METHODS}", "mechanism"),
+    "project": (f"task {METHODS}", "construction mechanism"),
     "results": ("construction project sheets", "methods.linkage"),
     "catalogue": ("task", ""),
     "summary": ("mechanism project task", ""),
     "explain": ("construction", "drawing project"),
-    "protocols": ("construction explain sheets", "project"),
+    "protocols": ("construction sheets", "project"),
+    "record": ("construction drawing project results sheets", ""),
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets", "task"),
     "compare": ("drawing sheets", ""),
-    "compare.measured": (f"compare construction explain sheets {METHODS}", "project"),
+    "compare.measured": (f"compare construction sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
     "bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
     "stress": ("construction mechanism methods.linkage", ""),
-    "cli": ("backends bench catalogue compare drawing explain output project protocols results sheets stress summary task", ""),
+    "cli": ("backends bench catalogue compare drawing explain output project protocols record results sheets stress summary "
+            "task", ""),
     "__main__": ("cli", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),
 }
@@ -62,7 +64,7 @@ LIBRARIES = {
 
 LATE = ("numpy", "shapely")
 """Libraries the command line must not wait for: numpy is imported at the top only where numbers are made, shapely nowhere."""
-NUMBERS = "mechanism construction drawing methods sheets backends compare bench stress project"
+NUMBERS = "mechanism construction drawing methods sheets backends compare bench stress project record"
 
 
 def within(module, rooms):

@@ -301,6 +301,41 @@ def protocol(project: str, corrected: bool, name: str | None) -> None:
         click.echo(line)
 
 
+@commands.command()
+@PROJECT
+@CORRECTED
+@click.option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
+@click.option("--json", "target", required=True, metavar="FILE", help="Write to FILE, or to standard output for -.")
+def record(project: str, corrected: bool, sheets: tuple[int, ...], target: str) -> None:
+    """Write the record of PROJECT as JSON: every number with its step, every mark with what it shows."""
+    from tmm_sheets.output.building import chosen
+    from tmm_sheets.record import recording
+
+    opened = _open(project, corrected)
+    found, problem = recording.record(opened, chosen(opened.variant, sheets))
+    text = recording.as_json(found)
+    if target == "-":
+        click.echo(text)
+    else:
+        from tmm_sheets import files
+
+        files.write_all({Path(target): (text + "\n").encode()})
+    if problem is not None:
+        raise problem
+
+
+@commands.command()
+@PROJECT
+@click.argument("result")
+@CORRECTED
+def why(project: str, result: str, corrected: bool) -> None:
+    """Tell the steps from the given numbers of PROJECT to a RESULT, a path of solve --json such as flywheel.J_flywheel."""
+    from tmm_sheets.record import why as reasons
+
+    for line in reasons.lines(_open(project, corrected), result):
+        click.echo(line)
+
+
 def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:
     if value is None:
         return None

@@ -6,13 +6,10 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import is_dataclass
-from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.drawing.marks import Drawing
     from tmm_sheets.project import Project
 
@@ -41,17 +38,16 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
     from tmm_sheets.construction import condition
 
     lines = ["plan                            steps  evaluated  skipped         ms  condition"]
-    for name, plans in parts(project).items():
-        if plans is None:
-            lines.append(f"{name}: not built")
-            continue
-        lines.append(f"{name}: built")
-        for plan in plans:
-            done = sum(step.evaluated for step in plan)
-            ms = 1000 * sum(sum(step.seconds) for step in plan)
+    for name, plans in project.plans.items():
+        lines.append(f"{name}: {'not ' if plans is None else ''}built")
+        for plan in (plans or {}).values():
+            steps = [*plan, *plan.asides.values()]
+            done = [step for step in steps if step.evaluated]
+            ms = 1000 * sum(step.spent for step in done)
             worst = condition.worst(plan)
             told = "" if worst is None else f"{worst[0]:11.2f} in {worst[1]}"
-            lines.append(f"  {plan.name:28}{len(plan.steps):7}{done:11}{len(plan.steps) - done:9}{ms:11.3f}{told}")
+            lines.append(f"  {plan.name:28}{len(steps):7}{len(done):11}{len(steps) - len(done):9}{ms:11.3f}{told}")
+    lines += _searches(project)
     lines += ["", "sheet   marks"]
     for n, drawing in drawings.items():
         kinds = Counter(type(mark).__name__.lower() for mark in drawing.marks)
@@ -64,32 +60,9 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
     return "\n".join(lines)
 
 
-def parts(project: Project) -> dict[str, list[Plan] | None]:
-    """The lazy parts of a project with the plans behind each, None for a part that nobody has asked for."""
-    found: dict[str, list[Plan] | None] = {}
-    seen: set[int] = set()
-    for name, attribute in vars(type(project)).items():
-        if isinstance(attribute, cached_property):
-            found[name] = list(_plans(vars(project)[name], seen)) if name in vars(project) else None
-    return found
-
-
-def _plans(thing: Any, seen: set[int]) -> Iterator[Plan]:
-    """Plans inside a result: among its attributes, theirs, and their containers; each object once."""
-    from tmm_sheets.construction.plan import Plan
-
-    if id(thing) in seen:
-        return
-    if isinstance(thing, Plan):
-        seen.add(id(thing))
-        yield thing
-    elif isinstance(thing, dict):
-        for value in thing.values():
-            yield from _plans(value, seen)
-    elif isinstance(thing, list | tuple):
-        for value in thing:
-            yield from _plans(value, seen)
-    elif (is_dataclass(thing) or type(thing).__module__.startswith("tmm_sheets.methods")) and hasattr(thing, "__dict__"):
-        seen.add(id(thing))
-        for value in vars(thing).values():
-            yield from _plans(value, seen)
+def _searches(project: Project) -> Iterator[str]:
+    """A line for each thing that was looked for with plans that nobody draws."""
+    if project.searches:
+        yield from ("", "searches                        plans      steps                  ms")
+    for search in project.searches:
+        yield f"  {search.purpose:28}{search.plans:7}{search.steps:11}{1000 * search.seconds:20.3f}"

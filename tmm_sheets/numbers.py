@@ -30,7 +30,7 @@ def _size(value: Any, k: int) -> float:
     finite = sizes[np.isfinite(sizes)]
     if not finite.size:
         return 0.0
-    usual = float(np.quantile(finite, 0.75, method="lower"))
+    usual = float(np.sort(finite)[int(0.75 * (finite.size - 1))])
     return max(usual, float(sizes[k])) if k < sizes.size and np.isfinite(sizes[k]) else usual
 
 

@@ -9,6 +9,8 @@ from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.task.variant import Variant
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.tally import Tally
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.cams.cam_profile import Cam
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
@@ -24,6 +26,10 @@ if TYPE_CHECKING:
 
 LINKAGE = ("positions", "velocities", "accelerations", "forces")
 """Parts of the results that the linkage has."""
+
+
+PLANNED = ("synthesis", "cycle", "driver", "study", "reduced", "flywheel", "reducer", "gear", "cam")
+"""Parts of a project that construct something, each with its ``plans``."""
 
 
 class Project:
@@ -81,7 +87,7 @@ class Project:
         """Links, pairs and Assur groups."""
         from tmm_sheets.task.assembly import mechanism_of
 
-        return mechanism_of(self.variant)
+        return mechanism_of(self.variant, self.synthesis if self.variant.synthesis is not None else None)
 
     @cached_property
     def synthesis(self) -> Synthesis:
@@ -126,26 +132,38 @@ class Project:
     def driver(self) -> GearForce | None:
         """Gear force on the crank shaft; None when a pure moment balances the crank."""
         from tmm_sheets.methods.linkage.forces import GearForce
+        from tmm_sheets.task.assembly import Givens
 
         b: Any = self.variant.balancing
         if b is None or b.kind == "moment":
             return None
-        return GearForce(b.name, b.module * b.teeth / 2, b.pressure_angle, b.mate)
+        of = Givens(self.variant)
+        return GearForce.of_gear(b.name, of.number(b.module, "m", "m", "balancing", "module"),
+                                 of.number(b.teeth, "z_1", "", "balancing", "teeth"),
+                                 of.number(b.pressure_angle, "α", "rad", "balancing", "pressure_angle"),
+                                 of.number(b.mate, "", "rad", "balancing", "mate"))
+
+    @property
+    def gravity(self) -> float:
+        """Free fall, m/s2."""
+        from tmm_sheets.task.assembly import Givens
+
+        return Givens(self.variant).number(self.variant.forces.gravity, "g", "m/s2", "forces", "gravity")
 
     @cached_property
     def study(self) -> Study:
         """Kinematics and forces at the numbered positions; raises :class:`CannotBuild` when they do not all assemble."""
         self.check_assembly()
-        return self.study_at(self.cycle.turned, self.cycle.labels)
+        return self.study_at(self.cycle.turned, self.cycle.labels, "")
 
-    def study_at(self, turned: Any, labels: tuple[str, ...]) -> Study:
-        """Kinematics and forces at any crank angles (rad turned from position 0)."""
+    def study_at(self, turned: Any, labels: tuple[str, ...], purpose: str = "curves between the positions") -> Study:
+        """Kinematics and forces at any crank angles (rad turned from position 0); ``purpose`` is empty for what is told itself."""
         from tmm_sheets.methods.linkage.study import Study
 
         crank = self.variant.crank
         uneven = crank is not None and crank.angular_acceleration == "flywheel"
-        return Study(self.mechanism, self.cycle, turned, labels, self.variant.forces.gravity, lambda: self.applied, self.driver,
-                     (lambda: self.flywheel) if uneven else None)
+        return Study(self.mechanism, self.cycle, turned, labels, self.gravity, lambda: self.applied, self.driver,
+                     (lambda: self.flywheel) if uneven else None, purpose)
 
     @cached_property
     def force_index(self) -> int:
@@ -165,7 +183,7 @@ class Project:
         from tmm_sheets.methods.flywheel.reduced import Reduced
 
         f = self.variant.flywheel
-        gravity = self.variant.forces.gravity if f is not None and f.weights else 0.0
+        gravity = self.gravity if f is not None and f.weights else 0.0
         return Reduced(self.mechanism, self.cycle, self.applied, gravity, lambda: study.velocities)
 
     @cached_property
@@ -224,6 +242,17 @@ class Project:
         from tmm_sheets.methods.cams.cam_profile import cam
 
         return cam(self._section("cam"))
+
+    @property
+    def plans(self) -> dict[str, dict[str, Plan] | None]:
+        """Plans of every part by their names, in the order of construction; None for a part that nobody has asked for."""
+        made = vars(self)
+        return {part: dict(getattr(made[part], "plans", {})) if part in made else None for part in PLANNED}
+
+    @property
+    def searches(self) -> tuple[Tally, ...]:
+        """What was looked for with plans that nobody draws, and how many it took."""
+        return tuple(self.mechanism.searches.values()) if "mechanism" in vars(self) else ()
 
     def check(self) -> None:
         """Assemble everything the project describes; raises :class:`CannotBuild` naming what fails, where and by how much."""

@@ -15,10 +15,6 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 
-_UNITS = {"mm": "мм", "m": "м", "m/s": "м/с", "m/s2": "м/с²", "N": "Н"}
-"""Russian units for plans that no sheet draws."""
-
-
 def lines(project: Project, name: str | None) -> Iterator[str]:
     """Sentences of every plan on the sheets, or of one; each plan under its title and scale factor.
 
@@ -53,7 +49,6 @@ def lines(project: Project, name: str | None) -> Iterator[str]:
 
 def _drawn(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], CannotBuild | None]:
     """Plans by name with the scale factors they were drawn with, in the order of the sheets, and which of these cannot be drawn."""
-    from tmm_sheets.explain import parts
     from tmm_sheets.sheets import sheet
 
     scales: dict[str, Scale] = {}
@@ -63,15 +58,8 @@ def _drawn(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], Cann
         _construct(project, problem)
     for composed in attempt.drawn.values():
         scales |= composed.scales
-    plans = [plan for of_part in parts(project).values() if of_part for plan in of_part if plan.steps]
-    if "flywheel" in vars(project):
-        order = {name: i for i, name in enumerate(project.flywheel.plans)}
-        own = iter(sorted((p for p in plans if p.name in order), key=lambda p: order[p.name]))
-        plans = [next(own) if p.name in order else p for p in plans]
-    first: dict[str, tuple[Plan, Scale | None]] = {}
-    for plan in plans:
-        first.setdefault(plan.name, (plan, scales.get(plan.name)))
-    return first, problem
+    plans = [plan for of_part in project.plans.values() for plan in (of_part or {}).values()]
+    return {plan.name: (plan, scales.get(plan.name)) for plan in plans if plan.steps}, problem
 
 
 def _construct(project: Project, problem: CannotBuild) -> None:
@@ -79,25 +67,23 @@ def _construct(project: Project, problem: CannotBuild) -> None:
 
     Raises the problem when there is nothing to construct.
     """
-    from tmm_sheets.explain import parts
-
     with suppress(CannotBuild):
         if "positions" in project.parts:
             _ = project.study.accelerations
         if "forces" in project.parts:
             _ = project.study.forces, project.study.lever
-    if not any(plans for plans in parts(project).values()):
+    if not any(project.plans.values()):
         raise problem
 
 
 def _told(project: Project, plan: Plan, scale: Scale | None) -> Iterator[str]:
-    from tmm_sheets.construction.protocol import sentences
+    from tmm_sheets.construction.protocol import UNITS, sentences
 
     k = _position(project, plan)
     place = f", положение {plan.labels[k]}" if len(plan.labels) > 1 else ""
     factor = f"; {scale}" if scale is not None and scale.mu != 1 else ""
     yield f"{plan.title} ({plan.name}){place}{factor}"
-    to_mm, unit = (scale.mm, "мм") if scale is not None else (float, _UNITS.get(plan.unit, plan.unit))
+    to_mm, unit = (scale.mm, "мм") if scale is not None else (float, UNITS.get(plan.unit, plan.unit))
     for i, said in enumerate(sentences(plan, k, to_mm, unit), 1):
         yield f"{i:3}. {said}"
 

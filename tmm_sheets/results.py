@@ -7,17 +7,18 @@ counter-clockwise.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.construction.step import Part, Step, Told
 from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import clean, plain, size
 from tmm_sheets.project import LINKAGE
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.project import Project
 
@@ -29,7 +30,15 @@ def assemble(
     project: Project, parts: Iterable[str] | None, *, phi: tuple[float, ...] | None = None, positions: int | None = None,
     refused: dict[str, CannotBuild] | None = None,
 ) -> dict[str, Any]:
-    """The results tree.
+    """The results tree in plain numbers; see :func:`told`."""
+    return _plain(told(project, parts, phi=phi, positions=positions, refused=refused))  # type: ignore[no-any-return]
+
+
+def told(
+    project: Project, parts: Iterable[str] | None, *, phi: tuple[float, ...] | None = None, positions: int | None = None,
+    refused: dict[str, CannotBuild] | None = None,
+) -> dict[str, Any]:
+    """The results tree, whose numbers are the steps they come from (:class:`~tmm_sheets.construction.step.Told`).
 
     Parameters
     ----------
@@ -77,7 +86,7 @@ def assemble(
             raise together(lost, "computed", others=False)
         refused |= lost
         tree["not_computed"] = {name: str(reason) for name, reason in lost.items()}
-    return _plain(tree)  # type: ignore[no-any-return]
+    return tree
 
 
 def _asked(project: Project, parts: Iterable[str] | None) -> tuple[str, ...]:
@@ -245,7 +254,7 @@ def _study_of(project: Project, phi: tuple[float, ...] | None, positions: int | 
     else:
         return project.study, [project.force_index]
     labels = tuple(str(i) for i in range(len(turned)))
-    return project.study_at(turned, labels), list(range(len(turned)))
+    return project.study_at(turned, labels, ""), list(range(len(turned)))
 
 
 def _cycle(project: Project, study: Study) -> dict[str, Any]:
@@ -258,55 +267,59 @@ def _cycle(project: Project, study: Study) -> dict[str, Any]:
     }
 
 
-def _positions(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
-    import numpy as np
+@dataclass(frozen=True)
+class Spread(Told):
+    """A step told for some of ``count`` positions, all unless ``rows`` says which; the same for each where it depends on none."""
 
+    count: int = 1
+    rows: tuple[int, ...] | None = None
+
+    @property
+    def value(self) -> Any:
+        """The numbers, one entry for each position."""
+        import numpy as np
+
+        spread = np.broadcast_to(super().value, (self.count,))
+        return spread if self.rows is None else spread[list(self.rows)]
+
+
+def _all(study: Study, steps: Mapping[str, Step], part: Part = "") -> dict[str, Told]:
+    return {name: Spread(step, part, (), len(study.labels)) for name, step in steps.items()}
+
+
+def _positions(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     p = study.positions
-    return {
-        "points": {name: _vectors(step, study) for name, step in p.points.items()},
-        "angles": {link: np.angle(_spread(step.value, study)) for link, step in p.directions.items()},
-    }
+    return {"points": _all(study, p.points), "angles": _all(study, p.directions, "angle")}
 
 
 def _velocities(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     v, frame = study.velocities, study.mechanism.frame
-    return {
-        "points": {name: _vectors(step, study) for name, step in v.points.items()},
-        "omega": {link: _spread(step.value, study) for link, step in v.omega.items() if link != frame},
-    }
+    return {"points": _all(study, v.points), "omega": _all(study, {k: step for k, step in v.omega.items() if k != frame})}
 
 
 def _accelerations(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     a, frame = study.accelerations, study.mechanism.frame
-    return {
-        "points": {name: _vectors(step, study) for name, step in a.points.items()},
-        "epsilon": {link: _spread(step.value, study) for link, step in a.epsilon.items() if link != frame},
-    }
+    return {"points": _all(study, a.points), "epsilon": _all(study, {k: step for k, step in a.epsilon.items() if k != frame})}
 
 
 def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
-    import numpy as np
+    f, lever, balance = study.forces, study.lever, study.balance
+    labels = tuple(study.labels[k] for k in chosen)
 
-    f, lever = study.forces, study.lever
+    def told(step: Step | None, part: Part = "") -> Any:
+        return None if step is None else Spread(step, part, labels, len(study.labels), tuple(chosen))
 
-    def at(step: Step | None) -> Any:
-        return None if step is None else _spread(step.value, study)[chosen]
-
-    by_statics, by_lever = at(f.balancing), at(lever.balancing)
-    if lever.direction is not None:
-        # The force plan gives a vector along the line of action, the lever its signed size there.
-        by_statics = (by_statics * np.conj(lever.direction)).real
     return {
-        "label": [study.labels[k] for k in chosen],
-        "reactions": {name: _pairs(at(step)) for name, step in f.reactions.items()},
-        "couples": {name: at(step) for name, step in f.couples.items()},
-        "arms": {name: abs(at(step)) for name, step in f.arms.items()},
+        "label": list(labels),
+        "reactions": {name: told(step) for name, step in f.reactions.items()},
+        "couples": {name: told(step) for name, step in f.couples.items()},
+        "arms": {name: told(step, "abs") for name, step in f.arms.items()},
         "balancing": {
             "kind": "moment" if study.driver is None else "force",
             "name": project.balancing,
-            "kinetostatics": by_statics,
-            "lever": by_lever,
-            "difference_percent": _percent(by_statics, by_lever),
+            "kinetostatics": told(f.balancing if lever.line is None else balance["along"]),
+            "lever": told(lever.balancing),
+            "difference_percent": told(balance["Δ"]),
         },
     }
 
@@ -323,13 +336,6 @@ def _condition(study: Study, asked: list[str], chosen: list[int]) -> dict[str, A
     return found
 
 
-def _percent(a: Any, b: Any) -> Any:
-    import numpy as np
-
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return 100 * abs(a - b) / abs(a)
-
-
 _SECTIONS: dict[str, Callable[[Project, Study, list[int]], dict[str, Any]]] = {
     "positions": _positions, "velocities": _velocities, "accelerations": _accelerations, "forces": _forces,
 }  # fmt: skip
@@ -344,21 +350,6 @@ def _flywheel(project: Project, scales: dict[str, Any]) -> dict[str, Any]:
 
 
 # --- from arrays to plain numbers -----------------------------------------------------------------------------------
-
-
-def _spread(value: Any, study: Study) -> Any:
-    """One entry per position, also for what does not depend on it."""
-    import numpy as np
-
-    return np.broadcast_to(value, (len(study.labels),))
-
-
-def _vectors(step: Step, study: Study) -> list[list[float]]:
-    return _pairs(_spread(step.value, study))
-
-
-def _pairs(values: Any) -> list[list[float]]:
-    return [[z.real, z.imag] for z in values.tolist()]
 
 
 def _plain(value: Any) -> Any:

@@ -211,12 +211,11 @@ def test_all_positions_at_once():
 
 def test_every_step_of_a_project():
     """Forces, levers, gears and cams go through the same replay; what cannot be told is NaN or infinite, never an exception."""
-    from tmm_sheets.explain import parts
     from tmm_sheets.results import assemble
 
     project = Project(catalogue.read("lugansk/shaper"))
     assemble(project, None)
-    plans = [p for of_part in parts(project).values() for p in of_part or () if not p.name.endswith("-between")]
+    plans = [p for of_part in project.plans.values() for p in (of_part or {}).values() if not p.name.endswith("-between")]
     found = Errors([(p, 1.0 if p.unit == "mm" else 0.01) for p in plans])
     for plan in plans:
         for step in plan:

@@ -64,7 +64,7 @@ def test_vectors():
 def study():
     project = Project(catalogue.read("lugansk/shaper"))
     # Another set of angles: what the cycle itself has looked at does not count.
-    return project.study_at(project.cycle.turned + 0.01, project.cycle.labels)
+    return project.study_at(project.cycle.turned + 0.01, project.cycle.labels, "")
 
 
 def evaluated(plan):

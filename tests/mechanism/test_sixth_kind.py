@@ -14,6 +14,7 @@ from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.construction import rules
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RRP
+from tmm_sheets.mechanism.groups.dead_centres import PIN_ANGLE
 from tmm_sheets.mechanism.groups.hints import Outline
 from tmm_sheets.mechanism.groups.rrr import RRRKind
 from tmm_sheets.mechanism.model import Crank, Guide, Link, StructuralGroup
@@ -149,7 +150,8 @@ class Balanced(Triangle):
 
     def dead_positions(self, m, g, plan, centre):
         side = plan.add("E′", rules.ALONG, centre, plan.add("u", rules.GIVEN_DIRECTION, 1j), REACH)
-        return m.crank.length * complex(side.value - centre.value) / REACH, -m.crank.length + 0j
+        left = plan.add("W′", rules.ALONG, centre, plan.add("w", rules.GIVEN_DIRECTION, -1 + 0j), REACH)
+        return plan.aside("φ′", PIN_ANGLE, centre, side), plan.aside("φ″", PIN_ANGLE, centre, left)
 
 
 def test_dead_positions():
@@ -157,14 +159,15 @@ def test_dead_positions():
     m = machine()
     plan, dead = dead_positions(m)
     angles = [np.arccos((FRAME**2 + ac**2 - ROCKER**2) / (2 * FRAME * ac)) for ac in (ROD + 0.1, ROD - 0.1)]
-    assert np.abs(np.array(dead) - 0.1 * np.exp(1j * np.array(angles)) * [1, -1]).max() < 1e-15
+    pins = np.exp(1j * np.array([step.value for step in dead]))
+    assert np.abs(pins - np.exp(1j * np.array(angles)) * [1, -1]).max() < 1e-15
     assert [step.rule.name for step in plan][-2:] == ["arc cuts arc"] * 2
 
 
 def test_dead_positions_are_the_kinds_own():
     m = machine()
     plan, dead = dead_positions(replace(m, groups=(replace(m.groups[0], kind=Balanced()), *m.groups[1:])))
-    assert dead == pytest.approx((0.1j, -0.1))
+    assert [step.value for step in dead] == pytest.approx([np.pi / 2, np.pi])
     assert "E′" in plan
 
 

@@ -250,7 +250,8 @@ class Errors:
     def _analysed(self, step: Step) -> _Known | None:
         """None for what has no error: given numbers and directions, what no pencil draws, and values that are no numbers."""
         self._note_lengths(step)
-        if not _numeric(step.value) or _beyond_paper(step) or np.asarray(step.value).dtype.kind == "i":
+        value = step.value
+        if not _numeric(value) or _beyond_paper(step) or step.rule.exact or np.asarray(value).dtype.kind == "i":
             return None  # numbers of teeth have no error either
         if step.rule.compute is take:
             return self._taken(step)

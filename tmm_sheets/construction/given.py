@@ -70,6 +70,25 @@ class Given:
     choice: str = ""
 
 
+class FoundNumber(float):
+    """A number that an earlier construction found and that then serves as a given one: a length by synthesis, a radius.
+
+    ``step`` is where it comes from.
+    """
+
+    step: Any
+
+    def __new__(cls, value: float, step: Any) -> Self:
+        """Attach the step to its value."""
+        found = super().__new__(cls, value)
+        found.step = step
+        return found
+
+    def __reduce__(self) -> Any:
+        """Pickled as a bare number: a construction stays where it was made."""
+        return float, (float(self),)
+
+
 def named(value: float, name: str, symbol: str = "", unit: str = "") -> float:
     """A number with its origin; one that knows it already stays as it is."""
     return value if isinstance(value, GivenNumber) else GivenNumber(value, name, symbol, unit)

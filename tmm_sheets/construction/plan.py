@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.tally import Tally
 
 
 def symbol(name: str) -> str:
@@ -23,6 +24,19 @@ class Segment:
     symbol: str
     tail: Step
     head: Step
+
+
+def asked_for(made: Iterable[Any]) -> dict[str, Plan]:
+    """Plans by their names among what an object has made so far: those of its lazy attributes that somebody has read."""
+    found: dict[str, Plan] = {}
+    for x in made:
+        if isinstance(x, Plan):
+            found.setdefault(x.name, x)
+        elif isinstance(x, dict | tuple | list):
+            found |= {k: v for k, v in asked_for(x.values() if isinstance(x, dict) else x).items() if k not in found}
+        elif isinstance(plan := getattr(x, "plan", None), Plan):
+            found.setdefault(plan.name, plan)
+    return found
 
 
 class Plan:
@@ -40,25 +54,53 @@ class Plan:
         name of the point all others are measured from, on plans of velocities and accelerations.
     labels
         position numbers of the cycle, as strings; one entry per position, ``("",)`` for a single construction.
+    search
+        count of a search that makes this plan only to look at its numbers; None for a plan that is drawn or told.
+
+    ``asides`` are steps that no pencil makes: numbers that spare rounding (see :attr:`Rule.beyond_paper`). They are no part of the
+    drawing order and are told by the record alone.
     """
 
-    def __init__(self, name: str, title: str, unit: str, labels: tuple[str, ...] = ("",), pole: str | None = None) -> None:
+    def __init__(self, name: str, title: str, unit: str, labels: tuple[str, ...] = ("",), pole: str | None = None,
+                 search: Tally | None = None) -> None:
         self.name = name
         self.title = title
         self.unit = unit
         self.labels = labels
         self.pole = pole
+        self.search = search
         self.steps: dict[str, Step] = {}
+        self.asides: dict[str, Step] = {}
         self.segments: list[Segment] = []
         self.reserved: frozenset[str] = frozenset()
+        if search is not None:
+            search.plans += 1
 
     def add(self, name: str, rule: Rule, *args: Any, say: str | None = None, symbol: str = "") -> Step:
         """Record a step under a name that is unique in this plan and return it; nothing is computed."""
         if name in self.steps:
             raise ValueError(f"plan {self.name!r} has a step {name!r} already")
-        step = Step(name, rule, args, say, symbol, plan=self.name)
+        step = self._step(name, rule, args, say, symbol)
         self.steps[name] = step
         return step
+
+    def aside(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
+        """Record a number that no pencil knows, once under its name."""
+        if name not in self.asides:
+            self.asides[name] = self._step(name, rule, args, None, symbol)
+        return self.asides[name]
+
+    def adopt(self, step: Step) -> None:
+        """Take a step made elsewhere as one that no pencil makes."""
+        self.asides[step.name] = step
+        step.__dict__["plan"] = self.name
+        if self.search is not None:
+            step.__dict__["seconds"] = self.search
+
+    def _step(self, name: str, rule: Rule, args: tuple[Any, ...], say: str | None = None, symbol: str = "") -> Step:
+        if self.search is None:
+            return Step(name, rule, args, say, symbol, plan=self.name)
+        return Step(name, rule, args, say, symbol, self.search, self.name)
 
     def free(self, name: str) -> str:
         """The name itself, or with as many primes as it takes when the plan has it already or keeps it for a later step."""

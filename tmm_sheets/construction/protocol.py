@@ -14,6 +14,9 @@ from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number, size
 
+UNITS = {"mm": "мм", "m": "м", "m/s": "м/с", "m/s2": "м/с²", "N": "Н", "rad": "рад"}
+"""Russian units of plans that no sheet draws."""
+
 
 def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "мм") -> Iterator[str]:
     """Sentences of the plan at position ``k``; ``to_mm`` turns a length of the plan into millimetres of paper.
@@ -37,6 +40,11 @@ def _sizes(steps: Iterable[Step], k: int) -> dict[str, float]:
         if np.asarray(step.value).dtype.kind in "ifc":
             values.setdefault(_sort(step), []).append(step.value)
     return {sort: size(found, k) for sort, found in values.items()}
+
+
+def sizes_of(plan: Plan, k: int) -> dict[str, float]:
+    """Size of each sort of quantities of a plan at position ``k``, for :func:`sentence`."""
+    return _sizes((*plan, *plan.asides.values()), k)
 
 
 def _sort(step: Step) -> str:

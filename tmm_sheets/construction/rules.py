@@ -59,6 +59,8 @@ GIVEN_NUMBER = Rule("given number", _same, ("number",), "number", "Дано: {na
 GIVEN_LENGTH = Rule("given length", _same, ("length",), "length", "Возьмём отрезок {name} = {value}.")
 GIVEN_DIRECTION = Rule("given direction", _same, ("direction",), "direction", "Проведём направление {name}.")
 
+UNDER = Rule("direction of an angle", ar.unit, ("angle",), "direction", "Проведём направление {name}.")
+
 LAY_OFF = Rule(
     "lay off under an angle", ar.polar, ("point", "length", "angle"), "point",
     "Из точки {0} радиусом {1} проведём окружность и под углом {2} отметим на ней точку {name}.",

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from tmm_sheets.construction.expression import Expression, trace
 from tmm_sheets.construction.given import Given
+from tmm_sheets.construction.tally import Tally
 
 Complex = npt.NDArray[np.complex128]
 Kind = Literal["point", "direction", "vector", "force", "length", "ordinate", "angle", "number", "inclination", "curve"]
@@ -65,6 +66,8 @@ class Rule:
         unit of the result where it is not that of the plan.
     source
         manual and section a formula is taken from.
+    exact
+        True for a number that is computed, not drawn: the error analysis takes it as a given one.
 
     The arithmetic of a rule is read off ``compute`` itself, see :mod:`~tmm_sheets.construction.expression`.
     """
@@ -78,6 +81,7 @@ class Rule:
     beyond_paper: bool = False
     unit: str = ""
     source: str = ""
+    exact: bool = False
 
     def tree(self, count: int) -> Expression | None:
         """The rule's arithmetic on ``count`` arguments as an expression."""
@@ -98,7 +102,7 @@ class Step:
     args: tuple[Any, ...] = field(repr=False)  # a step prints without the whole construction before it
     say: str | None = None
     symbol: str = ""
-    seconds: list[float] = field(default_factory=list, repr=False)
+    seconds: list[float] | Tally = field(default_factory=list, repr=False)
     plan: str = ""
 
     @property
@@ -140,6 +144,11 @@ class Step:
         """True when somebody has read the value."""
         return "value" in self.__dict__
 
+    @property
+    def spent(self) -> float:
+        """Time of the evaluation of this step alone, s; of a searching step nobody knows it."""
+        return sum(self.seconds) if isinstance(self.seconds, list) else 0.0
+
     def at(self, k: int) -> Any:
         """Value at position ``k`` (the value itself when it does not depend on the position)."""
         return value_at(self, k)
@@ -158,12 +167,16 @@ class Step:
                 pending += [(a, False) for a in reversed(step.args) if isinstance(a, Step)]
 
 
+Part = Literal["", "x", "y", "abs", "angle"]
+"""What of a step's value is told."""
+
+
 @dataclass(frozen=True)
 class Told:
     """A result that is told: a step's value, or a part of it, at the positions with these labels (all unless told)."""
 
     step: Step
-    part: Literal["", "x", "y", "abs", "angle"] = ""
+    part: Part = ""
     at: tuple[str, ...] = ()
 
     @property

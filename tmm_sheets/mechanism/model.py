@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
+
+from tmm_sheets.construction.tally import Tally
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -130,7 +132,7 @@ class GroupKind(ABC):
         """Crossing of a group between crank and frame from the crank angles ``phi``, rad, shape (n,); None without such a form."""
         return None
 
-    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[complex, complex] | None:
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Crank vectors (m, from the crank pivot ``centre``) of the dead positions of a group on the crank pin, on ``plan``.
 
         None where this kind knows no construction of them, or none for this mechanism.
@@ -190,7 +192,7 @@ class StructuralGroup:
     inner: str | None = None
     lengths: tuple[float, ...] = ()
     guides: tuple[str, ...] = ()
-    side: int = 1
+    side: float = 1
     offset: float = 0.0
     slot: float = 0.0
 
@@ -226,7 +228,7 @@ class Crank:
     pin: str
     length: float
     speed: float
-    sense: int
+    sense: float
     acceleration: float = 0.0
 
     @property
@@ -246,6 +248,12 @@ class Mechanism:
     points: tuple[LinkPoint, ...]
     links: dict[str, Link]
     frame: str = "0"
+    searches: dict[str, Tally] = field(default_factory=dict, compare=False, repr=False)
+    """what has been looked for with plans of this mechanism, by purpose"""
+
+    def search(self, purpose: str) -> Tally | None:
+        """Count of the plans that search for something; None without a purpose, for a plan to be drawn or told."""
+        return self.searches.setdefault(purpose, Tally(purpose)) if purpose else None
 
     @property
     def pairs(self) -> tuple[Pair, ...]:

@@ -95,7 +95,7 @@ def _arcs(m: Mechanism, b: Vector) -> tuple[Vector, tuple[Vector, Vector]] | Non
     across = l2 * l2 / square - along * along
     if across < 0:
         return None
-    z = b + e * along + e.turned() * (across.sqrt() * g.side)
+    z = b + e * along + e.turned() * (across.sqrt() * int(g.side))
     return z, (z - b, z - d)
 
 
@@ -109,5 +109,5 @@ def _line(m: Mechanism, b: Vector) -> tuple[Vector, tuple[Vector, Vector]] | Non
     square = Decimal(g.lengths[0]) ** 2 - height * height
     if square < 0:
         return None
-    z = b + u.turned() * height + u * (square.sqrt() * g.side)
+    z = b + u.turned() * height + u * (square.sqrt() * int(g.side))
     return z, (z - b, u.turned())

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import tomllib
+from collections.abc import Iterable, Sequence
 from math import cos, pi, sin
+from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber, GivenPoint
+from tmm_sheets.construction.step import Rule
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
+    OPPOSED,
+    PISTON,
     Applied,
+    LoadDiagram,
     OutputMotion,
     Table,
     angle_law,
@@ -18,12 +25,23 @@ from tmm_sheets.methods.linkage.loads import (
     stroke_law,
     turning_motion,
 )
-from tmm_sheets.task.schema import ForceTable, GroupTable, GuideTable, MomentTable
+from tmm_sheets.task import synthesis_refs
+from tmm_sheets.task.schema import ForceTable, GroupTable, LinkTable, MomentTable
 from tmm_sheets.task.variant import Variant
 
+if TYPE_CHECKING:
+    from tmm_sheets.methods.linkage.synthesis import Synthesis
 
-def mechanism_of(variant: Variant) -> Mechanism:
-    """Links, pairs and groups of a project file; lengths in m, angles in rad, masses in kg.
+
+def mechanism_of(variant: Variant, synthesis: Synthesis | None = None) -> Mechanism:
+    """Links, pairs and groups of a project file, with numbers that know their places in it.
+
+    Parameters
+    ----------
+    variant
+        the project file.
+    synthesis
+        construction of the lengths that the file takes from its ``[synthesis]``; without it they are given ones.
 
     Raises
     ------
@@ -33,25 +51,74 @@ def mechanism_of(variant: Variant) -> Mechanism:
     c = variant.crank
     if c is None:
         raise CannotBuild("the project has no mechanism", "add [crank], [points] and [[group]] to the project file")
+    of = Givens(variant, synthesis)
     # The acceleration from the flywheel needs the mechanism first: the study of the forces puts it in.
     acceleration = c.angular_acceleration if isinstance(c.angular_acceleration, float) else 0.0
-    crank = Crank(c.link, c.pivot, c.pin, c.length, c.speed, -1 if c.sense == "clockwise" else 1, acceleration)
-    fixed = {name: complex(x, y) for name, (x, y) in variant.points.items()}
-    guides = {g.name: _guide(g, fixed) for g in variant.guide}
-    points = tuple(LinkPoint(p.name, p.link, p.from_, p.towards, p.distance, p.angle) for p in variant.point)
-    listed = {p.name: Link(p.name, p.title, p.mass, p.centre, p.inertia, p.pivot_inertia) for p in variant.link}
-    groups = tuple(_group(g) for g in variant.group)
+    crank = Crank(c.link, c.pivot, c.pin,
+                  of.length(c.length, f"l_{{{c.pivot}{c.pin}}}", "crank", "length"),
+                  of.number(c.speed, f"ω_{c.link}", "rad/s", "crank", "speed"),
+                  of.number(-1.0 if c.sense == "clockwise" else 1.0, "", "", "crank", "sense"),
+                  of.number(acceleration, f"ε_{c.link}", "rad/s2", "crank", "angular_acceleration"))
+    fixed: dict[str, complex] = {name: of.point(at, name, "points", name) for name, at in variant.points.items()}
+    guides = {}
+    for i, g in enumerate(variant.guide):
+        through: str | complex = g.through if isinstance(g.through, str) else of.point(
+            g.through, f"{g.name}₀", "guide", i, "through")
+        if g.link is None and isinstance(through, str):
+            through = fixed[through]
+        direction = of.number(g.direction, "", "rad", "guide", i, "direction")
+        guides[g.name] = Guide(g.name, g.link or "0", through, direction, g.towards)
+    points = tuple(
+        LinkPoint(p.name, p.link, p.from_, p.towards, of.length(p.distance, f"l_{{{p.from_}{p.name}}}", "point", i, "distance"),
+                  of.number(p.angle, "", "rad", "point", i, "angle")) for i, p in enumerate(variant.point))
+    listed = {p.name: _link(of, i, p) for i, p in enumerate(variant.link)}
+    groups = tuple(_group(of, i, g) for i, g in enumerate(variant.group))
     names = [crank.link, *(name for g in groups for name in g.links)]
     links = {name: listed.get(name, Link(name)) for name in names}
     return Mechanism(crank, fixed, guides, groups, points, links)
 
 
-def _guide(g: GuideTable, fixed: Mapping[str, complex]) -> Guide:
-    """A guide; what a fixed one goes through is known by its coordinates."""
-    through = g.through if isinstance(g.through, str) else complex(*g.through)
-    if g.link is None and isinstance(through, str):
-        through = fixed[through]
-    return Guide(g.name, g.link or "0", through, g.direction, g.towards)
+class Givens:
+    """Numbers of a project file with their places in it: "group[1].lengths[0]", tables and lists counted from 0."""
+
+    def __init__(self, variant: Variant, synthesis: Synthesis | None = None) -> None:
+        self.variant = variant
+        self.synthesis = synthesis
+        self.written = {} if synthesis is None else dict(synthesis_refs.uses(tomllib.loads(variant.text)))
+
+    def number(self, value: float, symbol: str, unit: str, *path: str | int) -> GivenNumber:
+        """A number in SI; ``symbol`` is its letter in lettering markup."""
+        return GivenNumber(value, place(path), symbol, unit, self._source(path))
+
+    def point(self, at: tuple[float, float], symbol: str, *path: str | int) -> GivenPoint:
+        """A point, m."""
+        return GivenPoint(complex(*at), place(path), symbol, "m", self._source(path))
+
+    def length(self, value: float, symbol: str, *path: str | int) -> float:
+        """A length, m: a given one, or a step of the synthesis."""
+        match = self.written.get(path)
+        if match is None or self.synthesis is None:
+            return self.number(value, symbol, "m", *path)
+        name = match["name"] or synthesis_refs.PLACES.get((path[0], path[-1]), "")
+        return FoundNumber(value, self.synthesis.written(place(path), name, synthesis_refs.share(match), symbol))
+
+    def _source(self, path: tuple[str | int, ...]) -> str:
+        return self.variant.source(*path) or self.variant.source(*path[:-1])
+
+
+def place(path: Iterable[str | int]) -> str:
+    """A key path as text."""
+    text = ""
+    for part in path:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text
+
+
+def _link(of: Givens, i: int, p: LinkTable) -> Link:
+    mass = of.number(p.mass, f"m_{p.name}", "kg", "link", i, "mass")
+    inertia = of.number(p.inertia, f"J_{{S{p.name}}}", "kg*m2", "link", i, "inertia")
+    pivot = None if p.pivot_inertia is None else of.number(p.pivot_inertia, f"J_{p.name}", "kg*m2", "link", i, "pivot_inertia")
+    return Link(p.name, p.title, mass, p.centre, inertia, pivot)
 
 
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
@@ -65,24 +132,52 @@ def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Ap
     CannotBuild
         when the sense of the working strokes is not told or unknown, or a diagram over the angle has no fixed direction.
     """
-    return (*(_force(variant, f, mechanism, cycle) for f in variant.force),
-            *(_moment(m, mechanism, cycle) for m in variant.moment))
+    of = Givens(variant)
+    return (*(_force(of, i, f, mechanism, cycle) for i, f in enumerate(variant.force)),
+            *(_moment(of, i, m, mechanism, cycle) for i, m in enumerate(variant.moment)))
 
 
-def _force(variant: Variant, f: ForceTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
-    c = variant.cycle
+def _diagrams(of: Givens, load: ForceTable | MomentTable, tables: Sequence[Table | None], rule: Rule | None,
+              numbers: tuple[Any, ...], *path: str | int) -> tuple[LoadDiagram, ...]:
+    """Diagrams of a load with the places of their numbers, as they are given; ``tables`` have them as they act."""
+    import numpy as np
+
+    angle, cycle = load.over == "angle", of.variant.cycle
+    turns = of.number(1.0 if cycle is None else cycle.turns, "", "", "cycle", "turns")
+    found = []
+    for n, (given, acting) in enumerate(zip(load.diagrams(), tables, strict=True)):
+        if given is None or acting is None:
+            continue
+        key = "value" if load.value is not None else "table" if load.tables is None else f"tables[{n}]"
+        name, symbol = f"{place(path)}.{key}", f"{load.name[0]}_{{{load.name[1:]}}}"
+        unit = "Pa" if rule is PISTON else "N" if isinstance(load, ForceTable) else "N*m"
+        source = of.variant.source(*path, key.partition("[")[0])
+        y = (Given(given[1][0], name, symbol, unit, source, "none") if load.value is not None and rule is None
+             else Given(np.array(given[1]), name, symbol, unit, source, "curve"))
+        x = Given(np.array(given[0]), f"{name} arguments", "φ" if angle else "s/H", "rad" if angle else "", source, "curve")
+        found.append(LoadDiagram(acting, x, y, load.curve == "smooth", turns, rule, numbers))
+    return tuple(found)
+
+
+def _force(of: Givens, i: int, f: ForceTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
+    c = of.variant.cycle
     named = f.sense or (c.working_sense if c is not None else None)
     area = pi * f.bore**2 / 4 if f.bore is not None else 1.0
     tables = tuple(None if d is None else (d[0], [area * (y - f.ambient) for y in d[1]]) for d in f.diagrams())
+    numbers = () if f.bore is None else (of.number(f.bore, "D", "m", "force", i, "bore"),
+                                         of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
+    diagrams = _diagrams(of, f, tables, PISTON if numbers else None, numbers, "force", i)
     if f.over == "angle":
         if not isinstance(f.direction, float) or tables[0] is None:
             raise CannotBuild(f"force {f.name}: a diagram over the angle needs a fixed direction",
                               'for example direction = "-90 deg"')
         law, jumps = angle_law(tables[0], cycle.period, f.curve == "smooth")
-        return Applied(f.name, f.link, f.point, unit(f.direction), law, jumps)
+        return Applied(f.name, f.link, f.point, unit(f.direction), law, jumps, None, diagrams, _along(of, i, unit(f.direction)))
     if named is None:
         raise CannotBuild(f"force {f.name}: which way are its working strokes?", 'add for example sense = "+x"')
-    sense = SENSES[named] if named in SENSES else _along_guide(mechanism, named, f.name)
+    told = ("force", i, "sense") if f.sense is not None else ("cycle", "working_sense")
+    sense = GivenPoint(SENSES[named] if named in SENSES else _along_guide(mechanism, named, f.name), place(told), "", "",
+                       of.variant.source(*told))
     motion = straight_motion(mechanism, cycle, f.point, sense, cycle.strokes, f.first)
     toward = unit(f.direction) if isinstance(f.direction, float) else sense
     against = {"against motion": -1.0, "along motion": 1.0}.get(str(f.direction))
@@ -90,7 +185,12 @@ def _force(variant: Variant, f: ForceTable, mechanism: Mechanism, cycle: Cycle) 
     laws, signs = _by_run(motion, f.stroke, tables, against)
     always = against is None and f.tables is not None
     law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", always)
-    return Applied(f.name, f.link, f.point, toward, law, jumps, motion)
+    return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, _along(of, i, toward))
+
+
+def _along(of: Givens, i: int, toward: complex) -> GivenPoint:
+    """Direction of a force."""
+    return GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
 
 
 def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
@@ -101,7 +201,7 @@ def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
     return unit(guide.direction) * (1 if named[0] == "+" else -1)
 
 
-def _moment(m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
+def _moment(of: Givens, i: int, m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
     sense = -1 if m.sense == "clockwise" else 1
     tables = m.diagrams()
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
@@ -111,13 +211,15 @@ def _moment(m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
                               'for example direction = "clockwise"')
         table = (tables[0][0], [fixed * y for y in tables[0][1]])
         law, jumps = angle_law(table, cycle.period, m.curve == "smooth")
-        return Applied(m.name, m.link, None, 1 + 0j, law, jumps)
+        signed = (GivenNumber(fixed, f"moment[{i}].direction"),)
+        return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None,
+                       _diagrams(of, m, (table,), OPPOSED, signed, "moment", i))
     motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
     against = {"against motion": -1.0, "along motion": 1.0}.get(m.direction)
     laws, signs = _by_run(motion, m.stroke, tables, against)
     signs = [s * (fixed if fixed is not None else sense) for s in signs]
     law, jumps = stroke_law(motion, laws, signs, m.curve == "smooth")
-    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion)
+    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, m, tables, None, (), "moment", i))
 
 
 def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[
@@ -136,8 +238,15 @@ def unit(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
 
 
-def _group(g: GroupTable) -> StructuralGroup:
-    lengths = g.lengths or (() if g.length is None else (g.length,))
+def _group(of: Givens, i: int, g: GroupTable) -> StructuralGroup:
+    ends = [p + str(g.inner) for p in g.outer]
+    lengths: tuple[float, ...] = ()
+    if g.lengths is not None:
+        lengths = tuple(of.length(x, f"l_{{{end}}}", "group", i, "lengths", n)
+                        for n, (x, end) in enumerate(zip(g.lengths, ends, strict=True)))
+    elif g.length is not None:
+        lengths = (of.length(g.length, f"l_{{{ends[0]}}}", "group", i, "length"),)
     guides = g.guides or (() if g.guide is None else (g.guide,))
-    slot = pi / 2 if g.slot is None else g.slot
-    return StructuralGroup(KINDS[g.kind], g.links, g.outer, g.inner, lengths, guides, g.side, g.offset, slot)
+    slot = of.number(pi / 2 if g.slot is None else g.slot, "", "rad", "group", i, "slot")
+    return StructuralGroup(KINDS[g.kind], g.links, g.outer, g.inner, lengths, guides, of.number(g.side, "", "", "group", i, "side"),
+                           of.length(g.offset, "e", "group", i, "offset"), slot)

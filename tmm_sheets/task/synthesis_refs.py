@@ -47,9 +47,14 @@ def filled(data: dict[str, Any], lengths: Mapping[str, float] | None) -> tuple[d
             problems.append((path, f'unknown result "{name}"' if name else "which length of the synthesis?",
                              f'its lengths are {known}; write for example "synthesis {next(iter(lengths))}"'))
         elif lengths is not None:
-            length = float((match["part"] or "1").replace(",", ".")) * lengths[name]
-        _put(result, path, f"{match['sign']}{length:.15g} m")
+            length = share(match) * lengths[name]
+        _put(result, path, f"{length:.15g} m")
     return result, problems
+
+
+def share(match: re.Match[str]) -> float:
+    """What part of the length is meant, with its sign: -0.5 of "-0.5 synthesis l_CD"."""
+    return float(match["sign"] + (match["part"] or "1").replace(",", "."))
 
 
 def _copy(value: Any) -> Any:

@@ -21,7 +21,8 @@ DEAD = acos(0.08 / 0.26)
 
 def test_dead_positions_of_the_shaper_are_tangents(shaper):
     plan, dead = dead_positions(shaper.mechanism)
-    for b, sign in zip(sorted(dead, key=lambda z: z.real), (-1, 1), strict=True):
+    assert {step.value for step in dead} == {np.angle(plan[name].value) for name in ("B′", "B″")}
+    for b, sign in zip(sorted((plan["B′"].value, plan["B″"].value), key=lambda z: z.real), (-1, 1), strict=True):
         true = 0.08 * np.exp(1j * (-pi / 2 + sign * DEAD))
         assert abs(b - true) < 1e-16
         # Crank and rocker are at right angles.

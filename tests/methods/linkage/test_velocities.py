@@ -68,7 +68,7 @@ def test_shaper_position_2_turns_clockwise(shaper):
 
 def test_at_the_dead_positions_b3_falls_into_the_pole(shaper):
     _, dead = dead_positions(shaper.mechanism)
-    vel = velocity_plan(position_plan(shaper.mechanism, np.angle(dead)))
+    vel = velocity_plan(position_plan(shaper.mechanism, np.array([step.value for step in dead])))
     assert np.abs(vel.coincident["B3"].value).max() < 1e-15 * PIN
     assert np.abs(vel.points["S5"].value).max() < 1e-14 * PIN
     # The whole velocity of the pin is sliding then.

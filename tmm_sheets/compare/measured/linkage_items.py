@@ -26,6 +26,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.methods.linkage import accelerations
 from tmm_sheets.methods.linkage.forces import MOMENTS
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 
@@ -111,7 +112,8 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
                                      terms, key, mu))
                 found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float, key)
             for link, step in turning.items():
-                if link != project.mechanism.frame and (step.rule is not SAME or link == project.mechanism.crank.link):
+                alike = step.rule in (SAME, accelerations.SAME) and link != project.mechanism.crank.link
+                if link != project.mechanism.frame and not alike:
                     name = f"{greek}{link}"
                     found.add(size(title, f"{RESULTS}/{label}/{name}", label, name, angular, k, step, by=step))
     if project.variant.flywheel is not None and "velocities" in found.scales:

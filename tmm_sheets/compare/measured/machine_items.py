@@ -35,9 +35,7 @@ GEAR_NUMBERS = ("z1", "z2", "x1", "x2", "y", "dy", "eps_alpha", "theta1_greatest
 
 def others(project: Project, found: Measurables) -> None:
     """Dead positions and synthesis: points from those they were drawn from; the chord of a tooth."""
-    from tmm_sheets.explain import parts
-
-    for plan in (p for of_part in parts(project).values() for p in of_part or ()):
+    for plan in (p for of_part in project.plans.values() for p in (of_part or {}).values()):
         if plan.name not in found.scales:
             continue
         if plan.name.startswith("gear-tooth"):

@@ -10,71 +10,124 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from decimal import Decimal, localcontext
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction.limit_angles import DIGITS, Cosine, angle_of, direction
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, angle_of, direction
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
-Length = Callable[[Any], Any]
-"""A length of the mechanism at crank angles, rad."""
-
-OF_ANGLE = Rule("length from the crank angle", lambda f, phi: f(phi), (), "length", "{name} = {value}.", beyond_paper=True)
+Numbers = tuple[Rule, tuple[Any, ...]]
+"""A rule and the numbers of the mechanism it takes besides the crank angle."""
 
 
-def measured(g: StructuralGroup, phi: Any, half: Length, distance: Length | None = None) -> tuple[Step, Step | None]:
-    """Half-chord of a group's crossing and distance of its centres, m, as steps at crank angles ``phi``, rad, shape (n,)."""
-    h = Step(f"h {g.name}", OF_ANGLE, (half, phi))
-    return h, None if distance is None else Step(f"d {g.name}", OF_ANGLE, (distance, phi))
+def measured(g: StructuralGroup, phi: Any, half: Numbers, distance: Numbers | None = None) -> tuple[Step, Step | None]:
+    """Half-chord of a group's crossing and distance of its centres, m, as steps on crank angles ``phi``, rad, shape (n,)."""
+    h = Step(f"h {g.name}", half[0], (phi, *half[1]))
+    return h, None if distance is None else Step(f"d {g.name}", distance[0], (phi, *distance[1]))
 
 
-def on_crank(m: Mechanism, point: str) -> tuple[Decimal, Decimal] | None:
+def on_crank(m: Mechanism, point: str) -> tuple[float, float] | None:
     """Radius of a point on the crank, m, and its angle ahead of the crank, rad; None when the point is elsewhere."""
     c = m.crank
     if point == c.pin:
-        return Decimal(c.length), Decimal(0)
+        return c.length, 0.0
     for p in m.points:
         if p.name == point and p.link == c.link and p.start == c.pivot and p.towards == c.pin and p.distance > 0:
-            return Decimal(p.distance), direction(p.angle)[0]
+            return p.distance, p.angle
     return None
 
 
-def span_from_crank(m: Mechanism, g: StructuralGroup) -> Callable[[Decimal], Cosine] | None:
-    """Square of a length less that of the distance of the group's outer hinges, one of them on the crank, one fixed; m2.
+Span = tuple[float, float, complex, complex]
+"""Radius of a point on the crank and its angle ahead of the crank, the crank's pivot, a fixed hinge: m and rad."""
+
+
+def span_from_crank(m: Mechanism, g: StructuralGroup) -> Span | None:
+    """What the distance of a group's outer hinges follows from, one of them on the crank, one fixed."""
+    p, q = g.outer
+    pin = on_crank(m, p) or on_crank(m, q)
+    fixed, pivot = m.fixed.get(q if on_crank(m, p) else p), m.fixed[m.crank.pivot]
+    if pin is None or fixed is None or fixed == pivot:
+        return None  # a hinge on the crank's own pivot: nothing moves against the crank
+    return *pin, pivot, fixed
+
+
+@lru_cache(maxsize=256)
+def _less(span: Span, plus: float, minus: float = 0.0) -> Cosine:
+    """Square of a sum of lengths less the square of the distance d of the hinges.
 
     d^2 = l0^2 + l1^2 - 2 l0 l1 cos(phi - phi0).
     """
-    p, q = g.outer
-    pin = on_crank(m, p) or on_crank(m, q)
-    fixed = m.fixed.get(q if on_crank(m, p) else p)
-    if pin is None or fixed is None:
-        return None
-    l1, ahead = pin
-    pivot = m.fixed[m.crank.pivot]
-    x, y = Decimal(fixed.real) - Decimal(pivot.real), Decimal(fixed.imag) - Decimal(pivot.imag)
-    square = x * x + y * y
-    if not square:
-        return None  # a hinge on the crank's own pivot: nothing moves against the crank
-    start, b = angle_of(x, y) - ahead, 2 * l1 * square.sqrt()
-    base = -square - l1 * l1
-    return lambda length: Cosine(base + length * length, b, start)
+    with localcontext(prec=DIGITS):
+        l1, ahead, length = Decimal(span[0]), direction(span[1])[0], Decimal(plus) + Decimal(minus)
+        x, y = (Decimal(b) - Decimal(a) for a, b in ((span[2].real, span[3].real), (span[2].imag, span[3].imag)))
+        square = x * x + y * y
+        return Cosine(-square - l1 * l1 + length * length, 2 * l1 * square.sqrt(), angle_of(x, y) - ahead)
 
 
-def height(at: complex, guide: Guide) -> tuple[Decimal, Decimal, Decimal]:
-    """Distance of a point from a fixed guide, m, positive on its left, and cosine and sine of the guide's direction."""
-    assert not isinstance(guide.through, str)
-    _, cos, sin = direction(guide.direction)
-    x, y = Decimal(at.real) - Decimal(guide.through.real), Decimal(at.imag) - Decimal(guide.through.imag)
+@lru_cache(maxsize=256)
+def _beside(l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float) -> tuple[Cosine, Cosine]:
+    """Length of a rod plus and minus the distance of its pin on the crank from a guide, e = e0 + l1 sin(phi - psi)."""
+    with localcontext(prec=DIGITS):
+        radius, rod = Decimal(l1), Decimal(length)
+        e0, start = height(pivot, through, guide)[0], direction(guide)[0] - direction(ahead)[0]
+        return Cosine(rod + e0, radius, start + PI / 2), Cosine(rod - e0, radius, start - PI / 2)
+
+
+@primitive("half-chord of two arcs")
+def half_of_arcs(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Any:
+    """sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d at crank angles, d as in :func:`pin_distance`."""
+    span = (l1, ahead, pivot, fixed)
+    return np.sqrt(_less(span, l2, l3)(phi) * _less(span, l2, -l3)(phi) / _less(span, 0.0)(phi)) / 2
+
+
+@primitive("distance from the crank's point")
+def pin_distance(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex) -> Any:
+    """Distance d of a fixed hinge from a point on the crank, ``l1`` from its pivot and ``ahead`` of it."""
+    return np.sqrt(-_less((l1, ahead, pivot, fixed), 0.0)(phi))
+
+
+@primitive("tangent from the crank's point")
+def tangent_length(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, radius: float) -> Any:
+    """sqrt(d^2 - radius^2): length of the tangent from a point on the crank to a circle about a fixed hinge."""
+    return np.sqrt(-_less((l1, ahead, pivot, fixed), radius)(phi))
+
+
+@primitive("half-chord of arc and line")
+def half_of_line(phi: Any, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float) -> Any:
+    """sqrt((length - e) (length + e)), e the distance of a point on the crank from a guide."""
+    below, above = _beside(l1, ahead, length, pivot, through, guide)
+    return np.sqrt(below(phi) * above(phi))
+
+
+def _of_angle(name: str, compute: Callable[..., Any]) -> Rule:
+    return Rule(name, compute, (), "length", "{name} = {value}.", beyond_paper=True, unit="m")
+
+
+HALF_OF_ARCS = _of_angle("half-chord of two arcs from the crank angle", half_of_arcs)
+DISTANCE = _of_angle("distance from the crank angle", pin_distance)
+TANGENT = _of_angle("tangent from the crank angle", tangent_length)
+HALF_OF_LINE = _of_angle("half-chord of arc and line from the crank angle", half_of_line)
+
+
+def height(at: complex, through: complex, guide: float) -> tuple[Decimal, Decimal, Decimal]:
+    """Distance of a point from a fixed guide, positive on its left, and the guide's direction."""
+    _, cos, sin = direction(guide)
+    x, y = Decimal(at.real) - Decimal(through.real), Decimal(at.imag) - Decimal(through.imag)
     return cos * y - sin * x, cos, sin
 
 
-def foot_on_guide(at: complex, guide: Guide) -> complex:
-    """Foot of the perpendicular from a point on a fixed guide: the double nearest to it, however far the guide's own point."""
+@primitive("foot on a guide")
+def foot_on_guide(at: complex, through: complex, guide: float) -> complex:
+    """Foot of the perpendicular from a point on a fixed guide: the nearest double to it, however far away the guide's own point."""
     with localcontext(prec=DIGITS):
-        above, cos, sin = height(at, guide)
+        above, cos, sin = height(at, through, guide)
         return complex(float(Decimal(at.real) + above * sin), float(Decimal(at.imag) - above * cos))
 
 
@@ -82,8 +135,13 @@ AWAY = 4.0
 """So many times the mechanism's size away a guide's own point is not drawn."""
 
 
-def near_point(m: Mechanism, guide: Guide) -> complex:
+NEAREST = Rule("nearest point of a guide", foot_on_guide, ("point", "point", "angle"), "point", "Отметим точку {name}.")
+
+
+def near_point(m: Mechanism, guide: Guide) -> tuple[Any, ...]:
     """A point of a fixed guide to draw it through: its own, or the one nearest to the crank's pivot when its own is far away.
+
+    It is the rule that gives the point, and the numbers it takes.
 
     A direction is known to 1e-16 rad: about a point a thousand lengths away that shifts the guide by 1e-13 of a length, which the
     half-chords taken from the crank angle do not share. The nearest point comes from the numbers of the guide as they are given.
@@ -93,11 +151,35 @@ def near_point(m: Mechanism, guide: Guide) -> complex:
     from_foot = (guide.through - pivot) / ar.unit(guide.direction)
     fixed = max(abs(z - pivot) for z in m.fixed.values())
     size = m.crank.length + sum(sum(g.lengths) for g in m.groups) + fixed + abs(from_foot.imag)
-    return guide.through if abs(from_foot.real) <= AWAY * size else foot_on_guide(pivot, guide)
+    if abs(from_foot.real) <= AWAY * size:
+        return rules.GIVEN, guide.through
+    return NEAREST, pivot, guide.through, guide.direction
 
 
-def fold_and_stretch(m: Mechanism, rod: float, centre: Step, ends: tuple[Step, Step]) -> tuple[complex, complex] | None:
-    """Crank vectors, m, with crank and rod in line; ``ends`` are where the rod ends, rod + crank and |rod - crank| from the pivot.
+PIN_ANGLE = Rule("angle of a dead position", lambda centre, pin: np.arctan2((pin - centre).imag, (pin - centre).real),
+                 ("point", "point"), "angle", "Угол кривошипа в мёртвом положении {1} {name} = {value}.", unit="rad",
+                 exact=True)
+
+
+def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
+    v = fold * (end - centre) / np.abs(end - centre) * crank
+    return np.arctan2(v.imag, v.real)
+
+
+IN_LINE_ANGLE = Rule("angle of a crank in line with the rod", _in_line, ("point", "point", "number", "length"), "angle",
+                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad",
+                 exact=True)
+REACH = Rule("reach of crank and rod in line", lambda rod, crank, sign: np.abs(rod + sign * crank), ("length", "length", "number"),
+             "length", "{name} = {value}.")
+
+
+def reaches(plan: Plan, rod: float, crank: float) -> tuple[tuple[str, Step], ...]:
+    """How far from the crank pivot the rod ends, with crank and rod stretched and folded, with the prime of each."""
+    return tuple((prime, plan.aside(f"r{prime}", REACH, rod, crank, sign)) for prime, sign in (("′", 1.0), ("″", -1.0)))
+
+
+def fold_and_stretch(m: Mechanism, plan: Plan, rod: float, centre: Step, ends: tuple[Step, Step]) -> tuple[Step, Step] | None:
+    """Crank angles, rad, with crank and rod in line; ``ends`` are where the rod ends, rod + crank and |rod - crank| from the pivot.
 
     None where the rod's end cannot come there, or comes to the pivot itself.
     """
@@ -105,5 +187,5 @@ def fold_and_stretch(m: Mechanism, rod: float, centre: Step, ends: tuple[Step, S
     if np.isnan(far) or np.isnan(near) or not abs(far) or not abs(near):
         return None
     length = m.crank.length
-    fold = -1 if rod > length else 1
-    return far / abs(far) * length, fold * near / abs(near) * length
+    return (plan.aside("φ′", IN_LINE_ANGLE, centre, ends[0], 1.0, length),
+            plan.aside("φ″", IN_LINE_ANGLE, centre, ends[1], -1.0 if rod > length else 1.0, length))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,11 +9,10 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.groups.dead_centres import measured, span_from_crank
+from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGENT, measured, span_from_crank
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
@@ -26,8 +24,9 @@ ALONG_TANGENT = Rule(
     "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
     ("point", "point"), "direction", "Проведём прямую {0}{1}.", lambda a, v: (Helper("line", a[0], a[1]),),
 )
+OFFSET = Rule("offset of a slot", np.abs, ("ordinate",), "length", "{name} = {value}.")
 SINE = Rule("sine between slot and perpendicular to the line of pivots", lambda h, d: h / d, (), "number",
-            "Синус угла между пазом и перпендикуляром к линии шарниров {name} = {value}.")
+            "Синус угла между пазом и перпендикуляром к линии шарниров {name} = {value}.", unit="1")
 
 
 class RPRKind(GroupKind):
@@ -43,7 +42,7 @@ class RPRKind(GroupKind):
         p, q = g.outer
         if g.offset:
             # The guide line passes the pivot at the offset: its foot is where the tangent from the pin touches that circle.
-            given = pos.points[p], pos.points[q], abs(g.offset), g.side
+            given = pos.points[p], pos.points[q], pos.plan.aside(f"e {g.name}", OFFSET, g.offset), g.side
             foot = pos.plan.add(pos.plan.free(f"{q}₁"), rules.TANGENT, *given)
             pos.points[foot.name] = foot
             pos.feet[g.links[1]] = foot.name
@@ -143,22 +142,20 @@ class RPRKind(GroupKind):
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """With an offset e the tangent's length sqrt(d^2 - e^2)."""
-        with localcontext(prec=DIGITS):
-            less = span_from_crank(m, g) if g.offset else None
-            if less is None:
-                return None
-            tangent, none = less(Decimal(g.offset)), less(Decimal(0))
-        half, distance = measured(g, phi, lambda phi: np.sqrt(-tangent(phi)), lambda phi: np.sqrt(-none(phi)))
+        span = span_from_crank(m, g) if g.offset else None
+        if span is None:
+            return None
+        half, distance = measured(g, phi, (TANGENT, (*span, g.offset)), (DISTANCE, span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance)))
 
-    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[complex, complex] | None:
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Tangents from the rocker's pivot to the crank circle (manual 000, 3.1), for a rocker that swings, without an offset."""
         c, q = m.crank, g.outer[1]
         if g.offset or q not in m.fixed or _inside(m, q) >= 0:
             return None
         pivot = plan.add(q, rules.GIVEN, m.fixed[q])
         a, b = (plan.add(f"{c.pin}{prime}", rules.TANGENT, pivot, centre, c.length, side) for prime, side in (("′", 1), ("″", -1)))
-        return complex(a.value - centre.value), complex(b.value - centre.value)
+        return plan.aside("φ′", PIN_ANGLE, centre, a), plan.aside("φ″", PIN_ANGLE, centre, b)
 
     def check_dead_positions(self, m: Mechanism, g: StructuralGroup) -> None:
         """A cycle that begins at a dead position needs a rocker that swings.

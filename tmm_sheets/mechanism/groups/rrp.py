@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,10 +9,9 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
-from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, direction
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import fold_and_stretch, height, measured, near_point, on_crank
+from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, fold_and_stretch, measured, near_point, on_crank, reaches
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
@@ -22,7 +20,7 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
-            "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.")
+            "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.", unit="1")
 
 
 class RRPKind(GroupKind):
@@ -106,27 +104,23 @@ class RRPKind(GroupKind):
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
-        with localcontext(prec=DIGITS):
-            guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
-            if pin is None or isinstance(guide.through, str):
-                return None
-            (l1, ahead), length = pin, Decimal(g.lengths[0])
-            e0 = height(m.fixed[m.crank.pivot], guide)[0]
-            start = direction(guide.direction)[0] - ahead
-            below, above = Cosine(length + e0, l1, start + PI / 2), Cosine(length - e0, l1, start - PI / 2)
-        half, _ = measured(g, phi, lambda phi: np.sqrt(below(phi) * above(phi)))
+        guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
+        if pin is None or isinstance(guide.through, str):
+            return None
+        numbers = (*pin, g.lengths[0], m.fixed[m.crank.pivot], guide.through, guide.direction)
+        half, _ = measured(g, phi, (HALF_OF_LINE, numbers))
         return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
 
-    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[complex, complex] | None:
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the guide."""
         guide, rod = m.guides[g.guides[0]], g.lengths[0]
         if guide.link != m.frame:
             return None
-        through = plan.add(plan.free(f"{guide.name}₀"), rules.GIVEN, near_point(m, guide))
-        along = plan.add(plan.free(guide.name), rules.GIVEN_DIRECTION, ar.unit(guide.direction))
-        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_LINE, centre, abs(rod + sign * m.crank.length), through, along, g.side)
-                     for prime, sign in (("′", 1), ("″", -1)))
-        return fold_and_stretch(m, rod, centre, (far, near))
+        through = plan.add(plan.free(f"{guide.name}₀"), *near_point(m, guide))
+        along = plan.add(plan.free(guide.name), rules.UNDER, guide.direction)
+        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_LINE, centre, reach, through, along, g.side)
+                     for prime, reach in reaches(plan, rod, m.crank.length))
+        return fold_and_stretch(m, plan, rod, centre, (far, near))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), c = g.links, str(g.inner)

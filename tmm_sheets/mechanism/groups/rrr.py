@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.limit_angles import DIGITS
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import fold_and_stretch, measured, span_from_crank
+from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, HALF_OF_ARCS, fold_and_stretch, measured, reaches, span_from_crank
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, sine, span
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, turning
@@ -21,7 +19,7 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
-            "Синус угла между звеньями {name} = {value}.")
+            "Синус угла между звеньями {name} = {value}.", unit="1")
 
 
 class RRRKind(GroupKind):
@@ -109,17 +107,13 @@ class RRRKind(GroupKind):
 
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
-        with localcontext(prec=DIGITS):
-            less = span_from_crank(m, g)
-            if less is None:
-                return None
-            l2, l3 = (Decimal(x) for x in g.lengths)
-            outer, inner, none = less(l2 + l3), less(l2 - l3), less(Decimal(0))
-        half, distance = measured(g, phi, lambda phi: np.sqrt(outer(phi) * inner(phi) / none(phi)) / 2,
-                                  lambda phi: np.sqrt(-none(phi)))
+        span = span_from_crank(m, g)
+        if span is None:
+            return None
+        half, distance = measured(g, phi, (HALF_OF_ARCS, (*span, *g.lengths)), (DISTANCE, span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
 
-    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[complex, complex] | None:
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the arc of the rocker."""
         c, q = m.crank, g.outer[1]
         # About the crank's own pivot rod and rocker turn with it.
@@ -127,9 +121,9 @@ class RRRKind(GroupKind):
             return None
         pivot = plan.add(q, rules.GIVEN, m.fixed[q])
         rod, rocker = g.lengths
-        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_ARC, centre, abs(rod + sign * c.length), pivot, rocker, g.side)
-                     for prime, sign in (("′", 1), ("″", -1)))
-        return fold_and_stretch(m, rod, centre, (far, near))
+        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_ARC, centre, reach, pivot, rocker, g.side)
+                     for prime, reach in reaches(plan, rod, c.length))
+        return fold_and_stretch(m, plan, rod, centre, (far, near))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         return [Outline(link, (end, str(g.inner))) for link, end in zip(g.links, g.outer, strict=True)]

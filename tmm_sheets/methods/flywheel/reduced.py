@@ -60,6 +60,10 @@ EVERYWHERE = Rule("the same at all positions", lambda x, phi: x + 0 * phi, ("num
                   "{name} = {0} во всех положениях.")
 
 
+TRIED = "@search"
+"""Behind the names of plans that nobody keeps: they are counted."""
+
+
 class Reduction:
     """Reduced quantities at some angles; steps are recorded when they are asked for, nothing is computed before it is read.
 
@@ -84,8 +88,10 @@ class Reduction:
         self.phi = phi
         self.labels = labels
         self._drawn = drawn
-        self.plan = Plan(f"reduction{where}", "Приведение сил и масс", "", labels)
-        self.slope_plan = Plan(f"inertia-slope{where}", "Производная приведённого момента инерции", "", labels)
+        self.purpose = "reduced quantities" if where == TRIED else ""
+        search = reduced.mechanism.search(self.purpose)
+        self.plan = Plan(f"reduction{where}", "Приведение сил и масс", "", labels, search=search)
+        self.slope_plan = Plan(f"inertia-slope{where}", "Производная приведённого момента инерции", "", labels, search=search)
         self._moments: dict[int, Step] = {}
         self.loads: dict[str, Step] = {}
 
@@ -95,7 +101,7 @@ class Reduction:
         if self._drawn is not None:
             return self._drawn()
         r = self.reduced
-        return velocity_plan(position_plan(r.mechanism, r.cycle.world(self.phi), self.labels, self.where))
+        return velocity_plan(position_plan(r.mechanism, r.cycle.world(self.phi), self.labels, self.where, self.purpose))
 
     @cached_property
     def accelerations(self) -> Accelerations:
@@ -232,7 +238,7 @@ class Reduced:
 
     def _search(self, phi: Any) -> Reduction:
         """Reduced quantities at angles that are only tried: plans that nobody keeps."""
-        return Reduction(self, "@search", phi)
+        return Reduction(self, TRIED, phi)
 
     @cached_property
     def resisting(self) -> bool:

@@ -14,9 +14,9 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.methods.linkage.positions import Positions
-from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities, plan_name
+from tmm_sheets.methods.linkage.velocities import POLE, SIMILAR, Velocities, plan_name
 
 NORMAL = Rule(
     "normal acceleration", lambda a, w, big_q, big_b: a - w * w * (big_b - big_q),
@@ -37,6 +37,9 @@ CORIOLIS = Rule(
     "в сторону ω: точка {name}.",
     lambda a, v: (Helper("line", a[0], v),),
 )
+OF_CRANK = Rule("angular acceleration of the crank", lambda sense, e: sense * e, ("number", "number"), "number",
+                "{name} = {value}.", unit="rad/s2")
+SAME = Rule("the same acceleration", lambda e: e, ("number",), "number", "{name} = {value}.", unit="rad/s2")
 RIGID = Rule(
     "acceleration on a turning link", lambda a, w, e, big_q, big_m: a + (1j * e - w * w) * (big_m - big_q),
     ("point", "number", "number", "point", "point"), "point",
@@ -52,7 +55,7 @@ def _angular(big_q: Any, big_b: Any, q: Any, b: Any) -> Any:
 
 ANGULAR_ACCELERATION = Rule(
     "angular acceleration", _angular, ("point", "point", "point", "point"), "number",
-    "Угловое ускорение |{name}| = a^τ / {0}{1}, со знаком {name} = {value} рад/с².",
+    "Угловое ускорение |{name}| = a^τ / {0}{1}, со знаком {name} = {value} рад/с².", unit="rad/s2",
 )
 
 
@@ -134,24 +137,27 @@ class Accelerations:
 
 
 def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") -> Accelerations:
-    """Record the acceleration plans of all positions; ``epsilon1`` of the crank, rad/s2, signed, is a number or of shape (n,).
+    """Record the acceleration plans of all positions.
 
-    Left out, it is the mechanism's. ``where`` stands behind the plan's name.
+    ``epsilon1`` is the angular acceleration of the crank, rad/s2: a number or of shape (n,), signed, or a step, positive in the
+    sense of rotation; that of the mechanism unless told. ``where`` stands behind the plan's name.
     """
     pos = vel.positions
     m = pos.mechanism
-    plan = Plan(f"accelerations{pos.where}{where}", "План ускорений", "m/s2", pos.plan.labels, "π")
+    plan = Plan(f"accelerations{pos.where}{where}", "План ускорений", "m/s2", pos.plan.labels, "π", pos.plan.search)
     acc = Accelerations(pos, vel, plan)
     pole = plan.add("π", POLE, 0j)
     for name in m.fixed:
         acc.points[name] = pole
     acc.epsilon[m.frame] = plan.add("ε0", SAME, 0.0)
     c = m.crank
-    eps = c.sense * c.acceleration if epsilon1 is None else epsilon1
-    acc.epsilon[c.link] = plan.add(f"ε{c.link}", SAME, eps)
+    name = f"ε{c.link}"
+    acc.epsilon[c.link] = (plan.add(name, OF_CRANK, c.sense, c.acceleration) if epsilon1 is None
+                           else plan.add(name, OF_CRANK, c.sense, epsilon1) if isinstance(epsilon1, Step)
+                           else plan.add(name, SAME, epsilon1))
     centre, pin = pos.points[c.pivot], pos.points[c.pin]
     b_name = plan_name(plan, c.pin)
-    if np.any(np.asarray(eps) != 0):
+    if np.any(np.asarray(value_of(c.acceleration if epsilon1 is None else epsilon1)) != 0):
         n = plan.add("n1" if b_name != "n1" else plan.free("n1′"), NORMAL, pole, vel.omega[c.link], centre, pin)
         b = plan.add(b_name, TANGENTIAL, n, acc.epsilon[c.link], centre, pin)
         plan.vector(f"a̅_{c.pin}^n", pole, n)

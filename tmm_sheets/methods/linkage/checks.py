@@ -16,6 +16,7 @@ from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import Floats
 
+ASSEMBLY = "assembly"
 CLOSE = 0.02
 """Share of the crank length (sine) below which a minimum between the angles of the sweep is looked at more closely."""
 
@@ -42,7 +43,7 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
     if said:
         # What lies upstream decides what the groups after it need: only the first advice is sure.
         raise CannotBuild("\n".join(said), hints[0])
-    missing = position_plan(mechanism, cycle.phi, cycle.labels).plan.check()
+    missing = position_plan(mechanism, cycle.phi, cycle.labels, purpose=ASSEMBLY).plan.check()
     if missing:
         name, labels = missing
         raise CannotBuild(f"{name} cannot be constructed at positions {', '.join(labels)}")
@@ -65,7 +66,7 @@ class _Search:
         self.margins = np.concatenate((margins, found), axis=1)[:, order]
 
     def _margins(self, turned: Floats) -> tuple[Positions, Floats]:
-        pos = position_plan(self.mechanism, self.cycle.world(turned))
+        pos = position_plan(self.mechanism, self.cycle.world(turned), purpose=ASSEMBLY)
         with np.errstate(invalid="ignore"):
             rows = [np.broadcast_to(limit.margin(pos), turned.shape) for limit in self.limits]
         return pos, np.array(rows, dtype=np.float64).reshape(len(rows), len(turned))

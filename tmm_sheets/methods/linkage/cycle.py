@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.strokes import Floats, Run
@@ -47,15 +48,36 @@ class Strokes:
 
 @dataclass(frozen=True)
 class Cycle:
-    """Numbered positions: angles ``turned`` from position 0 in the sense of rotation, world angles ``phi``, rad, shape (n,)."""
+    """Numbered positions: angles ``turned`` from position 0 in the sense of rotation, world angles ``phi``, rad, shape (n,).
+
+    ``plan`` constructs the dead positions, ``numbering`` has the crank angles as steps.
+    """
 
     labels: tuple[str, ...]
     turned: Floats
     start: float
-    sense: int
+    sense: float
     period: float
     strokes: Strokes | None
     plan: Plan | None
+    numbering: Plan | None = None
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """Dead positions, where they are constructed, and the crank angles of the positions."""
+        return {plan.name: plan for plan in (self.plan, self.numbering) if plan is not None}
+
+    def angles(self, turned: Any) -> Any:
+        """World angles of the crank for angles turned from position 0: a step for the numbered positions, a row for others."""
+        if turned is self.turned and self.numbering is not None:
+            return self.numbering["φ"]
+        return Given(self.world(turned), "crank angles", "φ_1", "rad")
+
+    def turned_row(self, turned: Any) -> Any:
+        """Angles turned from position 0: a step for the numbered positions, a row for others."""
+        if turned is self.turned and self.numbering is not None:
+            return self.numbering["φ_п"]
+        return Given(turned, "angles turned", "φ", "rad")
 
     @property
     def phi(self) -> Floats:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Step
 from tmm_sheets.mechanism.model import Mechanism
 
 
-def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[complex, complex] | None]:
-    """Dead positions as constructions of their own: their plan, m, and the two crank vectors from the crank pivot, m.
+def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]:
+    """Dead positions as constructions of their own: their plan, m, and the two angles of the crank, rad.
 
     How they are constructed is known to the kind of the group on the crank pin; None where it has no such construction.
     """

@@ -6,7 +6,7 @@ Source: manual 000, section 4 and table 4.1.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.given import FoundNumber
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
@@ -27,11 +28,11 @@ WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force",
 INERTIA = Rule("inertia force", lambda m, a: -m * a, ("number", "point"), "force",
                "Сила инерции {name} = m·a = {0}·a_{1} = {value}, против ускорения {1}.")
 COUPLE = Rule("inertia couple", lambda j, e: -j * e, ("number", "number"), "number",
-              "Момент инерции {name} = −J·ε = {value} Н·м, против ε.")
-GIVEN_MOMENT = Rule("given moment", lambda m: m, ("number",), "number", "Момент {name} = {value} Н·м.")
-GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {name} = {value}.")
-OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.")
-OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.")
+              "Момент инерции {name} = −J·ε = {value} Н·м, против ε.", unit="N*m")
+GIVEN_FORCE = Rule("given force vector", lambda f: f, ("force",), "force", "Сила {name} = {value}.", unit="N")
+OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.", unit="N")
+OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.", unit="N*m")
+NEGATIVE = Rule("opposite number", lambda x: -x, ("number",), "number", "{name} = {value}.", beyond_paper=True, unit="1")
 ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), "length",
            "Плечо {name} = {value} из уравнения моментов.")
 
@@ -42,7 +43,8 @@ def _tangential(total: Any, centre: Any, at: Any) -> Any:
 
 
 TANGENTIAL = Rule("component from moments", _tangential, ("number", "point", "point"), "force",
-                  "Из суммы моментов относительно точки {1} найдём составляющую {name} = {value}, перпендикулярную {1}{2}.")
+                  "Из суммы моментов относительно точки {1} найдём составляющую {name} = {value}, перпендикулярную {1}{2}.",
+                  unit="N")
 
 
 def _moments(about: Any, *terms: Any) -> Any:
@@ -53,7 +55,8 @@ def _moments(about: Any, *terms: Any) -> Any:
 
 
 MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.",
-               lambda a, v: tuple(h for at, force in zip(a[1::3], a[2::3], strict=True) for h in rules.arm(a[0], at, force)))
+               lambda a, v: tuple(h for at, force in zip(a[1::3], a[2::3], strict=True) for h in rules.arm(a[0], at, force)),
+               unit="N*m")
 
 
 @dataclass
@@ -113,10 +116,9 @@ class Kinetostatics:
         """The couple on link ``j`` opposite to that on link ``k``."""
         return self.plan.add(f"M{pair_index(j, k)}", OPPOSITE_COUPLE, couple)
 
-    @staticmethod
-    def negative(step: Step) -> Step:
-        """A number with the other sign, no step of any plan."""
-        return Step(f"−{step.name}", OPPOSITE, (step,))
+    def negative(self, step: Step) -> Step:
+        """A number with the other sign, which is not drawn."""
+        return self.plan.aside(f"−{step.name}", NEGATIVE, step)
 
     @staticmethod
     def contact(j: str, k: str, at: Step, vector: Step, couple: Step | None = None) -> Load:
@@ -150,7 +152,8 @@ class Kinetostatics:
     def plan_of(self, name: str, links: tuple[str, ...]) -> ForcePlan:
         """New force plan of a link or of a whole group."""
         title = f"План сил звена {links[0]}" if len(links) == 1 else f"План сил группы {'–'.join(links)}"
-        fp = ForcePlan(name, links, Plan(f"force-{name}", title, "N", self.positions.plan.labels))
+        fp = ForcePlan(name, links, Plan(f"force-{name}", title, "N", self.positions.plan.labels,
+                                          search=self.positions.plan.search))
         self.plans[name] = fp
         return fp
 
@@ -245,11 +248,40 @@ class GearForce:
     radius: float
     angle: float
     mate: float
+    plan: Plan = field(default_factory=lambda: Plan("drive", "Зубчатый привод начального звена", "m"), compare=False, repr=False)
 
-    def direction(self, sense: int) -> complex:
+    @classmethod
+    def of_gear(cls, name: str, module: float, teeth: float, angle: float, mate: float) -> GearForce:
+        """Force on a wheel of so many teeth, ``module`` in m."""
+        plan = Plan("drive", "Зубчатый привод начального звена", "m")
+        radius = plan.add("r", PITCH_RADIUS, module, teeth)
+        return cls(name, FoundNumber(radius.value, radius), angle, mate, plan)
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """What follows from the numbers of the gear pair."""
+        return {self.plan.name: self.plan}
+
+    def line(self, sense: float) -> Step:
         """Unit vector of the force that drives the wheel in the sense of rotation and presses it from its mate."""
-        m = complex(np.cos(self.mate), np.sin(self.mate))
-        return complex(1j * sense * m * np.cos(self.angle) - m * np.sin(self.angle))
+        return self.plan["u"] if "u" in self.plan else self.plan.add("u", LINE_OF_ACTION, sense, self.mate, self.angle)
+
+    def direction(self, sense: float) -> complex:
+        """The same as a number."""
+        return complex(self.line(sense).value)
+
+
+PITCH_RADIUS = Rule("radius of the pitch circle", lambda module, teeth: module * teeth / 2, ("length", "number"), "length",
+                    "Радиус делительной окружности {name} = m·z/2 = {value}.")
+
+
+def _line_of_action(sense: Any, mate: Any, angle: Any) -> Any:
+    m = np.cos(mate) + 1j * np.sin(mate)
+    return 1j * sense * m * np.cos(angle) - m * np.sin(angle)
+
+
+LINE_OF_ACTION = Rule("line of action", _line_of_action, ("number", "angle", "angle"), "direction",
+                      "Под углом зацепления {2} к перпендикуляру к линии центров проведём линию действия силы {name}.")
 
 
 def contact_point(pos: Positions, driver: GearForce) -> Step:
@@ -261,16 +293,16 @@ def contact_point(pos: Positions, driver: GearForce) -> Step:
 
 
 def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: Iterable[tuple[str, str, str, Any]],
-                   moments: Iterable[tuple[str, str, Any]] = (), carried: float | None = None) -> tuple[
+                   carried: Any = None, recorded: Iterable[tuple[str, str | None, Callable[[Plan], Step]]] = ()) -> tuple[
                        dict[str, list[Load]], dict[str, list[Step]], Plan]:
-    """Weights and inertia forces of every link, N, its couples, N m, and the plan of both.
+    """Weights and inertia forces of every link, N, its couples, N m, and the plan of both; ``gravity`` in m/s2.
 
-    ``applied`` are forces (name, link, point, vectors N, shape (n,)), ``moments`` (name, link, N m, shape (n,)), ``gravity`` m/s2.
-
-    ``carried`` is the moment of inertia of all that turns with the crank, kg m2, where it is more than the crank's own.
+    ``applied`` are forces (name, link, point, vectors, N, shape (n,)), ``recorded`` forces and moments that record themselves on
+    the plan (link, point or None, how). ``carried`` is the moment of inertia of all that turns with the crank, kg m2, where it is
+    more than the crank's own.
     """
     m = pos.mechanism
-    plan = Plan("loads", "Внешние силы и силы инерции", "N", pos.plan.labels)
+    plan = Plan("loads", "Внешние силы и силы инерции", "N", pos.plan.labels, search=pos.plan.search)
     loads: dict[str, list[Load]] = {name: [] for name in m.links}
     couples: dict[str, list[Step]] = {}
     for link in m.links.values():
@@ -288,15 +320,19 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
     for name, link_name, point, vector in applied:
         f = plan.add(name, GIVEN_FORCE, vector)
         loads[link_name].append(Load(symbol(name), link_name, pos.points[point], f, "applied"))
-    for name, link_name, value in moments:
-        couples.setdefault(link_name, []).append(plan.add(name, GIVEN_MOMENT, value))
+    for link_name, at_point, record in recorded:
+        step = record(plan)
+        if at_point is None:
+            couples.setdefault(link_name, []).append(step)
+        else:
+            loads[link_name].append(Load(symbol(step.name), link_name, pos.points[at_point], step, "applied"))
     return loads, couples, plan
 
 
 def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
                   driver: GearForce | None, plan: Plan | None = None) -> Kinetostatics:
     """Force plans of all groups from the farthest to the crank; ``driver`` None means a pure balancing moment."""
-    sums = plan or Plan("moments", "Суммы моментов", "m", pos.plan.labels)
+    sums = plan or Plan("moments", "Суммы моментов", "m", pos.plan.labels, search=pos.plan.search)
     work = {name: list(of_link) for name, of_link in loads.items()}
     k = Kinetostatics(pos, acc, work, sums, couples)
     for g in reversed(pos.mechanism.groups):
@@ -321,7 +357,7 @@ def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
         k.balancing = k.plan.add("Mур", OPPOSITE_COUPLE, total)
     else:
         at = contact_point(pos, driver)
-        k.balancing = k.plan.add(driver.name, DRIVING_FORCE, total, pivot, at, driver.direction(c.sense))
+        k.balancing = k.plan.add(driver.name, DRIVING_FORCE, total, pivot, at, driver.line(c.sense))
         load = Load(symbol(driver.name), c.link, at, k.balancing, "applied")
         k.loads[c.link].append(load)
         tail = plan.chain(n, tail, [load])
@@ -336,4 +372,4 @@ def _driving(total: Any, centre: Any, at: Any, u: Any) -> Any:
 
 DRIVING_FORCE = Rule("balancing force", _driving, ("number", "point", "point", "direction"), "force",
                      "Из суммы моментов относительно точки {1} найдём уравновешивающую силу {name} = {value}.",
-                     lambda a, v: rules.arm(a[1], a[2], a[3]))
+                     lambda a, v: rules.arm(a[1], a[2], a[3]), unit="N")

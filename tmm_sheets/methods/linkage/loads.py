@@ -10,22 +10,57 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from math import ceil, floor
 from typing import Any, NoReturn
 
 import numpy as np
 
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Kind, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
-from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 
+STROKES = "strokes of forces"
 NEAR = 1e-12
 """Angles closer than this are the same, rad."""
+
+
+@dataclass(frozen=True)
+class Path:
+    """How the travelled fraction follows from the position of what moves: a rule, and its numbers besides the position.
+
+    ``name`` is that of the point or of the link, ``turning`` says which of both it is.
+    """
+
+    rule: Rule
+    name: str
+    numbers: tuple[Any, ...]
+    turning: bool = False
+
+
+WAY = Rule("fraction of a straight way",
+           lambda p, sense, low, way: np.minimum(np.maximum(((p * np.conjugate(sense)).real - low) / way, 0.0), 1.0),
+           ("point", "direction", "length", "length"), "number", "Доля пройденного пути {name} = {value}.", exact=True)
+
+
+@primitive("fraction of a swing")
+def _swung(u: Any, sense: float, low: float, swing: float) -> Any:
+    """How far a direction has turned from one end of its swing, ``low`` (rad, in the sense of the working stroke), to the other."""
+    spare = np.pi - swing / 2
+    return np.clip((np.mod(sense * np.angle(u) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
+
+
+SWING = Rule("fraction of a swing", _swung, ("direction", "number", "angle", "angle"), "number",
+             "Доля угла качания {name} = {value}.", exact=True)
 
 
 @dataclass(frozen=True)
@@ -43,6 +78,7 @@ class OutputMotion:
     period: float
     endless: bool = False
     way: int = 1
+    path: Path | None = None
 
     def number(self, turned: Any, side: int = 0) -> Any:
         """Index of the run at each angle ``turned``, rad, of any shape; -1 where there is none.
@@ -122,10 +158,10 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     """
 
     def along(turned: Floats) -> Any:
-        return (position_plan(m, cycle.world(turned)).points[point].value * np.conj(sense)).real
+        return (position_plan(m, cycle.world(turned), purpose=STROKES).points[point].value * np.conj(sense)).real
 
     def speed(turned: Floats) -> Any:
-        v = velocity_plan(position_plan(m, cycle.world(turned))).points[point].value
+        v = velocity_plan(position_plan(m, cycle.world(turned), purpose=STROKES)).points[point].value
         return (np.broadcast_to(v, np.shape(turned)) * np.conj(sense)).real
 
     the_output = known is not None and known.output == point and abs(known.path - sense) < 1e-9
@@ -135,8 +171,10 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     if not high - low > 1e-9 * m.crank.length:
         _refuse(m, f"point {point} does not move to and fro that way: its force has no strokes",
                 "give the sense of the working strokes along its path")
+    ends = (_found(low, point, "beginning", "m"), _found(high - low, point, "length", "m"))
     return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first),
-                  lambda t: np.clip((along(np.asarray(t)) - low) / (high - low), 0.0, 1.0), cycle.period)
+                        lambda t: np.clip((along(np.asarray(t)) - low) / (high - low), 0.0, 1.0), cycle.period,
+                        path=Path(WAY, point, (sense, *ends)))
 
 
 def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: float = 0.0) -> OutputMotion:
@@ -149,11 +187,11 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     """
 
     def speed(turned: Floats) -> Any:
-        w = velocity_plan(position_plan(m, cycle.world(turned))).omega[link].value
+        w = velocity_plan(position_plan(m, cycle.world(turned), purpose=STROKES)).omega[link].value
         return np.broadcast_to(sense * w, np.shape(turned))
 
     def angle(turned: Any) -> Any:
-        u = position_plan(m, cycle.world(turned)).directions[link].value
+        u = position_plan(m, cycle.world(turned), purpose=STROKES).directions[link].value
         return sense * np.angle(np.broadcast_to(u, np.shape(turned)))
 
     runs = runs_of(speed)
@@ -171,7 +209,9 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
         def travelled(t: Any) -> Any:
             return np.clip((np.mod(angle(t) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
 
-        return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first), travelled, cycle.period)
+        ends = (_found(low, link, "beginning", "rad"), _found(swing, link, "length", "rad"))
+        return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first), travelled, cycle.period,
+                            path=Path(SWING, link, (float(sense), *ends), turning=True))
     way = 1 if turns >= 0 else -1
     swept = way * (swept - swept[0]) / TURN
 
@@ -186,10 +226,31 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     return OutputMotion(over_cycle(whole, cycle.period, first), round_and_round, cycle.period, True, way)
 
 
+def _found(value: float, of: str, what: str, unit: str) -> Given:
+    return Given(value, f"{what} of the way of {of}", "", unit, over="none", choice="extremes of the way over the whole turn")
+
+
 def _refuse(m: Mechanism, message: str, hint: str = "") -> NoReturn:
     """Say why there are no strokes: first of all whether the mechanism assembles all the way round."""
     check_turn(m)
     raise CannotBuild(message, hint)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadDiagram:
+    """A diagram with the place of its numbers: arguments, and ordinates as they are given and, by a rule, as they act."""
+
+    table: Table
+    x: Given
+    y: Given
+    smooth: bool
+    turns: float = 1.0
+    rule: Rule | None = None
+    numbers: tuple[Any, ...] = ()
+
+    def ordinates(self, plan: Plan, name: str) -> Any:
+        """Ordinates as they act, N or N m."""
+        return self.y if self.rule is None else plan.aside(f"{name} y", self.rule, self.y, *self.numbers)
 
 
 @dataclass(frozen=True)
@@ -206,6 +267,45 @@ class Applied:
     law: Callable[[Any, int], Any]
     jumps: tuple[float, ...]
     motion: OutputMotion | None = None
+    diagrams: tuple[LoadDiagram, ...] = ()
+    along: Any = None
+
+    def record(self, plan: Plan, pos: Positions, turned: Any) -> Step:
+        """The force or moment as a step of a plan, ``turned`` the angles from position 0 as a row or a step."""
+        values = self._magnitudes(plan, pos, turned)
+        if self.point is None:
+            return plan.add(self.name, MOMENT, values)
+        return plan.add(self.name, FORCE, values, self.toward if self.along is None else self.along)
+
+    def _magnitudes(self, plan: Plan, pos: Positions, turned: Any) -> Step:
+        """Signed values, N or N m."""
+        law, name = self.law, f"|{self.name}|"
+        if not isinstance(law, StrokeLaw):
+            (d,) = self.diagrams
+            rule = SMOOTH_PERIODIC if d.smooth else PERIODIC
+            return plan.aside(name, rule, d.x, d.ordinates(plan, self.name), turned, d.turns)
+        ahead, signs = law.strokes(value_of(turned))
+        sense = Given(ahead, f"sense of {self.name}", choice="which way its diagram is passed")
+        terms: list[Any] = []
+        for n, (run, sign) in enumerate(signs):
+            d = next(d for d in self.diagrams if d.table is law.tables[run])
+            ordinate: Any = d.y if len(d.table[0]) == 1 and d.rule is None else plan.aside(
+                f"{self.name} ({n + 1})", SMOOTH if d.smooth else STRAIGHT, d.x, d.ordinates(plan, f"{self.name} ({n + 1})"),
+                self._way(plan, pos, turned, ahead), sense)
+            terms += [Given(sign, f"sign of {self.name}", choice="strokes it acts on, against or along the motion"), ordinate]
+        return plan.aside(name, SIGNED_SUM, *terms)
+
+    def _way(self, plan: Plan, pos: Positions, turned: Any, ahead: Any) -> Any:
+        """Travelled fractions, as a step where they follow from the positions."""
+        law, motion = self.law, self.motion
+        assert isinstance(law, StrokeLaw)
+        assert motion is not None
+        path = motion.path
+        if path is None:
+            x = motion.fraction(value_of(turned))
+            return Given(np.where(ahead < 0, np.where(x < NEAR, 1.0, x), x), f"way of link {self.link}", choice="turns counted on")
+        step = pos.directions[path.name] if path.turning else pos.points[path.name]
+        return plan.aside(f"s {path.name} {self.name}", path.rule, step, *path.numbers)
 
     def vector(self, turned: Any, side: int = 0) -> Any:
         """Force vectors, N, complex, in the shape of the angles ``turned``, rad."""
@@ -215,6 +315,22 @@ class Applied:
         """Absolute values, N or N m, in the shape of the angles ``turned``, rad."""
         return np.abs(self.law(turned, side))
 
+
+FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"), "force", "Сила {name} = {value}.", unit="N")
+MOMENT = Rule("given moment", lambda value: value, ("number",), "number", "Момент {name} = {value} Н·м.", unit="N*m")
+
+
+def _signed_sum(*terms: Any) -> Any:
+    total = terms[0] * terms[1]
+    for sign, value in zip(terms[2::2], terms[3::2], strict=True):
+        total = total + sign * value
+    return total
+
+
+SIGNED_SUM = Rule("values by stroke", _signed_sum, ("number", "number"), "number", "{name} = {value}.", exact=True)
+PISTON = Rule("force of a pressure on a piston", lambda p, bore, ambient: np.pi * bore**2 / 4 * (p - ambient),
+              ("number", "length", "number"), "number", "{name} = π·D²/4·(p − p_0).", unit="N", exact=True)
+OPPOSED = Rule("ordinates with a sign", lambda y, sign: sign * y, ("number", "number"), "number", "{name} = {value}.", exact=True)
 
 Table = tuple[Sequence[float], Sequence[float]]
 """Arguments and values of a diagram, straight lines between them."""
@@ -260,6 +376,35 @@ def curve_of(table: Table, smooth: bool = False, period: float | None = None) ->
     return curve
 
 
+def _of_table(smooth: bool) -> Callable[..., Any]:
+    def ordinate(x: Any, y: Any, at: Any, ahead: Any) -> Any:
+        """Ordinates of a diagram at fractions of the way, passed forwards (+1) or backwards (-1): at a jump that tells the side."""
+        curve = curve_of((x, y), smooth)
+        return np.where(np.asarray(ahead) < 0, curve(at, -1), curve(at, 1))
+
+    return ordinate
+
+
+def _of_periodic(smooth: bool) -> Callable[..., Any]:
+    def ordinate(x: Any, y: Any, at: Any, turns: float) -> Any:
+        """Ordinates of a diagram that repeats itself after some turns, at angles turned; at a jump the one after it."""
+        return curve_of((x, y), smooth, 2 * np.pi * turns)(at, 0)
+
+    return ordinate
+
+
+ordinate = primitive("ordinate of a diagram")(_of_table(False))
+smooth_ordinate = primitive("ordinate of a smooth diagram")(_of_table(True))
+periodic_ordinate = primitive("ordinate of a periodic diagram")(_of_periodic(False))
+smooth_periodic_ordinate = primitive("ordinate of a smooth periodic diagram")(_of_periodic(True))
+_TAKEN: tuple[Kind, ...] = ("number", "number", "number", "number")
+STRAIGHT = Rule("ordinate of a load diagram", ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
+SMOOTH = Rule("ordinate of a smooth load diagram", smooth_ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
+PERIODIC = Rule("ordinate of a load diagram over the angle", periodic_ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
+SMOOTH_PERIODIC = Rule("ordinate of a smooth load diagram over the angle", smooth_periodic_ordinate, _TAKEN, "number",
+                       "{name} = {value}.", exact=True)
+
+
 def _slopes(x: Any, y: Any, closed: bool) -> tuple[Any, Any]:
     """Slopes at the beginning and at the end of every interval of a smooth diagram; ``closed``: it goes on as it began."""
     if closed:
@@ -281,6 +426,79 @@ def jumps_of(table: Table) -> tuple[float, ...]:
     return tuple(a for (a, p), (b, q) in pairwise(zip(*table, strict=True)) if a == b and p != q)
 
 
+@dataclass(frozen=True, eq=False)
+class StrokeLaw:
+    """Law over the runs of a motion: a table over the travelled fraction (None: no force) and a sign for each run.
+
+    ``law(turned, side)`` is its value. A resistance has none at a dead point itself; a pressure acts ``always``, there with the
+    stroke that begins.
+    """
+
+    motion: OutputMotion
+    tables: tuple[Table | None, ...]
+    signs: tuple[float, ...]
+    smooth: bool
+    always: bool
+
+    @cached_property
+    def curves(self) -> list[Curve | None]:
+        """Diagram of each run."""
+        return [None if table is None else curve_of(table, self.smooth) for table in self.tables]
+
+    @cached_property
+    def over_way(self) -> bool:
+        """True where something depends on the way."""
+        return any(table is not None and len(table[0]) > 1 for table in self.tables)
+
+    @cached_property
+    def same(self) -> Any:
+        """Where the same goes on from one run to the next: an end that is no exception."""
+        runs, tables, signs = self.motion.runs, self.tables, self.signs
+        same = np.zeros((len(runs), len(runs)), dtype=bool)
+        for i in range(len(runs)):
+            same[i - 1, i] = self.motion.follows(i) and tables[i] is tables[i - 1] and signs[i] == signs[i - 1]
+        return same
+
+    def run(self, turned: Any, side: int = 0) -> Any:
+        """Number of the run that acts at each angle, -1 for none."""
+        motion, t = self.motion, np.asarray(turned, dtype=float)
+        i = motion.number(t, 1 if self.always and not side else side)
+        if motion.runs and not side and (i < 0).any():
+            before, after = motion.number(t, -1), motion.number(t, 1)
+            i = np.where((i < 0) & (before >= 0) & (after >= 0) & self.same[before, after], after, i)
+        return i
+
+    def __call__(self, turned: Any, side: int = 0) -> Any:
+        """Signed values at angles turned."""
+        t, motion = np.asarray(turned, dtype=float), self.motion
+        i = self.run(t, side)
+        x = motion.fraction(t) if self.over_way else np.zeros(t.shape)
+        value = np.zeros(t.shape)
+        for n, (run, curve) in enumerate(zip(motion.runs, self.curves, strict=True)):
+            if curve is not None:
+                ahead = (side or 1) * run.sense * motion.way
+                value = np.where(i == n, self.signs[n] * curve(self._at(x, ahead), ahead), value)
+        return value
+
+    def _at(self, x: Any, ahead: int) -> Any:
+        """Fractions of the way as the diagrams take them: the end of a turn is not the beginning of the next."""
+        return np.where(x < NEAR, 1.0, x) if self.motion.endless and ahead < 0 else x
+
+    def strokes(self, turned: Any) -> tuple[Any, list[tuple[int, Any]]]:
+        """Which way the diagrams are passed at each angle, +1 or -1, and for each of them its first run and the sign it has there.
+
+        A sign of 0: that diagram does not act there.
+        """
+        motion, i = self.motion, self.run(turned)
+        ahead = np.where(i < 0, 1, np.array([run.sense * motion.way for run in motion.runs])[i])
+        signs: list[tuple[int, Any]] = []
+        for n, table in enumerate(self.tables):
+            if table is not None and not any(self.tables[k] is table for k, _ in signs):
+                acts = np.array([of_run is table for of_run in self.tables])[i] & (i >= 0)
+                signs.append((n, np.where(acts, np.array(self.signs)[i], 0.0)))
+        return ahead.astype(float), signs
+
+
 def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequence[float], smooth: bool = False,
                always: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
     """Law, N or N m, over the runs in their order, and the angles, rad, where it is not smooth.
@@ -288,66 +506,22 @@ def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequ
     Each run has a table over the travelled fraction (None: no force) and a sign. A resistance has no value in a dead point
     itself; a pressure acts ``always``, there with the stroke that begins.
     """
-    law = _StrokeLaw(motion, tables, signs, smooth, always)
-    jumps = [t for i in range(len(motion.runs)) for t in (*law.jumps_before(i), *law.jumps_within(i))]
+    runs, law = motion.runs, StrokeLaw(motion, tuple(tables), tuple(signs), smooth, always)
+    same = law.same
+    jumps = []
+    for i, run in enumerate(runs):
+        before = runs[i - 1]
+        if not motion.follows(i):
+            jumps += [before.end, run.begin]
+        elif motion.endless:
+            jumps += [run.begin] if law(run.begin, -1) != law(run.begin, 1) else []
+        elif run.stroke != before.stroke or not same[i - 1, i]:
+            jumps.append(run.begin)
+        table = tables[i]
+        if table is not None:
+            fractions = (*jumps_of(table), *((0.0,) if motion.endless and table[1][0] != table[1][-1] else ()))
+            jumps += [at for fraction in fractions for at in motion.crossings(run, fraction)]
     return law, distinct((float(np.mod(t, motion.period)) for t in jumps), motion.period)
-
-
-class _StrokeLaw:
-    """The law of :func:`stroke_law` over the angle turned."""
-
-    def __init__(self, motion: OutputMotion, tables: Sequence[Table | None], signs: Sequence[float], smooth: bool,
-                 always: bool) -> None:
-        self.motion, self.tables, self.signs, self.always = motion, tables, signs, always
-        self.curves = [None if table is None else curve_of(table, smooth) for table in tables]
-        self.over_way = any(table is not None and len(table[0]) > 1 for table in tables)
-        # Where the same goes on from one run to the next: an end that is no exception.
-        self.same = np.zeros((len(tables), len(tables)), dtype=bool)
-        for i in range(len(tables)):
-            self.same[i - 1, i] = motion.follows(i) and tables[i] is tables[i - 1] and signs[i] == signs[i - 1]
-
-    def __call__(self, turned: Any, side: int = 0) -> Any:
-        t = np.asarray(turned, dtype=float)
-        motion, i = self.motion, self._acting(t, side)
-        x = motion.fraction(t) if self.over_way else np.zeros(t.shape)
-        value = np.zeros(t.shape)
-        for n, (run, curve) in enumerate(zip(motion.runs, self.curves, strict=True)):
-            if curve is not None:
-                ahead = (side or 1) * run.sense * motion.way
-                # The end of a turn is not the beginning of the next.
-                at = np.where(x < NEAR, 1.0, x) if motion.endless and ahead < 0 else x
-                value = np.where(i == n, self.signs[n] * curve(at, ahead), value)
-        return value
-
-    def _acting(self, t: Floats, side: int) -> Any:
-        """Index of the run whose diagram holds at each angle, -1 for none."""
-        if side:
-            return self.motion.number(t, side)
-        i = self.motion.number(t, 1 if self.always else 0)
-        if self.motion.runs and (i < 0).any():
-            before, after = self.motion.number(t, -1), self.motion.number(t, 1)
-            i = np.where((i < 0) & (before >= 0) & (after >= 0) & self.same[before, after], after, i)
-        return i
-
-    def jumps_before(self, i: int) -> tuple[float, ...]:
-        """Angles where the law may jump between run ``i`` and the one before it."""
-        run, before = self.motion.runs[i], self.motion.runs[i - 1]
-        if not self.motion.follows(i):
-            return before.end, run.begin
-        if self.motion.endless:
-            changes = bool(self(run.begin, -1) != self(run.begin, 1))
-        else:
-            changes = run.stroke != before.stroke or not self.same[i - 1, i]
-        return (run.begin,) if changes else ()
-
-    def jumps_within(self, i: int) -> tuple[float, ...]:
-        """Angles inside run ``i`` where its diagram jumps, or where a turn of an endless link ends with another value."""
-        table = self.tables[i]
-        if table is None:
-            return ()
-        turn_ends = (0.0,) if self.motion.endless and table[1][0] != table[1][-1] else ()
-        run = self.motion.runs[i]
-        return tuple(at for fraction in (*jumps_of(table), *turn_ends) for at in self.motion.crossings(run, fraction))
 
 
 def angle_law(table: Table, period: float, smooth: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:

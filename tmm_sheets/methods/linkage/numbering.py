@@ -6,12 +6,15 @@ Source: manual 000, sections 2 and 3.1.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
@@ -21,7 +24,41 @@ from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 
+DEAD_POINTS = "dead points"
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
+
+
+WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + sense * turned, ("angle", "number", "angle"), "angle",
+             "Угол кривошипа {name} = {0} + {1}·{2} = {value}.", unit="rad", exact=True)
+EQUAL = Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra,
+             ("number", "number", "angle"), "angle",
+             "Разделим оборот кривошипа на {0} равных частей; угол поворота {name} = {value}.", unit="rad", exact=True)
+STROKE_OF_K = Rule("crank angle of the working stroke", lambda k: np.pi * (1 + (k - 1) / (k + 1)), ("number",), "angle",
+                   "Угол рабочего хода {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}.", unit="rad", source="000, 3.1", exact=True)
+BETWEEN = Rule("symmetric between the dead positions",
+               lambda dead, sense, exact, stroke: dead + sense * exact / 2 - sense * stroke / 2,
+               ("angle", "number", "angle", "angle"), "angle",
+               "Рабочий ход отложим симметрично между мёртвыми положениями: угол положения 0 {name} = {value}.",
+               unit="rad", exact=True)
+
+
+@primitive("angle turned")
+def _turned(start: float, end: float, sense: float) -> float:
+    """Angle from one direction to another in the sense of rotation, 0 to 360 degrees."""
+    return float(np.mod(sense * (end - start), 2 * np.pi))
+
+
+@primitive("parts of two strokes")
+def _parts(stroke: float, working: float, idle: float) -> Floats:
+    """Angles turned where the working stroke, and then the rest of the turn, are divided into equal parts."""
+    rest, into = 2 * np.pi - stroke, (np.arange(int(working)), np.arange(int(idle)))
+    return np.concatenate((stroke / working * into[0], stroke + rest / idle * into[1]), dtype=np.float64)
+
+
+TURNED = Rule("angle between dead positions", _turned, ("angle", "angle", "number"), "angle",
+              "Угол рабочего хода между мёртвыми положениями {name} = {value}.", unit="rad", exact=True)
+PARTS = Rule("equal parts of both strokes", _parts, ("angle", "number", "number"), "angle",
+             "Рабочий ход разделим на {1} равных частей, холостой на {2}; угол поворота {name} = {value}.", unit="rad", exact=True)
 
 
 def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle: int, coefficient: float | None) -> Cycle:
@@ -36,20 +73,17 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
         when the mechanism does not assemble all the way round, or the output never turns back, or not along its working sense.
     """
     check_dead_positions(m)
-    plan, first, runs = _dead_of(m, output, SENSES[working_sense])
-    sense = m.crank.sense
-    _, exact = working_stroke(runs)
-    if coefficient is None:
-        start, stroke, begin = first, exact, 0.0
-    else:
-        stroke = np.pi * (1 + (coefficient - 1) / (coefficient + 1))
-        middle = first + sense * exact / 2
-        start = middle - sense * stroke / 2
-        begin = (stroke - exact) / 2
-    rest = 2 * np.pi - stroke
-    turned = np.concatenate((stroke / working * np.arange(working), stroke + rest / idle * np.arange(idle)), dtype=np.float64)
-    strokes = _strokes(m, output, first, begin, runs)
-    return Cycle(tuple(str(i) for i in range(working + idle)), turned, start, sense, 2 * np.pi, strokes, plan)
+    sense, dead = m.crank.sense, _dead_of(m, output, SENSES[working_sense])
+    labels = tuple(str(i) for i in range(working + idle))
+    plan = Plan("cycle", "Разметка положений", "rad", labels)
+    start, stroke, begin = dead.start, dead.width, 0.0
+    if coefficient is not None:
+        stroke = plan.add("φ_рх", STROKE_OF_K, GivenNumber(coefficient, "cycle.coefficient", "K"))
+        start = plan.add("φ_0", BETWEEN, dead.start, sense, dead.width, stroke)
+        begin = (stroke.value - working_stroke(dead.runs)[1]) / 2
+    turned = plan.add("φ_п", PARTS, stroke, GivenNumber(working, "cycle.working"), GivenNumber(idle, "cycle.idle"))
+    plan.add("φ", WORLD, start, sense, turned)
+    return Cycle(labels, turned.value, float(start.value), sense, 2 * np.pi, _strokes(m, output, dead, begin), dead.plan, plan)
 
 
 def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", turns: int = 1,
@@ -66,27 +100,47 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
     """
     count = positions * turns
     late = positions if zero == str(positions) else 0
-    named = {(zero if i == 0 else str(i if i % positions else i + late)): 2 * np.pi / positions * i for i in range(count)}
+    named = {(zero if i == 0 else str(i if i % positions else i + late)): (2 * np.pi / positions * i, i, 0.0) for i in range(count)}
     for label, angle in (extra or {}).items():
         if label in named:
             raise CannotBuild(f"there is a position {label} already", "give the further position another name")
-        named[label] = float(np.mod(angle, 2 * np.pi * turns))
-    order = sorted(named, key=lambda label: named[label])
-    turned = np.array([named[label] for label in order], dtype=np.float64)
+        further = float(np.mod(angle, 2 * np.pi * turns))
+        named[label] = (further, 0, further)
+    order = sorted(named, key=lambda label: named[label][0])
+    numbering = Plan("cycle", "Разметка положений", "rad", tuple(order))
+    rows = [Given(np.array([named[label][k] for label in order], dtype=np.float64), name, "", unit)
+            for k, name, unit in ((1, "numbers of the positions", ""), (2, "cycle.extra", "rad"))]
+    turned = numbering.add("φ_п", EQUAL, GivenNumber(positions, "cycle.positions"), *rows)
+    numbering.add("φ", WORLD, GivenNumber(start, "cycle.start", "φ_0", "rad"), m.crank.sense, turned)
     plan, strokes = None, None
     if output is not None and working_sense is not None:
-        plan, first, runs = _dead_of(m, output, SENSES[working_sense])
-        begin = float(np.mod(m.crank.sense * (first - start), 2 * np.pi))
+        dead = _dead_of(m, output, SENSES[working_sense])
+        plan = dead.plan
+        begin = float(np.mod(m.crank.sense * (dead.start.value - start), 2 * np.pi))
         # A dead position that is position 0 up to rounding is position 0.
         begin = 0.0 if min(begin, 2 * np.pi - begin) < 1e-12 else begin
-        strokes = _strokes(m, output, first, begin, runs)
-    return Cycle(tuple(order), turned, start, m.crank.sense, 2 * np.pi * turns, strokes, plan)
+        strokes = _strokes(m, output, dead, begin)
+    return Cycle(tuple(order), turned.value, start, m.crank.sense, 2 * np.pi * turns, strokes, plan, numbering)
 
 
-def _strokes(m: Mechanism, output: str, first: float, begin: float, runs: tuple[Run, ...]) -> Strokes:
-    """Strokes whose working one begins at the crank's world angle ``first``, turned ``begin`` from position 0."""
+@dataclass(frozen=True)
+class DeadPoints:
+    """World angle of the crank where the output's (longest) working stroke begins and the angle it takes, rad.
+
+    ``plan`` constructs them; None where they were searched for. ``runs`` are those of one turn from there on.
+    """
+
+    plan: Plan | None
+    start: Step | Given
+    width: Step | Given
+    runs: tuple[Run, ...]
+
+
+def _strokes(m: Mechanism, output: str, dead: DeadPoints, begin: float) -> Strokes:
+    """Strokes whose working one begins turned ``begin`` from position 0."""
+    first, runs = float(dead.start.value), dead.runs
     width = working_stroke(runs)[1]
-    out = np.asarray(position_plan(m, np.array([first, first + m.crank.sense * width])).points[output].value)
+    out = np.asarray(position_plan(m, np.array([first, first + m.crank.sense * width]), purpose=DEAD_POINTS).points[output].value)
     path = complex(out[1] - out[0])
     if not abs(path) > 0:
         raise CannotBuild(f"point {output} has no stroke: it is in one place in both dead positions",
@@ -94,8 +148,8 @@ def _strokes(m: Mechanism, output: str, first: float, begin: float, runs: tuple[
     return Strokes(output, begin, begin + width, path / abs(path), abs(path), complex(out[0]), tuple(r.later(begin) for r in runs))
 
 
-def _dead_of(m: Mechanism, output: str, axis: complex) -> tuple[Plan | None, float, tuple[Run, ...]]:
-    """World angle of the crank where the output's (longest) working stroke begins, and the runs of one turn from there on.
+def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
+    """Where the output's strokes begin and end.
 
     The strokes are those between the true extremes of the way, see :mod:`~tmm_sheets.methods.linkage.strokes`. Their ends are
     constructed where the group on the crank pin allows it and the output has its extremes there; found as zeros of its velocity
@@ -104,7 +158,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> tuple[Plan | None, flo
     sense = m.crank.sense
 
     def along(turned: Floats) -> Any:
-        return (velocity_plan(position_plan(m, sense * turned)).points[output].value * np.conj(axis)).real
+        return (velocity_plan(position_plan(m, sense * turned, purpose=DEAD_POINTS)).points[output].value * np.conj(axis)).real
 
     runs = runs_of(along)
     if len(runs) < 2:
@@ -112,7 +166,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> tuple[Plan | None, flo
         raise CannotBuild(f"point {output} has no dead positions: it never turns back",
                           'give the crank angle of position 0 instead: start = "90 deg"')
     turned = np.array([r.begin for r in runs])
-    ways = (np.asarray(position_plan(m, sense * turned).points[output].value) * np.conj(axis)).real
+    ways = (np.asarray(position_plan(m, sense * turned, purpose=DEAD_POINTS).points[output].value) * np.conj(axis)).real
     if not np.ptp(ways) > 1e-9 * m.crank.length:
         raise CannotBuild(f"point {output} has no working stroke: it does not move that way", "give another working_sense")
     runs = in_strokes(runs, ways)
@@ -120,25 +174,29 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> tuple[Plan | None, flo
     ordered = over_cycle(runs, 2 * np.pi, begin)
     plan, dead = dead_positions(m)
     found = None if dead is None else _constructed(m, output, dead, (sense * begin, sense * end))
-    if found is None:
-        return None, sense * begin, tuple(r.later(-ordered[0].begin) for r in ordered)
+    if plan is None or found is None:
+        whole = tuple(r.later(-ordered[0].begin) for r in ordered)
+        start, wide = (Given(value, name, "", "rad", over="none", choice="zeros of the output's velocity")
+                       for value, name in ((sense * begin, "cycle.start"), (working_stroke(whole)[1], "working stroke")))
+        return DeadPoints(None, start, wide, whole)
     # The constructed angles are put in the place of the found ones.
-    width = float(np.mod(sense * (found[1] - found[0]), 2 * np.pi))
+    step = plan.aside("φ_рх", TURNED, *found, sense)
+    width = step.value
     places = {begin: 0.0, begin + 2 * np.pi: 2 * np.pi, end: width, end + 2 * np.pi: width + 2 * np.pi}
 
     def moved(angle: float) -> float:
         return next((exact for near, exact in places.items() if abs(angle - near) < 1e-12), angle - begin)
 
-    return plan, found[0], tuple(replace(r, begin=moved(r.begin), end=moved(r.end)) for r in ordered)
+    return DeadPoints(plan, found[0], step, tuple(replace(r, begin=moved(r.begin), end=moved(r.end)) for r in ordered))
 
 
-def _constructed(m: Mechanism, output: str, dead: tuple[complex, complex], ends: tuple[float, float]) -> tuple[float, float] | None:
+def _constructed(m: Mechanism, output: str, dead: tuple[Step, Step], ends: tuple[float, float]) -> tuple[Step, Step] | None:
     """The constructed dead positions (world angles) in the order of the ``ends`` of the stroke; None when they are others."""
-    angles = np.array([np.angle(d) for d in dead])
+    angles = np.array([float(step.value) for step in dead])
     away = np.abs(np.angle(np.exp(1j * (angles[:, None] - np.array(ends)))))
     which = np.argmin(away, axis=0)
-    speed = np.abs(velocity_plan(position_plan(m, angles)).points[output].value)
+    speed = np.abs(velocity_plan(position_plan(m, angles, purpose=DEAD_POINTS)).points[output].value)
     # A slow reversal is found less exactly than it is constructed.
     if which[0] == which[1] or away.min(axis=0).max() > 1e-3 or not np.all(speed < 1e-9 * m.crank.speed * m.crank.length):
         return None
-    return float(angles[which[0]]), float(angles[which[1]])
+    return dead[which[0]], dead[which[1]]

@@ -8,10 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.mechanism.groups.dead_centres import near_point
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 
@@ -27,7 +26,7 @@ class Positions:
 
     mechanism: Mechanism
     plan: Plan
-    phi: Any
+    angle: Any
     where: str = ""
     points: dict[str, Step] = field(default_factory=dict)
     directions: dict[str, Step] = field(default_factory=dict)
@@ -37,6 +36,11 @@ class Positions:
     rays: dict[tuple[str, str], Step] = field(default_factory=dict)
     feet: dict[str, str] = field(default_factory=dict)
     sines: dict[str, Step] = field(default_factory=dict)
+
+    @property
+    def phi(self) -> Any:
+        """World angles of the crank, rad; ``angle`` is the step or the row they come from."""
+        return value_of(self.angle)
 
     def known_sine(self, group: StructuralGroup) -> tuple[Step, ...]:
         """The sine between a group's lines as a further argument of the rule that crosses them, where it is known."""
@@ -51,19 +55,22 @@ class Positions:
 
     def crossing(self, group: StructuralGroup) -> tuple[Step, ...]:
         """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
-        found = group.kind.crossing(self.mechanism, group, self.phi)
+        found = group.kind.crossing(self.mechanism, group, self.angle)
         if found is None:
             return ()
         self.sines[group.links[0]] = found.sine
+        for step in (*found.lengths, found.sine):
+            self.plan.adopt(step)
         return found.lengths
 
 
-def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), where: str = "") -> Positions:
+def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), where: str = "", purpose: str = "") -> Positions:
     """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,).
 
-    ``where`` stands behind the names of this plan and of those made on it: "@middles" for angles between the positions.
+    They may be numbers, a row or a step. ``where`` stands behind the names of this plan and of those made on it: "@middles" for
+    angles between the positions. ``purpose`` is what the plan searches for, when it is neither drawn nor told: it is counted then.
     """
-    plan = Plan(f"positions{where}", "Планы положений механизма", "m", labels)
+    plan = Plan(f"positions{where}", "Планы положений механизма", "m", labels, search=mechanism.search(purpose))
     inner = {g.inner for g in mechanism.groups if g.inner}
     plan.reserved = frozenset({*mechanism.fixed, mechanism.crank.pin, *inner, *(p.name for p in mechanism.points)})
     pos = Positions(mechanism, plan, phi, where)
@@ -88,9 +95,9 @@ def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",
 
 def _fixed_guide(pos: Positions, guide: Guide) -> None:
     at = near_point(pos.mechanism, guide)
-    point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), rules.GIVEN, at, say="Отметим точку {name} направляющей.")
+    point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), *at, say="Отметим точку {name} направляющей.")
     pos.guide_points[guide.name] = point
-    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.GIVEN_DIRECTION, ar.unit(guide.direction),
+    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.UNDER, guide.direction,
                                                     say=f"Через точку {point.name} проведём направляющую {{name}}.")
 
 

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
 
+import numpy as np
+
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import Load
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
@@ -24,12 +26,12 @@ class CrankMotion(Protocol):
     """What the forces need of a crank that does not turn evenly: the flywheel says it."""
 
     @property
-    def J_running(self) -> float:
-        """Moment of inertia of all that turns with the crank of the finished machine, kg m2."""
+    def first_plan(self) -> Plan:
+        """Moment of inertia of all that turns with the crank of the finished machine as step ``J_вр``, kg m2."""
         ...
 
-    def acceleration(self, phi: Any) -> Any:
-        """Angular acceleration, rad/s2, positive in the sense of rotation, at angles turned from position 0."""
+    def acceleration_plan(self, phi: Any, labels: tuple[str, ...]) -> Plan:
+        """Angular acceleration as step ``ε1``, rad/s2, positive in the sense of rotation, at angles turned from position 0."""
         ...
 
 
@@ -38,7 +40,8 @@ class Study:
     """All linkage plans for the angles ``turned`` (rad from position 0, shape (n,)).
 
     ``technological`` gives the technological forces and moments; they are asked for when the first force is.
-    ``running`` gives the uneven running of the crank and what it carries; None when the mechanism itself says both.
+    ``running`` gives the uneven running of the crank and what it carries; None when the mechanism itself says both. ``purpose`` is
+    what the plans search for; empty when they are drawn or told.
     """
 
     mechanism: Mechanism
@@ -49,6 +52,23 @@ class Study:
     technological: Callable[[], tuple[Applied, ...]]
     driver: GearForce | None
     running: Callable[[], CrankMotion] | None = None
+    purpose: str = ""
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """The plans that were asked for, in the order of construction."""
+        made = vars(self)
+        found = [made[name].plan for name in ("positions", "velocities") if name in made]
+        found += [made["uneven"]] if "uneven" in made else []
+        found += [made["accelerations"].plan] if "accelerations" in made else []
+        if "loads" in made:
+            found.append(made["loads"][2])
+        if "forces" in made:
+            found += [made["forces"].plan, *(fp.plan for fp in made["forces"].plans.values())]
+        if "lever" in made:
+            found.append(made["lever"].plan)
+        found += [made["balance"]] if "balance" in made else []
+        return {plan.name: plan for plan in found}
 
     @cached_property
     def applied(self) -> tuple[Applied, ...]:
@@ -58,7 +78,7 @@ class Study:
     @cached_property
     def positions(self) -> Positions:
         """Position plan."""
-        return position_plan(self.mechanism, self.cycle.world(self.turned), self.labels)
+        return position_plan(self.mechanism, self.cycle.angles(self.turned), self.labels, purpose=self.purpose)
 
     @cached_property
     def velocities(self) -> Velocities:
@@ -70,15 +90,21 @@ class Study:
         """Acceleration plans."""
         if self.running is None:
             return acceleration_plan(self.velocities)
-        return acceleration_plan(self.velocities, self.mechanism.crank.sense * self.running().acceleration(self.turned))
+        return acceleration_plan(self.velocities, self.uneven["ε1"])
+
+    @cached_property
+    def uneven(self) -> Plan:
+        """Angular acceleration of a crank that does not turn evenly."""
+        assert self.running is not None
+        return self.running().acceleration_plan(self.turned, self.labels)
 
     @cached_property
     def loads(self) -> tuple[dict[str, list[Load]], dict[str, list[Step]], Plan]:
         """External and inertia forces of every link, inertia couples, and their plan."""
-        forces = [(f.name, f.link, f.point, f.vector(self.turned)) for f in self.applied if f.point is not None]
-        moments = [(f.name, f.link, f.law(self.turned, 0)) for f in self.applied if f.point is None]
-        carried = None if self.running is None else self.running().J_running
-        return external_loads(self.positions, self.accelerations, self.gravity, forces, moments, carried)
+        turned = self.cycle.turned_row(self.turned)
+        recorded = [(f.link, f.point, lambda plan, f=f: f.record(plan, self.positions, turned)) for f in self.applied]
+        carried = None if self.running is None else self.running().first_plan["J_вр"]
+        return external_loads(self.positions, self.accelerations, self.gravity, (), carried, recorded)
 
     @cached_property
     def forces(self) -> Kinetostatics:
@@ -92,3 +118,20 @@ class Study:
         loads, couples, _ = self.loads
         every = [load for of_link in loads.values() for load in of_link]
         return lever(self.velocities, every, couples, self.driver)
+
+    @cached_property
+    def balance(self) -> Plan:
+        """Comparison of what drives the crank: ``Δ``, per cent, and ``along``, the force's signed size on its line, N."""
+        by_statics, by_lever, line = self.forces.balancing, self.lever.balancing, self.lever.line
+        plan = Plan("balance", "Сравнение уравновешивающих", "N", self.labels, search=self.positions.plan.search)
+        if line is not None:
+            # The force plan gives a vector along the line of action, the lever its signed size there.
+            by_statics = plan.add("along", ALONG_LINE, by_statics, line)
+        plan.add("Δ", DIFFERENCE, by_statics, by_lever)
+        return plan
+
+
+ALONG_LINE = Rule("size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",
+                  "Проекция силы {0} на линию действия: {value} Н.", unit="N")
+DIFFERENCE = Rule("difference per cent", lambda a, b: 100 * np.abs(a - b) / np.abs(a), ("number", "number"), "number",
+                  "Расхождение {name} = |{0} − {1}|/|{0}|·100 % = {value} %.", unit="%")

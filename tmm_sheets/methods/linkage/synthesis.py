@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
@@ -36,12 +38,24 @@ TIMES = Rule("part or multiple of a length", lambda ratio, x: ratio * x, ("numbe
              "Длина {name} = {0}·{1} = {value}.")
 
 
+@primitive("round to a step")
 def _nearest(x: Any, step: float) -> float:
+    """The nearest whole multiple of a step, half of it upwards, as it is written with 12 significant digits."""
     # A decimal number of steps: 566 steps of 1 mm are 0.566 m and not a neighbour of it.
     return float(f"{floor(x / step + 0.5) * step:.12g}") if isfinite(x / step) else nan
 
 
 ROUND = Rule("round a length", _nearest, ("length", "length"), "length", "Округлим до {1}: {name} = {value}.")
+
+
+@primitive("15 digits")
+def _digits(x: float) -> float:
+    """The number as it is written with 15 significant digits."""
+    return float(f"{x:.15g}")
+
+
+AS_WRITTEN = Rule("length as it is used", lambda share, x: _digits(share * x), ("number", "length"), "length",
+                  "{name} = {0}·{1} = {value}.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +102,16 @@ class Synthesis:
         return found
 
     @property
+    def plans(self) -> dict[str, Plan]:
+        """The construction."""
+        return {self.plan.name: self.plan}
+
+    def written(self, place: str, name: str, share: float, symbol: str) -> Step:
+        """A length as it is used at a place of the project file: a part of a found one, as it is written there."""
+        used = self.plan[f"{name}′"] if f"{name}′" in self.plan else self.plan[name]
+        return self.plan.aside(place, AS_WRITTEN, GivenNumber(share, place), used, symbol=symbol)
+
+    @property
     def derivation(self) -> list[str]:
         """Formulas with their numbers in lettering markup, one a line."""
         c, x = self.conditions, self.exact
@@ -120,47 +144,55 @@ class Synthesis:
         return f"{number(exact, 5)} м" + ("" if abs(used - exact) < 1e-12 else f";  принято {number(used, 6)} м")
 
 
-def _rounded(plan: Plan, name: str, step: float | None) -> Step:
+def _rounded(plan: Plan, name: str, c: SynthesisTable) -> Step:
     """The length as it is used further on."""
-    return plan[name] if step is None else plan.add(f"{name}′", ROUND, plan[name], step)
+    return plan[name] if c.round is None else plan.add(f"{name}′", ROUND, plan[name], _given(c, "round", "", "m"))
+
+
+def _given(c: SynthesisTable, name: str, symbol: str, unit: str = "") -> GivenNumber:
+    return GivenNumber(getattr(c, name), f"synthesis.{name}", symbol, unit)
+
+
+BELOW = Rule("point below the origin", lambda distance: -1j * distance, ("length",), "point", "Отметим точку {name}.")
+HALF_OFF = Rule("lay off half a length", lambda p, length: p + length / 2, ("point", "length"), "point",
+                "От точки {0} перпендикулярно CA отложим половину хода H: точка {name}.", lambda a, v: (Helper("line", a[0], v),))
 
 
 def _quick_return(c: SynthesisTable) -> Plan:
     plan = Plan("synthesis", "Геометрический синтез кулисного механизма", "m")
     a = plan.add("A", rules.GIVEN, 0j)
-    pivot = plan.add("C", rules.GIVEN, -1j * c.centre_distance)  # type: ignore[operator]
+    pivot = plan.add("C", BELOW, _given(c, "centre_distance", "l_{AC}", "m"))
     plan.add("l_AC", rules.DISTANCE, a, pivot)
-    theta = plan.add("θ", SWING, c.coefficient)
+    theta = plan.add("θ", SWING, _given(c, "coefficient", "K"))
     half = plan.add("θ/2", HALF, theta)
     axis = plan.add("CA", rules.RAY, pivot, a)
     rocker = plan.add("CB", UNDER, axis, half)
     b = plan.add("B", rules.FOOT, a, pivot, rocker)
     plan.add("l_AB", rules.DISTANCE, a, b)
-    _rounded(plan, "l_AB", c.round)
-    plan.add("H", rules.GIVEN_LENGTH, c.stroke)
-    across = plan.add("H/2", rules.SHIFT, a, c.stroke / 2,  # type: ignore[operator]
-                      say="От точки {0} перпендикулярно CA отложим половину хода H: точка {name}.")
+    _rounded(plan, "l_AB", c)
+    stroke = plan.add("H", rules.GIVEN_LENGTH, _given(c, "stroke", "H", "m"))
+    across = plan.add("H/2", HALF_OFF, a, stroke)
     d = plan.add("D", rules.LINE_LINE, pivot, rocker, across, axis)
     plan.add("l_CD", rules.DISTANCE, pivot, d)
-    used = _rounded(plan, "l_CD", c.round)
+    used = _rounded(plan, "l_CD", c)
     if c.centre_ratio is not None:
-        plan.add("l_CS", TIMES, c.centre_ratio, used)
-        _rounded(plan, "l_CS", c.round)
+        plan.add("l_CS", TIMES, _given(c, "centre_ratio", "λ_S"), used)
+        _rounded(plan, "l_CS", c)
     return plan
 
 
 def _engine(c: SynthesisTable, speed: float) -> Plan:
     plan = Plan("synthesis", "Геометрический синтез кривошипно-ползунного механизма", "m")
     a = plan.add("A", rules.GIVEN, 0j)
-    period = plan.add("T", PERIOD, speed)
-    stroke = plan.add("H", STROKE, c.mean_velocity, period)
+    period = plan.add("T", PERIOD, GivenNumber(speed, "crank.speed", "ω_1", "rad/s"))
+    stroke = plan.add("H", STROKE, _given(c, "mean_velocity", "V_{ср}", "m/s"), period)
     plan.add("l_AB", CRANK, stroke)
-    crank = _rounded(plan, "l_AB", c.round)
-    plan.add("l_BC", TIMES, c.rod_ratio, crank)
-    rod = _rounded(plan, "l_BC", c.round)
+    crank = _rounded(plan, "l_AB", c)
+    plan.add("l_BC", TIMES, _given(c, "rod_ratio", "λ"), crank)
+    rod = _rounded(plan, "l_BC", c)
     if c.centre_ratio is not None:
-        plan.add("l_BS", TIMES, c.centre_ratio, rod)
-        _rounded(plan, "l_BS", c.round)
+        plan.add("l_BS", TIMES, _given(c, "centre_ratio", "λ_S"), rod)
+        _rounded(plan, "l_BS", c)
     axis = plan.add("AC", rules.GIVEN_DIRECTION, 1j)
     for prime, sign in (("′", 1), ("″", -1)):
         pin = plan.add(f"B{prime}", DEAD, a, axis, crank, sign)

@@ -44,9 +44,11 @@ def _angular(big_q: Any, big_b: Any, q: Any, b: Any) -> Any:
 
 ANGULAR_VELOCITY = Rule(
     "angular velocity", _angular, ("point", "point", "point", "point"), "number",
-    "Угловая скорость |{name}| = |{2}{3}|·μ_V / {0}{1}, со знаком {name} = {value} рад/с.",
+    "Угловая скорость |{name}| = |{2}{3}|·μ_V / {0}{1}, со знаком {name} = {value} рад/с.", unit="rad/s",
 )
-SAME = Rule("the same", lambda w: w, ("number",), "number", "{name} = {value}.")
+OF_CRANK = Rule("angular velocity of the crank", lambda sense, w: sense * w, ("number", "number"), "number", "{name} = {value}.",
+                unit="rad/s")
+SAME = Rule("the same", lambda w: w, ("number",), "number", "{name} = {value}.", unit="rad/s")
 
 
 @dataclass
@@ -121,15 +123,15 @@ def plan_name(plan: Plan, point: str) -> str:
 def velocity_plan(pos: Positions) -> Velocities:
     """Record the velocity plans of all positions of ``pos``."""
     m = pos.mechanism
-    plan = Plan(f"velocities{pos.where}", "Планы скоростей", "m/s", pos.plan.labels, "p")
+    plan = Plan(f"velocities{pos.where}", "Планы скоростей", "m/s", pos.plan.labels, "p", pos.plan.search)
     vel = Velocities(pos, plan)
     pole = plan.add("p", POLE, 0j)
     for name in m.fixed:
         vel.points[name] = pole
     vel.omega[m.frame] = plan.add("ω0", SAME, 0.0)
     c = m.crank
-    vel.omega[c.link] = plan.add(f"ω{c.link}", SAME, c.omega)
-    b = plan.add(plan_name(plan, c.pin), CRANK_VELOCITY, pos.points[c.pivot], pos.points[c.pin], c.omega)
+    vel.omega[c.link] = plan.add(f"ω{c.link}", OF_CRANK, c.sense, c.speed)
+    b = plan.add(plan_name(plan, c.pin), CRANK_VELOCITY, pos.points[c.pivot], pos.points[c.pin], vel.omega[c.link])
     plan.vector(f"V̅_{c.pin}", pole, b)
     vel.points[c.pin] = b
     vel.reference[c.link] = (c.pivot, c.pin, pole, b)

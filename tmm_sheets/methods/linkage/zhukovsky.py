@@ -23,8 +23,9 @@ from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocitie
 TURNED = Rule("turned plan point", lambda v: 1j * v, ("point",), "point",
               "Повернём вектор p{0} плана скоростей на 90°: точка {name}.", lambda a, v: (Helper("line", 0j, v),))
 COUPLE_FORCE = Rule("force of a couple", lambda m, x, y: 1j * m * ar.ray(x, y) / np.abs(y - x), ("number", "point", "point"),
-                    "force", "Момент заменим парой сил {name} = M/{1}{2} = {value}, перпендикулярных {1}{2}.")
-OPPOSITE_FORCE = Rule("second force of a couple", lambda f: -f, ("force",), "force", "Вторая сила пары: {name} = −{0}.")
+                    "force", "Момент заменим парой сил {name} = M/{1}{2} = {value}, перпендикулярных {1}{2}.", unit="N")
+OPPOSITE_FORCE = Rule("second force of a couple", lambda f: -f, ("force",), "force", "Вторая сила пары: {name} = −{0}.",
+                      unit="N")
 
 
 def _balance(pole: Any, at: Any, u: Any, *terms: Any) -> Any:
@@ -35,7 +36,7 @@ def _balance(pole: Any, at: Any, u: Any, *terms: Any) -> Any:
 
 
 BALANCE = Rule("balance of the lever", _balance, ("point", "point", "direction"), "number",
-               "Из суммы моментов всех сил относительно полюса {0} найдём {name} = {value}.")
+               "Из суммы моментов всех сил относительно полюса {0} найдём {name} = {value}.", unit="N")
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Hung:
 
 @dataclass
 class Lever:
-    """Zhukovsky's lever of all positions; ``balancing`` is the force along ``direction`` (N) or the moment (N m)."""
+    """Zhukovsky's lever of all positions; ``balancing`` is the force along ``line`` (N) or the moment (N m)."""
 
     plan: Plan
     velocities: Velocities
@@ -58,7 +59,12 @@ class Lever:
     hung: list[Hung] = field(default_factory=list)
     balancing: Step | None = None
     contact: Step | None = None
-    direction: complex | None = None
+    line: Step | None = None
+
+    @property
+    def direction(self) -> complex | None:
+        """Unit vector of the balancing force; None for a moment."""
+        return None if self.line is None else complex(self.line.value)
 
 
 def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]], driver: GearForce | None) -> Lever:
@@ -66,7 +72,7 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
     pos = vel.positions
     m = pos.mechanism
     c = m.crank
-    plan = Plan("lever", "Рычаг Жуковского", "m/s", pos.plan.labels)
+    plan = Plan("lever", "Рычаг Жуковского", "m/s", pos.plan.labels, search=pos.plan.search)
     pole = plan.add("p", POLE, 0j)
     result = Lever(plan, vel)
 
@@ -113,9 +119,9 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
     at = contact_point(pos, driver)
     f_step = plan.add(plan.free("f"), SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
     contact = plan.add(plan.free("f′"), TURNED, f_step)
-    result.direction = driver.direction(c.sense)
-    result.balancing = plan.add(driver.name, BALANCE, pole, contact, result.direction, *terms)
-    force = plan.add(f"{driver.name} на рычаге", VECTOR_OF, result.balancing, result.direction)
+    result.line = driver.line(c.sense)
+    result.balancing = plan.add(driver.name, BALANCE, pole, contact, result.line, *terms)
+    force = plan.add(f"{driver.name} на рычаге", VECTOR_OF, result.balancing, result.line)
     result.contact = contact
     arm = plan.add(f"h {driver.name}", rules.ARM, pole, contact, force)
     result.hung.append(Hung(symbol(driver.name), contact, force, arm))
@@ -143,5 +149,5 @@ def _long_reference(vel: Velocities, link: str) -> tuple[str, str, Step, Step]:
 
 
 MOMENT_OF = Rule("moment of a force across the crank", lambda f, length: f * length, ("number", "length"), "number",
-                 "{name} = F·l = {value} Н·м.")
-VECTOR_OF = Rule("force along a line", lambda f, u: f * u, ("number", "direction"), "force", "Сила {name} = {value}.")
+                 "{name} = F·l = {value} Н·м.", unit="N*m")
+VECTOR_OF = Rule("force along a line", lambda f, u: f * u, ("number", "direction"), "force", "Сила {name} = {value}.", unit="N")

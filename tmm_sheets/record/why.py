@@ -1,0 +1,134 @@
+"""Why a result is what it is: the steps from the given numbers to it, one a line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets import results
+from tmm_sheets.construction import protocol
+from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
+from tmm_sheets.construction.step import Step, Told, value_at
+from tmm_sheets.errors import BadInput
+from tmm_sheets.numbers import plain
+from tmm_sheets.record.book import Book, chain
+from tmm_sheets.record.recording import book_of, unit
+from tmm_sheets.record.results_map import leaves
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+
+def lines(project: Project, result: str) -> Iterator[str]:
+    """The chain of a result, arguments first: name, letters, value with its unit, and what it is from.
+
+    Values over positions are told for the position of the result, or that of the force analysis.
+
+    Raises
+    ------
+    BadInput
+        when the project has no such result; near names are told.
+    CannotBuild
+        when its part cannot be computed.
+    """
+    part = result.partition(".")[0].partition("[")[0]
+    if part not in project.parts:
+        raise _unknown(project, result, ())
+    found = dict(leaves(results.told(project, [part])))
+    if result not in found:
+        raise _unknown(project, result, found)
+    told = found[result]
+    if not isinstance(told, Told):
+        raise BadInput(f"{result} has no step behind it: it is a number of the program")
+    _ = told.value
+    book = book_of(project)
+    at = told.at[0] if told.at else _position(project)
+    given: set[str] = set()
+    for step in chain([told.step]):
+        for arg in step.args:
+            if isinstance(arg, GivenNumber | GivenPoint | Given) and arg.name not in given:
+                given.add(arg.name)
+                yield _given(arg, at, book, step)
+        yield _line(step, at, book)
+    yield f"{result}{_of_part(told)} = {_shown(told, at, book)}"
+
+
+def _unknown(project: Project, result: str, known: Any) -> BadInput:
+    name, names = project.variant.project.name, list(known)
+    if not names:
+        return BadInput(f'{name} has no part "{result.partition(".")[0]}"', hint=f"it has {', '.join(project.parts)}")
+    last = result.rpartition(".")[2]
+    near = get_close_matches(result, names, n=3, cutoff=0.5) or [n for n in names if n.rpartition(".")[2] == last][:3]
+    hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(names[:12])}{' ...' if len(names) > 12 else ''}"
+    return BadInput(f'{name} has no result "{result}"', hint=hint)
+
+
+def _position(project: Project) -> str:
+    """Label of the position of the force analysis."""
+    cycle = project.variant.cycle
+    if cycle is None:
+        return ""
+    return cycle.force_position or project.cycle.labels[0]
+
+
+def _index(step: Step, at: str, book: Book) -> int:
+    labels = book.plans[book.plan(step)].labels if step in book else ("",)
+    return labels.index(at) if at in labels else 0
+
+
+def _given(arg: GivenNumber | GivenPoint | Given, at: str, book: Book, step: Step) -> str:
+    k = _index(step, at, book)
+    value: Any = arg.value if isinstance(arg, Given) else arg
+    if isinstance(arg, Given) and (arg.over == "curve" or np.ndim(value) > 1 or (np.ndim(value) == 1 and k >= len(value))):
+        shown = f"{np.shape(value)[-1] if np.ndim(value) else 1} numbers"
+    else:
+        shown = _number(value_at(arg, k), arg.unit)
+    choice = arg.choice if isinstance(arg, Given) else ""
+    origin = f"chosen: {choice}" if choice else f"given: {arg.source}" if arg.source else "given"
+    return f"{arg.name}  {arg.symbol or '-'} = {shown}  {origin}"
+
+
+def _line(step: Step, at: str, book: Book) -> str:
+    k = _index(step, at, book)
+    plan = book.plans.get(book.plan(step)) if step in book else None
+    name = book.id(step) if step in book else step.name
+    value = value_at(step, k) if np.ndim(step.value) < 2 else step.value
+    told = unit(step, plan) if plan is not None else step.rule.unit
+    return f"{name}  {step.symbol or step.name} = {_number(value, told)}  {_from(step, k, plan)}"
+
+
+def _from(step: Step, k: int, plan: Any) -> str:
+    to_mm: Any = float
+    return protocol.sentence(step, k, to_mm, protocol.UNITS.get(plan.unit, plan.unit) if plan is not None else "")
+
+
+def _of_part(told: Told) -> str:
+    words = {"x": ", projection on x", "y": ", projection on y", "abs": ", magnitude", "angle": ", angle", "": ""}
+    return words[told.part]
+
+
+def _shown(told: Told, at: str, book: Book) -> str:
+    value = told.value
+    plan = book.plans.get(book.plan(told.step)) if told.step in book else None
+    told_unit = "rad" if told.part == "angle" else unit(told.step, plan) if plan is not None else told.step.rule.unit
+    if np.ndim(value) == 1:
+        labels = told.at or (plan.labels if plan is not None else ())
+        if len(labels) == len(value):
+            k = labels.index(at) if at in labels else 0
+            return f"{_number(value[k], told_unit)}, position {labels[k]}"
+    return _number(value, told_unit)
+
+
+def _number(value: Any, of_unit: str) -> str:
+    if not isinstance(value, str) and np.ndim(value):
+        return f"{np.shape(value)[0]} numbers"
+    if isinstance(value, complex | np.complexfloating):
+        text = f"({plain(float(value.real))}, {plain(float(value.imag))})"
+    elif isinstance(value, int | float | np.number):
+        text = plain(float(value))
+    else:
+        text = "curve" if not isinstance(value, str) else value
+    return f"{text} {of_unit}".rstrip()
