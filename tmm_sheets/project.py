@@ -247,7 +247,7 @@ class Project:
     def plans(self) -> dict[str, dict[str, Plan] | None]:
         """Plans of every part by their names, in the order of construction; None for a part that nobody has asked for."""
         made = vars(self)
-        return {part: dict(getattr(made[part], "plans", {})) if part in made else None for part in PLANNED}
+        return {part: _plans_of(made[part]) if part in made else None for part in PLANNED}
 
     @property
     def searches(self) -> tuple[Tally, ...]:
@@ -277,3 +277,11 @@ class Project:
         from tmm_sheets.methods.linkage.checks import check_assembly
 
         check_assembly(self.mechanism, self.cycle)
+
+
+def _plans_of(made: Any) -> dict[str, Plan]:
+    """Plans of a part that was made; none of one that turns out not to be buildable: whoever asks for its results is told."""
+    try:
+        return dict(getattr(made, "plans", {}))
+    except CannotBuild:
+        return {}

@@ -230,7 +230,7 @@ def misread(found: Measurables, rng: np.random.Generator) -> tuple[list[Judged],
 def _touched(j: Judged, plant: Plant, found: Measurables) -> bool:
     """True for a number that depends on the planted step, at its position."""
     step = next(plan[plant.step] for plan, _ in found.plans if plan.name == plant.plan)
-    return j.entry.label == plant.label and any(s is step for s, _ in j.rows)
+    return j.entry.label == plant.label and any(s is step for s, _, _ in j.rows)
 
 
 if __name__ == "__main__":

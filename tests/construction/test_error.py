@@ -134,7 +134,7 @@ def test_error_of_a_sum():
     found = Errors([(plan, 1.0)], PENCIL)
     error, gradient = found.of_sum([(a, 0, -1 + 0j), (c, 0, 1 + 0j)])
     assert error == pytest.approx(PENCIL * 3**0.5)  # both ends, and the line that C is on
-    assert [(s.name, g) for s, g in gradient] == [("A", pytest.approx(-1)), ("B", pytest.approx(1)), ("C", pytest.approx(1))]
+    assert [(s.name, g) for s, _, g in gradient] == [("A", pytest.approx(-1)), ("B", pytest.approx(1)), ("C", pytest.approx(1))]
     assert found.of_sum([]) == (0.0, [])
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from tmm_sheets import explain
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.step import value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Text
@@ -22,8 +21,8 @@ def drawn(request):
     project = Project(read(name))
     sheet = attempt(project, [n]).drawn[n]
     steps = {}
-    for plans in explain.parts(project).values():
-        for plan in plans or ():
+    for plans in project.plans.values():
+        for plan in (plans or {}).values():
             steps |= {f"{plan.name}/{s.name}": (plan, s) for s in plan}
     return sheet, steps, [m for m in sheet.drawing.marks if m.of in VIEWS and not isinstance(m, Text)]
 

@@ -100,7 +100,7 @@ class Errors:
         self._steps: list[Step] = []
         self._sizes: npt.NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self._elsewhere: dict[tuple[int, int], int] = {}
-        self._single: set[int] = set()
+        self._single: dict[int, tuple[int, int]] = {}
         self._links: dict[int, dict[int, Any]] = {}
 
     # --- what is asked for --------------------------------------------------------------------------------------------
@@ -152,7 +152,7 @@ class Errors:
         i = 2 * int(np.searchsorted(known.sources, number))
         return known.jacobian[:, :, i:i + 2]
 
-    def of_sum(self, terms: Iterable[tuple[Step, int, complex]]) -> tuple[float, list[tuple[Step, complex]]]:
+    def of_sum(self, terms: Iterable[tuple[Step, int, complex]]) -> tuple[float, list[tuple[Step, int, complex]]]:
         """Error of a quantity that grows by the sum of Re(conj(g) d) when the steps are displaced by d, and by what it does so.
 
         Parameters
@@ -162,16 +162,16 @@ class Errors:
 
         Returns
         -------
-        The error and the gradient of the quantity by every step it goes back to, in the order of drawing. What was taken from
-        single positions of other plans counts in the error only.
+        The error and the gradient of the quantity by every step it goes back to, at its position, in the order of drawing.
         """
-        _, numbers, by, shares = self.causes(terms)
-        sources, which = np.unique(numbers, return_inverse=True)
-        row, scaled = np.zeros((len(sources), 2)), np.zeros((len(sources), 2))
+        at, sources, by, shares = self.causes(terms)
+        places, which = np.unique(np.stack((sources, at)), axis=1, return_inverse=True)
+        which = which.reshape(-1)
+        row, scaled = np.zeros((2, places.shape[1], 2))
         np.add.at(row, which, by)
         np.add.at(scaled, which, shares)
-        return float(np.linalg.norm(scaled)), [(self._steps[n], complex(*g)) for n, g in zip(sources, row, strict=True)
-                                               if n not in self._single]
+        steps = [(self._steps[n], int(k), complex(*g)) for (n, k), g in zip(places.T, row, strict=True)]
+        return float(np.linalg.norm(scaled)), steps
 
     def causes(self, terms: Iterable[tuple[Step, int, complex]]) -> tuple[Numbers, Numbers, Floats, Floats]:
         """Where the error of such a quantity comes from.
@@ -187,8 +187,11 @@ class Errors:
             if known is None:
                 continue
             row, j = np.array([g.real, g.imag]), min(k, len(known.jacobian) - 1)
-            at = np.where(self._spread[known.sources], k, 0)
-            found.append((at, known.sources, (row @ known.jacobian[j]).reshape(-1, 2), (row @ known.scaled[j]).reshape(-1, 2)))
+            # What was taken from a single position of another plan has its error there.
+            places = [self._single.get(int(n), (int(n), k)) for n in known.sources]
+            sources, at = np.array(places, dtype=np.intp).reshape(-1, 2).T
+            at = np.where(self._spread[sources], at, 0)
+            found.append((at, sources, (row @ known.jacobian[j]).reshape(-1, 2), (row @ known.scaled[j]).reshape(-1, 2)))
         at, sources, by, shares = (np.concatenate(parts) for parts in zip(*found, strict=True))
         return at, sources, by, shares
 
@@ -300,7 +303,7 @@ class Errors:
             return source
         if (source, k) not in self._elsewhere:
             self._elsewhere[source, k] = len(self._steps)
-            self._single.add(len(self._steps))
+            self._single[len(self._steps)] = source, k
             self._steps.append(step)
         return self._elsewhere[source, k]
 

@@ -7,9 +7,9 @@ import pytest
 
 from tests.methods.gears import reducer_cases as cases
 from tests.methods.gears.test_gears import data
-from tmm_sheets import explain
 from tmm_sheets.construction import arithmetic, expression
 from tmm_sheets.construction.given import Given, GivenNumber
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.step import Step, Told, value_of
 from tmm_sheets.methods.gears import fillets, gear_engagement, gear_formulas, planetary, rack, reducer_formulas
@@ -47,9 +47,9 @@ def built(name):
 
 
 def plans(made):
-    """All of it, found among the attributes: none that ``plans`` does not name."""
-    found = list(explain._plans(made, set()))
-    assert {id(p) for p in found} == {id(p) for p in made.plans.values()}
+    """All of it: none among the attributes that ``plans`` does not name."""
+    found = [x for value in vars(made).values() for x in (value.values() if isinstance(value, dict) else [value])]
+    assert {id(p) for p in found if isinstance(p, Plan)} <= {id(p) for p in made.plans.values()}
     return list(made.plans.values())
 
 

@@ -77,7 +77,7 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     if e.scale in found.on_paper:
         # On diagrams the pencil's millimetres stay what they are, whatever the ordinates mean.
         error, rows = errors.of_sum(e.terms)
-        rows = [(s, g * size) for s, g in rows]
+        rows = [(s, k, g * size) for s, k, g in rows]
         error /= ratio if e.kind == "result" else 1.0
     else:
         error, rows = errors.of_sum((s, k, g * size) for s, k, g in e.terms)
@@ -198,7 +198,7 @@ def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list
 def _has_reason(off: list[Judged], judged: list[Judged]) -> bool:
     """True when something drawn earlier, on which this plan depends, is red already."""
     first, plan = min(j.order for j in off), off[0].entry.plan
-    sources = {id(step) for j in off for step, g in j.rows if g}
+    sources = {id(step) for j in off for step, _, g in j.rows if g}
     return any(j.verdict == "red" and j.order < first and j.entry.plan != plan and id(j.entry.terms[-1][0]) in sources
                for j in judged if j.entry.terms)
 
@@ -220,14 +220,14 @@ class _Sheet:
         for i, j in enumerate(judged):
             if j.entry.head is not None:
                 self.heads.add(_place(j.entry.head, j.at))
-            for step, g in j.rows:
+            for step, k, g in j.rows:
                 if g and isfinite(abs(g)):
-                    place = _place(step, j.at)
+                    place = _place(step, k)
                     self.steps[place] = step
                     gradients.setdefault(place, {})[i] = g
         self.by_place = {place: (np.array(list(of)), np.array([[g.real, g.imag] for g in of.values()]))
                          for place, of in gradients.items()}
-        self.places = [[_place(step, j.at) for step, g in j.rows if g and isfinite(abs(g))] for j in judged]
+        self.places = [[_place(step, k) for step, k, g in j.rows if g and isfinite(abs(g))] for j in judged]
 
     def mistake(self, place: Place, exact: bool = False) -> Mistake:
         """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.

@@ -40,7 +40,7 @@ class Judged:
     exact: float
     deviation: float
     tolerance: float
-    rows: list[tuple[Step, complex]]
+    rows: list[tuple[Step, int, complex]]
     follows: Judged | None = None
     starts: bool = False
     scale: str = ""

@@ -198,6 +198,14 @@ MOMENT_AT = taken("reduced moment at the positions", "N*m", "Приведённ�
 INERTIA_AT = taken("reduced moment of inertia at the positions", "kg*m2", "Приведённый момент инерции {name} = {value} кг·м².")
 SLOPE_AT = taken("slope of the moment of inertia at the positions", "kg*m2", "Производная {name} = {value} кг·м².")
 ORDINATE_AT = taken("ordinate of an interval", "mm", "Ордината {name} = {value} мм.")
+JUMP = 1e-6
+"""Ordinates of a graph on both sides of a border that differ by more, mm, are those of a jump."""
+BULGE = Rule("bulge of a curve", lambda y, a, b, share: y - ((1 - share) * a + share * b), ("number",) * 4, "number",
+             "Кривая отходит от хорды между соседними положениями на {name} = {value} мм.", unit="mm", exact=True)
+ON_DRAWN = Rule("ordinate of a drawn curve", lambda a, b, share, bulge: (1 - share) * a + share * b + bulge, ("number",) * 4,
+                "ordinate", "На кривой, проведённой через точки положений, измерим ординату {name} = {value}.", unit="mm")
+BORDER_SLOPE = Rule("slope of an integral", lambda y, pole: y / pole, ("number", "length"), "number",
+                    "Наклон графика работы {name} = {value}.")
 SLOPE_OF_CHORD = taken("slope at the border of an interval", "", "Наклон кривой на границе интервала {name} = {value}.")
 WORK_AT = taken("work of the cycle", "J", "Работа за цикл {name} = {value} Дж.")
 TO_PAPER = Rule("to scale", lambda value, mu: value / mu, ("number", "number"), "number",
@@ -482,12 +490,35 @@ class Flywheel(ABC):
     def intervals_plan(self) -> Plan:
         """The same interval by interval: ``y``, ``+`` (at its beginning), ``−`` (at its end) with its name."""
         plan = Plan(f"ordinates@intervals{self.where}", "Ординаты момента по интервалам", "mm")
-        slopes = self.slopes_plan
-        for name, row, rule, first in (("y", self.middles_plan["y"], ORDINATE_AT, 0), ("+", slopes["+"], SLOPE_OF_CHORD, 0),
-                                       ("−", slopes["−"], SLOPE_OF_CHORD, 1)):
-            for k, interval in enumerate(self.intervals):
-                plan.add(f"{name}{interval}", rule, row, k + first)
+        slopes, middles = self.slopes_plan, self.middles_plan["y"]
+        for k, interval in enumerate(self.intervals):
+            left, right = self._drawn_at(plan, k, 1), self._drawn_at(plan, k + 1, -1)
+            y = plan.add(f"y°{interval}", ORDINATE_AT, middles, k)
+            if left is None and right is None:
+                plan.add(f"y{interval}", LAY_DOWN, y)
+            else:
+                self._on_drawn(plan, f"y{interval}", y, left or right, right or left, 0.5)
+            for side, at, border in (("+", left, k), ("−", right, k + 1)):
+                plan.add(f"{side}{interval}", *((SLOPE_OF_CHORD, slopes[side], border) if at is None else
+                                                (BORDER_SLOPE, at, self.pole)))
         return plan
+
+    def _drawn_at(self, plan: Plan, border: int, side: int) -> Step | None:
+        """Ordinate of the moment at a border, mm, as it was drawn at a position; None where there is none or the moment jumps."""
+        if border not in self.at_positions:
+            return None
+        k = self.at_positions.index(border)
+        name, row = f"y_M{self.labels[k]}{'' if k else '°'}", self.moment_plan["y_M"]
+        # The graph has the value behind a jump at its positions.
+        if side < 0 and abs(float(self.at_borders.moment(-1).value[border] / self.scales.moment.mu - row.value[k])) > JUMP:
+            return None
+        return plan[name] if name in plan else plan.add(name, ORDINATE_AT, row, k)
+
+    @staticmethod
+    def _on_drawn(plan: Plan, name: str, exact: Step, a: Any, b: Any, share: float) -> Step:
+        """Ordinate between two drawn points: as exact as the curve is known, as wrong as the points are."""
+        bulge = plan.add(f"f_{name}", BULGE, exact, a, b, share)
+        return plan.add(name, ON_DRAWN, a, b, share, bulge)
 
     @property
     def pole(self) -> float:
@@ -580,7 +611,12 @@ class Flywheel(ABC):
         energy = plan.add(f"ΔE_{name}", ENLARGE, total, self.mu("work"), self.mu("energy"))
         at = self.at(f"contact-{name}", np.array([phi]), (name,))
         mass = plan.add(f"J_пр_{name}", AT_CONTACT, self.mass(at), 0)
-        return x, energy, plan.add(f"J_{name}", TO_PAPER, mass, self.mu("inertia"))
+        exact, row = plan.add(f"J°_{name}", TO_PAPER, mass, self.mu("inertia")), self.inertia_plan["y_J"]
+        right = int(np.clip(np.searchsorted(self.reduced.phi, phi), 1, len(self.reduced.phi) - 1))
+        before, after = self.reduced.phi[right - 1:right + 1]
+        a, b = (plan.add(f"y_J{self.labels[k]}_{name}", ORDINATE_AT, row, k) for k in (right - 1, right))
+        share = named((phi - before) / (after - before), f"share of the interval at the contact {name}")
+        return x, energy, self._on_drawn(plan, f"J_{name}", exact, a, b, share)
 
     @property
     def plans(self) -> dict[str, Plan]:

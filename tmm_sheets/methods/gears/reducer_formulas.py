@@ -33,9 +33,9 @@ def _formula(name: str, compute: Any, count: int, wording: str, unit: str = "") 
 
 
 @primitive("greatest common divisor")
-def common_divisor(a: int, b: int) -> int:
-    """Greatest common divisor (НОД)."""
-    return gcd(a, b)
+def common_divisor(a: float, b: float) -> int:
+    """Greatest common divisor (НОД) of two whole numbers."""
+    return gcd(int(a), int(b))
 
 
 ASKED = _formula("ratio asked for", lambda u: u, 1, "Требуемое передаточное отношение {name} = {value}.")
