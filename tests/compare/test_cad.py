@@ -60,9 +60,9 @@ def one(test):
 ALL_GREEN = (len(EXACT), 0, 0, 0, 0)
 
 
-@pytest.mark.parametrize(("n", "asked"), [(1, 1), (3, None)])
-def test_our_own_drawing_has_no_deviation(tmp_path, n, asked):
-    report = compare(dxf.render(composed(SHAPER, n).drawing), tmp_path, asked)
+@pytest.mark.parametrize(("n", "asked", "text"), [(1, 1, "live"), (3, None, "live"), (1, None, "strokes"), (3, 3, "strokes")])
+def test_our_own_drawing_has_no_deviation(tmp_path, n, asked, text):
+    report = compare(dxf.render(composed(SHAPER, n).drawing, text), tmp_path, asked)
     assert report.tree["sheet"] == n
     assert {e["verdict"] for e in report.tree["elements"]} == {"green"}
     assert max(e["deviation"] for e in report.tree["elements"]) < 0.002
@@ -195,7 +195,7 @@ def test_a_wrong_letter_drawn_with_strokes(tmp_path):
     marks = list(SHEET.drawing.marks)
     k = next(k for k, m in enumerate(marks) if getattr(m, "text", "") == "H = 142")
     marks[k] = marks[k]._replace(text="H = 147")
-    found = judged(compare(dxf.render(replace(SHEET.drawing, marks=tuple(marks))), tmp_path), TEXT.number)
+    found = judged(compare(dxf.render(replace(SHEET.drawing, marks=tuple(marks)), "strokes"), tmp_path), TEXT.number)
     assert (found["verdict"], found["what"]) == ("red", 'the letters are not those of "H = 142"')
 
 

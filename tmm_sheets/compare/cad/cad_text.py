@@ -12,6 +12,10 @@ import numpy as np
 from tmm_sheets.compare.cad.cad_ink import Writing, normal
 from tmm_sheets.drawing.marks import Points
 
+CLOSE = 0.3
+"""How far beyond the box of a text the middle of a part of it may be, mm."""
+ARROWS = str.maketrans("", "", "→←↑↓")
+"""Signs that may be drawn among the texts."""
 FAR = 12.0
 """How far from its place a text may be, mm: where a letter goes is the draughtsman's choice."""
 
@@ -74,13 +78,27 @@ class _Reading:
                 self._take(n, k)
 
     def joined(self) -> None:
-        """Several texts that make one."""
-        for n, want in self._missing():
-            near = [k for k in self._about(want) if k in self.free and _inside(want, self.writings[k].at, 0.5 * want.height + 0.5)]
-            u = (want.corners[1] - want.corners[0]) / max(abs(want.corners[1] - want.corners[0]), 1e-9)
-            near.sort(key=lambda k: ((self.writings[k].at - want.middle) * np.conj(u)).real)
-            if near and _same(meant("".join(self.writings[k].text for k in near)), meant(want.text), len(near) > 1):
-                self._take(n, *near)
+        """Several texts that make one: those within its box, or else those a little beyond it too."""
+        for margin in (0.0, 0.5):
+            for n, want in self._missing():
+                near = [k for k in self._about(want)
+                        if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + CLOSE)]
+                if order := self._spelling(near, want):
+                    self._take(n, *order)
+
+    def _spelling(self, near: list[int], want: WantedText) -> list[int]:
+        """The texts in an order in which they make the wanted one; none if there is no such order.
+
+        They follow one another by their middles or by their left ends; of indices above one another either may be first.
+        """
+        u = np.conj(want.corners[1] - want.corners[0]) / max(abs(want.corners[1] - want.corners[0]), 1e-9)
+        meaning, several = meant(want.text), len(near) > 1
+        for ends, lift in ((0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.5, -0.5)):
+            place = {k: (self.writings[k].at - want.middle) * u - ends * self.writings[k].width for k in near}
+            order = sorted(near, key=lambda k: place[k].real + lift * place[k].imag)
+            if order and _same(meant("".join(self.writings[k].text for k in order)), meaning, several):
+                return order
+        return []
 
     def contained(self) -> None:
         """A text with ours among its words."""
@@ -115,6 +133,7 @@ class _Reading:
 
 def _same(joined: str, wanted: str, several: bool) -> bool:
     """Whether texts put together are the wanted one; indices may come in another order, but numbers keep their digits."""
+    wanted = wanted.translate(ARROWS) if several and joined == joined.translate(ARROWS) else wanted
     return joined == wanted or (several and sorted(joined) == sorted(wanted) and _digits(joined) == _digits(wanted))
 
 
