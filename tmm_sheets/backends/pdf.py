@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
+from hashlib import md5
 from io import BytesIO
 from math import ceil, cos, isfinite, pi, sin, tan
 from pathlib import Path
@@ -159,6 +160,7 @@ def _document(drawing: Drawing, buffer: BytesIO, date: int | None = None) -> Can
     if (seconds := told if date is None else date) is not None:
         stamp.t, stamp.lt = seconds, gmtime(seconds)
         stamp.YMDhms = tuple(stamp.lt)[:6]
+    page._doc.signature = md5(str(int(stamp.t)).encode(), usedforsecurity=False)  # the file's identifier begins with its date
     page.setTitle(drawing.title)
     page.setAuthor(drawing.author)
     page.setSubject(drawing.subject)

@@ -95,9 +95,10 @@ class Folder:
         return self.place / name
 
     def read(self, name: str) -> bytes | None:
-        """Content of a file; None when there is none."""
+        """Content of a file; None when there is none, or a pipe or a device."""
+        path = self.place / name
         try:
-            return (self.place / name).read_bytes()
+            return path.read_bytes() if path.is_file() else None
         except OSError:
             return None
 

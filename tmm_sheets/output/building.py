@@ -142,14 +142,15 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
         problem = _with_stale(problem, [target.name for target in work.wanted if target not in done], outlet)
     drawings = {n: composed.drawing for n, composed in drawn.items()}
     made, beside = _rendered(drawings, [target for target in work.due if target in done], order, outlet, watch, say)
+    done, kept = _settled(done, work, made, outlet)
     if made or whole_passed:
         # A file without one of its sheets is not current.
-        made_from = {target.name: work.made_from[target.name] if failed.isdisjoint(target.sheets) else "" for target in done}
+        made_from = {target.name: work.made_from[target] if failed.isdisjoint(target.sheets) else "" for target in done}
         with watch.phase("write files"):
             keep(outlet, work.record, made, made_from, work.inputs if whole_passed else None, beside)
     paths = tuple(outlet.path(target.name) for target in done)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
-    return Built(paths, sizes, drawings, opened, problem, (*work.kept, *_warnings(opened, drawn)))
+    return Built(paths, sizes, drawings, opened, problem, (*kept, *_warnings(opened, drawn)))
 
 
 @dataclass(frozen=True)
@@ -157,41 +158,56 @@ class _Work:
     """What a build has to do: the files ``wanted``, those of them that are ``due``, and the sheets to be drawn for them.
 
     ``whole`` is true where all sheets together are to be checked, which only they can be: whether each scale factor of the
-    file is of use. ``inputs`` is the fingerprint of program and project file, ``made_from`` those of each file wanted. ``kept``
-    tells which files were changed by hand and stay.
+    file is of use. ``inputs`` is the fingerprint of program and project file, ``made_from`` those of each file wanted. ``stand_in``
+    tells by their names which files lie beside one that was changed by hand.
     """
 
     record: BuildRecord
     inputs: str
-    made_from: dict[str, str]
+    made_from: dict[Target, str]
     wanted: list[Target]
     due: list[Target]
     sheets: list[int]
     whole: bool
-    kept: tuple[str, ...]
+    stand_in: dict[str, str]
 
 
 def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wanted: list[Target], watch: Stopwatch) -> _Work:
     """What of the files wanted of sheets ``numbers`` is not current."""
     inputs = fingerprint(program(), variant.text)
-    due, names, kept = [], list[Target](), []
-    made_from: dict[str, str] = {}
+    due, names, stand_in = list[Target](), list[Target](), dict[str, str]()
+    made_from: dict[Target, str] = {}
     with watch.phase("compare with what is there"):
         record = record_of(outlet)
         for target in wanted:
             of = fingerprint(inputs, repr(sorted(order.settings.get(target.form, {}).items())), repr(target.sheets))
             there = not order.force and current(outlet, record, target.name, of)
             if not there and not order.force and (name := free_name(outlet, record, target.name)) != target.name:
-                kept.append(f"{target.name} was changed by hand and stays; the new one is {name} (--force overwrites it)")
+                stand_in[name] = target.name
                 target = target._replace(name=name)
                 there = current(outlet, record, name, of)
-            made_from[target.name] = of
+            made_from[target] = of
             names.append(target)
             if not there:
                 due.append(target)
     whole = len(numbers) == len(variant.sheets) and (order.force or record.whole != inputs)
     sheets = numbers if whole else sorted({n for target in due for n in target.sheets})
-    return _Work(record, inputs, made_from, names, due, sheets, whole, tuple(kept))
+    return _Work(record, inputs, made_from, names, due, sheets, whole, stand_in)
+
+
+def _settled(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Outlet) -> tuple[list[Target], list[str]]:
+    """The files under their names at last, and which were changed by hand: not one that is just as it would be made now."""
+    settled, kept = [], []
+    for target in done:
+        name = work.stand_in.get(target.name)
+        if name is not None and target.name in made and made[target.name] == outlet.read(name):
+            made[name] = made.pop(target.name)
+            work.made_from[target._replace(name=name)] = work.made_from[target]
+            target = target._replace(name=name)
+        elif name is not None:
+            kept.append(f"{name} was changed by hand and stays; the new one is {target.name} (--force overwrites it)")
+        settled.append(target)
+    return settled, kept
 
 
 def _rendered(drawings: Mapping[int, Drawing], due: Sequence[Target], order: Order, outlet: Outlet, watch: Stopwatch,
