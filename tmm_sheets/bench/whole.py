@@ -65,7 +65,7 @@ def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> W
         entities = prepare(project, lists)
         programs = {
             "build": ("from tmm_sheets.__main__ import run; run(sys.argv[1:])",
-                      ["build", project, "--force", "-o", str(folder / "build")]),
+                      ["build", project, "--force", "--text", "strokes", "-o", str(folder / "build")]),
             "plain": ("import runpy; runpy.run_path(sys.argv[0], run_name='__main__')", [str(lists), str(folder)]),
             "imports": ("import ezdxf, reportlab.pdfgen.canvas, reportlab.pdfbase.ttfonts", []),
         }

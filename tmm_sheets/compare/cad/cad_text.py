@@ -78,8 +78,8 @@ class _Reading:
                 self._take(n, k)
 
     def joined(self) -> None:
-        """Several texts that make one: those within its box, or else those a little beyond it too."""
-        for margin in (0.0, 0.5):
+        """Several texts that make one: those within its box, or else those ever a little farther off."""
+        for margin in (0.0, 0.25, 0.5):
             for n, want in self._missing():
                 near = [k for k in self._about(want)
                         if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + CLOSE)]
