@@ -54,7 +54,7 @@ def render(drawing: Drawing, text: Lettering = "live") -> bytes:
         for mark in drawing.marks:
             check(mark)
     parts.views += (_named_view(view, around, handles) for view in drawing.views)
-    return around.filled(parts, drawing.title, drawing.author, extents(drawing.marks), next(handles)).encode("utf-8")
+    return around.filled(parts, drawing.title, drawing.author, extents(drawing.marks), handles).encode("utf-8")
 
 
 def companions(text: Lettering = "live") -> dict[str, bytes]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import OrderedDict
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from io import StringIO
@@ -20,10 +20,12 @@ from ezdxf.filemanagement import new
 from ezdxf.lldxf.const import VALID_DXF_LINEWEIGHTS
 from ezdxf.units import MM
 
-from tmm_sheets.drawing.layers import layers, roles
+from tmm_sheets.drawing.layers import Layer, layers, roles
 from tmm_sheets.drawing.styles import line_type, line_types
 
 VIEWPORT_LAYER = "VIEWPORT"
+PATTERN = "{name}"
+"""Name of the layer whose entry all others are made from."""
 STYLE = "lc_opengost-br"
 """Name of the text style: LibreCAD takes it for that of a font, and it has this one; everybody else looks at the font file."""
 FONT_FILE = "TMMSheetsB.ttf"
@@ -53,31 +55,37 @@ class SheetParts:
 class DxfFrame(NamedTuple):
     """Everything round the entities, the same for all sheets of a size.
 
-    ``text`` has the signs above in it; ``layers`` are the entries of all layers by name. The rest are handles: of model space, the
+    ``text`` has the signs above in it; ``layer`` is the entry of a layer to be filled in. The rest are handles: of model space, the
     tables of views and of blocks, the dictionary of groups, and the first one that is free.
     """
 
     text: str
-    layers: dict[str, str]
+    layer: str
     owner: str
     views: str
     records: str
     groups: str
     first_handle: int
 
-    def filled(self, parts: SheetParts, title: str, author: str, extents: tuple[float, float, float, float], free: int) -> str:
+    def filled(self, parts: SheetParts, title: str, author: str, extents: tuple[float, float, float, float],
+               handles: Iterator[int]) -> str:
         """The file; ``extents`` are least and greatest x and y."""
         x0, y0, x1, y1 = extents
         box = (f"  9\n$EXTMIN\n 10\n{x0:.4f}\n 20\n{y0:.4f}\n 30\n0.0\n"
                f"  9\n$EXTMAX\n 10\n{x1:.4f}\n 20\n{y1:.4f}\n 30\n0.0\n")
         always = {role.upper() for role in roles()}
-        used = (self.layers[name] for name in self.layers if name in parts.layers or name in always)
-        told = {TITLE: " ".join(title.splitlines()), AUTHOR: " ".join(author.splitlines()), HANDSEED: f"{free:X}", EXTENTS: box,
-                LAYERS: _joined(used), VIEWS: _joined(parts.views), RECORDS: _joined(parts.records),
+        used = [self._layer(on, f"{next(handles):X}") for on in layers().values() if on.name in parts.layers or on.name in always]
+        told = {TITLE: " ".join(title.splitlines()), AUTHOR: " ".join(author.splitlines()), HANDSEED: f"{next(handles):X}",
+                EXTENTS: box, LAYERS: _joined(used), VIEWS: _joined(parts.views), RECORDS: _joined(parts.records),
                 BLOCKS: _joined(parts.blocks), BODY: _joined(parts.entities), GROUPED: _joined(parts.grouped),
                 GROUPS: _joined(parts.groups)}  # fmt: skip
         pieces = re.split(f"({'|'.join(map(re.escape, told))})", self.text)
         return "".join(told.get(piece, piece) for piece in pieces)
+
+    def _layer(self, layer: Layer, handle: str) -> str:
+        look = line_type(layer.style)
+        return self.layer.format(handle=handle, name=layer.name, description=layer.description, colour=look.colour,
+                                 linetype=look.linetype, weight=weight(look.width))
 
 
 def _joined(texts: Iterable[str]) -> str:
@@ -108,7 +116,7 @@ def _written(doc: Document) -> DxfFrame:
     stream = StringIO()
     doc.write(stream)
     groups = str(doc.rootdict["ACAD_GROUP"].dxf.handle)
-    text, entries = _without_layers(stream.getvalue())
+    text, entry = _without_layer(stream.getvalue())
     text = re.sub(r"(?<=\$HANDSEED\n  5\n)[0-9A-F]+", HANDSEED, text, count=1)
     text = re.sub(r"  9\n\$EXTMIN\n.*?(?=  9\n\$LIMMIN\n)", EXTENTS, text, count=1, flags=re.S)
     for table, sign in (("VIEW", VIEWS), ("BLOCK_RECORD", RECORDS)):
@@ -117,7 +125,7 @@ def _written(doc: Document) -> DxfFrame:
     text = _before(text, "  2\nENTITIES\n", "  0\nENDSEC\n", BODY)
     text = _before(text, f"  0\nDICTIONARY\n  5\n{groups}\n", "  0\n", GROUPED, skip=1)
     text = _before(text, "  2\nOBJECTS\n", "  0\nENDSEC\n", GROUPS)
-    return DxfFrame(text, entries, doc.modelspace().layout_key, str(doc.views.head.dxf.handle),
+    return DxfFrame(text, entry, doc.modelspace().layout_key, str(doc.views.head.dxf.handle),
                     str(doc.block_records.head.dxf.handle), groups, int(str(doc.entitydb.handles), 16))
 
 
@@ -127,17 +135,14 @@ def _before(text: str, start: str, end: str, sign: str, skip: int = 0) -> str:
     return f"{text[:at]}{sign}{text[at:]}"
 
 
-def _without_layers(text: str) -> tuple[str, dict[str, str]]:
-    """The text with a sign for the entries of our layers, and these by name."""
-    names = {layer.name for layer in layers().values()}
-    entries = {}
-    for entry in re.findall(r"  0\nLAYER\n  5\n.*?(?=  0\n(?:LAYER|ENDTAB)\n)", text, re.S):
-        name = re.search(r"AcDbLayerTableRecord\n  2\n(.*)\n", entry)
-        if name is not None and name[1] in names:
-            entries[name[1]] = entry
-    first = next(iter(entries.values()))
-    at = text.index(first)
-    return text[:at] + LAYERS + text[at + sum(map(len, entries.values())):], entries
+def _without_layer(text: str) -> tuple[str, str]:
+    """The text with a sign for the entry of our layer, and this with places for what differs from layer to layer."""
+    name = text.index(f"AcDbLayerTableRecord\n  2\n{PATTERN}\n")
+    start, end = text.rindex("  0\nLAYER\n", 0, name), text.index("  0\n", name)
+    entry = text[start:end]
+    for code, place in (("  5", "handle"), (" 62", "colour"), ("  6", "linetype"), ("370", "weight")):
+        entry = re.sub(rf"^{code}\n.*$", f"{code}\n{{{place}}}", entry, count=1, flags=re.M)
+    return text[:start] + LAYERS + text[end:], entry
 
 
 def _document(width: float, height: float) -> Document:
@@ -153,10 +158,7 @@ def _document(width: float, height: float) -> Document:
         if style.linetype not in doc.linetypes:
             total = sum(map(abs, style.pattern))
             doc.linetypes.add(style.linetype, [total, *style.pattern], description=style.name)
-    for layer in layers().values():
-        look = line_type(layer.style)
-        made = doc.layers.add(layer.name, color=look.colour, linetype=look.linetype, lineweight=weight(look.width))
-        made.description = layer.description
+    doc.layers.add(PATTERN, color=1, linetype="Continuous", lineweight=0).description = "{description}"
     doc.layers.add(VIEWPORT_LAYER, plot=False)
     _lettering(doc)
     size = (width, height)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import cache
-from math import degrees
+from math import cos, degrees, sin
 
 from tmm_sheets.backends.dxf_entities import entity, head, letter_strokes, place
 from tmm_sheets.backends.dxf_frame import DIMENSION_STYLE, LETTERS, STYLE, DxfFrame, SheetParts, weight
@@ -69,8 +69,12 @@ class LiveSheet:
 
     def _text(self, mark: Text, owner: str, on: str) -> Iterator[tuple[int, str]]:
         """A run of letters; those that LibreCAD's font has not are drawn."""
-        at, turn = mark.at, complex(*_direction(mark.angle))
-        for n, run in enumerate(re.split(_unknown(), mark.text)):
+        if (unknown := _unknown()).search(mark.text) is None and mark.text.strip() == mark.text:
+            handle = next(self.handles)
+            yield handle, _text(handle, owner, on, mark)
+            return
+        at, turn = mark.at, _direction(mark.angle)
+        for n, run in enumerate(unknown.split(mark.text)):
             if n % 2:
                 for char in run:
                     glyph(char)
@@ -174,17 +178,15 @@ def _hidden() -> str:
 
 
 @cache
-def _unknown() -> str:
+def _unknown() -> re.Pattern[str]:
     """Pattern of letters that are ours and not in LibreCAD's font, in a group."""
     text = template("fonts/lc_opengost-br.lff").read_text(encoding="utf-8")
     known = "".join(re.escape(chr(int(code, 16))) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M))
-    return rf"([^\s{known}]+)"
+    return re.compile(rf"([^\s{known}]+)")
 
 
-def _direction(angle: float) -> tuple[float, float]:
-    from math import cos, sin
-
-    return cos(angle), sin(angle)
+def _direction(angle: float) -> complex:
+    return complex(cos(angle), sin(angle))
 
 
 def _said(markup: str) -> str:
@@ -206,7 +208,7 @@ def _text(handle: int, owner: str, on: str, mark: Text) -> str:
     """A run as TEXT from its left end; two letters and more are fitted to their length, whatever the font."""
     if missing := lacking(mark.text):
         raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
-    turn = complex(*_direction(mark.angle))
+    turn = _direction(mark.angle)
     end = mark.at + turn * (advance(mark.text, mark.height) - AFTER * mark.height)
     fit = f"72\n5\n{place(11, end)}" if len(mark.text) > 1 else ""
     angle = f"50\n{degrees(mark.angle) % 360:.4f}\n" if mark.angle else ""
@@ -216,6 +218,6 @@ def _text(handle: int, owner: str, on: str, mark: Text) -> str:
 
 def _centred(f: FormField, value: str) -> str:
     """Tags of lettering about the middle of its baseline; its left end is told too, as a matter of form."""
-    left = f.at - complex(*_direction(f.angle)) * (advance(value, f.height) - AFTER * f.height if value else 0.0) / 2
+    left = f.at - _direction(f.angle) * (advance(value, f.height) - AFTER * f.height if value else 0.0) / 2
     angle = f"50\n{degrees(f.angle) % 360:.4f}\n" if f.angle else ""
     return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}7\n{STYLE}\n72\n1\n{place(11, f.at)}"

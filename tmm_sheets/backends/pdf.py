@@ -14,7 +14,6 @@ from math import ceil, cos, isfinite, pi, sin, tan
 from pathlib import Path
 from time import gmtime, strftime
 from typing import Any, NamedTuple
-from xml.sax.saxutils import escape as xml
 
 import numpy as np
 from reportlab.lib.utils import TimeStamp
@@ -22,6 +21,7 @@ from reportlab.pdfbase import pdfdoc, pdfmetrics
 from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.pdfgen.canvas import Canvas
 
+from tmm_sheets.backends.svg import escaped
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.layers import layer, roles
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Text
@@ -178,19 +178,19 @@ def _document(drawing: Drawing, buffer: BytesIO, date: int | None = None) -> Can
 
 def _metadata(drawing: Drawing, date: str) -> bytes:
     """What the file says of itself, as an XMP packet."""
-    words = "".join(f"<rdf:li>{xml(word)}</rdf:li>" for word in drawing.keywords.split(", ") if word)
+    words = "".join(f"<rdf:li>{escaped(word)}</rdf:li>" for word in drawing.keywords.split(", ") if word)
     return (
         '<?xpacket begin="\ufeff" id="W5M0MpCehiHzreSzNTczkc9d"?>\n'
         '<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">\n'
         '<rdf:Description rdf:about="" xmlns:dc="http://purl.org/dc/elements/1.1/" xmlns:pdf="http://ns.adobe.com/pdf/1.3/" '
         'xmlns:xmp="http://ns.adobe.com/xap/1.0/">\n'
         "<dc:format>application/pdf</dc:format>\n"
-        f'<dc:title><rdf:Alt><rdf:li xml:lang="x-default">{xml(drawing.title)}</rdf:li></rdf:Alt></dc:title>\n'
-        f"<dc:creator><rdf:Seq><rdf:li>{xml(drawing.author)}</rdf:li></rdf:Seq></dc:creator>\n"
-        f'<dc:description><rdf:Alt><rdf:li xml:lang="x-default">{xml(drawing.subject)}</rdf:li></rdf:Alt></dc:description>\n'
+        f'<dc:title><rdf:Alt><rdf:li xml:lang="x-default">{escaped(drawing.title)}</rdf:li></rdf:Alt></dc:title>\n'
+        f"<dc:creator><rdf:Seq><rdf:li>{escaped(drawing.author)}</rdf:li></rdf:Seq></dc:creator>\n"
+        f'<dc:description><rdf:Alt><rdf:li xml:lang="x-default">{escaped(drawing.subject)}</rdf:li></rdf:Alt></dc:description>\n'
         f"<dc:subject><rdf:Bag>{words}</rdf:Bag></dc:subject>\n"
         "<dc:language><rdf:Bag><rdf:li>ru</rdf:li></rdf:Bag></dc:language>\n"
-        f"<pdf:Keywords>{xml(drawing.keywords)}</pdf:Keywords><pdf:Producer>reportlab</pdf:Producer>\n"
+        f"<pdf:Keywords>{escaped(drawing.keywords)}</pdf:Keywords><pdf:Producer>reportlab</pdf:Producer>\n"
         f"<xmp:CreatorTool>{CREATOR}</xmp:CreatorTool>"
         f"<xmp:CreateDate>{date}</xmp:CreateDate><xmp:ModifyDate>{date}</xmp:ModifyDate>\n"
         '</rdf:Description></rdf:RDF></x:xmpmeta>\n<?xpacket end="r"?>').encode()

@@ -43,15 +43,15 @@ def render(drawing: Drawing) -> bytes:
         rest.difference_update(own)
         paths = _paths([drawing.marks[k] for k in own], "class")
         if paths:
-            views.append(f'<g id="view-{n}">\n<title>{_escaped(view.name)}</title>\n{paths}</g>\n')
+            views.append(f'<g id="view-{n}">\n<title>{escaped(view.name)}</title>\n{paths}</g>\n')
     body = [*views, _paths([drawing.marks[k] for k in sorted(rest)], "id")]
     width, height = f"{drawing.width:g}", f"{drawing.height:g}"
-    author = f"<desc>{_escaped(drawing.author)}</desc>\n" if drawing.author else ""
+    author = f"<desc>{escaped(drawing.author)}</desc>\n" if drawing.author else ""
     text = (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}mm" height="{height}mm" '
         f'viewBox="0 0 {width} {height}">\n'
-        f"<title>{_escaped(drawing.title)}</title>\n{author}"
+        f"<title>{escaped(drawing.title)}</title>\n{author}"
         f'<g transform="matrix(1 0 0 -1 0 {height})" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">\n'
         f"{''.join(body)}</g>\n</svg>\n"
     )
@@ -67,7 +67,7 @@ def _paths(marks: Iterable[Mark], called: str) -> str:
         check(mark)
         if isinstance(mark, Text):
             data = "".join(_polyline(points.tolist()) for points in letters(mark))
-            texts.setdefault(mark.height, []).append(f'<path aria-label="{_escaped(mark.text)}" d="{data}"/>')
+            texts.setdefault(mark.height, []).append(f'<path aria-label="{escaped(mark.text)}" d="{data}"/>')
         elif isinstance(mark, Fill):
             fills.append(f'<path d="{_polyline(mark.points.tolist())}z"/>')
         else:
@@ -109,7 +109,7 @@ def _number(value: float) -> str:
     return "0" if text == "-0" else text
 
 
-def _escaped(text: str) -> str:
+def escaped(text: str) -> str:
     """Text fit for XML, which takes no control characters at all."""
     text = re.sub("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "\ufffd", text)
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")
