@@ -168,29 +168,33 @@ def _rise(laid: Lettering, size: float) -> float:
     return laid.ascent - size if laid.ascent > 1.1 * size + 1e-9 else 0.0
 
 
-def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], turned: bool = False) -> list[FormField]:
-    """Lettering in the middle of a cell: the largest size at which it fits, in up to three lines, else squeezed into it.
-
-    ``parts`` are texts by name, each begins a line. Returns the lines; a part without text has an empty one below the others.
-    """
-    width, height = cell.width - 2 * SIDE, cell.height - (2 * ENDS if cell.height > 5 else 0.5)
-    wrapped: dict[str, list[str]] = {}
+def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, height: float) -> tuple[float, dict[str, list[str]]]:
+    """Letter height and lines of each part: the largest size at which they fit, in up to three lines, else squeezed."""
     for size in sizes:
         room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
         wrapped = {name: _wrap(part, size, width) if room > 1 else [part] if part else [] for name, part in parts.items()}
         laid = [letter(plain(line), size) for lines in wrapped.values() for line in lines]
         if not laid:
-            break
+            return size, wrapped
         widest = max(line.width for line in laid)
         tall = size * (1 + PITCH * (len(laid) - 1)) + 2 * _rise(laid[0], size)
         # Three lines need some air between the rules of their cell.
         if widest <= width and tall <= height - (1.0 if len(laid) == 3 else 0.0) and len(laid) <= 3:
-            break
-    else:
-        size *= min(width / widest, height / tall, 1.0)
+            return size, wrapped
+    return size * min(width / widest, height / tall, 1.0), wrapped
+
+
+def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], turned: bool = False) -> list[FormField]:
+    """Lettering in the middle of a cell.
+
+    ``parts`` are texts by name, each begins a line. Returns the lines; a part without text has an empty one below the others.
+    """
+    room = cell.height - (2 * ENDS if cell.height > 5 else 0.5)
+    size, wrapped = _fitted(parts, sizes, cell.width - 2 * SIDE, room)
     sign, angle = (-1, pi) if turned else (1, 0.0)
     found = []
-    y = size * (PITCH * (max(len(laid), 1) - 1) - 1) / 2
+    count = sum(map(len, wrapped.values()))
+    y = size * (PITCH * (max(count, 1) - 1) - 1) / 2
     for name, lines in sorted(wrapped.items(), key=lambda item: not item[1]):
         for n, line in enumerate(lines or [""], 1):
             at, first = cell.centre + sign * 1j * max(y, ENDS - cell.height / 2), len(canvas.marks)
