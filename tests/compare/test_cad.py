@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
 
@@ -68,6 +69,22 @@ def test_our_own_drawing_has_no_deviation(tmp_path, n, asked, text):
     assert max(e["deviation"] for e in report.tree["elements"]) < 0.002
     assert report.tree["extra"] == []
     assert report.notes == ()
+
+
+def test_our_own_drawing_worked_on_in_another_program(tmp_path):
+    """A number changed, a name filled in, saved by ezdxf: the number is found, nothing else."""
+    path = tmp_path / "sheet.dxf"
+    path.write_bytes(dxf.render(composed(SHAPER, 1).drawing))
+    doc = ezdxf.readfile(path)
+    (block,) = doc.modelspace().query("INSERT[name=='TITLE_BLOCK']")
+    block.get_attrib("DEVELOPED").dxf.text = "Петренко А. И."
+    (number,) = (e for e in doc.modelspace().query("TEXT") if e.dxf.text == "= 2175,5 Н")
+    number.dxf.text = "= 2157,5 Н"
+    doc.saveas(path)
+    report = compare(path.read_bytes(), tmp_path, 1)
+    (wrong,) = (e for e in report.tree["elements"] if e["verdict"] != "green")
+    assert "2157,5" in wrong["what"]
+    assert [e["what"] for e in report.tree["extra"] if "Петренко" not in e["what"]] == []
 
 
 @pytest.mark.parametrize("way", [

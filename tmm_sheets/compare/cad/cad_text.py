@@ -91,14 +91,19 @@ class _Reading:
 
         They follow one another by their middles or by their left ends; of indices above one another either may be first.
         """
-        u = np.conj(want.corners[1] - want.corners[0]) / max(abs(want.corners[1] - want.corners[0]), 1e-9)
         meaning, several = meant(want.text), len(near) > 1
         for ends, lift in ((0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.5, -0.5)):
-            place = {k: (self.writings[k].at - want.middle) * u - ends * self.writings[k].width for k in near}
-            order = sorted(near, key=lambda k: place[k].real + lift * place[k].imag)
+            order = self._along(near, want, ends, lift)
             if order and _same(meant("".join(self.writings[k].text for k in order)), meaning, several):
                 return order
         return []
+
+    def _along(self, near: list[int], want: WantedText, ends: float = 0.5, lift: float = 0.0) -> list[int]:
+        """Texts in the direction of a wanted one, by their left ends (0.5) or middles (0); ``lift`` puts off what stands higher."""
+        along = want.corners[1] - want.corners[0]
+        u = np.conj(along) / max(abs(along), 1e-9)
+        place = {k: (self.writings[k].at - want.middle) * u - ends * self.writings[k].width for k in near}
+        return sorted(near, key=lambda k: (place[k].real + lift * place[k].imag, k))
 
     def contained(self) -> None:
         """A text with ours among its words."""
@@ -116,7 +121,10 @@ class _Reading:
                  if k in self.free and _inside(want, self.writings[k].at, 3.0)]
         for _, n, k in sorted(pairs):
             if n not in self.found and k in self.free:
-                self._take(n, k, says=self.writings[k].text.strip())
+                want = self.wanted[n]
+                parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, CLOSE))}
+                order = self._along(list(parts), want)
+                self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
 
     def _missing(self) -> Iterator[tuple[int, WantedText]]:
         return ((n, want) for n, want in enumerate(self.wanted) if n not in self.found)
