@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from tmm_sheets.drawing.marks import Points
 
 CLOSE = 0.3
 """How far beyond the box of a text the middle of a part of it may be, mm."""
+SIZES = 1.2
+"""How many times as high as another a text of the same size may be."""
 ARROWS = str.maketrans("", "", "→←↑↓")
 """Signs that may be drawn among the texts."""
 FAR = 12.0
@@ -45,13 +48,15 @@ class FoundText:
 def read(wanted: Sequence[WantedText], writings: Sequence[Writing]) -> dict[int, FoundText]:
     """The texts found for wanted ones, by the number of the wanted one.
 
-    The same text near by comes first, then several texts that make one (a letter and its index), then a text that contains ours
-    among others (a line of values), last what is in its place and says something else.
+    The same text near by comes first, of about the same size, which an index is not; then several texts that make one (a letter and
+    its index), then the same text of any size, then one that contains ours among others (a line of values), last what is in its
+    place and says something else.
     """
     reading = _Reading(wanted, writings)
-    reading.alike()
+    reading.alike(SIZES)
     if writings:
         reading.joined()
+        reading.alike()
         reading.contained()
         reading.others()
     return reading.found
@@ -66,13 +71,14 @@ class _Reading:
         self.found: dict[int, FoundText] = {}
         self.free = set(range(len(writings)))
 
-    def alike(self) -> None:
-        """The same text near by, the nearest pairs first."""
+    def alike(self, sizes: float = inf) -> None:
+        """The same text near by, the nearest pairs first; of two heights none is more than ``sizes`` times the other."""
         by_meaning: dict[str, list[int]] = {}
         for k, w in enumerate(self.writings):
             by_meaning.setdefault(meant(w.text), []).append(k)
         pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in enumerate(self.wanted)
-                 for k in by_meaning.get(meant(want.text), ())]
+                 for k in by_meaning.get(meant(want.text), ())
+                 if n not in self.found and (sizes == inf or 1 / sizes <= self.writings[k].height / want.height <= sizes)]
         for far, n, k in sorted(pairs):
             if far <= FAR and n not in self.found and k in self.free:
                 self._take(n, k)
