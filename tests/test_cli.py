@@ -196,6 +196,29 @@ def test_sheets_in_part_are_remembered_rightly(tmp_path, capsys):
     assert (out / "sheet4.svg").read_bytes() == good
 
 
+def pages(path):
+    return len(re.findall(rb"/Type /Page\n|/Type /Page ", path.read_bytes()))
+
+
+def test_all_sheets_in_one_pdf(project, tmp_path, capsys):
+    """A sheet that cannot be drawn is not in it, and it is not current then."""
+    out = tmp_path / "out"
+    words = ["-o", str(out), "--format", "pdf,svg", "--one-file"]
+    assert run(["build", project(('roller = "3.5 mm"', 'roller = "9 mm"')), *words]) == 1
+    assert listing(out) == [RECORD, "sheet1.svg", "sheet2.svg", "sheet3.svg", "sheets.pdf"]
+    assert pages(out / "sheets.pdf") == 3
+    capsys.readouterr()
+    assert run(["build", project(), *words]) == 0
+    assert capsys.readouterr().out.split() == [str(out / name) for name in ("sheets.pdf", *(f"sheet{n}.svg" for n in (1, 2, 3, 4)))]
+    assert pages(out / "sheets.pdf") == 4
+    assert run(["build", project(), *words]) == 0
+    assert "5 of 5 files unchanged" in capsys.readouterr().err
+    assert run(["build", project(), "--sheet", "2", *words]) == 0
+    assert pages(out / "sheets.pdf") == 1
+    assert run(["build", project(), "--format", "svg", "--one-file", "-o", str(out)]) == 2
+    assert "--one-file is for PDF" in capsys.readouterr().err
+
+
 def test_a_reducer_without_a_solution(tmp_path, capsys):
     """Manual 003: the two other sheets do not need it; alone they are done without a word."""
     name = "transport/compressor@09-В-999"
@@ -239,7 +262,8 @@ def test_default_folder_and_formats(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run(["build", "lugansk/shaper", "--sheet", "3", "--sheet", "4"]) == 0
     names = ["sheet3.dxf", "sheet3.pdf", "sheet4.dxf", "sheet4.pdf"]
-    assert listing(tmp_path) == ["out", "out/lugansk-shaper", *(f"out/lugansk-shaper/{name}" for name in [RECORD, *names])]
+    there = sorted([RECORD, *names, "OFL.txt", "TMMSheetsB.ttf", "lc_opengost-br.lff"])
+    assert listing(tmp_path) == ["out", "out/lugansk-shaper", *(f"out/lugansk-shaper/{name}" for name in there)]
     assert sorted(capsys.readouterr().out.split()) == [f"out/lugansk-shaper/{name}" for name in names]
     assert (tmp_path / "out/lugansk-shaper/sheet3.pdf").read_bytes()[:5] == b"%PDF-"
 

@@ -55,7 +55,7 @@ RULES = {
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""
 
 LIBRARIES = {
-    "ezdxf": "backends.dxf bench.plain compare.cad.cad_file", "reportlab": "backends.pdf bench.plain",
+    "ezdxf": "backends.dxf backends.dxf_frame bench.plain compare.cad.cad_file", "reportlab": "backends.pdf bench.plain",
     "matplotlib": "backends.png bench.plots", "pydantic": "task.values task.schema task.messages task.variant",
     "pydantic_core": "task.messages", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods bench compare",

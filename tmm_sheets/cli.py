@@ -150,25 +150,32 @@ def check(project: str, corrected: bool) -> None:
 @click.option("--dpi", type=click.FloatRange(10, 1200), default=150, show_default=True, help="Dots per inch of PNG.")
 @click.option("--plotter", "machine", metavar="NAME", callback=_plotter,
               help="Plotter for HPGL: a shipped one or a file.  [default: a1]")
+@click.option("--text", type=click.Choice(["live", "strokes"]), default="live", show_default=True,
+              help="Lettering and dashes of DXF: to be worked with, or drawn exactly.")
+@click.option("--one-file", is_flag=True, help="Put all sheets into one PDF, sheets.pdf.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the sheets, of several projects the folder with one for each.  [default: out/<project>]")
 @click.option("--zip", "archive", is_flag=True, help="Put each project into a zip file instead of a folder.")
-@click.option("--force", is_flag=True, help="Make again also what has not changed.")
+@click.option("--force", is_flag=True, help="Make again also what has not changed, and overwrite what was changed by hand.")
 @click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
 @click.option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
 @click.option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def build(
     projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[BinaryIO, ...], corrected: bool, sheets: tuple[int, ...],
-    formats: tuple[str, ...], dpi: float, machine: Plotter | None, output: Path | None, archive: bool, force: bool,
-    jobs: int | None, scheduler: str | None, explain: bool,
+    formats: tuple[str, ...], dpi: float, machine: Plotter | None, text: str, one_file: bool, output: Path | None,
+    archive: bool, force: bool, jobs: int | None, scheduler: str | None, explain: bool,
 ) -> None:
     """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
     if not projects and not families and not lists:
         raise click.UsageError("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")
+    if one_file and "pdf" not in formats:
+        raise click.UsageError("--one-file is for PDF: add pdf to --format")
+    from tmm_sheets import files
     from tmm_sheets.output.building import Order
 
-    settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}}
-    order = Order(sheets, formats, settings, corrected, force, archive)
+    settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
+                                           "pdf": {"date": files.source_date()}}  # fmt: skip
+    order = Order(sheets, formats, settings, corrected, force, archive, one_file)
     if len(projects) == 1 and not families and not lists:
         if jobs is not None or scheduler is not None:
             raise click.UsageError("--jobs and --dask are for several projects")

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from threading import Lock
-from time import time
+from time import gmtime, time
 
 from tmm_sheets.errors import BadInput, Problem
 
@@ -128,3 +128,24 @@ def check_folder(folder: Path) -> None:
 def _unwritable(path: Path, e: OSError) -> Problem:
     why = (e.strerror or str(e)).lower()
     return Problem(f"cannot be written: {why}", str(path), hint="choose another place with -o, or make room; nothing was written")
+
+
+def source_date() -> int | None:
+    """The date that files shall tell, seconds since 1970, from SOURCE_DATE_EPOCH; None where that is not set.
+
+    Raises
+    ------
+    BadInput
+        when it is something else.
+    """
+    told = os.environ.get("SOURCE_DATE_EPOCH", "").strip()
+    if not told:
+        return None
+    try:
+        seconds = int(told)
+        if seconds < 0 or gmtime(seconds).tm_year > 9999:
+            raise ValueError
+    except (ValueError, OverflowError, OSError):
+        raise BadInput(Problem(f"expected whole seconds since 1970, not '{told}'", "environment", field="SOURCE_DATE_EPOCH",
+                               hint="such as 1700000000; or leave it unset")) from None
+    return seconds

@@ -10,14 +10,15 @@ from ezdxf.lldxf.const import VALID_DXF_LINEWEIGHTS
 
 from tmm_sheets.backends import dxf
 from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.layers import layer
 from tmm_sheets.drawing.lettering import strokes as letter_strokes
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Polyline, Text
-from tmm_sheets.drawing.styles import line_type, line_types
+from tmm_sheets.drawing.styles import line_types
 
 
 @pytest.fixture(scope="module")
 def data(drawing):
-    return dxf.render(drawing).decode("utf-8")
+    return dxf.render(drawing, "strokes").decode("utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -53,14 +54,15 @@ def test_units_version_and_the_layout_one_to_one(doc):
     assert not doc.layers.get(views[0].dxf.layer).dxf.plot
 
 
-def test_layers_carry_the_line_types(doc):
-    for style in line_types().values():
-        layer = doc.layers.get(style.layer)
-        assert (layer.dxf.lineweight, layer.color, layer.dxf.linetype) == (round(100 * style.width), style.colour, style.linetype)
+def test_layers_carry_the_line_types(doc, drawing):
+    for mark in drawing.marks:
+        if isinstance(mark, Text):
+            continue
+        style, on = line_types()[mark.style], doc.layers.get(layer(mark).name)
+        assert (on.dxf.lineweight, on.color, on.dxf.linetype) == (round(100 * style.width), style.colour, style.linetype)
         if style.pattern:
             tags = [t.value for t in doc.linetypes.get(style.linetype).pattern_tags.tags if t.code == 49]
             assert tags == list(style.pattern)
-    assert len({(line_type(s).colour) for s in ("main", "axis", "thin", "hidden", "text")}) == 5  # pens by colour
 
 
 def test_every_mark_is_there(doc, drawing):
@@ -85,17 +87,16 @@ def test_places_to_a_tenth_of_a_micrometre(doc, drawing):
     expected = [(m.centre, m.radius, degrees(m.start) % 360, degrees(m.end) % 360) for m in want
                 if isinstance(m, Arc) and m.end - m.start < 2 * pi]  # fmt: skip
     assert np.array(arcs) == pytest.approx(np.array(expected), abs=7.2e-5)
-    curves = [e for e in space.query("LWPOLYLINE") if e.dxf.layer != "TEXT"]
-    wanted = [m for m in want if isinstance(m, Polyline) and line_type(m.style).layer != "TEXT"]
+    curves = [e for e in space.query("LWPOLYLINE") if not e.dxf.hasattr("lineweight")]
+    wanted = [m for m in want if isinstance(m, Polyline)]
     for entity, mark in zip(curves, wanted, strict=True):
         assert entity.closed == mark.closed
         assert np.array([complex(x, y) for x, y in entity.get_points("xy")]) == pytest.approx(mark.points, abs=7.2e-5)
 
 
 def test_dashes_are_strokes_so_entities_are_continuous(doc):
-    patterned = {t.layer for t in line_types().values() if t.pattern}
     for entity in doc.modelspace():
-        if entity.dxf.layer in patterned:
+        if doc.layers.get(entity.dxf.layer).dxf.linetype != "Continuous":
             assert entity.dxf.linetype == "Continuous"
         else:
             assert entity.dxf.linetype == "BYLAYER"
@@ -132,17 +133,19 @@ def test_title_and_author(doc):
     assert list(doc.header.custom_vars) == [("Title", "Лист 1. Строгальный станок"), ("Author", "Иванов И. И.")]
 
 
-def test_missing_letter_and_lost_places_are_named(drawing):
+@pytest.mark.parametrize("text", ["live", "strokes"])
+def test_missing_letter_and_lost_places_are_named(drawing, text):
     with pytest.raises(ValueError, match=r"'漢' \(U\+6F22\)"):
-        dxf.render(replace(drawing, marks=(Text(0j, "план 漢", 5.0),)))
+        dxf.render(replace(drawing, marks=(Text(0j, "план 漢", 5.0),)), text)
     for mark in (
         Line(0j, complex("nan"), "thin", "velocity plan"), Arc(0j, float("nan"), 0.0, 1.0, "centre", "velocity plan"),
         Fill(np.array([0, 1, np.inf]), "thin", "velocity plan"), Text(complex("nan+1j"), "а", 5.0, 0.0, "velocity plan"),
         Line(0j, complex("inf"), "centre", "velocity plan"),
     ):  # fmt: skip
         with pytest.raises(ValueError, match="'velocity plan' has no finite place"):
-            dxf.render(replace(drawing, marks=(Line(0j, 1j, "main", "frame"), mark)))
+            dxf.render(replace(drawing, marks=(Line(0j, 1j, "main", "frame"), mark)), text)
 
 
-def test_title_without_strange_signs_does_not_look_like_a_lost_place():
-    assert dxf.render(Drawing(841, 594, "nan inf", (Text(0j, "inf nan", 5.0, 0.0, "nan"),)))
+@pytest.mark.parametrize("text", ["live", "strokes"])
+def test_words_do_not_look_like_a_lost_place(text):
+    assert dxf.render(Drawing(841, 594, "nan inf", (Text(0j, "inf nan", 5.0, 0.0, "nan"),)), text)

@@ -2,14 +2,16 @@ import re
 import zlib
 from dataclasses import replace
 from math import cos, pi, sin
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from tmm_sheets.backends import pdf
 from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.layers import roles
 from tmm_sheets.drawing.lettering import advance
-from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Polyline, Text, View
 from tmm_sheets.drawing.styles import line_types
 
 MM = 72 / 25.4
@@ -72,6 +74,51 @@ def test_title_and_author(data):
     for key, want in (("Title", "Лист 1. Строгальный станок"), ("Author", "Иванов И. И.")):
         (got,) = strings(f"/{key} %s /", text)
         assert got.encode("latin-1").decode("utf-16") == want
+
+
+def test_version_language_and_metadata(monkeypatch):
+    told = Drawing(841, 594, "Лист & <1>", (Line(0j, 1j, "main"),), "Иванов", "ТММ.КП", "ТММ, чертёж")
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    data = pdf.render(told, 1700000000)
+    assert data.startswith(b"%PDF-1.7")
+    assert data.count(b"20231114221320") == 2  # CreationDate, ModDate: 2023-11-14 22:13:20 UTC
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    assert pdf.render(told) == data
+    assert b"/Lang (ru)" in data
+    text = data.decode("latin-1")
+    for key, want in (("Subject", "ТММ.КП"), ("Keywords", "ТММ, чертёж")):
+        (got,) = strings(f"/{key} %s /", text)
+        assert got.encode("latin-1").decode("utf-16") == want
+    packet = ElementTree.fromstring(re.search(rb"<x:xmpmeta.*</x:xmpmeta>", data, re.S)[0])
+    words = {e.tag.rpartition("}")[2]: "".join(e.itertext()).strip() for e in packet.iter()}
+    assert words["title"] == "Лист & <1>"
+    assert (words["creator"], words["description"], words["subject"]) == ("Иванов", "ТММ.КП", "ТММчертёж")
+    assert words["CreateDate"] == words["ModifyDate"] == "2023-11-14T22:13:20Z"
+
+
+def test_layers_are_the_roles(data, page):
+    names = [got.encode("latin-1").decode("utf-16") for got in strings(r"/Name %s /Type /OCG", data.decode("latin-1"))]
+    assert sorted(names) == sorted(row["description"] for row in roles().values())
+    order = list(roles())
+    opened = re.findall(r"^/OC /L(\d+) BDC$", page, re.M)
+    assert page.count("EMC") == len(opened)
+    assert {order[int(n)] for n in opened} == {"symbol", "curve", "axis", "construction", "link", "hatch", "text", "vector"}
+    assert page.index("BT\n") > page.rindex(f"/OC /L{order.index('text')} BDC")
+
+
+def test_one_file_with_bookmarks(drawing):
+    views = (View("План скоростей", Box(20, 100, 220, 300), ((0, 3),)), View("План (2)", Box(300, 5, 400, 105), ((3, 9),)))
+    sheets = [replace(drawing, views=views), Drawing(420, 297, "Лист 2", (Line(0j, 1j, "main"),))]
+    data = pdf.render_all(sheets)
+    assert data == pdf.render_all(sheets)
+    text = data.decode("latin-1")
+    boxes = [[float(v) / MM for v in m.split()] for m in re.findall(r"/MediaBox \[ ([\d. ]+) \]", text)]
+    assert np.array(boxes) == pytest.approx(np.array([[0, 0, 841, 594], [0, 0, 420, 297]]), abs=1e-3)
+    titles = [t.encode("latin-1").decode("utf-16") for t in strings(r"/Title %s", text.partition("/Outlines")[0] + text)
+              if t.startswith("\xfe\xff")]
+    assert set(titles) == {drawing.title, "План скоростей", "План (2)", "Лист 2"}
+    fits = [[float(v) / MM for v in m.split()] for m in re.findall(r"/FitR ([\d. ]+) \]", text)]
+    assert np.array(fits) == pytest.approx(np.array([[20, 100, 220, 300], [300, 5, 400, 105]]), abs=1e-3)
 
 
 def test_black_only(page):

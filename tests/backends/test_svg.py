@@ -9,7 +9,7 @@ import pytest
 from tests.backends.geometry import area, beyond, drawn, polygon, shape
 from tmm_sheets.backends import svg
 from tmm_sheets.drawing.dashes import strokes
-from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Polyline, Text, View
 from tmm_sheets.drawing.styles import line_types
 
 NAME = "{http://www.w3.org/2000/svg}"
@@ -63,6 +63,20 @@ def test_a_group_for_each_line_type_and_for_each_height_of_letters(root):
     used = {k: v for k, v in heights.items() if k in widths}
     assert {"text-2.5", "text-3.5", "text-5", "text-7"} <= set(used)
     assert widths == {s.name: f"{s.width:g}" for s in line_types().values()} | {"fills": None} | used
+
+
+def test_a_titled_group_for_each_view(drawing):
+    views = (View("План <1>", Box(0, 0, 1, 1), ((0, 3), (10, 12))), View("Пусто", Box(0, 0, 1, 1), ()))
+    root = ElementTree.fromstring(svg.render(replace(drawing, views=views)))
+    whole = ElementTree.fromstring(svg.render(drawing))
+    (group,) = [g for g in root.find(f"{NAME}g") if g.get("id", "").startswith("view")]
+    assert group[0].tag == f"{NAME}title"
+    assert group[0].text == "План <1>"
+    own = [p.get("d") for p in group.iter(f"{NAME}path")]
+    assert len(own) == len(list(strokes(drawing.marks[:3]))) + len(list(strokes(drawing.marks[10:12])))
+    assert sorted(p.get("d") for p in root.iter(f"{NAME}path")) == sorted(p.get("d") for p in whole.iter(f"{NAME}path"))
+    names = [g.get("id") for g in root.iter() if g.get("id")]
+    assert len(set(names)) == len(names)
 
 
 def test_every_mark_has_its_path_in_its_place(root, drawing):

@@ -230,7 +230,7 @@ def test_the_plain_writer_draws_the_same(tmp_path):
     lists = tmp_path / "lists"
     count = whole.prepare("lugansk/cam_flat", lists)
     plain.main(str(lists), str(tmp_path))
-    assert run(["build", "lugansk/cam_flat", "-o", str(tmp_path / "build")]) == 0
+    assert run(["build", "lugansk/cam_flat", "--text", "strokes", "-o", str(tmp_path / "build")]) == 0
     ours, theirs = list(entities(tmp_path / "build/sheet1.dxf")), list(entities(tmp_path / "sheet1.dxf"))
     assert len(ours) == len(theirs) == count > 1000
     for kind in {k for k, _, _ in ours}:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
 
@@ -60,14 +61,30 @@ def one(test):
 ALL_GREEN = (len(EXACT), 0, 0, 0, 0)
 
 
-@pytest.mark.parametrize(("n", "asked"), [(1, 1), (3, None)])
-def test_our_own_drawing_has_no_deviation(tmp_path, n, asked):
-    report = compare(dxf.render(composed(SHAPER, n).drawing), tmp_path, asked)
+@pytest.mark.parametrize(("n", "asked", "text"), [(1, 1, "live"), (3, None, "live"), (1, None, "strokes"), (3, 3, "strokes")])
+def test_our_own_drawing_has_no_deviation(tmp_path, n, asked, text):
+    report = compare(dxf.render(composed(SHAPER, n).drawing, text), tmp_path, asked)
     assert report.tree["sheet"] == n
     assert {e["verdict"] for e in report.tree["elements"]} == {"green"}
     assert max(e["deviation"] for e in report.tree["elements"]) < 0.002
     assert report.tree["extra"] == []
     assert report.notes == ()
+
+
+def test_our_own_drawing_worked_on_in_another_program(tmp_path):
+    """A number changed, a name filled in, saved by ezdxf: the number is found, nothing else."""
+    path = tmp_path / "sheet.dxf"
+    path.write_bytes(dxf.render(composed(SHAPER, 1).drawing))
+    doc = ezdxf.readfile(path)
+    (block,) = doc.modelspace().query("INSERT[name=='TITLE_BLOCK']")
+    block.get_attrib("DEVELOPED").dxf.text = "Петренко А. И."
+    (number,) = (e for e in doc.modelspace().query("TEXT") if e.dxf.text == "= 2175,5 Н")
+    number.dxf.text = "= 2157,5 Н"
+    doc.saveas(path)
+    report = compare(path.read_bytes(), tmp_path, 1)
+    (wrong,) = (e for e in report.tree["elements"] if e["verdict"] != "green")
+    assert "2157,5" in wrong["what"]
+    assert [e["what"] for e in report.tree["extra"] if "Петренко" not in e["what"]] == []
 
 
 @pytest.mark.parametrize("way", [
@@ -195,7 +212,7 @@ def test_a_wrong_letter_drawn_with_strokes(tmp_path):
     marks = list(SHEET.drawing.marks)
     k = next(k for k, m in enumerate(marks) if getattr(m, "text", "") == "H = 142")
     marks[k] = marks[k]._replace(text="H = 147")
-    found = judged(compare(dxf.render(replace(SHEET.drawing, marks=tuple(marks))), tmp_path), TEXT.number)
+    found = judged(compare(dxf.render(replace(SHEET.drawing, marks=tuple(marks)), "strokes"), tmp_path), TEXT.number)
     assert (found["verdict"], found["what"]) == ("red", 'the letters are not those of "H = 142"')
 
 

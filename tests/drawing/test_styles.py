@@ -1,4 +1,5 @@
 import pytest
+from ezdxf.colors import DXF_DEFAULT_COLORS, int2rgb
 from ezdxf.lldxf.const import VALID_DXF_LINEWEIGHTS
 
 from tmm_sheets.drawing.styles import line_type, line_types
@@ -18,6 +19,21 @@ def test_a_layer_has_one_look():
     looks = {}
     for t in line_types().values():
         assert looks.setdefault(t.layer, (t.width, t.colour, t.linetype)) == (t.width, t.colour, t.linetype)
+
+
+def luminance(rgb):
+    """Relative luminance of WCAG 2.1."""
+    linear = [c / 255 / 12.92 if c / 255 <= 0.03928 else ((c / 255 + 0.055) / 1.055) ** 2.4 for c in rgb]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def test_colours_can_be_read_on_black_and_on_white_and_tell_the_pen():
+    pens = {}
+    for t in line_types().values():
+        assert pens.setdefault(t.colour, t.width) == t.width
+        if t.colour != 7:  # black on white, white on black
+            light = luminance(int2rgb(DXF_DEFAULT_COLORS[t.colour]))
+            assert min((light + 0.05) / 0.05, 1.05 / (light + 0.05)) >= 3  # WCAG 2.1, 1.4.11: graphical objects
 
 
 def test_patterns_alternate_strokes_and_gaps():

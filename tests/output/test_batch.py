@@ -33,26 +33,30 @@ def contents(folder):
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
+FONTS = {"TMMSheetsB.ttf", "lc_opengost-br.lff", "OFL.txt"}
+"""What lies beside live drawings, written once."""
+
+
 def times(folder):
     return {p.name: p.stat().st_mtime_ns for p in folder.iterdir()}
 
 
 @pytest.fixture
 def mine(tmp_path):
-    """Where a project file of one sheet is built, and the command that builds it as DXF and SVG."""
+    """A project file of one sheet, where it is built, and the command that builds it as DXF and SVG."""
     file = write(tmp_path, CAM)
 
     def build(*more):
         return run(["build", file, "--format", "dxf,svg", "-o", str(tmp_path / "out"), *more])
 
-    return tmp_path / "out", build
+    return file, tmp_path / "out", build
 
 
 # --- skipping ---------------------------------------------------------------------------------------------------------
 
 
 def test_second_build_draws_nothing(mine, monkeypatch, capsys):
-    out, build = mine
+    _, out, build = mine
     assert build() == 0
     first, before, told = contents(out), times(out), capsys.readouterr()
     assert told.err == ""
@@ -66,44 +70,138 @@ def test_second_build_draws_nothing(mine, monkeypatch, capsys):
     assert build("--force") == 0
     assert capsys.readouterr().err == ""
     assert contents(out) == first
-    assert all(new > before[name] for name, new in times(out).items())
+    assert {name for name, new in times(out).items() if new == before[name]} == FONTS
 
 
-@pytest.mark.parametrize("spoil", [Path.unlink, lambda p: p.write_bytes(p.read_bytes() + b" ")])
-def test_only_what_is_missing_or_not_ours_is_made(mine, spoil):
-    out, build = mine
+def test_only_what_is_missing_is_made(mine):
+    _, out, build = mine
     assert build() == 0
     first, before = contents(out), times(out)
-    spoil(out / "sheet1.dxf")
+    (out / "sheet1.dxf").unlink()
+    (out / "OFL.txt").unlink()
     assert build() == 0
     assert contents(out) == first
-    assert times(out)["sheet1.svg"] == before["sheet1.svg"]
+    assert all(times(out)[name] == before[name] for name in ("sheet1.svg", "TMMSheetsB.ttf"))
+
+
+def test_what_was_changed_by_hand_stays(mine, tmp_path, capsys):
+    """Whatever becomes of project and program: the user's file is left alone, the new one lies beside, and it is said."""
+    _, out, build = mine
+    assert build() == 0
+    first = contents(out)
+    mended = first["sheet1.dxf"].replace(b"SHEETS", b"SHEETZ")
+    (out / "sheet1.dxf").write_bytes(mended)
+    capsys.readouterr()
+    assert build() == 0
+    told = capsys.readouterr()
+    assert contents(out) | {".tmm-sheets.json": b""} == first | {"sheet1.dxf": mended, "sheet1.new.dxf": first["sheet1.dxf"],
+                                                                 ".tmm-sheets.json": b""}
+    assert f"{out / 'sheet1.new.dxf'}\n" in told.out
+    assert "sheet1.dxf was changed by hand and stays; the new one is sheet1.new.dxf (--force overwrites it)" in told.err
+    before = times(out)
+    assert build() == 0
+    assert "sheet1.dxf was changed by hand" in capsys.readouterr().err
+    assert times(out) == before
+    write(tmp_path, CAM, {"cam.stroke": "50 mm"})
+    assert build() == 0
+    second = contents(out)
+    assert second["sheet1.dxf"] == mended
+    assert second["sheet1.new.dxf"] not in (first["sheet1.dxf"], mended)
+    assert second["sheet1.svg"] != first["sheet1.svg"]
+    (out / "sheet1.new.dxf").write_bytes(b"mine too")
+    assert build() == 0
+    third = contents(out)
+    assert (third["sheet1.dxf"], third["sheet1.new.dxf"]) == (mended, b"mine too")
+    assert third["sheet1.new2.dxf"] == second["sheet1.new.dxf"]
+    assert build("--force") == 0
+    assert contents(out)["sheet1.dxf"] == second["sheet1.new.dxf"]
+
+
+@pytest.mark.parametrize("archive", [False, True])
+def test_a_file_of_unknown_origin_stays_and_a_renamed_one_of_ours_is_ours(mine, archive, tmp_path):
+    _, out, build = mine
+    if archive:
+        out = tmp_path / "sheets.zip"
+        more = ["--zip", "-o", str(out)]
+        with zipfile.ZipFile(out, "w") as made:
+            made.writestr("sheet1.svg", b"my own")
+        assert build(*more) == 0
+        with zipfile.ZipFile(out) as made:
+            assert made.read("sheet1.svg") == b"my own"
+            assert made.read("sheet1.new.svg").startswith(b"<?xml")
+        return
+    out.mkdir()
+    (out / "sheet1.svg").write_bytes(b"my own")
+    assert build() == 0
+    found = contents(out)
+    assert found["sheet1.svg"] == b"my own"
+    (out / "sheet1.new.svg").replace(out / "sheet1.svg")
+    assert build() == 0
+    assert contents(out)["sheet1.svg"] == found["sheet1.new.svg"]
+    assert "sheet1.new.svg" not in contents(out)
+
+
+def test_lettering_is_live_with_its_fonts_unless_asked_for_strokes(mine):
+    _, out, build = mine
+    assert build("--text", "strokes") == 0
+    assert {p.name for p in out.iterdir()} == {".tmm-sheets.json", "sheet1.dxf", "sheet1.svg"}
+    assert b"\nTEXT\n5\n" not in (out / "sheet1.dxf").read_bytes()
+    svg = times(out)["sheet1.svg"]
+    assert build() == 0
+    assert {p.name for p in out.iterdir()} == {".tmm-sheets.json", "sheet1.dxf", "sheet1.svg"} | FONTS
+    assert b"\nTEXT\n5\n" in (out / "sheet1.dxf").read_bytes()
+    assert times(out)["sheet1.svg"] == svg
+    (out / "TMMSheetsB.ttf").write_bytes(b"another")
+    assert build("--force") == 0
+    assert (out / "TMMSheetsB.ttf").read_bytes() == b"another"
+
+
+def test_date_of_the_pdf_is_part_of_what_it_is_made_from(mine, monkeypatch, capsys):
+    _, out, build = mine
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    assert build("--format", "pdf,svg") == 0
+    first = contents(out)
+    assert b"20000101000000" in first["sheet1.pdf"]
+    for date, told in (("1700000000", b"20231114221320"), ("0", b"19700101000000")):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", date)
+        assert build("--format", "pdf,svg") == 0
+        assert told in contents(out)["sheet1.pdf"]
+        assert "1 of 2 files unchanged" in capsys.readouterr().err
+    for wrong in ("yesterday", "-5", "1.5", "9" * 30):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", wrong)
+        assert build("--format", "pdf") == 2
+        told = capsys.readouterr().err
+        assert "SOURCE_DATE_EPOCH" in told
+        assert f"expected whole seconds since 1970, not '{wrong}'" in told
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", " ")
+    assert build("--format", "pdf") == 0
+    assert contents(out)["sheet1.pdf"] == first["sheet1.pdf"]
 
 
 def test_a_change_of_the_project_is_seen(mine, tmp_path):
-    out, build = mine
+    _, out, build = mine
     assert build() == 0
     first = contents(out)
     write(tmp_path, CAM, {"cam.stroke": "50 mm"})
     assert build() == 0
     second = contents(out)
-    assert all(second[name] != first[name] for name in first)
+    assert {name for name in first if second[name] == first[name]} == FONTS
     write(tmp_path, CAM)
     assert build() == 0
     assert contents(out) == first
 
 
 def test_a_change_of_the_program_is_seen(mine, monkeypatch):
-    out, build = mine
+    _, out, build = mine
     assert build() == 0
     before = times(out)
     monkeypatch.setattr(building, "program", lambda: "another")
     assert build() == 0
-    assert all(new > before[name] for name, new in times(out).items())
+    assert {name for name, new in times(out).items() if new == before[name]} == FONTS
 
 
 def test_settings_of_a_format_concern_its_files_only(mine):
-    out, build = mine
+    _, out, build = mine
     assert build("--format", "svg,png", "--dpi", "20") == 0
     before = times(out)
     assert build("--format", "svg,png", "--dpi", "30") == 0
@@ -125,7 +223,7 @@ def test_sheets_built_one_by_one_are_still_checked_together(tmp_path, capsys):
 
 @pytest.mark.parametrize("damage", [b"", b"{}", b"[1]", b"null", b'{"schema": 1, "whole": "", "files": {"a": 1}}', b"\xff\xfe"])
 def test_a_damaged_record_is_no_record(mine, damage):
-    out, build = mine
+    _, out, build = mine
     assert BuildRecord.read(damage) == BuildRecord()
     assert build() == 0
     first = contents(out)
@@ -173,7 +271,7 @@ def test_same_bytes_whatever_the_number_of_workers(tmp_path):
         assert process.returncode == 0, errors
         assert errors == ""  # no progress but on a terminal
     one, two = (contents(tmp_path / jobs) for jobs in "12")
-    assert len(one) == 3 * 3
+    assert len(one) == 3 * (3 + len(FONTS))
     assert one == two
 
 

@@ -1,31 +1,38 @@
 """PDF: true line widths, embedded lettering that can be searched and copied, black only, the same bytes every time.
 
-reportlab makes the page, the font and the file; the content stream is written here, in millimetres.
+reportlab makes the page, the font and the file; the content stream is written here, in millimetres. What is of one role (see
+``drawing/layers.py``) is a layer that a viewer can hide; the sheets and their views are bookmarks.
 """
 
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from hashlib import md5
 from io import BytesIO
 from math import ceil, cos, isfinite, pi, sin, tan
 from pathlib import Path
+from time import gmtime, strftime
 from typing import Any, NamedTuple
 
 import numpy as np
+from reportlab.lib.utils import TimeStamp
 from reportlab.pdfbase import pdfdoc, pdfmetrics
 from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.pdfgen.canvas import Canvas
 
+from tmm_sheets.backends.svg import escaped
 from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.layers import layer, roles
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Text
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.files import put
+from tmm_sheets.files import put, source_date
 from tmm_sheets.resources import template
 
 MM = 72 / 25.4
 SET_UP = f"{MM:.9f} 0 0 {MM:.9f} 0 0 cm 0 g 0 G 1 J 1 j"  # millimetres, black, round ends and corners
 FONT = "TMMSheetsB"
+CREATOR = "tmm-sheets"
 CAP = 0.7  # height of a capital letter of the font, em
 BEZIER = pi / 4  # an arc is cut into cubic curves of at most this angle: 4e-6 of the radius off the circle
 
@@ -50,8 +57,19 @@ def write(drawing: Drawing, path: Path) -> None:
     put({path: render(drawing)})
 
 
-def render(drawing: Drawing) -> bytes:
-    """The bytes of the PDF file.
+def render(drawing: Drawing, date: int | None = None) -> bytes:
+    """The bytes of the PDF file; ``date`` is what it tells for its own, seconds since 1970 (SOURCE_DATE_EPOCH unless given).
+
+    Raises
+    ------
+    ValueError
+        when a mark has no finite place or a letter is missing from the font.
+    """
+    return render_all([drawing], date)
+
+
+def render_all(drawings: Sequence[Drawing], date: int | None = None) -> bytes:
+    """The bytes of a PDF file with a page for each drawing.
 
     Raises
     ------
@@ -59,13 +77,49 @@ def render(drawing: Drawing) -> bytes:
         when a mark has no finite place or a letter is missing from the font.
     """
     buffer = BytesIO()
-    page = _document(drawing, buffer)
-    page._code += [SET_UP, _geometry(drawing), _lettering(drawing, page)]
-    page.showPage()
-    stream = pdfdoc.PDFStream(content=page._doc.Pages.pages[-1].stream, filters=[_FastFlate()])
-    page._doc.Pages.pages[-1].Contents = stream
+    page = _document(drawings[0], buffer, date)
+    names = _layers(page)
+    for n, drawing in enumerate(drawings, 1):
+        page.setPageSize((drawing.width * MM, drawing.height * MM))
+        page._code += [SET_UP, _geometry(drawing, names), f"/OC /{names['text']} BDC", _lettering(drawing, page), "EMC"]
+        _bookmarks(page, drawing, n)
+        page.showPage()
+        made = page._doc.Pages.pages[-1]
+        made.Contents = pdfdoc.PDFStream(content=made.stream, filters=[_FastFlate()])
+        made.Resources = _resources(page, names)
     page.save()
     return buffer.getvalue()
+
+
+def _layers(page: Canvas) -> dict[str, str]:
+    """Make the document's layers, one for each role; returns the name by which a page calls each."""
+    names = {role: f"L{n}" for n, role in enumerate(roles())}
+    references = []
+    for role, name in names.items():
+        said = pdfdoc.PDFString(roles()[role]["description"])
+        references.append(page._doc.Reference(pdfdoc.PDFDictionary({"Type": pdfdoc.PDFName("OCG"), "Name": said}), name))
+    catalog = page._doc._catalog
+    shown = pdfdoc.PDFDictionary({"Order": pdfdoc.PDFArray(references), "ON": pdfdoc.PDFArray(references)})
+    catalog.__NoDefault__ = [*catalog.__NoDefault__, "OCProperties"]
+    catalog.OCProperties = pdfdoc.PDFDictionary({"OCGs": pdfdoc.PDFArray(references), "D": shown})
+    return names
+
+
+def _resources(page: Canvas, names: Mapping[str, str]) -> Any:
+    found = pdfdoc.PDFResourceDictionary()
+    found.basicFonts()
+    found.Properties = {name: pdfdoc.PDFObjectReference(name) for name in names.values()}
+    return found
+
+
+def _bookmarks(page: Canvas, drawing: Drawing, n: int) -> None:
+    """The sheet, below it its views."""
+    page.bookmarkPage(f"sheet{n}")
+    page.addOutlineEntry(drawing.title, f"sheet{n}", 0)
+    for k, view in enumerate(drawing.views, 1):
+        key, box = f"sheet{n}-{k}", view.box
+        page.bookmarkPage(key, "FitR", left=box.x0 * MM, bottom=box.y0 * MM, right=box.x1 * MM, top=box.y1 * MM)
+        page.addOutlineEntry(view.name, key, 1)
 
 
 def render_coloured(layers: Sequence[tuple[Drawing, tuple[float, float, float]]]) -> bytes:
@@ -120,27 +174,65 @@ def render_pages(drawing: Drawing, pages: Iterable[Page]) -> bytes:
     return buffer.getvalue()
 
 
-def _document(drawing: Drawing, buffer: BytesIO) -> Canvas:
+def _document(drawing: Drawing, buffer: BytesIO, date: int | None = None) -> Canvas:
     if FONT not in pdfmetrics.getRegisteredFontNames():
         pdfmetrics.registerFont(TTFont(FONT, str(template("fonts/TMMSheetsB.ttf")), asciiReadable=False))
+    told = source_date()  # before the library looks at it, which says nothing sensible of a wrong one
     size = (drawing.width * MM, drawing.height * MM)
-    page = Canvas(buffer, pagesize=size, invariant=1, initialFontName=FONT, pageCompression=1)
+    page = Canvas(buffer, pagesize=size, invariant=1, initialFontName=FONT, pageCompression=1, pdfVersion=(1, 7))
+    page._doc._timeStamp = stamp = TimeStamp(1)
+    if (seconds := told if date is None else date) is not None:
+        stamp.t, stamp.lt = seconds, gmtime(seconds)
+        stamp.YMDhms = tuple(stamp.lt)[:6]
+    page._doc.signature = md5(str(int(stamp.t)).encode(), usedforsecurity=False)  # the file's identifier begins with its date
     page.setTitle(drawing.title)
     page.setAuthor(drawing.author)
-    page.setCreator("tmm-sheets")
+    page.setSubject(drawing.subject)
+    page.setKeywords(drawing.keywords)
+    page.setCreator(CREATOR)
+    page.setProducer("reportlab")
     page.setViewerPreference("PrintScaling", "None")
+    page.setViewerPreference("DisplayDocTitle", "true")
+    page._doc._catalog.Lang = pdfdoc.PDFString("ru")
+    page._doc._catalog.Metadata = pdfdoc.PDFStream(
+        pdfdoc.PDFDictionary({"Type": pdfdoc.PDFName("Metadata"), "Subtype": pdfdoc.PDFName("XML")}),
+        _metadata(drawing, strftime("%Y-%m-%dT%H:%M:%SZ", gmtime(stamp.t))))
     return page
 
 
-def _geometry(drawing: Drawing) -> str:
-    """Path operators of everything but the lettering, line type by line type."""
-    by_style: dict[str, list[str]] = {}
+def _metadata(drawing: Drawing, date: str) -> bytes:
+    """What the file says of itself, as an XMP packet."""
+    words = "".join(f"<rdf:li>{escaped(word)}</rdf:li>" for word in drawing.keywords.split(", ") if word)
+    return (
+        '<?xpacket begin="\ufeff" id="W5M0MpCehiHzreSzNTczkc9d"?>\n'
+        '<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">\n'
+        '<rdf:Description rdf:about="" xmlns:dc="http://purl.org/dc/elements/1.1/" xmlns:pdf="http://ns.adobe.com/pdf/1.3/" '
+        'xmlns:xmp="http://ns.adobe.com/xap/1.0/">\n'
+        "<dc:format>application/pdf</dc:format>\n"
+        f'<dc:title><rdf:Alt><rdf:li xml:lang="x-default">{escaped(drawing.title)}</rdf:li></rdf:Alt></dc:title>\n'
+        f"<dc:creator><rdf:Seq><rdf:li>{escaped(drawing.author)}</rdf:li></rdf:Seq></dc:creator>\n"
+        f'<dc:description><rdf:Alt><rdf:li xml:lang="x-default">{escaped(drawing.subject)}</rdf:li></rdf:Alt></dc:description>\n'
+        f"<dc:subject><rdf:Bag>{words}</rdf:Bag></dc:subject>\n"
+        "<dc:language><rdf:Bag><rdf:li>ru</rdf:li></rdf:Bag></dc:language>\n"
+        f"<pdf:Keywords>{escaped(drawing.keywords)}</pdf:Keywords><pdf:Producer>reportlab</pdf:Producer>\n"
+        f"<xmp:CreatorTool>{CREATOR}</xmp:CreatorTool>"
+        f"<xmp:CreateDate>{date}</xmp:CreateDate><xmp:ModifyDate>{date}</xmp:ModifyDate>\n"
+        '</rdf:Description></rdf:RDF></x:xmpmeta>\n<?xpacket end="r"?>').encode()
+
+
+def _geometry(drawing: Drawing, names: Mapping[str, str] | None = None) -> str:
+    """Path operators of everything but the lettering, role by role with the names of their layers, line type by line type."""
+    by_look: dict[tuple[str, str], list[str]] = {}
     for mark in strokes(drawing.marks):
         if not isinstance(mark, Text):
-            by_style.setdefault(mark.style, []).append(_path(mark))
+            by_look.setdefault((names[layer(mark).role] if names else "", mark.style), []).append(_path(mark))
     # Thin lines first, so that thick ones lie over their ends.
-    styles = sorted(by_style, key=lambda name: (line_type(name).width, name))
-    body = "\n".join(f"{line_type(s).width:.3f} w\n" + "\n".join(by_style[s]) for s in styles)
+    looks = sorted(by_look, key=lambda look: (look[0], line_type(look[1]).width, look[1]))
+    parts = []
+    for look in looks:
+        path = f"{line_type(look[1]).width:.3f} w\n" + "\n".join(by_look[look])
+        parts.append(f"/OC /{look[0]} BDC\n{path}\nEMC" if look[0] else path)
+    body = "\n".join(parts)
     if "n" in body.replace("\n", " "):  # path operators used here contain no n; nan and inf do
         bad = next(m for m in strokes(drawing.marks) if not isinstance(m, Text) and "n" in _path(m))
         raise ValueError(f"a mark of '{bad.of}' has no finite place: {bad}")

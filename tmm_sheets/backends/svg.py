@@ -1,4 +1,4 @@
-"""SVG 1.1: paths in millimetres, one group for each line type, lettering as strokes.
+"""SVG 1.1: paths in millimetres, a titled group for each view, in it one for each line type, lettering as strokes.
 
 Letters are strokes and not text: a viewer without the drawing font would show others, wider and upright. What they say
 stands in the ``aria-label`` of their path, for those who search or listen. Inside, y points up as on the sheet.
@@ -15,7 +15,7 @@ from pathlib import Path
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.ink import check, letters
 from tmm_sheets.drawing.lettering import PEN
-from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.files import put
 
@@ -37,38 +37,50 @@ def write(drawing: Drawing, path: Path) -> None:
 
 def render(drawing: Drawing) -> bytes:
     """The bytes of the SVG file."""
-    lines: dict[str, list[str]] = {}
-    fills: list[str] = []
-    texts: dict[float, list[str]] = {}
-    for mark in strokes(drawing.marks):
-        check(mark)
-        if isinstance(mark, Text):
-            data = "".join(_polyline(points.tolist()) for points in letters(mark))
-            texts.setdefault(mark.height, []).append(f'<path aria-label="{_escaped(mark.text)}" d="{data}"/>')
-        elif isinstance(mark, Fill):
-            fills.append(f'<path d="{_polyline(mark.points.tolist())}z"/>')
-        else:
-            lines.setdefault(mark.style, []).append(f'<path d="{_path(mark)}"/>')
-    body = [
-        *(_group(style, f'stroke-width="{line_type(style).width:g}"', lines[style]) for style in lines),
-        _group("fills", 'stroke="none" fill="#000"', fills),
-        *(_group(f"text-{height:g}", f'stroke-width="{PEN * height:g}"', texts[height]) for height in sorted(texts)),
-    ]
+    views, rest = [], set(range(len(drawing.marks)))
+    for n, view in enumerate(drawing.views, 1):
+        own = [k for first, end in view.spans for k in range(first, end)]
+        rest.difference_update(own)
+        paths = _paths([drawing.marks[k] for k in own], "class")
+        if paths:
+            views.append(f'<g id="view-{n}">\n<title>{escaped(view.name)}</title>\n{paths}</g>\n')
+    body = [*views, _paths([drawing.marks[k] for k in sorted(rest)], "id")]
     width, height = f"{drawing.width:g}", f"{drawing.height:g}"
-    author = f"<desc>{_escaped(drawing.author)}</desc>\n" if drawing.author else ""
+    author = f"<desc>{escaped(drawing.author)}</desc>\n" if drawing.author else ""
     text = (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}mm" height="{height}mm" '
         f'viewBox="0 0 {width} {height}">\n'
-        f"<title>{_escaped(drawing.title)}</title>\n{author}"
+        f"<title>{escaped(drawing.title)}</title>\n{author}"
         f'<g transform="matrix(1 0 0 -1 0 {height})" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">\n'
         f"{''.join(body)}</g>\n</svg>\n"
     )
     return text.encode("utf-8")
 
 
-def _group(name: str, look: str, paths: list[str]) -> str:
-    return "\n".join((f'<g id="{name}" {look}>', *paths, "</g>\n")) if paths else ""
+def _paths(marks: Iterable[Mark], called: str) -> str:
+    """Groups of some marks by line type, the filled areas and the lettering last; ``called`` is what holds the name of a group."""
+    lines: dict[str, list[str]] = {}
+    fills: list[str] = []
+    texts: dict[float, list[str]] = {}
+    for mark in strokes(marks):
+        check(mark)
+        if isinstance(mark, Text):
+            data = "".join(_polyline(points.tolist()) for points in letters(mark))
+            texts.setdefault(mark.height, []).append(f'<path aria-label="{escaped(mark.text)}" d="{data}"/>')
+        elif isinstance(mark, Fill):
+            fills.append(f'<path d="{_polyline(mark.points.tolist())}z"/>')
+        else:
+            lines.setdefault(mark.style, []).append(f'<path d="{_path(mark)}"/>')
+    return "".join((
+        *(_group(f'{called}="{style}" stroke-width="{line_type(style).width:g}"', lines[style]) for style in lines),
+        _group(f'{called}="fills" stroke="none" fill="#000"', fills),
+        *(_group(f'{called}="text-{height:g}" stroke-width="{PEN * height:g}"', texts[height]) for height in sorted(texts)),
+    ))
+
+
+def _group(look: str, paths: list[str]) -> str:
+    return "\n".join((f"<g {look}>", *paths, "</g>\n")) if paths else ""
 
 
 def _path(mark: Line | Arc | Polyline) -> str:
@@ -97,7 +109,7 @@ def _number(value: float) -> str:
     return "0" if text == "-0" else text
 
 
-def _escaped(text: str) -> str:
+def escaped(text: str) -> str:
     """Text fit for XML, which takes no control characters at all."""
     text = re.sub("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "\ufffd", text)
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from importlib import import_module
 
@@ -30,7 +29,7 @@ def rows(bench: Bench) -> None:
     for n in range(1, len(project.sheets) + 1):
         bench.say(f"sheet {n}")
         drawing = compose(project, n)
-        drawings.append(replace(drawing, marks=drawing.marks[:FEW]) if bench.quick else drawing)
+        drawings.append(Drawing(drawing.width, drawing.height, drawing.title, drawing.marks[:FEW]) if bench.quick else drawing)
     drawings.sort(key=lambda d: len(d.marks))
     ends = drawings if len(drawings) == 1 else [drawings[0], drawings[-1]]
     for form, module in BACKENDS.items():

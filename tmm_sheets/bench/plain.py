@@ -48,7 +48,7 @@ def dxf(sheet: dict[str, Any], styles: dict[str, Any], path: Path) -> None:
         else:
             msp.add_hatch(color=256, dxfattribs=attributes).paths.add_polyline_path(what[0])
     for points, weight in sheet["letters"]:
-        msp.add_lwpolyline(points, dxfattribs={"layer": styles["text"]["layer"], "lineweight": weight})
+        msp.add_lwpolyline(points, dxfattribs={"layer": styles["TEXT"]["layer"], "lineweight": weight})
     doc.saveas(path)
 
 

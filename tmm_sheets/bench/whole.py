@@ -65,7 +65,7 @@ def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> W
         entities = prepare(project, lists)
         programs = {
             "build": ("from tmm_sheets.__main__ import run; run(sys.argv[1:])",
-                      ["build", project, "--force", "-o", str(folder / "build")]),
+                      ["build", project, "--force", "--text", "strokes", "-o", str(folder / "build")]),
             "plain": ("import runpy; runpy.run_path(sys.argv[0], run_name='__main__')", [str(lists), str(folder)]),
             "imports": ("import ezdxf, reportlab.pdfgen.canvas, reportlab.pdfbase.ttfonts", []),
         }
@@ -93,7 +93,8 @@ def _run(program: str, arguments: list[str]) -> TimedRun:
 def prepare(project: str, path: Path) -> int:
     """Write the display lists of all sheets to a file, as plain tuples; returns the number of entities."""
     from tmm_sheets import catalogue
-    from tmm_sheets.drawing.styles import line_types
+    from tmm_sheets.drawing.layers import layers
+    from tmm_sheets.drawing.styles import line_type
     from tmm_sheets.project import Project
     from tmm_sheets.resources import template
     from tmm_sheets.sheets.sheet import compose
@@ -102,7 +103,10 @@ def prepare(project: str, path: Path) -> int:
     sheets = [_plain(compose(opened, n)) for n in range(1, len(opened.sheets) + 1)]
     from tmm_sheets.backends.dxf import weight
 
-    styles = {name: asdict(look) | {"weight": weight(look.width)} for name, look in line_types().items()}
+    styles = {}
+    for on in layers().values():
+        look = line_type(on.style)
+        styles[on.name] = asdict(look) | {"layer": on.name, "weight": weight(look.width)}
     font = str(template("fonts/TMMSheetsB.ttf"))
     path.write_bytes(pickle.dumps({"styles": styles, "font": font, "sheets": sheets}))
     return sum(len(s["strokes"]) + len(s["letters"]) for s in sheets)
@@ -115,6 +119,7 @@ def _plain(drawing: Any) -> dict[str, Any]:
 
     from tmm_sheets.backends.dxf import weight
     from tmm_sheets.drawing.dashes import strokes
+    from tmm_sheets.drawing.layers import layer
     from tmm_sheets.drawing.lettering import PEN, glyph
     from tmm_sheets.drawing.marks import Arc, Line, Polyline, Text
 
@@ -124,14 +129,15 @@ def _plain(drawing: Any) -> dict[str, Any]:
     lines: list[tuple[Any, ...]] = []
     texts, letters = [], []
     for mark in strokes(drawing.marks):
+        on = layer(mark).name
         if isinstance(mark, Line):
-            lines.append(("line", mark.style, xy(mark.a), xy(mark.b)))
+            lines.append(("line", on, xy(mark.a), xy(mark.b)))
         elif isinstance(mark, Arc):
             whole = mark.end - mark.start > 2 * pi - 1e-9
             ends = () if whole else (mark.start, mark.end)
-            lines.append(("circle" if whole else "arc", mark.style, xy(mark.centre), mark.radius, *ends))
+            lines.append(("circle" if whole else "arc", on, xy(mark.centre), mark.radius, *ends))
         elif isinstance(mark, Polyline):
-            lines.append(("polyline", mark.style, [xy(p) for p in mark.points], mark.closed))
+            lines.append(("polyline", on, [xy(p) for p in mark.points], mark.closed))
         elif isinstance(mark, Text):
             texts.append((xy(mark.at), mark.text, mark.height, mark.angle))
             at, u = mark.at, rect(mark.height, mark.angle)
@@ -140,7 +146,7 @@ def _plain(drawing: Any) -> dict[str, Any]:
                 letters += [([xy(at + u * p) for p in stroke], weight(PEN * mark.height)) for stroke in letter.strokes]
                 at += u * letter.advance
         else:
-            lines.append(("fill", mark.style, [xy(p) for p in mark.points]))
+            lines.append(("fill", on, [xy(p) for p in mark.points]))
     return {"width": drawing.width, "height": drawing.height, "strokes": lines, "texts": texts, "letters": letters}
 
 

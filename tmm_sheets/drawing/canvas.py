@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple, TypeVar, cast
 import numpy as np
 
 from tmm_sheets.drawing.lettering import Lettering, letter
-from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, PlacedFrame, Points, Polyline, Role, Text, Trace
+from tmm_sheets.drawing.marks import Arc, Box, Dimension, Fill, Form, Line, Mark, PlacedFrame, Points, Polyline, Role, Text, Trace
 
 Align = Literal["left", "centre", "right"]
 ARROW = (5.0, 0.85)
@@ -107,7 +107,8 @@ class Canvas:
     ``by`` tells the step that leaves them (see :meth:`traced`), ``frames`` where plans were placed.
     ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results; ``chosen``
     are the names of those that a project file may set.
-    ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again.
+    ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again;
+    ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things.
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -120,6 +121,8 @@ class Canvas:
     parts: list[Part] = field(default_factory=list)
     groups: list[MarkGroup] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
+    dimensions: list[Dimension] = field(default_factory=list)
+    forms: list[Form] = field(default_factory=list)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
@@ -290,6 +293,7 @@ class Canvas:
         u = (b - a) / abs(b - a)
         n = 1j * u
         p, q = a + offset * n, b + offset * n
+        start = len(self.marks)
         past = 2.0 if offset > 0 else -2.0
         self.line(a, p + past * n, "thin")
         self.line(b, q + past * n, "thin")
@@ -307,7 +311,9 @@ class Canvas:
         if angle > pi / 2 + 1e-6 or angle <= -pi / 2 + 1e-6:
             u, angle = -u, phase(-u)
         # Indices hang below the baseline: they must clear the dimension line too.
-        self.text((p + q) / 2 + 1j * u * (0.7 + letter(markup, height).descent), markup, height, "centre", angle)
+        base = (p + q) / 2 + 1j * u * (0.7 + letter(markup, height).descent)
+        self.text(base, markup, height, "centre", angle)
+        self.dimensions.append(Dimension("linear", start, len(self.marks), a, b, p, markup, base + 1j * u * height / 2))
 
     @in_role("table")
     def table(self, corner: complex, widths: Sequence[float], rows: Sequence[Sequence[str]], row: float = 7.0,

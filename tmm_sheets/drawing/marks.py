@@ -112,15 +112,67 @@ class Fill(NamedTuple):
 Mark = Line | Arc | Polyline | Text | Fill
 
 
+class View(NamedTuple):
+    """A view of a sheet under its ``name``: the marks of the ``spans`` (first, end), drawn in ``box`` or near it."""
+
+    name: str
+    box: Box
+    spans: tuple[tuple[int, int], ...]
+
+
+class Dimension(NamedTuple):
+    """Marks ``first`` .. ``end`` - 1 are a dimension of ``a`` .. ``b``, of a radius from the centre ``a`` to the circle at ``b``.
+
+    ``line`` is a point of the dimension line, ``text`` the markup of its lettering (may be empty), ``middle`` the middle of it.
+    """
+
+    kind: Literal["linear", "radius"]
+    first: int
+    end: int
+    a: complex
+    b: complex
+    line: complex
+    text: str
+    middle: complex
+
+
+class FormField(NamedTuple):
+    """A line to be filled in: marks ``first`` .. ``end`` - 1 are what stands there, none where it is empty.
+
+    ``name`` is the same in every language, ``at`` the middle of the baseline.
+    """
+
+    name: str
+    first: int
+    end: int
+    at: complex
+    height: float
+    angle: float = 0.0
+
+
+class Form(NamedTuple):
+    """Marks ``first`` .. ``end`` - 1 are a printed form with its fields, such as the title block."""
+
+    name: str
+    first: int
+    end: int
+    fields: tuple[FormField, ...]
+
+
 @dataclass(frozen=True)
 class Drawing:
-    """A finished sheet: marks on paper of ``width`` x ``height`` mm."""
+    """A finished sheet: marks on paper of ``width`` x ``height`` mm, and which of them are views, dimensions, forms."""
 
     width: float
     height: float
     title: str
     marks: tuple[Mark, ...] = field(repr=False)
     author: str = ""
+    subject: str = ""
+    keywords: str = ""
+    views: tuple[View, ...] = field(default=(), repr=False)
+    dimensions: tuple[Dimension, ...] = field(default=(), repr=False)
+    forms: tuple[Form, ...] = field(default=(), repr=False)
 
 
 def flat(mark: Mark, step: float = 0.5) -> Points:

@@ -16,12 +16,14 @@ from tmm_sheets.resources import template
 class LineType:
     """How a line looks: ``width`` in mm; ``pattern`` dash, -gap, dash ... in mm, empty for a solid line.
 
-    ``layer``, ``colour`` (AutoCAD colour index) and ``linetype`` are what a DXF file calls it.
+    ``layer`` is what it adds to the name of a layer (see :mod:`~tmm_sheets.drawing.layers`), ``description`` says it in words;
+    ``colour`` (AutoCAD colour index) and ``linetype`` are what a DXF file calls it.
     """
 
     name: str
     width: float
     layer: str
+    description: str = ""
     colour: int = 7
     pattern: tuple[float, ...] = ()
     linetype: str = "Continuous"

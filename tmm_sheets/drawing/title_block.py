@@ -12,7 +12,7 @@ from math import pi
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.lettering import Lettering, letter, plain
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Form, FormField
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.resources import template
 
@@ -89,10 +89,14 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
     canvas.of = "title block"
     _rectangle(canvas, PAPER.inset(line_type("thin").width / 2), "thin")  # inside the paper, or half of it is cut off
     _rectangle(canvas, FRAME, "main")
+    first = len(canvas.marks)
     _rules(canvas, place, _forms()[form])
-    _fill(canvas, place, _forms()[form]["cells"], fields, _values(fields, sheet_number, sheet_count))
+    found = _fill(canvas, place, _forms()[form]["cells"], fields, _values(fields, sheet_number, sheet_count))
+    canvas.forms.append(Form("title_block", first, len(canvas.marks), tuple(found)))
+    first = len(canvas.marks)
     _rectangle(canvas, TURNED, "main")
-    _lines(canvas, TURNED, [fields.get("designation", "")], (7.0, 5.0, 3.5), turned=True)
+    found = _lines(canvas, TURNED, {"designation": fields.get("designation", "")}, (7.0, 5.0, 3.5), turned=True)
+    canvas.forms.append(Form("designation", first, len(canvas.marks), tuple(found)))
     for x, text in ((FRAME.x1 - 110, "Копировал"), (FRAME.x1 - 40, "Формат А1")):
         canvas.text(complex(x, FRAME.y0 - 3.7), text, CAPTION)
     canvas.of = ""
@@ -108,22 +112,25 @@ def _rules(canvas: Canvas, place: Box, form: Mapping[str, Any]) -> None:
 
 
 def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str],
-          values: Mapping[str, tuple[list[str], tuple[float, ...]]]) -> None:
-    """The printed words of a title block, and what is written into its cells."""
+          values: Mapping[str, tuple[dict[str, str], tuple[float, ...]]]) -> list[FormField]:
+    """The printed words of a title block, and what is written into its cells: the fields are returned."""
     names = _name_sizes(fields)
-    role = ""
+    role, found = "", list[FormField]()
     for number, kind, word, x0, y0, x1, y1 in cells:
         cell = Box(place.x0 + x0, place.y0 + y0, place.x0 + x1, place.y0 + y1)
         if kind == "caption":
-            _lines(canvas, cell, [word], (CAPTION,))
+            _lines(canvas, cell, {"": word}, (CAPTION,))
         elif number == "10":
             role = word
             _left(canvas, cell, word or ("Рук." if fields.get("supervisor") else ""))
         elif number == "11":
-            _lines(canvas, cell, [fields.get(ROLES[role], "")], names)
+            found += _lines(canvas, cell, {ROLES[role]: fields.get(ROLES[role], "")}, names)
+        elif number == "13":
+            found += _lines(canvas, cell, {f"{ROLES[role]}_date": ""}, (CAPTION,))
         elif number in values:
             lines, sizes = values[number]
-            _lines(canvas, cell.inset(_left(canvas, cell, word), 0, 0, 0), lines, sizes)
+            found += _lines(canvas, cell.inset(_left(canvas, cell, word), 0, 0, 0), lines, sizes)
+    return found
 
 
 def _name_sizes(fields: Mapping[str, str]) -> tuple[float, ...]:
@@ -133,17 +140,20 @@ def _name_sizes(fields: Mapping[str, str]) -> tuple[float, ...]:
     return (3.5, 2.5) if large else (2.5,)
 
 
-def _values(fields: Mapping[str, str], number: int, count: int) -> dict[str, tuple[list[str], tuple[float, ...]]]:
-    """Lines and permitted letter heights by number of the field."""
+def _values(fields: Mapping[str, str], number: int, count: int) -> dict[str, tuple[dict[str, str], tuple[float, ...]]]:
+    """What is filled in by its name, and permitted letter heights, by number of the field."""
+    def given(*names: str, empty: str = "") -> dict[str, str]:
+        return {name: fields.get(name, empty) for name in names}
+
     return {
-        "1": ([fields.get("project", ""), fields.get("title", "")], (5.0, 3.5, 2.5)),
-        "2": ([fields.get("designation", "")], (7.0, 5.0, 3.5)),
-        "4a": ([fields.get("letter", "")], (3.5,)),
-        "5": ([fields.get("mass", "–")], (5.0, 3.5)),
-        "6": ([fields.get("scale", "–")], (5.0, 3.5)),
-        "7": ([str(number) if count > 1 else ""], (3.5, 2.5)),
-        "8": ([str(count)], (3.5, 2.5)),
-        "9": ([fields.get("institution", ""), fields.get("group", "")], (5.0, 3.5, 2.5)),
+        "1": (given("project", "title"), (5.0, 3.5, 2.5)),
+        "2": (given("designation"), (7.0, 5.0, 3.5)),
+        "4a": (given("letter"), (3.5,)),
+        "5": (given("mass", empty="–"), (5.0, 3.5)),
+        "6": (given("scale", empty="–"), (5.0, 3.5)),
+        "7": ({"sheet": str(number) if count > 1 else ""}, (3.5, 2.5)),
+        "8": ({"sheets": str(count)}, (3.5, 2.5)),
+        "9": (given("institution", "group"), (5.0, 3.5, 2.5)),
     }
 
 
@@ -176,27 +186,39 @@ def _rise(laid: Lettering, size: float) -> float:
     return laid.ascent - size if laid.ascent > 1.1 * size + 1e-9 else 0.0
 
 
-def _lines(canvas: Canvas, cell: Box, parts: list[str], sizes: tuple[float, ...], turned: bool = False) -> None:
-    """Lettering in the middle of a cell."""
-    lines, size = _fitted(parts, sizes, cell.width - 2 * SIDE, cell.height - (2 * ENDS if cell.height > 5 else 0.5))
-    sign, angle = (-1, pi) if turned else (1, 0.0)
-    y = size * (PITCH * (len(lines) - 1) - 1) / 2
-    for line in lines:
-        canvas.text(cell.centre + sign * 1j * y, plain(line), size, "centre", angle)
-        y -= PITCH * size
-
-
-def _fitted(parts: list[str], sizes: tuple[float, ...], width: float, height: float) -> tuple[list[str], float]:
-    """Lines and size of lettering: the largest size at which it fits, in up to three lines, else squeezed."""
+def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, height: float) -> tuple[float, dict[str, list[str]]]:
+    """Letter height and lines of each part: the largest size at which they fit, in up to three lines, else squeezed."""
     for size in sizes:
         room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
-        lines = [line for part in parts for line in (_wrap(part, size, width) if room > 1 else filter(None, [part]))]
-        if not lines:
-            return [], size
-        laid = [letter(plain(line), size) for line in lines]
+        wrapped = {name: _wrap(part, size, width) if room > 1 else [part] if part else [] for name, part in parts.items()}
+        laid = [letter(plain(line), size) for lines in wrapped.values() for line in lines]
+        if not laid:
+            return size, wrapped
         widest = max(line.width for line in laid)
-        tall = size * (1 + PITCH * (len(lines) - 1)) + 2 * _rise(laid[0], size)
+        tall = size * (1 + PITCH * (len(laid) - 1)) + 2 * _rise(laid[0], size)
         # Three lines need some air between the rules of their cell.
-        if widest <= width and tall <= height - (1.0 if len(lines) == 3 else 0.0) and len(lines) <= 3:
-            return lines, size
-    return lines, size * min(width / widest, height / tall, 1.0)
+        if widest <= width and tall <= height - (1.0 if len(laid) == 3 else 0.0) and len(laid) <= 3:
+            return size, wrapped
+    return size * min(width / widest, height / tall, 1.0), wrapped
+
+
+def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], turned: bool = False) -> list[FormField]:
+    """Lettering in the middle of a cell.
+
+    ``parts`` are texts by name, each begins a line. Returns the lines; a part without text has an empty one below the others.
+    """
+    room = cell.height - (2 * ENDS if cell.height > 5 else 0.5)
+    size, wrapped = _fitted(parts, sizes, cell.width - 2 * SIDE, room)
+    sign, angle = (-1, pi) if turned else (1, 0.0)
+    found = []
+    count = sum(map(len, wrapped.values()))
+    y = size * (PITCH * (max(count, 1) - 1) - 1) / 2
+    for name, lines in sorted(wrapped.items(), key=lambda item: not item[1]):
+        for n, line in enumerate(lines or [""], 1):
+            at, first = cell.centre + sign * 1j * max(y, ENDS - cell.height / 2), len(canvas.marks)
+            if line:
+                at = cell.centre + sign * 1j * y
+                canvas.text(at, plain(line), size, "centre", angle)
+            found.append(FormField(name if n == 1 else f"{name}_{n}", first, len(canvas.marks), at, size, angle))
+            y -= PITCH * size
+    return found

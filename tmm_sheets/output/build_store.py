@@ -1,7 +1,8 @@
 """Where the files of one project go, a folder or an archive, and the record there of what each of them was made from.
 
 A file is current when the record names the same inputs for it and its content is the one that was written then; so an
-interrupted or repeated build makes only what is missing or has changed, and a file changed by hand is made again.
+interrupted or repeated build makes only what is missing or has changed. A file of another content than any that was written here
+was changed by hand: it stays, and the new one goes beside it.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from hashlib import blake2b
 from io import BytesIO
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -93,9 +95,10 @@ class Folder:
         return self.place / name
 
     def read(self, name: str) -> bytes | None:
-        """Content of a file; None when there is none."""
+        """Content of a file; None when there is none, or a pipe or a device."""
+        path = self.place / name
         try:
-            return (self.place / name).read_bytes()
+            return path.read_bytes() if path.is_file() else None
         except OSError:
             return None
 
@@ -172,8 +175,21 @@ def current(outlet: Outlet, record: BuildRecord, name: str, made_from: str) -> b
     return data is not None and fingerprint(data) == known[1]
 
 
-def keep(outlet: Outlet, record: BuildRecord, made: Mapping[str, bytes], made_from: Mapping[str, str], whole: str | None) -> None:
-    """Write files together with the record of them."""
+def free_name(outlet: Outlet, record: BuildRecord, name: str) -> str:
+    """The name itself where no file of that name was changed by hand, else the first such one with .new (.new2 ...) in it."""
+    ours = {content for _, content in record.files.values()}
+    stem, dot, suffix = name.rpartition(".")
+    for n in count():
+        candidate = f"{stem}.new{n if n > 1 else ''}{dot}{suffix}" if n else name
+        data = outlet.read(candidate)
+        if data is None or fingerprint(data) in ours:
+            return candidate
+    raise AssertionError("there are names without end")
+
+
+def keep(outlet: Outlet, record: BuildRecord, made: Mapping[str, bytes], made_from: Mapping[str, str], whole: str | None,
+         beside: Mapping[str, bytes] | None = None) -> None:
+    """Write files together with the record of them, and those that lie ``beside`` them without a record."""
     known: dict[str, Any] = record.files | {name: (made_from[name], fingerprint(data)) for name, data in made.items()}
     told = BuildRecord(known, record.whole if whole is None else whole)
-    outlet.write({**made, RECORD: told.data()})
+    outlet.write({**made, **(beside or {}), RECORD: told.data()})

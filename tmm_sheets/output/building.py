@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.explain import Stopwatch
-from tmm_sheets.output.build_store import Archive, BuildRecord, Folder, Outlet, current, fingerprint, keep, program, record_of
+from tmm_sheets.output.build_store import (
+    Archive,
+    BuildRecord,
+    Folder,
+    Outlet,
+    current,
+    fingerprint,
+    free_name,
+    keep,
+    program,
+    record_of,
+)
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.marks import Drawing
@@ -26,12 +37,24 @@ BACKENDS = {form: f"tmm_sheets.backends.{form}" for form in ("dxf", "pdf", "svg"
 SUFFIXES = {"hpgl": "plt"}
 """Ends of file names that are not the name of the format."""
 
+ONE_FILE = "sheets.pdf"
+"""Name of the PDF with all sheets."""
+
+
+class Target(NamedTuple):
+    """A file to be made: its format, the sheets in it, its name."""
+
+    form: str
+    sheets: tuple[int, ...]
+    name: str
+
 
 @dataclass(frozen=True)
 class Order:
     """What is to be built of every project: ``sheets`` (empty: all), formats, their settings, and where it goes.
 
-    ``force`` makes everything again; ``archive`` puts each project into a zip file.
+    ``force`` makes everything again, also what was changed by hand; ``archive`` puts each project into a zip file; ``one_file``
+    puts all sheets into one PDF.
     """
 
     sheets: tuple[int, ...] = ()
@@ -40,10 +63,17 @@ class Order:
     corrected: bool = False
     force: bool = False
     archive: bool = False
+    one_file: bool = False
 
-    def files(self, numbers: Iterable[int]) -> dict[tuple[str, int], str]:
-        """Names of the files of these sheets by format and sheet."""
-        return {(form, n): f"sheet{n}.{SUFFIXES.get(form, form)}" for form in self.formats for n in numbers}
+    def targets(self, numbers: Sequence[int]) -> list[Target]:
+        """The files of these sheets, format by format."""
+        found = []
+        for form in self.formats:
+            if form == "pdf" and self.one_file:
+                found.append(Target(form, tuple(numbers), ONE_FILE))
+            else:
+                found += (Target(form, (n,), f"sheet{n}.{SUFFIXES.get(form, form)}") for n in numbers)
+        return found
 
     def outlet(self, place: Path) -> Outlet:
         """The folder, or the archive of that name."""
@@ -92,69 +122,106 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     opened = Project(variant)
     numbers = chosen(variant, order.sheets)
     outlet.check()
-    wanted = order.files(numbers)
-    outlet.sweep(wanted.values())
+    wanted = order.targets(numbers)
+    outlet.sweep(target.name for target in wanted)
     work = _work(variant, order, outlet, numbers, wanted, watch)
     drawn, problem = _drawn(opened, work.sheets, _watching(watch, say), others=len(work.sheets) < len(numbers))
     whole_passed = work.whole and problem is None
     if whole_passed:
         _refuse_idle_scales(variant, drawn)
     failed = set(work.sheets) - set(drawn)
+    done = [target for target in work.wanted if not failed.issuperset(target.sheets)]
     if problem is not None:
-        problem = _with_stale(problem, [name for (_, n), name in wanted.items() if n in failed], outlet)
+        problem = _with_stale(problem, [target.name for target in work.wanted if target not in done], outlet)
     drawings = {n: composed.drawing for n, composed in drawn.items()}
-    made = _rendered(drawings, work.due, order, watch, say)
+    made, beside = _rendered(drawings, [target for target in work.due if target in done], order, outlet, watch, say)
+    done, kept = _settled(done, work, made, outlet)
     if made or whole_passed:
+        # A file without one of its sheets is not current.
+        made_from = {target.name: work.made_from[target] if failed.isdisjoint(target.sheets) else "" for target in done}
         with watch.phase("write files"):
-            keep(outlet, work.record, made, work.made_from, work.inputs if whole_passed else None)
-    paths = tuple(outlet.path(name) for (_, n), name in wanted.items() if n not in failed)
+            keep(outlet, work.record, made, made_from, work.inputs if whole_passed else None, beside)
+    paths = tuple(outlet.path(target.name) for target in done)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
-    return Built(paths, sizes, drawings, opened, problem, _warnings(opened, drawn))
+    return Built(paths, sizes, drawings, opened, problem, (*kept, *_warnings(opened, drawn)))
 
 
 @dataclass(frozen=True)
 class _Work:
-    """What a build has to do: the files that are due, by format and sheet, and the sheets to be drawn for them.
+    """What a build has to do: the files ``wanted``, those of them that are ``due``, and the sheets to be drawn for them.
 
     ``whole`` is true where all sheets together are to be checked, which only they can be: whether each scale factor of the
-    file is of use. ``inputs`` is the fingerprint of program and project file, ``made_from`` those of each file wanted.
+    file is of use. ``inputs`` is the fingerprint of program and project file, ``made_from`` those of each file wanted. ``stand_in``
+    tells by their names which files lie beside one that was changed by hand.
     """
 
     record: BuildRecord
     inputs: str
-    made_from: dict[str, str]
-    due: dict[tuple[str, int], str]
+    made_from: dict[Target, str]
+    wanted: list[Target]
+    due: list[Target]
     sheets: list[int]
     whole: bool
+    stand_in: dict[str, str]
 
 
-def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wanted: Mapping[tuple[str, int], str],
-          watch: Stopwatch) -> _Work:
+def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wanted: list[Target], watch: Stopwatch) -> _Work:
     """What of the files wanted of sheets ``numbers`` is not current."""
     inputs = fingerprint(program(), variant.text)
-    set_so = {form: repr(sorted(order.settings.get(form, {}).items())) for form in order.formats}
-    made_from = {name: fingerprint(inputs, set_so[form]) for (form, _), name in wanted.items()}
+    due, names, stand_in = list[Target](), list[Target](), dict[str, str]()
+    made_from: dict[Target, str] = {}
     with watch.phase("compare with what is there"):
         record = record_of(outlet)
-        due = {key: name for key, name in wanted.items()
-               if order.force or not current(outlet, record, name, made_from[name])}
+        for target in wanted:
+            of = fingerprint(inputs, repr(sorted(order.settings.get(target.form, {}).items())), repr(target.sheets))
+            there = not order.force and current(outlet, record, target.name, of)
+            if not there and not order.force and (name := free_name(outlet, record, target.name)) != target.name:
+                stand_in[name] = target.name
+                target = target._replace(name=name)
+                there = current(outlet, record, name, of)
+            made_from[target] = of
+            names.append(target)
+            if not there:
+                due.append(target)
     whole = len(numbers) == len(variant.sheets) and (order.force or record.whole != inputs)
-    return _Work(record, inputs, made_from, due, numbers if whole else sorted({n for _, n in due}), whole)
+    sheets = numbers if whole else sorted({n for target in due for n in target.sheets})
+    return _Work(record, inputs, made_from, names, due, sheets, whole, stand_in)
 
 
-def _rendered(drawings: Mapping[int, Drawing], due: Mapping[tuple[str, int], str], order: Order, watch: Stopwatch,
-              say: Callable[[str], None]) -> dict[str, bytes]:
-    """Contents of the files due of the sheets that were drawn, one format after another."""
+def _settled(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Outlet) -> tuple[list[Target], list[str]]:
+    """The files under their names at last, and which were changed by hand: not one that is just as it would be made now."""
+    settled, kept = [], []
+    for target in done:
+        name = work.stand_in.get(target.name)
+        if name is not None and target.name in made and made[target.name] == outlet.read(name):
+            made[name] = made.pop(target.name)
+            work.made_from[target._replace(name=name)] = work.made_from[target]
+            target = target._replace(name=name)
+        elif name is not None:
+            kept.append(f"{name} was changed by hand and stays; the new one is {target.name} (--force overwrites it)")
+        settled.append(target)
+    return settled, kept
+
+
+def _rendered(drawings: Mapping[int, Drawing], due: Sequence[Target], order: Order, outlet: Outlet, watch: Stopwatch,
+              say: Callable[[str], None]) -> tuple[dict[str, bytes], dict[str, bytes]]:
+    """Contents of the files due, one format after another, and those of files that have to lie beside them and do not yet."""
     made: dict[str, bytes] = {}
-    to_make = [(form, n) for form, n in due if n in drawings]
-    for form in dict.fromkeys(form for form, _ in to_make):
+    beside: dict[str, bytes] = {}
+    for form in dict.fromkeys(target.form for target in due):
+        settings = order.settings.get(form, {})
         with watch.phase(f"import of the {form} writer"):
-            render = import_module(BACKENDS[form]).render
-        for n in (n for f, n in to_make if f == form):
-            say(f"sheet {n} as {form}")
-            with watch.phase(f"{form} of sheet {n}"):
-                made[due[form, n]] = render(drawings[n], **order.settings.get(form, {}))
-    return made
+            writer = import_module(BACKENDS[form])
+        together = form == "pdf" and order.one_file
+        for target in (t for t in due if t.form == form):
+            which = "all sheets" if together else f"sheet {target.sheets[0]}"
+            say(f"{which} as {form}")
+            with watch.phase(f"{form} of {which}"):
+                sheets = [drawings[n] for n in target.sheets if n in drawings]
+                made[target.name] = writer.render_all(sheets, **settings) if together else writer.render(sheets[0], **settings)
+        if hasattr(writer, "companions"):
+            beside |= {name: data for name, data in writer.companions(**settings).items() if outlet.read(name) is None}
+    return made, beside
 
 
 def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]:

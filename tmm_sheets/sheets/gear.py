@@ -13,7 +13,7 @@ from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, PlacedFrame
+from tmm_sheets.drawing.marks import Box, Dimension, PlacedFrame
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import Frame
 from tmm_sheets.sheets.gear_marks import (
@@ -120,7 +120,7 @@ class _GearPicture:
                 if direction is None:
                     self.name_on_arc(centre, radius, symbol % wheel.number)
                     continue
-                tip = centre + rect(radius, direction)
+                tip, first = centre + rect(radius, direction), len(self.canvas.marks)
                 with self.stage.of(f"{key}{wheel.number}", "dimension"):
                     self.canvas.line(centre + rect(2.0, direction), tip - rect(2.5, direction), "thin")
                     arrow_head(self.canvas, tip, rect(1, direction))
@@ -131,6 +131,8 @@ class _GearPicture:
                 start = outer if back else outer - laid.width
                 turned = direction + pi if back else direction
                 self.canvas.put(laid, centre + rect(start, direction) + rect(1.2, turned + pi / 2), turned)
+                middle = centre + rect(outer - laid.width / 2, direction) + rect(1.2 + 1.75, turned + pi / 2)
+                self.canvas.dimensions.append(Dimension("radius", first, len(self.canvas.marks), centre, tip, tip, text, middle))
 
     def name_on_arc(self, centre: complex, radius: float, symbol: str) -> None:
         """Name of a circle on the longest arc that is seen, where its radius does not fit in."""

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import tomllib
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, MarkGroup, Part
 from tmm_sheets.drawing.labels import Crowded, place
-from tmm_sheets.drawing.marks import Drawing, PlacedFrame
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Drawing, PlacedFrame, View
 from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
@@ -29,6 +34,8 @@ INSIDE = Box(20.0, 5.0, WIDTH - 5.0, HEIGHT - 5.0)
 """Inside of the frame: 20 mm at the left for filing, 5 mm elsewhere (GOST 2.301)."""
 TITLE_BLOCK = Box(INSIDE.x1 - 185.0, INSIDE.y0, INSIDE.x1, INSIDE.y0 + 55.0)
 """Place of the title block (GOST 2.104, form 1)."""
+
+KEYWORDS = ("ТММ", "теория механизмов и машин", "курсовой проект")
 
 
 @dataclass(frozen=True)
@@ -147,7 +154,47 @@ def composed(project: Project, n: int) -> Composed:
 
         crowded += notes.place(canvas, INSIDE)
     title = f"{project.variant.project.title}. {plan.title}"
-    drawing = Drawing(WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets")
+    drawing = Drawing(
+        WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets",
+        subject=" ".join(filter(None, (fields["designation"], fields["group"]))), keywords=", ".join(KEYWORDS),
+        views=_views(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
     left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames))
+
+
+@cache
+def _names() -> dict[str, str]:
+    """Names of views that have no title on the sheet."""
+    names: dict[str, str] = tomllib.loads(template("view_names.toml").read_text(encoding="utf-8"))
+    return names
+
+
+def _views(canvas: Canvas) -> tuple[View, ...]:
+    """The views of a sheet, each with its labels; what one draws before its first title belongs to that title.
+
+    Views of one name are numbered. Parts without marks or labels are no views.
+    """
+    labels = canvas.parts[-1].first
+    spans: list[list[tuple[int, int]]] = [
+        [(part.first, after.first)] if after.first > part.first else [] for part, after in pairwise(canvas.parts)]
+    for group in canvas.groups:
+        if 0 <= group.part < len(spans) and group.first >= labels:
+            spans[group.part].append((group.first, group.end))
+    found: list[tuple[Part, str, list[tuple[int, int]]]] = []
+    for part, own in zip(canvas.parts, spans, strict=False):
+        if part.title and found and found[-1][0].draw == part.draw and not found[-1][0].title:
+            own = found.pop()[2] + own
+        if own:
+            found.append((part, _said(part), own))
+    count = Counter[str]()
+    out = []
+    for part, name, own in found:
+        count[name] += 1
+        out.append(View(name if count[name] == 1 else f"{name}, {count[name]}", part.box, tuple(own)))
+    return tuple(out)
+
+
+def _said(part: Part) -> str:
+    """Name of a view: the letters of its title."""
+    return "".join(run.text for run in letter(part.title, 5.0).runs) if part.title else _names().get(part.draw, part.draw)

@@ -11,6 +11,7 @@ import numpy as np
 from tmm_sheets.compare.cad import cad_lettering
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, SYMBOL, Comparison, middle_of, reach_of
 from tmm_sheets.compare.cad.cad_findings import ExtraStroke
+from tmm_sheets.compare.cad.cad_ink import normal
 from tmm_sheets.compare.cad.overlaps import Left, left, pieces
 from tmm_sheets.compare.cad.placing import lines, shapes
 from tmm_sheets.compare.report import verdict
@@ -275,5 +276,5 @@ def _extra_areas(state: Comparison) -> Iterator[ExtraStroke]:
 
 def _extra_text(state: Comparison) -> Iterator[ExtraStroke]:
     for k, w in enumerate(state.space.writings):
-        if k not in state.used_writings:
+        if k not in state.used_writings and normal(w.text):
             yield ExtraStroke(state.space.entities[w.entity], 0.0, w.at, max(w.width, 4.0) / 2, 1, w.text.strip())

@@ -259,10 +259,13 @@ class _DxfReader:
             raise CannotBuild(f"{self.file}: its blocks are nested too deeply", SMALLER) from None
         parts = list(self._parts(layout))
         fine = self._fine(e for _, e, _ in parts)
+        attributes = {e.dxf.text for _, e, _ in parts if e.dxftype() == "ATTRIB"}
         for outer, e, look in parts:
             kind = e.dxftype()
             if look.layer.lower() in self.hidden or e.dxf.get("invisible", 0):
-                self.skipped += look.layer.lower() != "defpoints"
+                # What programs without attributes are to show is there for the others as attribute.
+                twice = e.dxf.get("invisible", 0) and kind == "TEXT" and e.dxf.text in attributes
+                self.skipped += look.layer.lower() != "defpoints" and not twice
                 continue
             entities.append(Entity(outer.dxftype(), words(look.layer, self.document.encoding),
                                    str(outer.dxf.get("handle", "") or "?"),

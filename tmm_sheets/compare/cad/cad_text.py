@@ -6,12 +6,19 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_ink import Writing, normal
 from tmm_sheets.drawing.marks import Points
 
+CLOSE = 0.3
+"""How far beyond the box of a text the middle of a part of it may be, mm."""
+SIZES = 1.2
+"""How many times as high as another a text of the same size may be."""
+ARROWS = str.maketrans("", "", "→←↑↓")
+"""Signs that may be drawn among the texts."""
 FAR = 12.0
 """How far from its place a text may be, mm: where a letter goes is the draughtsman's choice."""
 
@@ -41,13 +48,15 @@ class FoundText:
 def read(wanted: Sequence[WantedText], writings: Sequence[Writing]) -> dict[int, FoundText]:
     """The texts found for wanted ones, by the number of the wanted one.
 
-    The same text near by comes first, then several texts that make one (a letter and its index), then a text that contains ours
-    among others (a line of values), last what is in its place and says something else.
+    The same text near by comes first, of about the same size, which an index is not; then several texts that make one (a letter and
+    its index), then the same text of any size, then one that contains ours among others (a line of values), last what is in its
+    place and says something else.
     """
     reading = _Reading(wanted, writings)
-    reading.alike()
+    reading.alike(SIZES)
     if writings:
         reading.joined()
+        reading.alike()
         reading.contained()
         reading.others()
     return reading.found
@@ -62,25 +71,45 @@ class _Reading:
         self.found: dict[int, FoundText] = {}
         self.free = set(range(len(writings)))
 
-    def alike(self) -> None:
-        """The same text near by, the nearest pairs first."""
+    def alike(self, sizes: float = inf) -> None:
+        """The same text near by, the nearest pairs first; of two heights none is more than ``sizes`` times the other."""
         by_meaning: dict[str, list[int]] = {}
         for k, w in enumerate(self.writings):
             by_meaning.setdefault(meant(w.text), []).append(k)
         pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in enumerate(self.wanted)
-                 for k in by_meaning.get(meant(want.text), ())]
+                 for k in by_meaning.get(meant(want.text), ())
+                 if n not in self.found and (sizes == inf or 1 / sizes <= self.writings[k].height / want.height <= sizes)]
         for far, n, k in sorted(pairs):
             if far <= FAR and n not in self.found and k in self.free:
                 self._take(n, k)
 
     def joined(self) -> None:
-        """Several texts that make one."""
-        for n, want in self._missing():
-            near = [k for k in self._about(want) if k in self.free and _inside(want, self.writings[k].at, 0.5 * want.height + 0.5)]
-            u = (want.corners[1] - want.corners[0]) / max(abs(want.corners[1] - want.corners[0]), 1e-9)
-            near.sort(key=lambda k: ((self.writings[k].at - want.middle) * np.conj(u)).real)
-            if near and _same(meant("".join(self.writings[k].text for k in near)), meant(want.text), len(near) > 1):
-                self._take(n, *near)
+        """Several texts that make one: those within its box, or else those ever a little farther off."""
+        for margin in (0.0, 0.25, 0.5):
+            for n, want in self._missing():
+                near = [k for k in self._about(want)
+                        if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + CLOSE)]
+                if order := self._spelling(near, want):
+                    self._take(n, *order)
+
+    def _spelling(self, near: list[int], want: WantedText) -> list[int]:
+        """The texts in an order in which they make the wanted one; none if there is no such order.
+
+        They follow one another by their middles or by their left ends; of indices above one another either may be first.
+        """
+        meaning, several = meant(want.text), len(near) > 1
+        for ends, lift in ((0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.5, -0.5)):
+            order = self._along(near, want, ends, lift)
+            if order and _same(meant("".join(self.writings[k].text for k in order)), meaning, several):
+                return order
+        return []
+
+    def _along(self, near: list[int], want: WantedText, ends: float = 0.5, lift: float = 0.0) -> list[int]:
+        """Texts in the direction of a wanted one, by their left ends (0.5) or middles (0); ``lift`` puts off what stands higher."""
+        along = want.corners[1] - want.corners[0]
+        u = np.conj(along) / max(abs(along), 1e-9)
+        place = {k: (self.writings[k].at - want.middle) * u - ends * self.writings[k].width for k in near}
+        return sorted(near, key=lambda k: (place[k].real + lift * place[k].imag, k))
 
     def contained(self) -> None:
         """A text with ours among its words."""
@@ -98,7 +127,10 @@ class _Reading:
                  if k in self.free and _inside(want, self.writings[k].at, 3.0)]
         for _, n, k in sorted(pairs):
             if n not in self.found and k in self.free:
-                self._take(n, k, says=self.writings[k].text.strip())
+                want = self.wanted[n]
+                parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, CLOSE))}
+                order = self._along(list(parts), want)
+                self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
 
     def _missing(self) -> Iterator[tuple[int, WantedText]]:
         return ((n, want) for n, want in enumerate(self.wanted) if n not in self.found)
@@ -115,6 +147,7 @@ class _Reading:
 
 def _same(joined: str, wanted: str, several: bool) -> bool:
     """Whether texts put together are the wanted one; indices may come in another order, but numbers keep their digits."""
+    wanted = wanted.translate(ARROWS) if several and joined == joined.translate(ARROWS) else wanted
     return joined == wanted or (several and sorted(joined) == sorted(wanted) and _digits(joined) == _digits(wanted))
 
 

@@ -1,0 +1,259 @@
+"""Sheets as CAD programs work with them, read by ezdxf; how long lettering is says the TrueType font itself (fontTools)."""
+
+from collections import Counter
+from io import StringIO
+from math import cos, degrees, pi, sin
+
+import ezdxf
+import numpy as np
+import pytest
+from ezdxf import bbox
+from fontTools.ttLib import TTFont
+
+from tmm_sheets import catalogue
+from tmm_sheets.backends import dxf
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Arc, Drawing, Form, FormField, Line, Polyline, Text, View
+from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.title_block import draw_frame
+from tmm_sheets.project import Project
+from tmm_sheets.resources import template
+from tmm_sheets.sheets.sheet import composed
+
+SHAPER = Project(catalogue.read("lugansk/shaper"))
+SHEETS = {n: composed(SHAPER, n).drawing for n in (1, 2, 3, 4)}
+
+
+def opened(data):
+    return ezdxf.read(StringIO(data.decode("utf-8")))
+
+
+@pytest.fixture(scope="module", params=[1, 2, 3, 4])
+def sheet(request):
+    return SHEETS[request.param], opened(dxf.render(SHEETS[request.param]))
+
+
+def everywhere(doc):
+    """Entities of model space and of the blocks of dimensions and forms."""
+    yield from doc.modelspace()
+    for block in doc.blocks:
+        if not block.is_any_layout:
+            yield from block
+
+
+def z(point):
+    return complex(point[0], point[1])
+
+
+def test_audit_finds_nothing(sheet):
+    audit = sheet[1].audit()
+    assert (audit.errors, audit.fixes) == ([], [])
+
+
+def test_handles_are_unique_and_below_the_next_free_one():
+    lines = dxf.render(SHEETS[3]).decode("utf-8").splitlines()
+    tags = [(code.strip(), value) for code, value in zip(lines[::2], lines[1::2], strict=True)]
+    seed = int(tags[tags.index(("9", "$HANDSEED")) + 1][1], 16)
+    start = tags.index(("2", "CLASSES"))
+    handles = [int(v, 16) for code, v in tags[start:] if code in ("5", "105")]
+    assert max(Counter(handles).values()) == 1
+    assert max(handles) < seed
+    known = set(handles) | {0}
+    assert {int(v, 16) for code, v in tags[start:] if code == "330"} <= known
+
+
+def test_first_sheet_is_small():
+    assert len(dxf.render(SHEETS[1])) <= 400_000
+
+
+def test_all_lettering_can_be_found(sheet):
+    drawing, doc = sheet
+    found = Counter(e.dxf.text for e in everywhere(doc) if e.dxftype() == "TEXT" and not e.dxf.invisible)
+    found += Counter(a.dxf.text for insert in doc.modelspace().query("INSERT") for a in insert.attribs if a.dxf.text)
+    words = (word.strip() for m in drawing.marks if isinstance(m, Text) for word in m.text.split("→"))
+    assert found == Counter(filter(None, words))
+
+
+def test_lettering_is_as_long_as_in_the_font(sheet):
+    drawing, doc = sheet
+    font = TTFont(template("fonts/TMMSheetsB.ttf"))
+    widths, names = font["hmtx"], font.getBestCmap()
+    em = font["head"].unitsPerEm
+    style = doc.styles.get("lc_opengost-br")
+    assert style.dxf.font == "TMMSheetsB.ttf"
+    assert style.get_extended_font_data() == (font["name"].getDebugName(1), True, False)
+    fitted = [e for e in everywhere(doc) if e.dxftype() == "TEXT" and len(e.dxf.text) > 1 and not e.dxf.invisible]
+    assert len(fitted) > 100
+    for e in fitted:
+        kind, first, last = e.get_placement()
+        assert kind.name == "FIT"
+        letters = sum(widths[names[ord(c)]][0] for c in e.dxf.text) / em * e.dxf.height / 0.7  # capitals are 0.7 em high
+        assert abs(z(last) - z(first)) == pytest.approx(letters - 0.2 * e.dxf.height, abs=3e-4)  # without the gap after the last
+        assert degrees(np.angle(z(last) - z(first))) % 360 == pytest.approx(e.dxf.rotation % 360, abs=0.01)
+    forms = {k for form in drawing.forms for f in form.fields for k in range(f.first, f.end)}
+    starts = np.array([m.at for k, m in enumerate(drawing.marks) if isinstance(m, Text) and k not in forms and m.text[0] != " "
+                       and "→" not in m.text])
+    placed = np.array([z(e.dxf.insert) for e in everywhere(doc) if e.dxftype() == "TEXT" and not e.dxf.invisible])
+    assert np.abs(starts[:, None] - placed[None, :]).min(axis=1).max() < 1e-3
+
+
+def test_circles_and_axes_are_whole_and_of_their_line_types():
+    drawing, doc = SHEETS[3], opened(dxf.render(SHEETS[3]))
+    dashed = [m for m in drawing.marks if isinstance(m, Line | Arc | Polyline) and line_type(m.style).pattern]
+    assert sum(isinstance(m, Arc) for m in dashed) >= 4
+    own = [e for e in everywhere(doc) if doc.layers.get(e.dxf.layer).dxf.linetype != "Continuous"]
+    assert len(own) == len(dashed)
+    assert {e.dxf.linetype for e in own} == {"BYLAYER"}
+    radii = sorted(m.radius for m in dashed if isinstance(m, Arc))
+    assert sorted(e.dxf.radius for e in own if e.dxftype() in ("ARC", "CIRCLE")) == pytest.approx(radii, abs=1e-4)
+
+
+def test_dimensions_measure_what_they_say():
+    gear = SHAPER.gear
+    doc = opened(dxf.render(SHEETS[3]))
+    said = {}
+    for d in doc.modelspace().query("DIMENSION"):
+        name, _, number = d.dxf.text.partition(" = ")
+        said[name] = float(number.replace(",", ".")), d.get_measurement() / 4, d.dimtype  # the picture's scale is 4:1
+        assert len(doc.blocks.get(d.dxf.geometry)) > 2
+    one, two = gear.wheels
+    real = {"aw": gear.a_w} | {f"{name}{i}": getattr(w, key) for i, w in ((1, one), (2, two)) for name, key in (
+        ("ra", "ra"), ("rw", "rw"), ("r", "r"), ("rb", "rb"), ("rf", "rf"), ("s", "s_chord"), ("p", "p_chord"))}
+    assert said.keys() == real.keys()
+    for name, (number, measured, kind) in said.items():
+        assert number == pytest.approx(1e3 * real[name], abs=0.0051)
+        assert measured == pytest.approx(1e3 * real[name], abs=0.01 if name[0] == "s" else 1e-4)
+        assert kind == (4 if name[0] == "r" else 1)
+
+
+def test_a_dimension_drawn_by_hand_has_its_places():
+    canvas = Canvas()
+    canvas.dimension(100 + 100j, 160 + 180j, 12.0, "l_{AB} = 100")
+    doc = opened(dxf.render(Drawing(841, 594, "", tuple(canvas.marks), dimensions=tuple(canvas.dimensions))))
+    (d,) = doc.modelspace()
+    assert d.get_measurement() == pytest.approx(100, abs=1e-4)
+    assert (z(d.dxf.defpoint2), z(d.dxf.defpoint3)) == (100 + 100j, 160 + 180j)
+    n = 1j * (0.6 + 0.8j)
+    assert z(d.dxf.defpoint) == pytest.approx(160 + 180j + 12 * n, abs=1e-4)
+    assert d.dxf.text == "lAB = 100"
+    drawn = bbox.extents(doc.blocks.get(d.dxf.geometry))
+    assert drawn.extmin.x >= 100 + (14 * n).real - 1
+    assert [e.dxf.text for e in doc.blocks.get(d.dxf.geometry).query("TEXT")] == ["l", "AB", "= 100"]
+
+
+def test_title_block_is_filled_in_and_read_again(tmp_path):
+    path = tmp_path / "sheet.dxf"
+    path.write_bytes(dxf.render(SHEETS[1]))
+    doc = ezdxf.readfile(path)
+    (block,) = doc.modelspace().query("INSERT[name=='TITLE_BLOCK']")
+    (turned,) = doc.modelspace().query("INSERT[name=='DESIGNATION']")
+    assert block.get_attrib_text("DESIGNATION") == turned.get_attrib_text("DESIGNATION") == "ТММ.КП.01.00.000 Д1"
+    assert [block.get_attrib_text(tag) for tag in ("SHEET", "SHEETS", "MASS")] == ["1", "4", "–"]
+    names = {f"{role}{end}" for role in ("DEVELOPED", "CHECKED", "SUPERVISOR", "NORM_CONTROL", "APPROVED") for end in ("", "_DATE")}
+    tags = {a.dxf.tag for a in block.attribs}
+    assert names | {"GROUP", "INSTITUTION"} <= tags
+    assert tags == {e.dxf.tag for e in doc.blocks.get("TITLE_BLOCK").query("ATTDEF")}
+    block.get_attrib("DEVELOPED").dxf.text = "Петренко А. И."
+    number = next(e for e in doc.modelspace().query("TEXT") if "5131,9" in e.dxf.text)
+    number.dxf.text = number.dxf.text.replace("5131,9", "5132,0")
+    doc.saveas(path)
+    again = ezdxf.readfile(path)
+    assert not again.audit().has_issues
+    (block,) = again.modelspace().query("INSERT[name=='TITLE_BLOCK']")
+    assert block.get_attrib_text("DEVELOPED") == "Петренко А. И."
+    assert any("5132,0" in e.dxf.text for e in again.modelspace().query("TEXT"))
+
+
+def test_what_programs_without_attributes_show_says_the_same(sheet):
+    _, doc = sheet
+    attributes = [(a.dxf.text, a.dxf.height, z(a.dxf.align_point))
+                  for insert in doc.modelspace().query("INSERT") for a in insert.attribs if a.dxf.text]
+    hidden = [(e.dxf.text, e.dxf.height, z(e.dxf.align_point)) for e in doc.modelspace().query("TEXT") if e.dxf.invisible]
+    assert sorted(hidden, key=str) == sorted(attributes, key=str)
+    shown = {e.dxf.text for e in everywhere(doc) if e.dxftype() == "TEXT" and not e.dxf.invisible}
+    assert not any(text.startswith("ТММ.КП") for text in shown)
+
+
+@pytest.mark.parametrize("fields", [{}, {"group": "Гр. 5"}, {"institution": "Кафедра"}, {"developed": "Щербакова-Ёлкина А. А."}])
+def test_every_line_of_the_form_has_a_place_in_its_cell(fields):
+    canvas = Canvas()
+    draw_frame(canvas, fields, "1", 1, 1)
+    doc = opened(dxf.render(Drawing(841, 594, "", tuple(canvas.marks), forms=tuple(canvas.forms))))
+    (block,) = doc.modelspace().query("INSERT[name=='TITLE_BLOCK']")
+    at = {a.dxf.tag: z(a.dxf.align_point) - complex(651, 5) for a in block.attribs}  # from the corner of the title block
+    for tag, (x0, y0, x1, y1) in {"DEVELOPED": (17, 25, 40, 30), "DEVELOPED_DATE": (55, 25, 65, 30), "GROUP": (135, 0, 185, 15),
+                                  "INSTITUTION": (135, 0, 185, 15), "TITLE": (65, 15, 135, 40)}.items():  # GOST 2.104, form 1
+        assert x0 < at[tag].real < x1
+        assert y0 <= at[tag].imag < y1
+    assert at["INSTITUTION"].imag != at["GROUP"].imag
+    assert {a.dxf.tag.lower(): a.dxf.text for a in block.attribs if a.dxf.text and a.dxf.tag.lower() in fields} == fields
+
+
+def test_every_entity_is_in_the_group_of_its_view(sheet):
+    drawing, doc = sheet
+    members = Counter(e.dxf.handle for _, group in doc.groups for e in group)
+    assert members == Counter(e.dxf.handle for e in doc.modelspace())
+    names = [view.name for view in drawing.views]
+    assert len(set(names)) == len(names)
+    assert {name for name, _ in doc.groups} == {view.dxf.name for view in doc.views}
+    for mine, theirs in zip(drawing.views, doc.views, strict=True):
+        box = mine.box
+        assert (theirs.dxf.height, theirs.dxf.width) == pytest.approx((box.height, box.width), abs=1e-3)
+        assert z(theirs.dxf.center) == pytest.approx(box.centre, abs=1e-3)
+
+
+def test_names_of_views_that_tables_do_not_take():
+    mark = Line(10 + 10j, 20 + 20j, "main")
+    view = View('a/b: <c>, "d"=1|2', SHEETS[1].views[0].box, ((0, 1),))
+    doc = opened(dxf.render(Drawing(841, 594, "", (mark,), views=(view,))))
+    assert not doc.audit().has_issues
+    ((name, _),) = doc.groups
+    assert not set(name) & set('<>/\\":;?*|,=`')
+
+
+def test_extents_are_those_of_the_lines(sheet):
+    _, doc = sheet
+    real = bbox.extents(e for e in doc.modelspace() if e.dxftype() not in ("TEXT", "INSERT", "DIMENSION"))
+    assert np.array(doc.header["$EXTMIN"])[:2] == pytest.approx([real.extmin.x, real.extmin.y], abs=1e-3)
+    assert np.array(doc.header["$EXTMAX"])[:2] == pytest.approx([real.extmax.x, real.extmax.y], abs=1e-3)
+
+
+@pytest.mark.parametrize(("start", "end", "box"), [
+    (0.0, 2 * pi, (-2, -2, 2, 2)), (0.25 * pi, 0.75 * pi, (-2**0.5, 2**0.5, 2**0.5, 2)), (-0.1, 0.1, (2 * cos(0.1), -2 * sin(0.1),
+     2, 2 * sin(0.1))), (pi, 1.5 * pi, (-2, -2, 0, 0))])  # fmt: skip
+def test_extents_of_an_arc(start, end, box):
+    doc = opened(dxf.render(Drawing(841, 594, "", (Arc(100 + 50j, 2.0, start, end, "main"),))))
+    found = [*doc.header["$EXTMIN"][:2], *doc.header["$EXTMAX"][:2]]
+    assert found == pytest.approx([100 + box[0], 50 + box[1], 100 + box[2], 50 + box[3]], abs=1e-3)
+
+
+def test_layers_are_told_in_words_and_no_rule_of_a_table_is_an_axis(sheet):
+    drawing, doc = sheet
+    for e in everywhere(doc):
+        assert doc.layers.has_entry(e.dxf.layer)
+        assert doc.layers.get(e.dxf.layer).description or e.dxf.layer == "0"
+    rules = [m for m in drawing.marks if isinstance(m, Line) and m.by and m.by.role == "table"]
+    assert rules
+    lines = {(round(e.dxf.start.x, 3), round(e.dxf.start.y, 3), round(e.dxf.end.x, 3), round(e.dxf.end.y, 3)): e.dxf.layer
+             for e in doc.modelspace().query("LINE")}
+    on = {lines[round(m.a.real, 3), round(m.a.imag, 3), round(m.b.real, 3), round(m.b.imag, 3)] for m in rules}
+    assert all(name.startswith("TABLE") for name in on)
+
+
+def test_signs_that_programs_take_for_codes_and_letters_their_fonts_lack():
+    marks = (Text(10 + 10j, "100 %%d ^A", 5.0), Text(10 + 30j, "a → b", 5.0), Text(10 + 50j, "→", 5.0, pi / 2))
+    doc = opened(dxf.render(Drawing(841, 594, "", marks)))
+    assert not doc.audit().has_issues
+    texts = list(doc.modelspace().query("TEXT"))
+    assert texts[0].plain_text().replace("%%%", "%").startswith("100 %")
+    assert "^ A" in texts[0].dxf.text
+    assert [t.dxf.text for t in texts[1:]] == ["a", "b"]
+    arrows = bbox.extents(doc.modelspace().query("LWPOLYLINE"))
+    assert arrows.has_data
+
+
+def test_a_form_without_anything_filled_in():
+    form = Form("title_block", 0, 1, (FormField("group", 1, 1, 30 + 20j, 3.5),))
+    doc = opened(dxf.render(Drawing(841, 594, "", (Line(0j, 50j, "main"),), forms=(form,))))
+    (insert,) = doc.modelspace()
+    assert [(a.dxf.tag, a.dxf.text) for a in insert.attribs] == [("GROUP", "")]

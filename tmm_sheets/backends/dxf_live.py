@@ -1,0 +1,223 @@
+"""A sheet as a CAD program works with it: lettering as TEXT, forms as blocks with attributes, dimensions, views as groups."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from math import cos, degrees, sin
+
+from tmm_sheets.backends.dxf_entities import entity, head, letter_strokes, place
+from tmm_sheets.backends.dxf_frame import DIMENSION_STYLE, LETTERS, STYLE, DxfFrame, SheetParts, weight
+from tmm_sheets.drawing.layers import layer
+from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
+from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text
+from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.resources import template
+
+AFTER = 0.2
+"""What the last letter's advance is longer than the letter, in letter heights."""
+TEXT_LAYER = "TEXT"
+KINDS = {"linear": 33, "radius": 36}
+"""Codes of dimensions: aligned, radius; 32 says that the block is the dimension's own."""
+
+
+class LiveSheet:
+    """Entities, blocks and groups of a drawing; handles are taken from ``handles``."""
+
+    def __init__(self, drawing: Drawing, frame: DxfFrame, handles: Iterator[int]) -> None:
+        self.marks, self.frame, self.handles = drawing.marks, frame, handles
+        self.parts = SheetParts()
+        self.found: dict[int, list[int]] = {}  # handles in model space by the first mark they stand for
+        self.places: dict[int, int] = {}  # of the entities with these handles
+        wholes: dict[int, Form | Dimension] = {d.first: d for d in drawing.dimensions}
+        wholes.update({form.first: form for form in drawing.forms})
+        i = 0
+        while i < len(self.marks):
+            whole = wholes.get(i)
+            if whole is None:
+                self._add(i, self._marks(self.marks[i : i + 1], frame.owner))
+                i += 1
+                continue
+            if isinstance(whole, Form):
+                self._form(whole)
+            else:
+                self._dimension(whole)
+            i = max(whole.end, i + 1)
+        for view in drawing.views:
+            self._group(view.name, [h for a, b in view.spans for k in range(a, b) for h in self.found.get(k, ())])
+
+    def _add(self, mark: int, made: list[tuple[int, str]]) -> None:
+        """Put entities with their handles into model space."""
+        self.found.setdefault(mark, []).extend(handle for handle, _ in made)
+        for handle, text in made:
+            self.places[handle] = len(self.parts.entities)
+            self.parts.entities.append(text)
+
+    def _marks(self, marks: tuple[Mark, ...], owner: str) -> list[tuple[int, str]]:
+        """Entities of some marks."""
+        made: list[tuple[int, str]] = []
+        for mark in marks:
+            on = layer(mark)
+            self.parts.layers.add(on.name)
+            if isinstance(mark, Text):
+                made += self._text(mark, owner, on.name)
+            else:
+                handle = next(self.handles)
+                made.append((handle, entity(mark, handle, owner, on.name, dashed=bool(line_type(mark.style).pattern))))
+        return made
+
+    def _text(self, mark: Text, owner: str, on: str) -> Iterator[tuple[int, str]]:
+        """A run of letters; those that LibreCAD's font has not are drawn."""
+        if (unknown := _unknown()).search(mark.text) is None and mark.text.strip() == mark.text:
+            handle = next(self.handles)
+            yield handle, _text(handle, owner, on, mark)
+            return
+        at, turn = mark.at, _direction(mark.angle)
+        for n, run in enumerate(unknown.split(mark.text)):
+            if n % 2:
+                for char in run:
+                    glyph(char)
+                first = next(self.handles)
+                strokes = sum(len(glyph(char).strokes) for char in run)
+                taken = iter((first, *(next(self.handles) for _ in range(strokes - 1))))
+                drawn = letter_strokes([mark._replace(at=at, text=run)], owner, on, taken)
+                yield from zip(range(first, first + strokes), re.findall(r"0\nLWPOLYLINE\n.*?(?=0\nLWPOLYLINE\n|\Z)", drawn, re.S),
+                               strict=True)
+            elif word := run.strip():
+                handle = next(self.handles)
+                start = at + turn * advance(run[: len(run) - len(run.lstrip())], mark.height)
+                yield handle, _text(handle, owner, on, mark._replace(at=start, text=word))
+            at += turn * advance(run, mark.height)
+
+    def _block(self, name: str, flags: int) -> str:
+        """Begin a block; returns the handle of its record."""
+        record = f"{next(self.handles):X}"
+        self.parts.records.append(f"0\nBLOCK_RECORD\n5\n{record}\n330\n{self.frame.records}\n100\nAcDbSymbolTableRecord\n"
+                                  f"100\nAcDbBlockTableRecord\n2\n{name}\n340\n0\n70\n0\n280\n1\n281\n0\n")
+        self.parts.blocks.append(f"0\nBLOCK\n5\n{next(self.handles):X}\n{head('AcDbBlockBegin', record, '0')}"
+                                 f"2\n{name}\n70\n{flags}\n{place(10, 0j)}3\n{name}\n1\n\n")
+        return record
+
+    def _end_block(self, record: str) -> None:
+        self.parts.blocks.append(f"0\nENDBLK\n5\n{next(self.handles):X}\n{head('AcDbBlockEnd', record, '0')}")
+
+    def _dimension(self, d: Dimension) -> None:
+        """A dimension with the picture of it that was drawn: programs show that until somebody changes the dimension."""
+        on = "DIMENSION"
+        name = f"*D{len(self.parts.records) + 1}"
+        record = self._block(name, 1)
+        self.parts.blocks += (text for _, text in self._marks(self.marks[d.first : d.end], record))
+        self._end_block(record)
+        handle = next(self.handles)
+        radius = d.kind == "radius"
+        self._add(d.first, [(handle, (
+            f"0\nDIMENSION\n5\n{handle:X}\n{head('AcDbDimension', self.frame.owner, on)}280\n0\n2\n{name}\n3\n{DIMENSION_STYLE}\n"
+            f"{place(10, d.a if radius else d.line + (d.b - d.a))}{place(11, d.middle)}70\n{KINDS[d.kind]}\n71\n5\n"
+            f"42\n{abs(d.b - d.a):.4f}\n1\n{_escaped(_said(d.text)) or ' '}\n"
+            + (f"100\nAcDbRadialDimension\n{place(15, d.b)}40\n0\n" if radius else
+               f"100\nAcDbAlignedDimension\n{place(13, d.a)}{place(14, d.b)}")))])
+
+    def _form(self, form: Form) -> None:
+        """A block with attributes.
+
+        LibreCAD does not know attributes, and shows what other programs take for invisible: it gets the same words as TEXT so.
+        """
+        name = form.name.upper()
+        record = self._block(name, 2)
+        filled = {k for f in form.fields for k in range(f.first, f.end)}
+        rest = tuple(self.marks[k] for k in range(form.first, form.end) if k not in filled)
+        self.parts.blocks += (text for _, text in self._marks(rest, record))
+        for f in form.fields:
+            self.parts.blocks.append(self._attribute("ATTDEF", f, record))
+        self._end_block(record)
+        insert = next(self.handles)
+        owner = self.frame.owner
+        text = (f"0\nINSERT\n5\n{insert:X}\n{head('AcDbBlockReference', owner, 'FRAME')}66\n1\n2\n{name}\n{place(10, 0j)}"
+                + "".join(self._attribute("ATTRIB", f, f"{insert:X}") for f in form.fields)
+                + f"0\nSEQEND\n5\n{next(self.handles):X}\n330\n{insert:X}\n100\nAcDbEntity\n8\nFRAME\n")
+        self._add(form.first, [(insert, text)])
+        for f in form.fields:
+            if value := self._value(f):
+                handle = next(self.handles)
+                self._add(form.first, [(handle, f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, TEXT_LAYER, _hidden())}"
+                                                f"{_centred(f, value)}100\nAcDbText\n")])
+
+    def _value(self, f: FormField) -> str:
+        """What stands in a field."""
+        return "".join(mark.text for mark in self.marks[f.first : f.end] if isinstance(mark, Text))
+
+    def _attribute(self, kind: str, f: FormField, owner: str) -> str:
+        tag, value = f.name.upper(), self._value(f)
+        prompt = f"3\n{f.name.replace('_', ' ')}\n" if kind == "ATTDEF" else ""
+        return (f"0\n{kind}\n5\n{next(self.handles):X}\n{head('AcDbText', owner, TEXT_LAYER)}{_centred(f, value)}"
+                f"100\nAcDb{'AttributeDefinition' if prompt else 'Attribute'}\n280\n0\n{prompt}2\n{tag}\n70\n0\n74\n0\n280\n1\n")
+
+    def _group(self, name: str, handles: list[int]) -> None:
+        if not handles:
+            return
+        group = f"{next(self.handles):X}"
+        name = clean(name)
+        self.parts.grouped.append(f"3\n{name}\n350\n{group}\n")
+        members = "".join(f"340\n{handle:X}\n" for handle in handles)
+        for handle in handles:
+            n, own = self.places[handle], f"5\n{handle:X}\n"
+            told = f"{own}102\n{{ACAD_REACTORS\n330\n{group}\n102\n}}\n"
+            self.parts.entities[n] = self.parts.entities[n].replace(own, told, 1)
+        # Not selectable: a click takes one line, not the view; by its name the group takes all of it.
+        self.parts.groups.append(f"0\nGROUP\n5\n{group}\n330\n{self.frame.groups}\n100\nAcDbGroup\n300\n{name}\n70\n0\n71\n0\n{members}")
+
+
+def clean(name: str) -> str:
+    """A name that tables of a DXF file take."""
+    return re.sub(r'[<>/\\":;?*|,=`]', " ", name).strip() or "_"
+
+
+def _hidden() -> str:
+    return "60\n1\n"
+
+
+@cache
+def _unknown() -> re.Pattern[str]:
+    """Pattern of letters that are ours and not in LibreCAD's font, in a group."""
+    text = template("fonts/lc_opengost-br.lff").read_text(encoding="utf-8")
+    known = "".join(re.escape(chr(int(code, 16))) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M))
+    return re.compile(rf"([^\s{known}]+)")
+
+
+def _direction(angle: float) -> complex:
+    return complex(cos(angle), sin(angle))
+
+
+def _said(markup: str) -> str:
+    """Lettering in one line of plain letters: programs that draw a dimension anew know no indices."""
+    return "".join(run.text for run in letter(markup, LETTERS).runs)
+
+
+def _escaped(text: str) -> str:
+    """Text as it is: a caret and two per cent signs mean something to programs."""
+    return text.replace("%%", "%%%%%%").replace("^", "^ ").replace(BAR, "")
+
+
+def _look(mark_height: float) -> str:
+    pen = weight(PEN * mark_height)
+    return "" if pen == weight(line_type("text").width) else f"370\n{pen}\n"
+
+
+def _text(handle: int, owner: str, on: str, mark: Text) -> str:
+    """A run as TEXT from its left end; two letters and more are fitted to their length, whatever the font."""
+    if missing := lacking(mark.text):
+        raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
+    turn = _direction(mark.angle)
+    end = mark.at + turn * (advance(mark.text, mark.height) - AFTER * mark.height)
+    fit = f"72\n5\n{place(11, end)}" if len(mark.text) > 1 else ""
+    angle = f"50\n{degrees(mark.angle) % 360:.4f}\n" if mark.angle else ""
+    return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, _look(mark.height))}{place(10, mark.at)}40\n{mark.height:g}\n"
+            f"1\n{_escaped(mark.text)}\n{angle}7\n{STYLE}\n{fit}100\nAcDbText\n")
+
+
+def _centred(f: FormField, value: str) -> str:
+    """Tags of lettering about the middle of its baseline; its left end is told too, as a matter of form."""
+    left = f.at - _direction(f.angle) * (advance(value, f.height) - AFTER * f.height if value else 0.0) / 2
+    angle = f"50\n{degrees(f.angle) % 360:.4f}\n" if f.angle else ""
+    return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}7\n{STYLE}\n72\n1\n{place(11, f.at)}"

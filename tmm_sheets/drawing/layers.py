@@ -1,0 +1,58 @@
+"""Layers of the output files: what lies on one is of one role and one line type. Their names are in ``templates/layers.toml``."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
+from typing import NamedTuple
+
+from tmm_sheets.drawing.marks import Mark, Text
+from tmm_sheets.drawing.styles import line_type, line_types
+from tmm_sheets.resources import template
+
+BY_STYLE = {"main": "symbol", "thin": "symbol", "centre": "axis", "hidden": "link", "twodot": "link"}
+"""Roles of marks that tell none, by line type; other line types are called after the role."""
+
+
+class Layer(NamedTuple):
+    """A layer: ``name`` is the same in every language, ``description`` says what lies on it, ``style`` is its line type."""
+
+    name: str
+    description: str
+    role: str
+    style: str
+
+
+@cache
+def roles() -> Mapping[str, Mapping[str, str]]:
+    """Rows of the file: by role its description and its usual line type."""
+    return MappingProxyType(tomllib.loads(template("layers.toml").read_text(encoding="utf-8")))
+
+
+@cache
+def layers() -> Mapping[tuple[str, str], Layer]:
+    """Every layer there may be, by role and line type; the role's usual one first."""
+    found = {}
+    for role, row in roles().items():
+        usual = row["style"]
+        for style in (usual, *(name for name in line_types() if name != usual)):
+            look = line_type(style)
+            found[role, style] = (Layer(role.upper(), row["description"], role, style) if style == usual else
+                                  Layer(f"{role.upper()}_{look.layer}", f"{row['description']}: {look.description}", role, style))
+    return MappingProxyType(found)
+
+
+def layer(mark: Mark) -> Layer:
+    """The layer of a mark."""
+    style = "text" if isinstance(mark, Text) else mark.style
+    if mark.of == "title block" and not isinstance(mark, Text):
+        role = "frame"
+    else:
+        role = mark.by.role if mark.by is not None else BY_STYLE.get(style, style)
+    try:
+        return layers()[role, style]
+    except KeyError:
+        line_type(style)  # says which there are
+        raise ValueError(f"role '{role}' is not in templates/layers.toml (it has {', '.join(roles())})") from None
