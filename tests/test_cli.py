@@ -200,22 +200,22 @@ def pages(path):
     return len(re.findall(rb"/Type /Page\n|/Type /Page ", path.read_bytes()))
 
 
-def test_all_sheets_in_one_pdf(project, tmp_path, capsys):
+def test_all_sheets_in_one_pdf(tmp_path, capsys):
     """A sheet that cannot be drawn is not in it, and it is not current then."""
     out = tmp_path / "out"
     words = ["-o", str(out), "--format", "pdf,svg", "--one-file"]
-    assert run(["build", project(('roller = "3.5 mm"', 'roller = "9 mm"')), *words]) == 1
+    assert run(["build", write(tmp_path, SHAPER, {"cam.roller": "9 mm"}), *words]) == 1
     assert listing(out) == [RECORD, "sheet1.svg", "sheet2.svg", "sheet3.svg", "sheets.pdf"]
     assert pages(out / "sheets.pdf") == 3
     capsys.readouterr()
-    assert run(["build", project(), *words]) == 0
+    assert run(["build", write(tmp_path, SHAPER), *words]) == 0
     assert capsys.readouterr().out.split() == [str(out / name) for name in ("sheets.pdf", *(f"sheet{n}.svg" for n in (1, 2, 3, 4)))]
     assert pages(out / "sheets.pdf") == 4
-    assert run(["build", project(), *words]) == 0
+    assert run(["build", write(tmp_path, SHAPER), *words]) == 0
     assert "5 of 5 files unchanged" in capsys.readouterr().err
-    assert run(["build", project(), "--sheet", "2", *words]) == 0
+    assert run(["build", write(tmp_path, SHAPER), "--sheet", "2", *words]) == 0
     assert pages(out / "sheets.pdf") == 1
-    assert run(["build", project(), "--format", "svg", "--one-file", "-o", str(out)]) == 2
+    assert run(["build", write(tmp_path, SHAPER), "--format", "svg", "--one-file", "-o", str(out)]) == 2
     assert "--one-file is for PDF" in capsys.readouterr().err
 
 

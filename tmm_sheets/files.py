@@ -142,10 +142,10 @@ def source_date() -> int | None:
     if not told:
         return None
     try:
-        seconds = int(told)
-        if seconds < 0 or gmtime(seconds).tm_year > 9999:
-            raise ValueError
+        seconds, year = int(told), gmtime(int(told)).tm_year
     except (ValueError, OverflowError, OSError):
+        seconds, year = -1, 0
+    if seconds < 0 or year > 9999:
         raise BadInput(Problem(f"expected whole seconds since 1970, not '{told}'", "environment", field="SOURCE_DATE_EPOCH",
-                               hint="such as 1700000000; or leave it unset")) from None
+                               hint="such as 1700000000; or leave it unset"))
     return seconds

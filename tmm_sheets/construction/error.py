@@ -98,7 +98,7 @@ class Errors:
         self._known: dict[int, _Known | None] = {}
         self._numbers: dict[int, int] = {}
         self._steps: list[Step] = []
-        self._sizes: npt.NDArray[np.bool_] = np.zeros(0, dtype=bool)
+        self._sizes: Numbers = np.zeros(0, dtype=np.intp)
         self._elsewhere: dict[tuple[int, int], int] = {}
         self._single: dict[int, tuple[int, int]] = {}
         self._links: dict[int, dict[int, Any]] = {}
@@ -190,17 +190,17 @@ class Errors:
             # What was taken from a single position of another plan has its error there.
             places = [self._single.get(int(n), (int(n), k)) for n in known.sources]
             sources, at = np.array(places, dtype=np.intp).reshape(-1, 2).T
-            at = np.where(self._spread[sources], at, 0)
+            sizes = self._sizes_of(sources)
+            at = np.where(sizes > 1, at % sizes, 0)  # the position that closes the cycle is the first again
             found.append((at, sources, (row @ known.jacobian[j]).reshape(-1, 2), (row @ known.scaled[j]).reshape(-1, 2)))
         at, sources, by, shares = (np.concatenate(parts) for parts in zip(*found, strict=True))
         return at, sources, by, shares
 
-    @property
-    def _spread(self) -> npt.NDArray[np.bool_]:
-        """For every source, whether it has a value for each position."""
+    def _sizes_of(self, sources: Numbers) -> Numbers:
+        """How many values some sources have."""
         if len(self._sizes) < len(self._steps):
-            self._sizes = np.array([np.size(step.value) > 1 for step in self._steps])
-        return self._sizes
+            self._sizes = np.array([np.size(step.value) for step in self._steps], dtype=np.intp)
+        return self._sizes[sources]
 
     def source(self, step: Step) -> int:
         """Number of a step among the sources of errors; -1 for what has none."""

@@ -45,7 +45,13 @@ def layers() -> Mapping[tuple[str, str], Layer]:
 
 
 def layer(mark: Mark) -> Layer:
-    """The layer of a mark."""
+    """The layer of a mark.
+
+    Raises
+    ------
+    ValueError
+        when there is no layer for its role and line type.
+    """
     style = "text" if isinstance(mark, Text) else mark.style
     if mark.of == "title block" and not isinstance(mark, Text):
         role = "frame"

@@ -179,12 +179,8 @@ def free_name(outlet: Outlet, record: BuildRecord, name: str) -> str:
     """The name itself where no file of that name was changed by hand, else the first such one with .new (.new2 ...) in it."""
     ours = {content for _, content in record.files.values()}
     stem, dot, suffix = name.rpartition(".")
-    for n in count():
-        candidate = f"{stem}.new{n if n > 1 else ''}{dot}{suffix}" if n else name
-        data = outlet.read(candidate)
-        if data is None or fingerprint(data) in ours:
-            return candidate
-    raise AssertionError("there are names without end")
+    names = (f"{stem}.new{n if n > 1 else ''}{dot}{suffix}" if n else name for n in count())
+    return next(other for other in names if (data := outlet.read(other)) is None or fingerprint(data) in ours)
 
 
 def keep(outlet: Outlet, record: BuildRecord, made: Mapping[str, bytes], made_from: Mapping[str, str], whole: str | None,

@@ -52,7 +52,10 @@ def given(x: Any, positions: int) -> dict[str, Any]:
         found = {"given": written(x.value), **shape(x.value, positions), **_origin(x)}
         if x.over != "positions":  # what the row itself says of nodes and tables goes before its length
             found["over"] = x.over
-        return found | ({"type": "choice", "criterion": x.choice} if x.choice else {})
+        if not x.choice:
+            return found
+        # Whole numbers and words that a search found; of an angle or a point its own type says how to read it.
+        return found | {"criterion": x.choice} | ({"type": "choice"} if found["type"] in ("integer", "choice") else {})
     return {"given": written(x), **shape(x, positions), **_origin(x)}
 
 

@@ -109,6 +109,7 @@ def least_ring(satellite: int, addendum: float, alpha: float = pi / 9) -> int:
     Two conditions of an internal pair: the ring's tip ends on the satellite's involute, and the tips do not meet outside
     the line of action (J. E. Shigley; KHK, gear technical reference, internal gears).
     """
+    satellite = int(satellite)
     top = satellite * sin(alpha) ** 2 - 2 * addendum  # the first condition has no solution below, and an asymptote there
     for ring in range(satellite + 1, 100 * satellite if top > 0 else satellite + 200):
         if _meshes_inside(satellite, ring, addendum, alpha):
