@@ -69,7 +69,7 @@ class Hand:
     def _done(self, step: Step) -> Any:
         if not error._numeric(step.value) or error._beyond_paper(step):
             return step.value
-        args = tuple(a for a in step.args if not (isinstance(a, Step) and error._beyond_paper(a)))
+        args = error._on_paper(step)
         values = [self.drawn[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
         self.errors.error(step)
         with np.errstate(all="ignore"):
@@ -228,9 +228,10 @@ def misread(found: Measurables, rng: np.random.Generator) -> tuple[list[Judged],
 
 
 def _touched(j: Judged, plant: Plant, found: Measurables) -> bool:
-    """True for a number that depends on the planted step, at its position."""
-    step = next(plan[plant.step] for plan, _ in found.plans if plan.name == plant.plan)
-    return j.entry.label == plant.label and any(s is step for s, _, _ in j.rows)
+    """True for a number that depends on the planted step at its position."""
+    plan = next(plan for plan, _ in found.plans if plan.name == plant.plan)
+    step = plan[plant.step]
+    return any(s is step and (np.size(step.value) == 1 or plan.labels[k] == plant.label) for s, k, g in j.rows if g)
 
 
 if __name__ == "__main__":

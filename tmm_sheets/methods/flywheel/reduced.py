@@ -233,8 +233,20 @@ class Reduced:
         """Reduced quantities at some angles with plans that are kept under the name ``@where``."""
         found = self.kept.get(where)
         if found is None or not np.array_equal(found.phi, phi):
+            if found is not None:
+                self._count(found)
             found = self.kept[where] = Reduction(self, f"@{where}", phi, labels or tuple(map(str, range(np.size(phi)))))
         return found
+
+    def _count(self, tried: Reduction) -> None:
+        """Plans that finer ones replace were a search."""
+        tally = self.mechanism.search("quadrature")
+        assert tally is not None
+        for plan in tried.plans:
+            tally.plans += 1
+            for step in (*plan, *plan.asides.values()):
+                if step.evaluated:
+                    tally.append(sum(step.seconds))
 
     def _search(self, phi: Any) -> Reduction:
         """Reduced quantities at angles that are only tried: plans that nobody keeps."""
