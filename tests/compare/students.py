@@ -67,7 +67,7 @@ class Hand:
         return self.drawn[id(step)]
 
     def _done(self, step: Step) -> Any:
-        if not error._numeric(step.value) or error._beyond_paper(step):
+        if not error._numeric(step.value) or error._beyond_paper(step) or step.rule.exact:
             return step.value
         args = error._on_paper(step)
         values = [self.drawn[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
@@ -117,13 +117,28 @@ class Hand:
         times = self.found.scales[check.scale].mu if check.scale else 1.0
         return float(f"{check.compute(*(written[name] * times for name in check.needs)):.3g}")
 
+    def gone_on_with(self, e: Measurable, value: float) -> None:
+        """A reduced moment that was computed and written down is what is plotted."""
+        step, k, g = e.terms[0]
+        if step.plan == "reduction":
+            made = np.array(self.value(step), dtype=float)
+            made[(k,) if made.ndim else ()] = value / g.real
+            self.drawn[id(step)] = made
+
     def filled(self, chosen: Mapping[str, Measurable] | None = None) -> Filled:
         """A file with everything that can be measured, or with what was chosen."""
         lines: list[MeasuredLine] = []
         written: dict[str, float] = {}
-        for i, e in enumerate((chosen or self.found.entries).values()):
+        def drawing(item: tuple[int, Measurable]) -> tuple[int, bool, int]:
+            """What is measured on a step comes before what is computed from it, all in the order of drawing."""
+            i, e = item
+            return max((self.errors.order(s) for s, _, _ in e.terms), default=10**9), e.kind == "result", i
+
+        for i, e in sorted(enumerate((chosen or self.found.entries).values()), key=drawing):
             value = self.computed(e, written)
             written[e.id] = value
+            if e.kind == "result" and len(e.terms) == 1 and np.isfinite(value):
+                self.gone_on_with(e, value)
             if np.isfinite(value):
                 half = 0.25 if e.kind != "result" else 0.5 * 10.0 ** (np.floor(np.log10(abs(value) or 1)) - 2)
                 lines.append(MeasuredLine(e, value, float(half), i))

@@ -143,6 +143,22 @@ def test_a_result_computed_wrong(shaper, some):
     assert "does not follow from your own |pd|" in found.remark
 
 
+@pytest.mark.parametrize(("computed", "plotted", "said"), [(5.39, 215.5, "green"), (5.50, 220.0, "green"), (5.39, 218.6, "red"),
+                                                         (5.50, 215.5, "red")])
+def test_an_ordinate_is_plotted_as_it_was_computed(shaper, computed, plotted, said):
+    """A pencil may make 7 mm of it in the velocity plan; from a number that is written down it makes none."""
+    names = ("velocities/8/pd", "velocities/8/pb3", "results/8/J_red", "reduced-inertia/8/y_J")
+    filled = Hand(shaper, np.random.default_rng(1), sigma=0.0).filled({name: shaper.entries[name] for name in names})
+    changed(filled, **{"results__8__J_red": computed, "reduced-inertia__8__y_J": plotted})
+    of = {j.entry.id: j for j in judged(shaper, filled)}
+    ordinate = of["reduced-inertia/8/y_J"]
+    assert ordinate.tolerance == pytest.approx(6.9, abs=0.1)
+    assert of["results/8/J_red"].verdict == "green"
+    assert ordinate.verdict == said
+    assert ordinate.starts == (said == "red")
+    assert ("does not follow from your own J_пр" in ordinate.remark) == (said == "red")
+
+
 def test_a_wrong_sign(shaper):
     name = "work/y_A(5)"
     filled = Hand(shaper, np.random.default_rng(1), sigma=0.0).filled({name: shaper.entries[name]})

@@ -61,7 +61,10 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     for j in judged:
         j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
-    _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors)
+    own = OwnNumbers(judged, errors) if judged else None
+    if own is not None:
+        _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors, own)
+        _against_own(own, found)
     for j in judged:
         wrong = [n for n in computed.get(id(j), ()) if n.verdict != "green"]
         if j.verdict != "green" and wrong:
@@ -81,6 +84,7 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
         error /= ratio if e.kind == "result" else 1.0
     else:
         error, rows = errors.of_sum((s, k, g * size) for s, k, g in e.terms)
+    rows = [row for row in rows if _matters(*row, error, errors)]
     exact = e.value * size if e.slope is None else _tilted(e.value, e.slope, found, factors)
     read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
     # A ruler is read no better than its reading is written.
@@ -94,6 +98,13 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size)
     judged.remark = _remark(judged, measured, tolerance)
     return judged
+
+
+def _matters(step: Step, k: int, g: complex, error: float, errors: Errors) -> bool:
+    """False for what a number depends on by nothing but rounding: a thousandth of the step does a millionth of the error."""
+    of_step = errors.error(step)
+    most = max(float(of_step[min(k, len(of_step) - 1)]), 1e-3 * abs(complex(value_at(step, k))))
+    return isfinite(abs(g)) and abs(g) * most > 1e-6 * error
 
 
 def _of_squares(e: Measurable, errors: Errors, reading: float, ratio: float) -> float:
@@ -300,18 +311,16 @@ def _loss(r: Any) -> Any:
     return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
 
 
-def _chains(judged: list[Judged], errors: Errors) -> None:
+def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
     sheet = _Sheet(judged, errors)
-    own = OwnNumbers(judged, errors) if judged else None
     open_ = np.array([j.verdict == "red" for j in judged])
     tried = 0
     while open_.any():
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         open_[first] = False
-        assert own is not None
-        start.follows = _own_reason(judged, own, int(first))
+        start.follows = _own_reason(own, start)
         if start.follows is not None:
             continue
         start.starts = True
@@ -337,18 +346,31 @@ def _chains(judged: list[Judged], errors: Errors) -> None:
                     j.follows = start
 
 
-def _own_reason(judged: list[Judged], own: OwnNumbers, i: int) -> Judged | None:
+def _own_reason(own: OwnNumbers, j: Judged) -> Judged | None:
     """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
-    expected = float(own.expected[i])
-    if abs(judged[i].deviation - expected) > 2 * hypot(float(own.tolerance[i]), CURVED * expected):
+    expected, tolerance = own.expected(j)
+    if abs(j.deviation - expected) > 2 * hypot(tolerance, CURVED * expected):
         return None
-    for k, part in own.reasons(i):
-        earlier = judged[k]
-        if earlier.starts or earlier.follows is not None:
+    for earlier, part, _ in own.reasons(j):
+        if (earlier.starts or earlier.follows is not None) and abs(part) > SHARE * abs(expected):
             return earlier.follows or earlier
-        if abs(part) < SHARE * abs(expected):
-            break
     return None
+
+
+def _against_own(own: OwnNumbers, found: Measurables) -> None:
+    """Accuse ordinates that a pencil might have made, but not from the student's own numbers: those before them are in order."""
+    for j in own.judged:
+        if j.verdict != "green" or j.entry.kind != "length" or j.entry.scale not in found.on_paper:
+            continue
+        expected, tolerance = own.expected(j)
+        if abs(j.deviation - expected) <= 2 * hypot(tolerance, CURVED * expected):
+            continue
+        reasons = [earlier for earlier, _, influence in own.reasons(j) if influence > SHARE * j.tolerance]
+        if reasons and all(earlier.verdict == "green" for earlier in reasons):
+            of = reasons[0]
+            j.off_own = j.starts = True
+            j.remark = (f"does not follow from your own {of.entry.quantity} = {number(of.line.value, 5)}: "
+                        f"that gives {number(j.exact + expected, 4)}")
 
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:

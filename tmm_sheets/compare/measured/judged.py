@@ -47,6 +47,7 @@ class Judged:
     mistake: Mistake | None = None
     remark: str = ""
     inconsistent: bool = False
+    off_own: bool = False
     size: float = 1.0
     order: int = 0
 
@@ -58,6 +59,8 @@ class Judged:
     @property
     def verdict(self) -> Verdict:
         """Green, amber or red; not green where it does not follow from the student's own numbers."""
+        if self.off_own:
+            return "red"
         judged = verdict(self.deviation, self.tolerance)
         return "amber" if judged == "green" and self.inconsistent else judged
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from math import degrees, hypot
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +16,6 @@ from tmm_sheets.compare.measured.measurable import (
     RESULTS,
     Measurable,
     Measurables,
-    Term,
     length,
     magnitude,
     measured_step,
@@ -121,88 +120,63 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
 
 
 def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> None:
-    """Reduced moments and energies from the velocity plans: their errors are those of the velocities."""
+    """Reduced moments and energies: values of their steps, which stand on the velocity plans."""
     study, r = project.study, project.reduced
-    vel, omega1, mu = study.velocities, project.reduced.omega1, found.scales["velocities"].mu
     title, unit = "Приведённый момент сил", "Н·м"
-    acting = _acting(project)
-    exact = np.asarray(r.moment(study.turned, side=1))
+    total = r.numbered.moment()
+    moving = {id(step): name for name, step in (*study.velocities.points.items(), *study.velocities.omega.items())}
+    powers = [step for step in total.args if isinstance(step, Step)]
     for k in indices:
-        label = study.labels[k]
-        parts = [(name, step, complex(f[k]) / omega1) for name, step, f in acting]
-        named = {id(step): name for name, step in (*vel.points.items(), *vel.omega.items())}
-        for name, step, g in parts:
-            moment = float((np.conj(g) * complex(value_at(step, k))).real)
-            speed = abs(complex(value_at(step, k)))
+        label, working = study.labels[k], []
+        for power in powers:
+            entry, moment = f"{RESULTS}/{label}/M_{power.name.removeprefix('N_')}", float(value_at(power, k)) / r.omega1
+            velocity = next(a for a in power.args if isinstance(a, Step) and id(a) in moving)
+            speed = abs(complex(value_at(velocity, k)))
             if speed > 0:
-                letter = "ω" if step.rule.gives == "number" else "V_"
-                found.check(f"{RESULTS}/{label}/M_{name}", [f"{RESULTS}/{label}/{letter}{named[id(step)]}"],
-                            lambda v, m=moment / speed: m * v)
-            read = abs(g) * mu if step.rule.gives != "number" else 0.0
-            found.add(Measurable(f"{RESULTS}/{label}/M_{name}", RESULTS, title, label, f"M_{name}", unit, "result", moment,
-                                 ((step, k, g),), "velocities", read, signed=True))
-        read = hypot(*(abs(g) * mu for _, step, g in parts if step.rule.gives != "number"))
-        working = [f"{RESULTS}/{label}/M_{name}" for name, _, g in parts if g]
+                letter = "ω" if velocity.rule.gives == "number" else "V_"
+                found.check(entry, [f"{RESULTS}/{label}/{letter}{moving[id(velocity)]}"], lambda v, m=moment / speed: m * v)
+            found.add(Measurable(entry, RESULTS, title, label, f"M_{power.name.removeprefix('N_')}", unit, "result", moment,
+                                 ((power, k, 1 / r.omega1 + 0j),), "velocities", signed=True))
+            if moment:
+                working.append(entry)
         found.check(f"{RESULTS}/{label}/M_red", working, lambda *moments: float(sum(moments)))
-        found.add(Measurable(f"{RESULTS}/{label}/M_red", RESULTS, title, label, "M_пр", unit, "result", float(exact[k]),
-                             tuple((step, k, g) for _, step, g in parts), "velocities", read, signed=True))
+        found.add(_value(f"{RESULTS}/{label}/M_red", title, label, "M_пр", unit, k, total))
     _energies(project, found, indices)
 
 
-def _acting(project: Project) -> list[tuple[str, Step, Any]]:
-    """Technological forces and moments and the weights that count: name, velocity they work with, values at the positions."""
-    study, gravity = project.study, project.reduced.gravity
-    vel = study.velocities
-    acting: list[tuple[str, Step, Any]] = []
-    for f in project.applied:
-        acting.append((f.name, vel.omega[f.link], f.law(study.turned, 1)) if f.point is None
-                      else (f.name, vel.points[f.point], f.vector(study.turned, 1)))
-    for link in project.mechanism.links.values():
-        if gravity and link.mass and link.centre is not None and link.centre not in project.mechanism.fixed:
-            acting.append((f"G{link.name}", vel.points[link.centre], np.full(len(study.labels), -1j * link.mass * gravity)))
-    return acting
+def _value(entry: str, title: str, label: str, quantity: str, unit: str, k: int, step: Step,
+           squares: tuple[tuple[float, Step, int, float], ...] = ()) -> Measurable:
+    """Value of a step at a position as a result that is read from the velocity plan."""
+    return Measurable(entry, RESULTS, title, label, quantity, unit, "result", float(value_at(step, k)), ((step, k, 1 + 0j),),
+                      "velocities", signed=True, squares=squares)
 
 
 def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> None:
     """Twice the kinetic energy of each link and the reduced moment of inertia."""
     study, r = project.study, project.reduced
     vel, mu = study.velocities, found.scales["velocities"].mu
-    title, total = "Удвоенные кинетические энергии звеньев", np.asarray(r.inertia(study.turned))
+    total, plan = r.numbered.inertia, r.numbered.plan
+    title, unit = "Удвоенные кинетические энергии звеньев", "кг·м²/с²"
     for k in indices:
-        label = study.labels[k]
-        terms: list[Term] = []
-        reads: list[float] = []
-        energies: list[str] = []
+        label, energies = study.labels[k], []
         squares: list[tuple[float, Step, int, float]] = []
         for link in project.mechanism.links.values():
-            turning = link.pivot_inertia or link.inertia
-            if link.pivot_inertia is None and link.mass and link.centre is not None and link.centre not in project.mechanism.fixed:
-                v = complex(value_at(vel.points[link.centre], k))
-                step, read = vel.points[link.centre], 2 * link.mass * abs(v) * mu
-                name = f"m{link.name}V_{link.centre}²"
-                squares.append((link.mass, step, k, mu))
-                found.add(Measurable(f"{RESULTS}/{label}/m{link.name}V_{link.centre}^2", RESULTS, title, label, name, "кг·м²/с²",
-                                     "result", link.mass * abs(v) ** 2, ((step, k, 2 * link.mass * v),), "velocities", read,
-                                     squares=(squares[-1],)))
-                terms.append((step, k, 2 * link.mass * v / r.omega1**2))
-                reads.append(read / r.omega1**2)
-                energies.append(f"{RESULTS}/{label}/m{link.name}V_{link.centre}^2")
-                found.check(energies[-1], [f"{RESULTS}/{label}/V_{link.centre}"], lambda v, m=link.mass: m * v**2)
+            n, turning = link.name, link.pivot_inertia or link.inertia
+            if link.pivot_inertia is None and r.moves(link):
+                name, speed = f"m{n}V_{link.centre}²", f"{RESULTS}/{label}/V_{link.centre}"
+                energies.append(f"{RESULTS}/{label}/m{n}V_{link.centre}^2")
+                found.check(energies[-1], [speed], lambda v, m=link.mass: m * v**2)
+                squares.append((link.mass, vel.points[str(link.centre)], k, mu))
+                found.add(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)))
             if turning:
-                w = float(value_at(vel.omega[link.name], k))
-                step, letter = vel.omega[link.name], "J" if link.pivot_inertia is not None else "J_S"
-                name = f"{letter}{link.name}ω{link.name}²"
-                squares.append((turning, step, k, 0.0))
-                found.add(Measurable(f"{RESULTS}/{label}/{letter}{link.name}omega{link.name}^2", RESULTS, title, label, name,
-                                     "кг·м²/с²", "result", turning * w**2, ((step, k, complex(2 * turning * w)),),
-                                     squares=(squares[-1],)))
-                terms.append((step, k, complex(2 * turning * w / r.omega1**2)))
-                energies.append(f"{RESULTS}/{label}/{letter}{link.name}omega{link.name}^2")
-                found.check(energies[-1], [f"{RESULTS}/{label}/ω{link.name}"], lambda w, j=turning: j * w**2)
+                name = f"{'J' if link.pivot_inertia is not None else 'J_S'}{n}ω{n}²"
+                energies.append(f"{RESULTS}/{label}/{name.replace('ω', 'omega').replace('²', '^2')}")
+                found.check(energies[-1], [f"{RESULTS}/{label}/ω{n}"], lambda w, j=turning: j * w**2)
+                squares.append((turning, vel.omega[n], k, 0.0))
+                found.add(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)))
         found.check(f"{RESULTS}/{label}/J_red", energies, lambda *parts: float(sum(parts)) / r.omega1**2)
-        found.add(Measurable(f"{RESULTS}/{label}/J_red", RESULTS, "Приведённый момент инерции", label, "J_пр", "кг·м²", "result",
-                             float(total[k]), tuple(terms), "velocities", hypot(*reads),
-                             squares=tuple((factor / r.omega1**2, step, at, per_mm) for factor, step, at, per_mm in squares)))
+        found.add(_value(f"{RESULTS}/{label}/J_red", "Приведённый момент инерции", label, "J_пр", "кг·м²", k, total,
+                         tuple((factor / r.omega1**2, step, at, per_mm) for factor, step, at, per_mm in squares)))
 
 
 def _forces(project: Project, found: Measurables) -> None:

@@ -23,36 +23,37 @@ Floats = npt.NDArray[np.float64]
 
 
 class OwnNumbers:
-    """Expected deviations of the numbers of a file.
-
-    Attributes
-    ----------
-    expected
-        deviation from the exact value that the earlier numbers let expect, in the number's own unit; shape (n,).
-    tolerance
-        how far the number may be from that; shape (n,), infinite where there is no tolerance.
-    """
+    """Expected deviations of the numbers of a file, by those before them; ``judged`` are the numbers in the order of drawing."""
 
     def __init__(self, judged: Sequence[Judged], errors: Errors) -> None:
-        self.order = sorted(range(len(judged)), key=lambda i: (judged[i].order, i))
-        self.rank = {i: r for r, i in enumerate(self.order)}
-        some = [judged[i] for i in self.order]
-        self.deviations = np.array([j.deviation for j in some])
-        self._root = np.linalg.cholesky(_covariance(some, errors))
-        own = np.diag(self._root)
-        independent = _solved(self._root, self.deviations)
-        back = [self.rank[i] for i in range(len(judged))]
-        self.expected = (self.deviations - independent * own)[back]
-        self.tolerance = np.where([np.isfinite(j.tolerance) for j in some], own, np.inf)[back]
+        # What is measured on a step comes before what is computed from it.
+        self.judged = [judged[i] for i in sorted(range(len(judged)),
+                                                 key=lambda i: (judged[i].order, judged[i].entry.kind == "result", i))]
+        self._rank = {id(j): r for r, j in enumerate(self.judged)}
+        self._tolerances = np.array([j.tolerance if _informative(j) else np.inf for j in self.judged])
+        self._units = np.where(np.isfinite(self._tolerances), self._tolerances, 1.0)
+        self._deviations = np.where(np.isfinite(self._tolerances), [j.deviation for j in self.judged], 0.0) / self._units
+        self._root = np.linalg.cholesky(_covariance(self.judged, errors, self._tolerances))
+        self._independent = _solved(self._root, self._deviations)
 
-    def reasons(self, i: int) -> list[tuple[int, float]]:
-        """Earlier numbers and what each contributes to the expected deviation of number ``i``, the greatest first."""
-        r = self.rank[i]
+    def expected(self, j: Judged) -> tuple[float, float]:
+        """Deviation from the exact value that the earlier numbers let expect, and how far it may be from that; own unit."""
+        r = self._rank[id(j)]
+        own, unit = float(self._root[r, r]), float(self._units[r])
+        expected = float(self._deviations[r] - self._independent[r] * own)
+        return expected * unit, own * unit if np.isfinite(self._tolerances[r]) else float("inf")
+
+    def reasons(self, j: Judged) -> list[tuple[Judged, float, float]]:
+        """Earlier numbers with the greatest influence on what is expected of a number, the greatest first.
+
+        With each, what it contributes to the expected deviation, and what it would when it was off by its tolerance.
+        """
+        r = self._rank[id(j)]
         if r == 0:
             return []
         weights = _solved(self._root[:r, :r].T[::-1, ::-1], self._root[r, :r][::-1])[::-1]
-        parts = weights * self.deviations[:r]
-        return [(self.order[k], float(parts[k])) for k in np.argsort(-np.abs(parts))]
+        parts, unit = weights * self._deviations[:r], float(self._units[r])
+        return [(self.judged[k], float(parts[k]) * unit, abs(float(weights[k])) * unit) for k in np.argsort(-np.abs(weights))]
 
 
 def _solved(lower: Any, right: Any) -> Floats:
@@ -60,8 +61,17 @@ def _solved(lower: Any, right: Any) -> Floats:
     return np.asarray(np.linalg.solve(lower, right))
 
 
-def _covariance(judged: Sequence[Judged], errors: Errors) -> Floats:
-    """Covariance of the deviations, one row and column for each number.
+SQUARE = 0.3
+"""Share of itself that an energy may be off by for its error to be told by its gradient."""
+
+
+def _informative(j: Judged) -> bool:
+    """Whether a number tells something of others: it has a tolerance, and is no energy of what nearly rests."""
+    return bool(np.isfinite(j.tolerance)) and not (j.entry.squares and j.tolerance > SQUARE * abs(j.exact))
+
+
+def _covariance(judged: Sequence[Judged], errors: Errors, tolerances: Floats) -> Floats:
+    """Covariance of the deviations in units of the tolerances, one row and column for each number.
 
     A result that was written down is what is gone on with: the error of computing it belongs to its step, and only rounding
     the written number is its own. A length is taken off the drawing again, so the error of reading it is its own.
@@ -69,28 +79,26 @@ def _covariance(judged: Sequence[Judged], errors: Errors) -> Floats:
     causes = [errors.causes((s, k, g * j.size) for s, k, g in j.entry.terms) for j in judged]
     rows = np.repeat(np.arange(len(judged)), [len(c[0]) for c in causes])
     at, sources, by, share = (np.concatenate([c[i] for c in causes]) for i in range(4))
-    columns, which = np.unique(sources * (at.max(initial=0) + 1) + at, return_inverse=True)
+    places = at.max(initial=0) + 1
+    columns, which = np.unique(sources * places + at, return_inverse=True)
     shares, gradients = np.zeros((2, len(judged), len(columns), 2))
-    np.add.at(shares, (rows, which), np.nan_to_num(share))
-    np.add.at(gradients, (rows, which), np.nan_to_num(by))
-    shares = shares.reshape(len(judged), -1)
-    tolerance = np.array([j.tolerance for j in judged])
-    free = ~np.isfinite(tolerance)
-    scale = np.where(free, 1.0, tolerance) ** 2
-    own = np.maximum(scale - np.sum(shares**2, axis=1), 0.0)
-    computed = np.array([j.entry.kind == "result" and len(j.entry.terms) == 1 for j in judged])
+    np.add.at(shares, (rows, which), np.nan_to_num(share, posinf=0.0, neginf=0.0))
+    np.add.at(gradients, (rows, which), np.nan_to_num(by, posinf=0.0, neginf=0.0))
+    free = ~np.isfinite(tolerances)
+    unit = np.where(free, 1.0, tolerances)
+    shares = np.where(free[:, None], 0.0, shares.reshape(len(judged), -1) / unit[:, None])
+    own = np.maximum(1.0 - np.sum(shares**2, axis=1), 0.0)
+    computed = np.array([j.entry.kind == "result" and len(j.entry.terms) == 1 for j in judged]) & ~free
     further = np.zeros((len(judged), int(computed.sum())))
     for column, i in enumerate(np.flatnonzero(computed).tolist()):
         # The error of computing this number goes on to whatever is made of its step.
         step, k, g = judged[i].entry.terms[0]
-        key = errors.source(step) * (at.max(initial=0) + 1) + (k if np.size(step.value) > 1 else 0)
+        key = errors.source(step) * places + (k if np.size(step.value) > 1 else 0)
         c = int(np.searchsorted(columns, key))
-        further[i, column] = np.sqrt(own[i])
         if c < len(columns) and columns[c] == key:
-            further[i:, column] = gradients[i:, c] @ np.array([g.real, g.imag]) / abs(g) ** 2 * np.sqrt(own[i])
-    rounding = np.array([j.line.half_digit for j in judged]) ** 2
-    own = np.where(computed, rounding, own) + 1e-6 * scale
-    found = shares @ shares.T + further @ further.T + np.diag(own)
-    found[free], found[:, free] = 0.0, 0.0
-    found[free, free] = 1.0
-    return np.asarray(found)
+            further[i:, column] = gradients[i:, c] @ np.array([g.real, g.imag]) / abs(g) ** 2 * np.sqrt(own[i]) * unit[i] / unit[i:]
+            further[free, column] = 0.0
+        further[i, column] = np.sqrt(own[i])
+    rounding = (np.array([j.line.half_digit for j in judged]) / unit) ** 2
+    own = np.where(computed, np.minimum(rounding, 1.0), own) + 1e-4
+    return np.asarray(shares @ shares.T + further @ further.T + np.diag(np.where(free, 1.0, own)))
