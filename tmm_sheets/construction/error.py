@@ -222,7 +222,8 @@ class Errors:
                 if id(s) in values:
                     continue
                 args = _on_paper(s)
-                if all(not isinstance(a, Step) or values[id(a)] is a.value for a in args):
+                # What is exact stays as it was computed: a mistake goes on through what is drawn.
+                if s.rule.exact or all(not isinstance(a, Step) or values[id(a)] is a.value for a in args):
                     values[id(s)] = s.value
                 else:
                     with np.errstate(all="ignore"):

@@ -47,6 +47,8 @@ SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
 LONG = 10.0
 """Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
+PLOTTED = 0.8
+"""Share of an ordinate's tolerance that the number it was plotted from has."""
 EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
 
@@ -365,9 +367,9 @@ def _against_own(own: OwnNumbers, found: Measurables) -> None:
         expected, tolerance = own.expected(j)
         if abs(j.deviation - expected) <= 2 * hypot(tolerance, CURVED * expected):
             continue
-        reasons = [earlier for earlier, _, influence in own.reasons(j) if influence > SHARE * j.tolerance]
-        if reasons and all(earlier.verdict == "green" for earlier in reasons):
-            of = reasons[0]
+        # Plotted from one number that was written down: of an ordinate that many lead to, the linear guess is not good enough.
+        of, _, influence = (own.reasons(j) or [(j, 0.0, 0.0)])[0]
+        if influence > PLOTTED * j.tolerance and of.entry.kind == "result" and of.verdict == "green":
             j.off_own = j.starts = True
             j.remark = (f"does not follow from your own {of.entry.quantity} = {number(of.line.value, 5)}: "
                         f"that gives {number(j.exact + expected, 4)}")
