@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.rules import take
+from tmm_sheets.construction.rules import LINE_LINE, take
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number, size
 
@@ -64,8 +64,8 @@ def _segments(plan: Plan, step: Step, k: int) -> list[tuple[str, Any]]:
         return []
     end = value_at(step, k)
     points = [a for a in step.args if isinstance(a, Step) and a.name in plan and a.rule.gives in ("point", "vector")]
-    laid_off = step.rule.wording.startswith("От точки {0}") and points
-    starts = points[:1] if laid_off else [plan[plan.pole], *(points if step.rule.name == "lines meet" else ())]
+    laid_off = step.rule.laid_off and points
+    starts = points[:1] if laid_off else [plan[plan.pole], *(points if step.rule is LINE_LINE else ())]
     return [(s.name, end - value_at(s, k)) for s in dict.fromkeys(starts)]
 
 

@@ -76,10 +76,10 @@ ALONG = Rule(
 OFFSET = Rule(
     "lay off to one side", ar.along, ("point", "direction", "ordinate"), "point",
     "От точки {0} вдоль {1} отложим {2}: точка {name}.",
-    lambda a, v: (Helper("arc", a[0], v, abs(a[2])),),
+    lambda a, v: (Helper("arc", a[0], v, abs(a[2])),), laid_off=True,
 )
 SHIFT = Rule("lay off a vector", _shift, ("point", "vector"), "point", "От точки {0} отложим {1}: точка {name}.",
-             lambda a, v: (Helper("line", a[0], v),))
+             lambda a, v: (Helper("line", a[0], v),), laid_off=True)
 TURN = Rule("turn by 90 degrees", ar.turned, ("direction",), "direction", "Повернём направление {0} на 90°.")
 PERPENDICULAR = Rule(
     "perpendicular", lambda p, q: 1j * ar.ray(p, q), ("point", "point"), "direction",

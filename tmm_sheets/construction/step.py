@@ -66,6 +66,8 @@ class Rule:
         unit of the result where it is not that of the plan.
     source
         manual and section a formula is taken from.
+    laid_off
+        True for a vector laid off from the first argument: that is where it is measured from.
     exact
         True for a number that is computed, not drawn: the error analysis takes it as a given one.
 
@@ -82,6 +84,7 @@ class Rule:
     unit: str = ""
     source: str = ""
     exact: bool = False
+    laid_off: bool = False
 
     def tree(self, count: int) -> Expression | None:
         """The rule's arithmetic on ``count`` arguments as an expression."""

@@ -43,7 +43,7 @@ VELOCITY_OF = Rule("velocity of a turning point", lambda n, p, o: n * pi / 30 * 
                    source="003, 4")
 LAY_VELOCITY = Rule(
     "lay off a velocity", lambda p, v: p + v, ("point", "vector"), "point",
-    "От точки {0} отложим её скорость {1}: конец {name}.", lambda a, v: (Helper("line", a[0], v),),
+    "От точки {0} отложим её скорость {1}: конец {name}.", lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 VELOCITY = Rule(
     "velocity from a link's line", _over, ("point", "point", "direction"), "point",

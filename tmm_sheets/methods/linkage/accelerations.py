@@ -22,20 +22,20 @@ NORMAL = Rule(
     "normal acceleration", lambda a, w, big_q, big_b: a - w * w * (big_b - big_q),
     ("point", "number", "point", "point"), "point",
     "От точки {0} параллельно {3}{2} к центру {2} отложим нормальное ускорение ω²·l: точка {name}.",
-    lambda a, v: (Helper("line", a[0], v),),
+    lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 TANGENTIAL = Rule(
     "tangential acceleration", lambda a, e, big_q, big_b: a + 1j * e * (big_b - big_q),
     ("point", "number", "point", "point"), "point",
     "От точки {0} перпендикулярно {2}{3} в сторону ε отложим касательное ускорение ε·l: точка {name}.",
-    lambda a, v: (Helper("line", a[0], v),),
+    lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 CORIOLIS = Rule(
     "Coriolis acceleration", lambda a, w, v_from, v_to: a + 2j * w * (v_to - v_from),
     ("point", "number", "point", "point"), "point",
     "От точки {0} отложим поворотное (кориолисово) ускорение 2ω·V: вектор {2}{3} плана скоростей, повёрнутый на 90° "
     "в сторону ω: точка {name}.",
-    lambda a, v: (Helper("line", a[0], v),),
+    lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 OF_CRANK = Rule("angular acceleration of the crank", lambda sense, e: sense * e, ("number", "number"), "number",
                 "{name} = {value}.", unit="rad/s2")
@@ -44,7 +44,7 @@ RIGID = Rule(
     "acceleration on a turning link", lambda a, w, e, big_q, big_m: a + (1j * e - w * w) * (big_m - big_q),
     ("point", "number", "number", "point", "point"), "point",
     "От точки {0} отложим нормальное и касательное ускорения точки звена, совпадающей с {4}: точка {name}.",
-    lambda a, v: (Helper("line", a[0], v),),
+    lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 
 

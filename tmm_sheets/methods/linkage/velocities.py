@@ -33,7 +33,7 @@ RIGID = Rule(
     "velocity on a turning link", lambda q, w, big_q, big_m: q + 1j * w * (big_m - big_q),
     ("point", "number", "point", "point"), "point",
     "От точки {0} перпендикулярно {2}{3} отложим вращательную скорость, получим {name}.",
-    lambda a, v: (Helper("line", a[0], v),),
+    lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 
 
