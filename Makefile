@@ -8,7 +8,7 @@ OUT := out/$(subst /,-,$(PROJECT))
 SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
 
 .DEFAULT_GOAL := sheets
-.PHONY: help sheets test lint types wheel-test gallery gallery-check gold docs picture clean distclean
+.PHONY: help sheets test lint types wheel-test gallery gallery-check gold messages docs picture clean distclean
 
 sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
 
@@ -34,6 +34,9 @@ gallery-check: gallery  ## the same; fails when a sheet cannot be drawn or a lab
 
 gold: $(VENV)/.tested  ## accept the display lists as they are drawn now (look at the sheets first)
 	$(BIN)/python -m tests.sheets.gold
+
+messages: $(VENV)/.tested  ## collect the texts of the program into the catalogues of templates/locale, compile them
+	$(BIN)/python -m tests.catalogues
 
 docs: $(VENV)/.tested  ## the tables of docs/ that are made from the program
 	$(BIN)/python -m tests.docs

@@ -65,6 +65,9 @@ def run(arguments: list[str]) -> int:
     """Run the commands with these arguments; messages go to stderr, the exit status comes back."""
     import click
 
+    from tmm_sheets import spoken
+
+    spoken.choose(arguments)
     from tmm_sheets.cli import commands
     from tmm_sheets.errors import BadInput, CannotBuild, Stopped
 

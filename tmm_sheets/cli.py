@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import click
 
-from tmm_sheets import __version__
+from tmm_sheets import __version__, words
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
+from tmm_sheets.spoken import Group, option
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
@@ -35,11 +36,11 @@ def _among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, 
     def split(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...] | None:
         if value is None:
             return None
-        words = tuple(dict.fromkeys(word.strip().lower() for word in value.split(",")))
-        for word in words:
-            if word not in known:
-                raise click.BadParameter(f"'{word}' is not one of {', '.join(known)}")
-        return words
+        parts = tuple(dict.fromkeys(part.strip().lower() for part in value.split(",")))
+        for part in parts:
+            if part not in known:
+                raise click.BadParameter(f"'{part}' is not one of {', '.join(known)}")
+        return parts
 
     return split
 
@@ -67,10 +68,10 @@ def _plotter(context: click.Context, parameter: click.Parameter, value: str | No
 
 
 PROJECT = click.argument("project")
-CORRECTED = click.option("--corrected", is_flag=True, help="With the suggested values instead of suspected misprints.")
+CORRECTED = option("--corrected", is_flag=True, help="With the suggested values instead of suspected misprints.")
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="tmm-sheets", message="%(prog)s %(version)s")
 def commands() -> None:
     """Sheets of a course project in the theory of mechanisms and machines, drawn by compass and ruler.
@@ -80,7 +81,7 @@ def commands() -> None:
 
 
 @commands.command("list")
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@option("--json", "as_json", is_flag=True, help="As JSON.")
 def list_projects(as_json: bool) -> None:
     """List the shipped projects."""
     from tmm_sheets import catalogue
@@ -100,8 +101,8 @@ def list_projects(as_json: bool) -> None:
 @commands.command()
 @PROJECT
 @CORRECTED
-@click.option("--file", "as_file", is_flag=True, help="The project file itself, to be changed and used as one's own.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="With --file: write it there.")
+@option("--file", "as_file", is_flag=True, help="The project file itself, to be changed and used as one's own.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="With --file: write it there.")
 def show(project: str, corrected: bool, as_file: bool, output: Path | None) -> None:
     """Show inputs with units and source, links, pairs, mobility W, Assur groups, formula of structure."""
     if output is not None and not as_file:
@@ -139,27 +140,27 @@ def check(project: str, corrected: bool) -> None:
 
 @commands.command()
 @click.argument("projects", metavar="PROJECT...", nargs=-1)
-@click.option("--all", "families", multiple=True, metavar="FAMILY",
+@option("--all", "families", multiple=True, metavar="FAMILY",
               help="All shipped projects of a family, such as sixbar, or of all.")
-@click.option("--list", "lists", multiple=True, type=click.File("rb"), metavar="FILE",
+@option("--list", "lists", multiple=True, type=click.File("rb"), metavar="FILE",
               help="Projects named in a file, one a line; - for standard input.")
 @CORRECTED
-@click.option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
-@click.option("--format", "formats", default="dxf,pdf", show_default=True, callback=_among(FORMATS),
+@option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
+@option("--format", "formats", default="dxf,pdf", show_default=True, callback=_among(FORMATS),
               metavar="F,F", help=f"Formats: {', '.join(FORMATS)}.")
-@click.option("--dpi", type=click.FloatRange(10, 1200), default=150, show_default=True, help="Dots per inch of PNG.")
-@click.option("--plotter", "machine", metavar="NAME", callback=_plotter,
+@option("--dpi", type=click.FloatRange(10, 1200), default=150, show_default=True, help="Dots per inch of PNG.")
+@option("--plotter", "machine", metavar="NAME", callback=_plotter,
               help="Plotter for HPGL: a shipped one or a file.  [default: a1]")
-@click.option("--text", type=click.Choice(["live", "strokes"]), default="live", show_default=True,
+@option("--text", type=click.Choice(["live", "strokes"]), default="live", show_default=True,
               help="Lettering and dashes of DXF: to be worked with, or drawn exactly.")
-@click.option("--one-file", is_flag=True, help="Put all sheets into one PDF, sheets.pdf.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
+@option("--one-file", is_flag=True, help="Put all sheets into one PDF, sheets.pdf.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the sheets, of several projects the folder with one for each.  [default: out/<project>]")
-@click.option("--zip", "archive", is_flag=True, help="Put each project into a zip file instead of a folder.")
-@click.option("--force", is_flag=True, help="Make again also what has not changed, and overwrite what was changed by hand.")
-@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
-@click.option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
-@click.option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
+@option("--zip", "archive", is_flag=True, help="Put each project into a zip file instead of a folder.")
+@option("--force", is_flag=True, help="Make again also what has not changed, and overwrite what was changed by hand.")
+@option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
+@option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
+@option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def build(
     projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[BinaryIO, ...], corrected: bool, sheets: tuple[int, ...],
     formats: tuple[str, ...], dpi: float, machine: Plotter | None, text: str, one_file: bool, output: Path | None,
@@ -175,7 +176,7 @@ def build(
 
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
-    order = Order(sheets, formats, settings, corrected, force, archive, one_file)
+    order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader())
     if len(projects) == 1 and not families and not lists:
         if jobs is not None or scheduler is not None:
             raise click.UsageError("--jobs and --dask are for several projects")
@@ -268,11 +269,11 @@ def _build_many(
 @commands.command()
 @PROJECT
 @CORRECTED
-@click.option("--json", "target", metavar="FILE", help="Write JSON to FILE, or to standard output for -.")
-@click.option("--phi", callback=_degrees, metavar="DEG,DEG", help="Crank angles, counter-clockwise from the x axis.")
-@click.option("--positions", type=click.IntRange(1, MOST_POSITIONS), metavar="N",
+@option("--json", "target", metavar="FILE", help="Write JSON to FILE, or to standard output for -.")
+@option("--phi", callback=_degrees, metavar="DEG,DEG", help="Crank angles, counter-clockwise from the x axis.")
+@option("--positions", type=click.IntRange(1, MOST_POSITIONS), metavar="N",
               help="N equal parts of the turn from position 0 on, in the sense of rotation.")
-@click.option("--part", "parts", callback=_among(PARTS), metavar="P,P", help=f"Only these parts: {', '.join(PARTS)}.")  # fmt: skip
+@option("--part", "parts", callback=_among(PARTS), metavar="P,P", help=f"Only these parts: {', '.join(PARTS)}.")  # fmt: skip
 def solve(
     project: str, corrected: bool, target: str | None, phi: tuple[float, ...] | None, positions: int | None,
     parts: tuple[str, ...] | None,
@@ -299,7 +300,7 @@ def solve(
 @commands.command()
 @PROJECT
 @CORRECTED
-@click.option("--plan", "name", metavar="NAME", help="Only this plan.")
+@option("--plan", "name", metavar="NAME", help="Only this plan.")
 def protocol(project: str, corrected: bool, name: str | None) -> None:
     """Say the construction steps of PROJECT as sentences, in Russian, with millimetres of the sheets."""
     from tmm_sheets import protocols
@@ -311,8 +312,8 @@ def protocol(project: str, corrected: bool, name: str | None) -> None:
 @commands.command()
 @PROJECT
 @CORRECTED
-@click.option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
-@click.option("--json", "target", required=True, metavar="FILE", help="Write to FILE, or to standard output for -.")
+@option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
+@option("--json", "target", required=True, metavar="FILE", help="Write to FILE, or to standard output for -.")
 def record(project: str, corrected: bool, sheets: tuple[int, ...], target: str) -> None:
     """Write the record of PROJECT as JSON: every number with its step, every mark with what it shows."""
     from tmm_sheets.output.building import chosen
@@ -356,20 +357,20 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 @commands.command()
 @click.argument("project", metavar="PROJECT|FILE")
 @CORRECTED
-@click.option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
-@click.option("--plotter", "machine", metavar="NAME", callback=_plotter,
+@option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
+@option("--plotter", "machine", metavar="NAME", callback=_plotter,
               help="Make plot files (HPGL) for a shipped plotter or that of a file; without it PDF.")
-@click.option("--printer", metavar="NAME", help="Send to this printer of CUPS.")
-@click.option("--tile", type=click.Choice(["a4", "a3"], case_sensitive=False), help="Cut the PDF into pages to glue together.")
-@click.option("--overlap", type=float, default=10.0, show_default=True, metavar="MM", help="Overlap of tiles.")
-@click.option("--bar", is_flag=True, help="Add a control bar of 100 mm, to be measured on paper.")
-@click.option("--outline", type=click.Choice(["on", "off"]), default="on", show_default=True, help="Line round the paper.")
-@click.option("--window", callback=_window, metavar="X0,Y0,X1,Y1", help="Only this part of the sheet, mm from its corner.")
-@click.option("--preview", is_flag=True, help="Also a picture of each plot, made from the plot file itself.")
-@click.option("--dpi", type=click.FloatRange(10, 1200), default=100, show_default=True, help="Dots per inch of the picture.")
-@click.option("--ctb", is_flag=True, help="Also a plot style table for AutoCAD that prints every colour black.")
-@click.option("--dry-run", is_flag=True, help="Tell what would be written and sent; do neither.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
+@option("--printer", metavar="NAME", help="Send to this printer of CUPS.")
+@option("--tile", type=click.Choice(["a4", "a3"], case_sensitive=False), help="Cut the PDF into pages to glue together.")
+@option("--overlap", type=float, default=10.0, show_default=True, metavar="MM", help="Overlap of tiles.")
+@option("--bar", is_flag=True, help="Add a control bar of 100 mm, to be measured on paper.")
+@option("--outline", type=click.Choice(["on", "off"]), default="on", show_default=True, help="Line round the paper.")
+@option("--window", callback=_window, metavar="X0,Y0,X1,Y1", help="Only this part of the sheet, mm from its corner.")
+@option("--preview", is_flag=True, help="Also a picture of each plot, made from the plot file itself.")
+@option("--dpi", type=click.FloatRange(10, 1200), default=100, show_default=True, help="Dots per inch of the picture.")
+@option("--ctb", is_flag=True, help="Also a plot style table for AutoCAD that prints every colour black.")
+@option("--dry-run", is_flag=True, help="Tell what would be written and sent; do neither.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the files.  [default: out/<project>]")  # fmt: skip
 def plot(
     project: str, corrected: bool, sheets: tuple[int, ...], machine: Plotter | None, printer: str | None, tile: str | None,
@@ -465,19 +466,19 @@ def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
 @commands.command()
 @PROJECT
 @CORRECTED
-@click.option("--template", is_flag=True, help="Write a CSV file with a line for everything that can be measured on the sheets.")
-@click.option("--measured", type=click.Path(path_type=Path), metavar="FILE", help="Compare the numbers of such a file.")
-@click.option("--sheet", "sheet", type=int, metavar="N", help="Number of the sheet in the image or the drawing.")
-@click.option("--image", type=click.Path(path_type=Path), metavar="FILE", help="Compare a photograph or scan: jpg, png, pdf.")
-@click.option("--views", type=click.Path(path_type=Path), metavar="FILE",
+@option("--template", is_flag=True, help="Write a CSV file with a line for everything that can be measured on the sheets.")
+@option("--measured", type=click.Path(path_type=Path), metavar="FILE", help="Compare the numbers of such a file.")
+@option("--sheet", "sheet", type=int, metavar="N", help="Number of the sheet in the image or the drawing.")
+@option("--image", type=click.Path(path_type=Path), metavar="FILE", help="Compare a photograph or scan: jpg, png, pdf.")
+@option("--views", type=click.Path(path_type=Path), metavar="FILE",
               help="Where the views stand in the image or the drawing, when its layout is its own.")
-@click.option("--dxf", type=click.Path(path_type=Path), metavar="FILE", help="Compare a CAD drawing.")
-@click.option("--pencil", type=click.FloatRange(0.01, 5), default=0.25, show_default=True, metavar="MM",
+@option("--dxf", type=click.Path(path_type=Path), metavar="FILE", help="Compare a CAD drawing.")
+@option("--pencil", type=click.FloatRange(0.01, 5), default=0.25, show_default=True, metavar="MM",
               help="Error of a point drawn by hand.")
-@click.option("--reading", type=click.FloatRange(0.01, 5), default=0.5, show_default=True, metavar="MM",
+@option("--reading", type=click.FloatRange(0.01, 5), default=0.5, show_default=True, metavar="MM",
               help="Error of a length read off a ruler.")
-@click.option("--json", "target", metavar="FILE", help="Also write the outcome as JSON, to standard output for -.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
+@option("--json", "target", metavar="FILE", help="Also write the outcome as JSON, to standard output for -.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
 def compare(
     project: str, corrected: bool, template: bool, measured: Path | None, sheet: int | None, image: Path | None,
@@ -527,13 +528,13 @@ def compare(
 
 
 @commands.command()
-@click.option("--json", "target", metavar="FILE", help="Also write the table as JSON, to standard output for -.")
-@click.option("--plot", "folder", type=click.Path(path_type=Path), metavar="DIR", help="Also draw log-log diagrams, SVG.")
-@click.option("--quick", is_flag=True, help="A few small runs only: tries the benchmark out.")
-@click.option("--summary", is_flag=True, help="The first and the last run of each method only, in Markdown.")
-@click.option("--peers", is_flag=True, help="Instead: the same linkages by other programs, those of the extra [peers].")
-@click.option("--cost", metavar="PROJECT", help="Instead: what one sheet or one number of PROJECT costs against the whole.")
-@click.option("--whole", metavar="PROJECT", help="Instead: all sheets of PROJECT against plain calls of the libraries.")
+@option("--json", "target", metavar="FILE", help="Also write the table as JSON, to standard output for -.")
+@option("--plot", "folder", type=click.Path(path_type=Path), metavar="DIR", help="Also draw log-log diagrams, SVG.")
+@option("--quick", is_flag=True, help="A few small runs only: tries the benchmark out.")
+@option("--summary", is_flag=True, help="The first and the last run of each method only, in Markdown.")
+@option("--peers", is_flag=True, help="Instead: the same linkages by other programs, those of the extra [peers].")
+@option("--cost", metavar="PROJECT", help="Instead: what one sheet or one number of PROJECT costs against the whole.")
+@option("--whole", metavar="PROJECT", help="Instead: all sheets of PROJECT against plain calls of the libraries.")
 def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None,
           whole: str | None) -> None:
     """Measure every method: error against a truth of 30 digits or more, and time."""
@@ -589,9 +590,9 @@ def _prices(cost: str | None, whole: str | None) -> str:
 
 
 @commands.command()
-@click.option("--cases", type=click.IntRange(1), default=900, show_default=True, metavar="N", help="How many random mechanisms.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, metavar="S", help="Seed of the random numbers.")
-@click.option("--case", "single", type=click.IntRange(0), metavar="N", help="Only this case of the seed, again.")
+@option("--cases", type=click.IntRange(1), default=900, show_default=True, metavar="N", help="How many random mechanisms.")
+@option("--seed", type=click.IntRange(0), default=0, show_default=True, metavar="S", help="Seed of the random numbers.")
+@option("--case", "single", type=click.IntRange(0), metavar="N", help="Only this case of the seed, again.")
 def stress(cases: int, seed: int, single: int | None) -> None:
     """Try hard random mechanisms: the worst of every invariant against its bound."""
     from tmm_sheets.progress import Progress
@@ -619,6 +620,7 @@ def _open(project: str, corrected: bool) -> Project:
     variant = _read(project, corrected)
     from tmm_sheets.project import Project
 
+    words.set_paper(words.of_project(variant.project.language))
     return Project(variant)
 
 

@@ -10,6 +10,8 @@ from collections.abc import Iterable
 from math import degrees, floor, isfinite, log10
 from typing import Any
 
+from tmm_sheets.words import decimal_sign
+
 NOISE = 1e-9
 """Share of the size of its kind below which a number is zero."""
 
@@ -45,19 +47,19 @@ def clean(x: Any, kind: float) -> Any:
 
 
 def number(x: float, digits: int = 4, kind: float = 0.0) -> str:
-    """A number in Russian notation: decimal comma, at most ``digits`` significant digits, no trailing zeros.
+    """A number as it is written on paper: at most ``digits`` significant digits, no trailing zeros.
 
     ``kind`` is the size of its kind, in the same unit: what is nothing beside it is written 0.
     """
     if is_zero(x, kind):
         return "0"
     text = f"{x:.{max(digits - 1 - floor(log10(abs(x))), 0)}f}"
-    return russian(text.rstrip("0").rstrip(".") if "." in text else text)
+    return written(text.rstrip("0").rstrip(".") if "." in text else text)
 
 
 def fixed(x: float, decimals: int = 2) -> str:
-    """A number in Russian notation with a fixed number of decimals; minus sign U+2212."""
-    return russian(decimal(x, decimals))
+    """A number as it is written on paper, with a fixed number of decimals; minus sign U+2212."""
+    return written(decimal(x, decimals))
 
 
 def decimal(x: float, decimals: int = 2, sign: bool = False) -> str:
@@ -80,6 +82,6 @@ def plain(x: float, digits: int = 6, kind: float = 0.0) -> str:
     return f"{0.0 if is_zero(x, kind) else x:.{digits}g}"
 
 
-def russian(text: str) -> str:
-    """A written number with decimal comma and true minus."""
-    return text.replace(".", ",").replace("-", "−")
+def written(text: str) -> str:
+    """A computer's number as it is written on paper: true minus, decimal comma where the language has one."""
+    return text.replace(".", decimal_sign()).replace("-", "−")

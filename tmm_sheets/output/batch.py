@@ -20,7 +20,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import catalogue, files, texts
+from tmm_sheets import catalogue, files, texts, words
 from tmm_sheets.errors import BadInput, CannotBuild, Stopped
 from tmm_sheets.output.building import Order, build, folder_name
 
@@ -47,6 +47,7 @@ class Outcome:
 def one(project: str, order: Order, parent: Path) -> Outcome:
     """Build one project into its folder below ``parent``; whatever goes wrong is told, not raised."""
     warnings: tuple[str, ...] = ()
+    words.set_reader(order.reader)
     try:
         variant = catalogue.read(project, order.corrected)
         warnings = tuple(variant.warnings)

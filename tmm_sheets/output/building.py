@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from tmm_sheets import words
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.explain import Stopwatch
 from tmm_sheets.output.build_store import (
@@ -54,7 +55,8 @@ class Order:
     """What is to be built of every project: ``sheets`` (empty: all), formats, their settings, and where it goes.
 
     ``force`` makes everything again, also what was changed by hand; ``archive`` puts each project into a zip file; ``one_file``
-    puts all sheets into one PDF.
+    puts all sheets into one PDF. ``language`` is that of the sheets whatever the projects say, empty for theirs; ``reader`` that of
+    the messages: an order may be carried out on another machine.
     """
 
     sheets: tuple[int, ...] = ()
@@ -64,6 +66,8 @@ class Order:
     force: bool = False
     archive: bool = False
     one_file: bool = False
+    language: str = ""
+    reader: str = words.MESSAGES
 
     def targets(self, numbers: Sequence[int]) -> list[Target]:
         """The files of these sheets, format by format."""
@@ -119,6 +123,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     from tmm_sheets.project import Project
 
     watch = watch or Stopwatch()
+    words.set_paper(order.language or words.of_project(variant.project.language))
     opened = Project(variant)
     numbers = chosen(variant, order.sheets)
     outlet.check()
@@ -167,7 +172,7 @@ class _Work:
 
 def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wanted: list[Target], watch: Stopwatch) -> _Work:
     """What of the files wanted of sheets ``numbers`` is not current."""
-    inputs = fingerprint(program(), variant.text)
+    inputs = fingerprint(program(), words.paper(), variant.text)
     due, names, stand_in = list[Target](), list[Target](), dict[str, str]()
     made_from: dict[Target, str] = {}
     with watch.phase("compare with what is there"):

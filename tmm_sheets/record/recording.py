@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets import results
+from tmm_sheets import results, words
 from tmm_sheets.construction import protocol
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.plan import Plan
@@ -51,7 +51,8 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
     book = book_of(project)
     lost = refused | attempt.refused
     found = {
-        "schema": SCHEMA, "project": project.variant.project.name, "variant": project.variant.project.variant, "lang": "ru",
+        "schema": SCHEMA, "project": project.variant.project.name, "variant": project.variant.project.variant,
+        "lang": words.paper(),
         "plans": [_plan(project, book, name) for name in book.plans],
         "rules": book.rules,
         "steps": _steps(book, scales),

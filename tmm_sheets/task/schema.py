@@ -62,6 +62,8 @@ class HeadingTable(Table):
 
     name: Name = Field(description='name of the project, "family/name"')
     title: str = Field(description="title as it stands on the sheets")
+    language: Literal["ru", "uk", "en"] | None = None
+    """language of the sheets; `ru` unless told here or by `--lang`"""
     variant: str = ""
     """the variant of the task, as it stands in `show` and in the results"""
     sheets: tuple[SheetName, ...] | None = Field(

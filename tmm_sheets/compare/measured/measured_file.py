@@ -21,7 +21,7 @@ from tmm_sheets import texts
 from tmm_sheets.compare.measured.measurable import DEGREES, MILLIMETRES, Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.numbers import russian
+from tmm_sheets.numbers import written
 
 Column = Literal["id", "plan", "position", "quantity", "steps", "unit", "measured", "factor"]
 COLUMNS: Mapping[Column, str] = {
@@ -103,7 +103,7 @@ def template(project: str, found: Measurables) -> bytes:
 
 
 def _written(x: float) -> str:
-    return russian(f"{x:.10g}")
+    return written(f"{x:.10g}")
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------------

@@ -1,0 +1,144 @@
+"""The catalogues of words: collected from the program, brought up to date, compiled; ``make messages``.
+
+``python -m tests.catalogues --add FILE.json`` puts translations in: {"English text": {"ru": "...", "uk": "..."}}, where the forms
+of a plural are a list, in the order of the catalogue's header, and a text with a context is "context|text".
+"""
+
+import json
+import re
+import sys
+import tomllib
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from inspect import cleandoc
+from io import BytesIO
+from pathlib import Path
+
+import click
+from babel.messages.catalog import Catalog
+from babel.messages.extract import extract_from_file
+from babel.messages.mofile import write_mo
+from babel.messages.pofile import read_po, write_po
+
+from tmm_sheets.words import DOMAIN, LANGUAGES
+
+ROOT = Path(__file__).parents[1]
+LOCALE = ROOT / "templates" / "locale"
+KEYWORDS = {"tr": None, "tell": None, "marked": None, "tr_in": ((1, "c"), 2), "tr_n": (1, 2), "tell_n": (1, 2)}
+CYRILLIC = re.compile("[\u0400-\u04ff]")
+NEVER = datetime(2026, 1, 1, tzinfo=UTC)
+"""Date in the headers: a catalogue depends on its texts only."""
+CLICK = "messages"
+"""Domain of click's own words."""
+HEADINGS = ("title", "variant")
+"""Keys of [project] whose texts stand on the sheets of shipped projects."""
+
+
+def of_program() -> Iterator[tuple[str, str | tuple[str, ...], str | None]]:
+    """Texts of the source: file, text (or the forms of a plural), context."""
+    for path in sorted((ROOT / "tmm_sheets").rglob("*.py")):
+        for _, text, _, context in extract_from_file("python", path, KEYWORDS):
+            yield path.relative_to(ROOT).as_posix(), text, context
+
+
+def of_commands() -> Iterator[tuple[str, str, None]]:
+    """Help of the commands and their options."""
+    from tmm_sheets.cli import commands
+
+    for command in (commands, *commands.commands.values()):
+        for spoken in (command, *(p for p in command.params if isinstance(p, click.Option))):
+            if spoken.help:
+                yield "tmm_sheets/cli.py", cleandoc(spoken.help), None
+
+
+def of_projects() -> Iterator[tuple[str, str, None]]:
+    """What shipped projects are called on their sheets: in the language of their files."""
+    for path in sorted((ROOT / "variants").rglob("*.toml")):
+        tree = tomllib.loads(path.read_text("utf-8"))
+        for heading in HEADINGS:
+            if isinstance(text := tree.get("project", {}).get(heading), str) and text:
+                yield path.relative_to(ROOT).as_posix(), text, None
+
+
+def collected() -> Catalog:
+    """Every text there is, without translations."""
+    found = Catalog(domain=DOMAIN, project="tmm-sheets", version="", charset="utf-8", creation_date=NEVER, revision_date=NEVER)
+    for file, text, context in (*of_program(), *of_commands(), *of_projects()):
+        found.add(text, locations=[(file, None)], context=context)
+    return found
+
+
+def path_of(language: str, suffix: str = "po", domain: str = DOMAIN) -> Path:
+    return LOCALE / language / "LC_MESSAGES" / f"{domain}.{suffix}"
+
+
+def read(language: str, domain: str = DOMAIN) -> Catalog:
+    """The catalogue as it stands in its file; a new one where there is none."""
+    path = path_of(language, domain=domain)
+    if not path.exists():
+        return Catalog(language, domain=domain)
+    with path.open("rb") as file:
+        return read_po(file, language, domain)
+
+
+def updated(language: str, template: Catalog) -> Catalog:
+    """Texts of the program with the translations there were; what nobody says any more is gone."""
+    old = read(language)
+    new = Catalog(language, domain=DOMAIN, project="tmm-sheets", version="", fuzzy=False, creation_date=NEVER, revision_date=NEVER,
+                  header_comment=f"# {language}: words of tmm_sheets; make messages brings it up to date.")
+    for message in template:
+        if message.id:
+            kept = old.get(message.id[0] if message.pluralizable else message.id, message.context)
+            new.add(message.id, kept.string if kept is not None else None, sorted({(f, None) for f, _ in message.locations}),
+                    context=message.context)
+    return new
+
+
+def as_po(catalogue: Catalog) -> bytes:
+    out = BytesIO()
+    write_po(out, catalogue, width=132, sort_by_file=True, include_lineno=False)
+    return out.getvalue()
+
+
+def as_mo(catalogue: Catalog) -> bytes:
+    out = BytesIO()
+    write_mo(out, catalogue)
+    return out.getvalue()
+
+
+def write(language: str, catalogue: Catalog, domain: str = DOMAIN) -> None:
+    path_of(language).parent.mkdir(parents=True, exist_ok=True)
+    path_of(language, domain=domain).write_bytes(as_po(catalogue))
+    path_of(language, "mo", domain).write_bytes(as_mo(catalogue))
+
+
+def missing(catalogue: Catalog) -> list[str]:
+    """Texts without a translation; in English only those need one that are Russian, from somebody's file."""
+    return [str(m.id) for m in catalogue if m.id and not all(m.string if isinstance(m.string, tuple) else (m.string,))
+            and (str(catalogue.locale) != "en" or (not str(m.id).isascii() and CYRILLIC.search(str(m.id))))]
+
+
+def add(catalogue: Catalog, table: dict, language: str) -> None:
+    for message in catalogue:
+        if message.id:
+            key = message.id[0] if message.pluralizable else message.id
+            said = table.get(f"{message.context}|{key}" if message.context else key, {}).get(language)
+            if said:
+                message.string = tuple(said) if isinstance(said, list) else said
+
+
+def main(arguments: list[str]) -> None:
+    table: dict = {}
+    for path in arguments[1:] if arguments[:1] == ["--add"] else []:
+        table |= json.loads(Path(path).read_text("utf-8"))
+    template = collected()
+    for language in LANGUAGES:
+        catalogue = updated(language, template)
+        add(catalogue, table, language)
+        write(language, catalogue)
+        left = missing(catalogue)
+        print(f"{language}: {len(catalogue)} texts, {len(left)} without a translation", *left[:8], sep="\n  ")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

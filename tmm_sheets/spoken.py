@@ -1,0 +1,90 @@
+"""Commands whose help is in the reader's language, each with the option ``--lang``."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from inspect import cleandoc
+from typing import Any
+
+import click
+
+from tmm_sheets import words
+from tmm_sheets.resources import template
+from tmm_sheets.words import LANGUAGES, marked, tell
+
+_LANG = marked("Language of sheets and messages.  [default: of sheets the project's, of messages the locale's]")
+
+
+def choose(arguments: Sequence[str]) -> None:
+    """Set the languages by the arguments of the command line, before anything is read from them; the locale's when none is told.
+
+    A wrong word is left to the option itself.
+    """
+    asked = ""
+    for word, after in zip(arguments, (*arguments[1:], ""), strict=True):
+        if word == "--":
+            break
+        asked = after if word == "--lang" else word.removeprefix("--lang=") if word.startswith("--lang=") else asked
+    words.set_reader(asked if asked in LANGUAGES else words.of_locale())
+    words.ask_paper(asked if asked in LANGUAGES else "")
+    click_speaks(words.reader())
+
+
+def click_speaks(language: str) -> None:
+    """Let click's own words be of this language: it asks gettext's default domain, and that the environment."""
+    import gettext
+
+    gettext.bindtextdomain("messages", template("locale"))
+    os.environ["LANGUAGE"] = language
+
+
+@contextmanager
+def _said(spoken: Any) -> Iterator[None]:
+    """Help of a command or an option in the reader's language meanwhile."""
+    kept = spoken.help
+    if kept:
+        spoken.help = tell(cleandoc(kept))
+    try:
+        yield
+    finally:
+        spoken.help = kept
+
+
+class Option(click.Option):
+    """An option whose help is looked up when it is shown."""
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        """Name and help."""
+        with _said(self):
+            return super().get_help_record(ctx)
+
+
+class Command(click.Command):
+    """A command with ``--lang``, whose help is looked up when it is shown."""
+
+    def __init__(self, *arguments: Any, **settings: Any) -> None:
+        super().__init__(*arguments, **settings)
+        self.params.append(Option(["--lang"], type=click.Choice(LANGUAGES), expose_value=False, help=_LANG))
+
+    def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The text above the options."""
+        with _said(self):
+            super().format_help_text(ctx, formatter)
+
+    def get_short_help_str(self, limit: int = 45) -> str:
+        """First sentence, for the list of commands."""
+        with _said(self):
+            return super().get_short_help_str(limit)
+
+
+class Group(Command, click.Group):
+    """Commands under one name."""
+
+    command_class = Command
+
+
+option = partial(click.option, cls=Option)
+"""Decorator of commands: an option with help in the reader's language."""

@@ -1,0 +1,139 @@
+"""Words in the languages of the program, from the catalogues in ``templates/locale``.
+
+A text stands in the code in English and is looked up when it is said. There are two languages at a time: the one of the paper
+(:func:`tr`: sheets, protocol, what is told about them), which the project chooses, and the one of the person at the machine
+(:func:`tell`: messages, reports, ``--help``), which the locale chooses; ``--lang`` sets both. Keys, ids and names of steps are no
+words and never change. A text of a project file that is in no catalogue (somebody's own title) stands as it is.
+"""
+
+from __future__ import annotations
+
+import gettext
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache
+
+from tmm_sheets.resources import template
+
+LANGUAGES = ("ru", "uk", "en")
+"""Languages that there are catalogues of; the code itself is written in the last."""
+SHEETS, MESSAGES = "ru", "en"
+"""Language of sheets when neither project nor command tells one, and of messages when the locale names none of them."""
+DOMAIN = "tmm_sheets"
+
+_paper = ContextVar("paper", default=SHEETS)
+_reader = ContextVar("reader", default=MESSAGES)
+_asked = ContextVar("asked", default="")
+
+
+@cache
+def _catalogue(language: str) -> gettext.NullTranslations:
+    return gettext.translation(DOMAIN, template("locale"), [language], fallback=True)
+
+
+def paper() -> str:
+    """Language of what stands on the paper."""
+    return _paper.get()
+
+
+def reader() -> str:
+    """Language of messages and reports."""
+    return _reader.get()
+
+
+@contextmanager
+def on_paper(language: str) -> Iterator[None]:
+    """The paper's language meanwhile."""
+    token = _paper.set(language)
+    try:
+        yield
+    finally:
+        _paper.reset(token)
+
+
+def ask_paper(language: str) -> None:
+    """Language that the person asks for whatever a project says; empty for none."""
+    _asked.set(language)
+
+
+def asked() -> str:
+    """Language of the paper that the person asked for; empty for none."""
+    return _asked.get()
+
+
+def of_project(language: str | None) -> str:
+    """Language of a project's sheets: the one asked for, its own, or Russian."""
+    return _asked.get() or language or SHEETS
+
+
+def set_paper(language: str) -> None:
+    """The paper's language from here on: for a command that has one project."""
+    _paper.set(language)
+
+
+def set_reader(language: str) -> None:
+    """The reader's language from here on."""
+    _reader.set(language)
+
+
+def of_locale(environment: Mapping[str, str] = os.environ) -> str:
+    """The first of our languages among those that a locale asks for, in the order in which programs ask the variables.
+
+    Windows sets none of them unless told to; what the system speaks is asked there.
+    """
+    for name in ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG"):
+        asked = environment.get(name, "")
+        if asked:
+            return _first(asked.split(":"))
+    if os.name == "nt":
+        import locale
+
+        return _first([locale.getlocale()[0] or ""])
+    return MESSAGES
+
+
+def _first(asked: Sequence[str]) -> str:
+    names = {"russian": "ru", "ukrainian": "uk", "english": "en"}  # Windows
+    for name in asked:
+        short = name.replace("-", "_").split("_")[0].split(".")[0].lower()
+        short = names.get(short, short)
+        if short in LANGUAGES:
+            return short
+    return MESSAGES
+
+
+def marked(text: str) -> str:
+    """The text itself, marked for the catalogues: what is defined once (a rule's wording) and said later."""
+    return text
+
+
+def tr(text: str) -> str:
+    """The text as it stands on the paper; fields in braces stay for ``format``."""
+    return _catalogue(_paper.get()).gettext(text) if text else text
+
+
+def tr_in(context: str, text: str) -> str:
+    """The same of a text that other languages say differently elsewhere; ``context`` tells the translator where it stands."""
+    return _catalogue(_paper.get()).pgettext(context, text)
+
+
+def tr_n(one: str, many: str, n: int) -> str:
+    """The form that goes with ``n``, on the paper."""
+    return _catalogue(_paper.get()).ngettext(one, many, n)
+
+
+def tell(text: str) -> str:
+    """The text as the person at the machine reads it."""
+    return _catalogue(_reader.get()).gettext(text) if text else text
+
+
+def tell_n(one: str, many: str, n: int) -> str:
+    """The form that goes with ``n``, in a message."""
+    return _catalogue(_reader.get()).ngettext(one, many, n)
+
+
+def decimal_sign() -> str:
+    """What stands before the decimals on the paper."""
+    return "." if _paper.get() == "en" else ","
