@@ -60,10 +60,20 @@ def of_projects() -> Iterator[tuple[str, str, None]]:
                 yield path.relative_to(ROOT).as_posix(), text, None
 
 
+def of_title_blocks() -> Iterator[tuple[str, str, str]]:
+    """Words printed in title blocks, and those that :mod:`~tmm_sheets.drawing.title_block` puts there itself."""
+    path = ROOT / "templates" / "title_blocks.json"
+    for form, block in json.loads(path.read_text("utf-8")).items():
+        for cell in block["cells"] if form != "about" else ():
+            if cell[2]:
+                yield path.relative_to(ROOT).as_posix(), cell[2], "title block"
+    yield "tmm_sheets/drawing/title_block.py", "Head", "title block"
+
+
 def collected() -> Catalog:
     """Every text there is, without translations."""
     found = Catalog(domain=DOMAIN, project="tmm-sheets", version="", charset="utf-8", creation_date=NEVER, revision_date=NEVER)
-    for file, text, context in (*of_program(), *of_commands(), *of_projects()):
+    for file, text, context in (*of_program(), *of_commands(), *of_title_blocks(), *of_projects()):
         found.add(text, locations=[(file, None)], context=context)
     return found
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import plain
 from tmm_sheets.drawing.marks import Box, Drawing, Mark, Polyline, bounds
+from tmm_sheets.words import tr
 
 PAPERS = {"a4": (210.0, 297.0), "a3": (297.0, 420.0)}
 """Width and height of pages, mm."""
@@ -59,7 +60,8 @@ def tiles(drawing: Drawing, paper: str = "a4", overlap: float = OVERLAP, bar: bo
                 canvas.line(complex(area.x1 - overlap, area.y0), complex(area.x1 - overlap, area.y1), "twodot")
             if row < rows:
                 canvas.line(complex(area.x0, area.y0 + overlap), complex(area.x1, area.y0 + overlap), "twodot")
-            label = f"Ряд {row} из {rows}, столбец {column} из {columns}"
+            label = tr("Row {row} of {rows}, column {column} of {columns}").format(
+                row=row, rows=rows, column=column, columns=columns)
             canvas.text(complex(area.x0 + 2, area.y1 + 3), plain(shorten(f"{label}. {drawing.title}", 90, placeholder=" ...")), 2.5)
             if bar:
                 control_bar(canvas, complex(area.x0 + 5, 6.0))
@@ -75,7 +77,7 @@ def control_bar(canvas: Canvas, at: complex, along: complex = 1) -> None:
     for i in range(11):
         tick = 2.0 if i in (0, 10) else 1.0
         canvas.line(at + 10 * i * along - tick * 1j * along, at + 10 * i * along + tick * 1j * along, "thin")
-    canvas.text(end + 3 * along - 1.25j * along, "100 мм", 2.5, angle=phase(along))
+    canvas.text(end + 3 * along - 1.25j * along, tr("100 mm"), 2.5, angle=phase(along))
 
 
 def with_bar(drawing: Drawing) -> Drawing:

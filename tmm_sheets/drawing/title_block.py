@@ -15,6 +15,7 @@ from tmm_sheets.drawing.lettering import Lettering, letter, plain
 from tmm_sheets.drawing.marks import Box, Form, FormField
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.resources import template
+from tmm_sheets.words import tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Canvas
@@ -34,8 +35,8 @@ FIELDS = frozenset({
 })  # fmt: skip
 """What :func:`draw_frame` understands."""
 ROLES = {
-    "Разраб.": "developed", "Пров.": "checked", "Т.контр.": "technical_control", "": "supervisor", "Н.контр.": "norm_control",
-    "Утв.": "approved",
+    "Drawn": "developed", "Checked": "checked", "T. contr.": "technical_control", "": "supervisor", "N. contr.": "norm_control",
+    "Approved": "approved",
 }  # fmt: skip
 """Names (field 11) by the role printed in field 10; the row without one is left to the department."""
 
@@ -97,7 +98,7 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
     _rectangle(canvas, TURNED, "main")
     found = _lines(canvas, TURNED, {"designation": fields.get("designation", "")}, (7.0, 5.0, 3.5), turned=True)
     canvas.forms.append(Form("designation", first, len(canvas.marks), tuple(found)))
-    for x, text in ((FRAME.x1 - 110, "Копировал"), (FRAME.x1 - 40, "Формат А1")):
+    for x, text in ((FRAME.x1 - 110, tr_in("title block", "Copied by")), (FRAME.x1 - 40, tr_in("title block", "Format A1"))):
         canvas.text(complex(x, FRAME.y0 - 3.7), text, CAPTION)
     canvas.of = ""
     return place, TURNED
@@ -119,18 +120,23 @@ def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str
     for number, kind, word, x0, y0, x1, y1 in cells:
         cell = Box(place.x0 + x0, place.y0 + y0, place.x0 + x1, place.y0 + y1)
         if kind == "caption":
-            _lines(canvas, cell, {"": word}, (CAPTION,))
+            _lines(canvas, cell, {"": _word(word)}, (CAPTION,))
         elif number == "10":
             role = word
-            _left(canvas, cell, word or ("Рук." if fields.get("supervisor") else ""))
+            _left(canvas, cell, _word(word or ("Head" if fields.get("supervisor") else "")))
         elif number == "11":
             found += _lines(canvas, cell, {ROLES[role]: fields.get(ROLES[role], "")}, names)
         elif number == "13":
             found += _lines(canvas, cell, {f"{ROLES[role]}_date": ""}, (CAPTION,))
         elif number in values:
             lines, sizes = values[number]
-            found += _lines(canvas, cell.inset(_left(canvas, cell, word), 0, 0, 0), lines, sizes)
+            found += _lines(canvas, cell.inset(_left(canvas, cell, _word(word)), 0, 0, 0), lines, sizes)
     return found
+
+
+def _word(text: str) -> str:
+    """A printed word of the form; the row without one is the department's: most have the head of the project there."""
+    return tr_in("title block", text) if text else ""
 
 
 def _name_sizes(fields: Mapping[str, str]) -> tuple[float, ...]:
