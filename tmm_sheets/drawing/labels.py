@@ -8,11 +8,12 @@ matter of four look-ups, so all candidate places of a label are judged at once.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot, pi
+from math import pi
 
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.lettering import advance, letter
 from tmm_sheets.drawing.marks import Box, Fill, Line, Mark, Points, Text, flat
@@ -64,10 +65,10 @@ def text_box(mark: Text) -> Points:
 
 def place(canvas: Canvas, area: Box) -> list[Crowded]:
     """Set every requested label of the canvas inside ``area``; returns those that found no free place."""
-    grid = Grid(area, canvas.marks)
+    grid, ink = Grid(area, canvas.marks), owners.Ink(canvas.marks)
     crowded = []
     for label in canvas.labels:
-        if not _set(canvas, grid, label):
+        if not _set(canvas, grid, ink, label):
             crowded.append(Crowded(label.text, label.anchor))
     canvas.labels.clear()
     return crowded
@@ -148,7 +149,7 @@ def _sampled(lines: list[Points]) -> Points:
     return np.asarray(np.interp(t, along, p.real) + 1j * np.interp(t, along, p.imag))
 
 
-def _set(canvas: Canvas, grid: Grid, label: Label) -> bool:
+def _set(canvas: Canvas, grid: Grid, ink: owners.Ink, label: Label) -> bool:
     laid = letter(label.text, label.height)
     w, h = laid.width + 0.15 * label.height, laid.ascent + laid.descent
     units = _DIRECTIONS if not label.away else _DIRECTIONS * (label.away / abs(label.away))
@@ -170,10 +171,11 @@ def _set(canvas: Canvas, grid: Grid, label: Label) -> bool:
         beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
         hit = beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])
         blocked |= hit.any(axis=1)
-    free = ~blocked
-    choice = int(np.argmin(np.where(free, cost, cost + 1e6)))
-    centre, found = centres[choice], bool(free[choice])
-    if not found:
+    free = np.flatnonzero(~blocked)
+    found = bool(len(free))
+    if found:
+        centre = centres[_read_rightly(grid, ink, label, sides, free[np.argsort(cost[free], kind="stable")])]
+    else:
         return_cost = cost + 20.0 * grid.under(grid.heavy, sides)
         centre = centres[int(np.argmin(return_cost))]
     lower_left = centre - complex(w / 2, h / 2)
@@ -182,18 +184,47 @@ def _set(canvas: Canvas, grid: Grid, label: Label) -> bool:
         canvas.put(laid, lower_left + 1j * laid.descent, 0.0, label.text)
         grid.boxes = np.vstack((grid.boxes, (lower_left.real, lower_left.imag, lower_left.real + w, lower_left.imag + h)))
         _leader(canvas, label, lower_left, w, h)
+    ink.add(m for m in canvas.marks[first:] if isinstance(m, Line) and m.style != "text")
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
     return found
 
 
+def _read_rightly(grid: Grid, ink: owners.Ink, label: Label, sides: npt.NDArray[np.float64], order: npt.NDArray[np.intp]) -> int:
+    """The first of the places, cheapest first, where the label reads as what it names or has a leader that meets no lettering.
+
+    The cheapest one where there is none.
+    """
+    here = owners.Round(ink, label, 2 * (NEAR + label.gap) + letter(label.text, label.height).width)
+    for k in order:
+        box = Box(*sides[:, k])
+        way = _way(label, box)
+        if abs(way[1] - way[0]) > NEAR + label.gap:
+            if not _over_lettering(grid, *way):
+                return int(k)
+        elif not here.reads(box):
+            return int(k)
+    return int(order[0])
+
+
+def _way(label: Label, box: Box) -> tuple[complex, complex]:
+    """From the anchor to the nearest point of the lettering."""
+    return label.anchor, complex(np.clip(label.anchor.real, box.x0, box.x1), np.clip(label.anchor.imag, box.y0, box.y1))
+
+
+def _over_lettering(grid: Grid, a: complex, b: complex) -> bool:
+    x0, y0, x1, y1 = grid.boxes.T
+    t = np.linspace(0, 1, 24)[:, None]
+    p = a + t * (b - a)
+    return bool(((p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)).any())
+
+
 def _leader(canvas: Canvas, label: Label, corner: complex, w: float, h: float) -> None:
     """Thin line from the anchor to the nearest point of lettering that stands too far to be read without one."""
-    x = min(max(label.anchor.real, corner.real), corner.real + w)
-    y = min(max(label.anchor.imag, corner.imag), corner.imag + h)
-    distance = hypot(x - label.anchor.real, y - label.anchor.imag)
+    _, end = _way(label, Box(corner.real, corner.imag, corner.real + w, corner.imag + h))
+    distance = abs(end - label.anchor)
     if distance > NEAR + label.gap:
-        u = (complex(x, y) - label.anchor) / distance
+        u = (end - label.anchor) / distance
         # A label that keeps off its anchor stands beside a symbol: the line ends at that symbol's edge, not inside it.
-        canvas.line(label.anchor + max(label.gap - BESIDE, 0.0) * u, complex(x, y) - 0.6 * u, "thin")
+        canvas.line(label.anchor + max(label.gap - BESIDE, 0.0) * u, end - 0.6 * u, "thin")

@@ -1,0 +1,170 @@
+"""What a reader takes a label for: the line or point nearest to it, if nothing lies between.
+
+A label names what it was asked for. Read without knowing that, it names what stands nearest; so its own line or point must be
+nearer than any other, and the shortest way there must cross none. Where there is no such place a leader line says it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.drawing.canvas import Label
+from tmm_sheets.drawing.marks import Box, Line, Mark, Polyline, Text, Trace, flat
+
+AT = 0.3
+"""Lines that pass this near the anchor meet there: a letter at a point is nearer to all of them than to any other, mm."""
+SLACK = 0.1
+"""By so much another line may be nearer before anybody takes the label for its letter, mm."""
+
+SYMBOL = 0.6
+"""By so much a symbol about the anchor may reach beyond the distance its letter keeps, mm."""
+
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+
+class Ink:
+    """Lines of a sheet as segments ``a`` .. ``b``, shape (n,), each with the number of its mark; lettering is none of them."""
+
+    def __init__(self, marks: Iterable[Mark]) -> None:
+        self.marks = list(marks)
+        runs, numbers = [], []
+        for number, mark in enumerate(self.marks):
+            if isinstance(mark, Text) or (isinstance(mark, Line) and mark.style == "text"):
+                continue
+            points = flat(mark, 1.0)
+            if isinstance(mark, Polyline):
+                points = _thinned(points)
+            runs.append(np.stack((points[:-1], points[1:])))
+            numbers.append(np.full(len(points) - 1, number))
+        ends = np.concatenate(runs, axis=1) if runs else np.empty((2, 0), complex)
+        self.a, self.b = ends
+        self.of = np.concatenate(numbers) if numbers else np.empty(0, int)
+        self._steps: dict[tuple[str, str, int], list[int]] = {}
+        for number, mark in enumerate(self.marks):
+            if mark.by is not None and mark.by.step and mark.by.role != "text":
+                self._steps.setdefault(mark.by[1:4], []).append(number)
+        x, y = (np.stack((self.a.real, self.b.real)), np.stack((self.a.imag, self.b.imag)))
+        self.sides = np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)])
+
+    def add(self, marks: Iterable[Mark]) -> None:
+        """More lines, such as leaders."""
+        more = Ink(marks)
+        if not len(more.of):
+            return
+        self.a, self.b = np.concatenate((self.a, more.a)), np.concatenate((self.b, more.b))
+        self.of = np.concatenate((self.of, more.of + len(self.marks)))
+        self.sides = np.concatenate((self.sides, more.sides), axis=1)
+        self.marks += more.marks
+
+    def of_step(self, by: Trace) -> list[int]:
+        """Numbers of the marks of the same step, position and frame."""
+        return self._steps.get(by[1:4], [])
+
+    def near(self, box: Box, reach: float) -> npt.NDArray[np.intp]:
+        """Numbers of the segments that may be within ``reach`` of a rectangle."""
+        x0, y0, x1, y1 = self.sides
+        return np.flatnonzero((x0 <= box.x1 + reach) & (x1 >= box.x0 - reach) & (y0 <= box.y1 + reach) & (y1 >= box.y0 - reach))
+
+
+def _thinned(points: Any) -> Any:
+    """A curve of hundreds of points by fewer chords: no point but the last is nearer than a millimetre to the one before."""
+    if len(points) < 50:
+        return points
+    way = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
+    keep = np.flatnonzero(np.diff(np.floor(way), prepend=-1.0))
+    return points[np.union1d(keep, [len(points) - 1])]
+
+
+class Round:
+    """Segments about a label's anchor, and which of them are its own."""
+
+    def __init__(self, ink: Ink, label: Label, reach: float) -> None:
+        p = label.anchor
+        here = ink.near(Box(p.real, p.imag, p.real, p.imag), reach)
+        self.anchor = p
+        self.a, self.b, self.of = ink.a[here], ink.b[here], ink.of[here]
+        self.own = _own(ink, self, label)
+
+    def reads(self, box: Box) -> str:
+        """What is wrong with lettering in a rectangle: "crossed", "nearer", or "" for nothing."""
+        gaps, starts, ends = _to_box(self.a, self.b, box)
+        start, end = complex(np.clip(self.anchor.real, box.x0, box.x1), np.clip(self.anchor.imag, box.y0, box.y1)), self.anchor
+        if self.own.any():
+            k = int(np.argmin(np.where(self.own, gaps, np.inf)))
+            if gaps[k] < abs(start - end):
+                start, end = complex(starts[k]), complex(ends[k])
+        gap = abs(start - end)
+        foreign = ~self.own & (gaps <= gap)
+        if not foreign.any():
+            return ""
+        if gap > SLACK and _crossing(self.a[foreign], self.b[foreign], start, end).any():
+            return "crossed"
+        return "nearer" if gaps[foreign].min() < gap - SLACK else ""
+
+
+def _own(ink: Ink, here: Round, label: Label) -> Flags:
+    """Which segments a label may stand for: those of the step it names, and what meets or lies about its anchor.
+
+    The letter of a vector or a curve stands beside it: there lines that only pass by the anchor are foreign.
+    """
+    found = np.zeros(len(here.of), bool)
+    if label.by is not None and label.by.step:
+        found |= np.isin(here.of, ink.of_step(label.by))
+    if found.any() and not _at_end(ink, here, found, label.anchor):
+        return found
+    about = np.maximum(np.abs(here.a - label.anchor), np.abs(here.b - label.anchor)) <= label.gap + SYMBOL
+    return np.asarray(found | about | (_distance(here.a, here.b, label.anchor) <= AT))
+
+
+def _at_end(ink: Ink, here: Round, lines: Flags, anchor: complex) -> bool:
+    """Whether the anchor is where one of these lines ends, or on none of them."""
+    on = lines & (_distance(here.a, here.b, anchor) <= 2 * AT)
+    ends = [flat(ink.marks[number])[[0, -1]] for number in np.unique(here.of[on])]
+    return not ends or bool(np.abs(np.array(ends) - anchor).min() <= 2 * AT)
+
+
+def _distance(a: Any, b: Any, p: complex) -> Floats:
+    """Distances of a point to segments."""
+    d = b - a
+    length2 = np.maximum(np.abs(d) ** 2, 1e-18)
+    t = np.clip(((p - a) * np.conj(d)).real / length2, 0.0, 1.0)
+    return np.asarray(np.abs(a + t * d - p))
+
+
+def _to_box(a: Any, b: Any, box: Box) -> tuple[Floats, Any, Any]:
+    """Distances of segments to a rectangle, 0 where they meet; the nearest points on the rectangle and on the segment."""
+    corners = np.array([complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)])
+    d = b - a
+    length2 = np.maximum(d.real**2 + d.imag**2, 1e-18)
+    t = np.clip(((corners[:, None] - a) * np.conj(d)).real / length2, 0.0, 1.0)
+    on = np.concatenate((a + t * d, [a, b]))
+    at = np.clip(on.real, box.x0, box.x1) + 1j * np.clip(on.imag, box.y0, box.y1)
+    gaps = np.abs(on - at)
+    best = np.argmin(gaps, axis=0)
+    k = np.arange(len(a))
+    gap = gaps[best, k]
+    gap[_enters(a, d, box)] = 0.0
+    return gap, at[best, k], on[best, k]
+
+
+def _enters(a: Any, d: Any, box: Box) -> Flags:
+    """Whether segments pass through a rectangle: by their parameter's range between each pair of sides."""
+    first, last = np.zeros(len(a)), np.ones(len(a))
+    for start, step, low, high in ((a.real, d.real, box.x0, box.x1), (a.imag, d.imag, box.y0, box.y1)):
+        safe = np.where(np.abs(step) < 1e-12, 1e-12, step)  # along the sides: far off at both ends, or between them
+        u, v = (low - start) / safe, (high - start) / safe
+        first, last = np.maximum(first, np.minimum(u, v)), np.minimum(last, np.maximum(u, v))
+    return np.asarray(first <= last)
+
+
+def _crossing(a: Any, b: Any, p: complex, q: complex) -> Flags:
+    """Whether segments cross the way from ``p`` to ``q``; touching its ends does not count."""
+    def side(u: Any, v: Any, w: Any) -> Any:
+        return ((v - u) * np.conj(w - u)).imag
+
+    return np.asarray((side(p, q, a) * side(p, q, b) < 0) & (side(a, b, p) * side(a, b, q) < 0))
