@@ -7,7 +7,7 @@ matter of four look-ups, so all candidate places of a label are judged at once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -149,41 +149,62 @@ def _sampled(lines: list[Points]) -> Points:
     return np.asarray(np.interp(t, along, p.real) + 1j * np.interp(t, along, p.imag))
 
 
+class _Places:
+    """Where a label may stand about its anchor: rectangles ``sides`` (x0, y0, x1, y1; shape (4, n)), their ``cost``, those ``free``.
+
+    The free ones are told by their numbers, the cheapest first.
+    """
+
+    def __init__(self, grid: Grid, label: Label, w: float, h: float) -> None:
+        self.label, self._grid = label, grid
+        units = _DIRECTIONS if not label.away else _DIRECTIONS * (label.away / abs(label.away))
+        distances = _DISTANCES + label.gap
+        # The rectangle's support along the direction keeps its nearest corner or side at the asked distance.
+        support = np.minimum(w / 2 / np.maximum(np.abs(units.real), 1e-9), h / 2 / np.maximum(np.abs(units.imag), 1e-9))
+        centres = (label.anchor + units[None, :] * (distances[:, None] + support[None, :])).ravel()
+        # A label that should do without a leader line gets one only when nothing near is free.
+        far = 0.0 if label.leader else FAR * (_DISTANCES > NEAR)
+        cost = (distances * 1.2 + far)[:, None]
+        cost = (cost + _TURNING if label.away else np.repeat(cost, len(units), axis=1)).ravel()
+        sides = np.array([centres.real - w / 2, centres.imag - h / 2, centres.real + w / 2, centres.imag + h / 2])
+        clear = x0, y0, x1, y1 = sides + _MARGIN
+        blocked = grid.under(grid.heavy, clear) > 0
+        blocked |= (sides[:2] < grid.inside[:2]).any(axis=0) | (sides[2:] > grid.inside[2:]).any(axis=0)
+        b = grid.boxes
+        if len(b):
+            beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
+            blocked |= (beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])).any(axis=1)
+        self.sides, self.cost = sides, cost + LIGHT * grid.under(grid.light, sides)
+        free = np.flatnonzero(~blocked)
+        self.free = free[np.argsort(self.cost[free], kind="stable")]
+
+    def read(self, here: owners.Round, leaders: bool = True) -> int | None:
+        """The cheapest free place where the label reads as what it names, or has a leader that meets no lettering."""
+        for k in map(int, self.free):
+            box = Box(*self.sides[:, k])
+            if not _led(self.label, box):
+                if not here.reads(box):
+                    return k
+            elif leaders and not _over_lettering(self._grid, *_way(self.label, box)):
+                return k
+        return None
+
+    def least(self) -> int:
+        """The cheapest place, or where none is free the one that is least inked."""
+        if len(self.free):
+            return int(self.free[0])
+        return int(np.argmin(self.cost + 20.0 * self._grid.under(self._grid.heavy, self.sides)))
+
+
 def _set(canvas: Canvas, grid: Grid, ink: owners.Ink, label: Label) -> bool:
     laid = letter(label.text, label.height)
     w, h = laid.width + 0.15 * label.height, laid.ascent + laid.descent
-    units = _DIRECTIONS if not label.away else _DIRECTIONS * (label.away / abs(label.away))
-    distances = _DISTANCES + label.gap
-    # The rectangle's support along the direction keeps its nearest corner or side at the asked distance.
-    support = np.minimum(w / 2 / np.maximum(np.abs(units.real), 1e-9), h / 2 / np.maximum(np.abs(units.imag), 1e-9))
-    centres = (label.anchor + units[None, :] * (distances[:, None] + support[None, :])).ravel()
-    # A label that should do without a leader line gets one only when nothing near is free.
-    far = 0.0 if label.leader else FAR * (_DISTANCES > NEAR)
-    cost = (distances * 1.2 + far)[:, None]
-    cost = (cost + _TURNING if label.away else np.repeat(cost, len(units), axis=1)).ravel()
-    sides = np.array([centres.real - w / 2, centres.imag - h / 2, centres.real + w / 2, centres.imag + h / 2])
-    cost = cost + LIGHT * grid.under(grid.light, sides)
-    clear = x0, y0, x1, y1 = sides + _MARGIN
-    blocked = grid.under(grid.heavy, clear) > 0
-    blocked |= (sides[:2] < grid.inside[:2]).any(axis=0) | (sides[2:] > grid.inside[2:]).any(axis=0)
-    b = grid.boxes
-    if len(b):
-        beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
-        hit = beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])
-        blocked |= hit.any(axis=1)
-    free = np.flatnonzero(~blocked)
-    found = bool(len(free))
-    if found:
-        centre = centres[_read_rightly(grid, ink, label, sides, free[np.argsort(cost[free], kind="stable")])]
-    else:
-        return_cost = cost + 20.0 * grid.under(grid.heavy, sides)
-        centre = centres[int(np.argmin(return_cost))]
-    lower_left = centre - complex(w / 2, h / 2)
+    label, box, found = _placed(grid, ink, label, w, h)
     canvas.of, first = label.of, len(canvas.marks)
     with canvas.traced("text", *(label.by[1:] if label.by is not None else ())):
-        canvas.put(laid, lower_left + 1j * laid.descent, 0.0, label.text)
-        grid.boxes = np.vstack((grid.boxes, (lower_left.real, lower_left.imag, lower_left.real + w, lower_left.imag + h)))
-        _leader(canvas, label, lower_left, w, h)
+        canvas.put(laid, complex(box.x0, box.y0 + laid.descent), 0.0, label.text)
+        grid.boxes = np.vstack((grid.boxes, box))
+        _leader(canvas, label, box)
     ink.add(m for m in canvas.marks[first:] if isinstance(m, Line) and m.style != "text")
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
@@ -191,21 +212,25 @@ def _set(canvas: Canvas, grid: Grid, ink: owners.Ink, label: Label) -> bool:
     return found
 
 
-def _read_rightly(grid: Grid, ink: owners.Ink, label: Label, sides: npt.NDArray[np.float64], order: npt.NDArray[np.intp]) -> int:
-    """The first of the places, cheapest first, where the label reads as what it names or has a leader that meets no lettering.
+def _placed(grid: Grid, ink: owners.Ink, label: Label, w: float, h: float) -> tuple[Label, Box, bool]:
+    """Place of a label, which may have moved along the vector it names rather than have a leader; whether there is room for it."""
+    places = _Places(grid, label, w, h)
+    here = owners.Round(ink, label, 2 * (NEAR + label.gap) + w)
+    k = places.read(here)
+    if k is None or _led(label, Box(*places.sides[:, k])):
+        for anchor in here.along():
+            moved = replace(label, anchor=anchor)
+            others = _Places(grid, moved, w, h)
+            there = others.read(owners.Round(ink, moved, 2 * (NEAR + label.gap) + w), leaders=False)
+            if there is not None:
+                return moved, Box(*others.sides[:, there]), True
+    return label, Box(*places.sides[:, places.least() if k is None else k]), bool(len(places.free))
 
-    The cheapest one where there is none.
-    """
-    here = owners.Round(ink, label, 2 * (NEAR + label.gap) + letter(label.text, label.height).width)
-    for k in order:
-        box = Box(*sides[:, k])
-        way = _way(label, box)
-        if abs(way[1] - way[0]) > NEAR + label.gap:
-            if not _over_lettering(grid, *way):
-                return int(k)
-        elif not here.reads(box):
-            return int(k)
-    return int(order[0])
+
+def _led(label: Label, box: Box) -> bool:
+    """Whether lettering there stands too far to be read without a leader."""
+    a, b = _way(label, box)
+    return abs(b - a) > NEAR + label.gap
 
 
 def _way(label: Label, box: Box) -> tuple[complex, complex]:
@@ -220,11 +245,10 @@ def _over_lettering(grid: Grid, a: complex, b: complex) -> bool:
     return bool(((p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)).any())
 
 
-def _leader(canvas: Canvas, label: Label, corner: complex, w: float, h: float) -> None:
+def _leader(canvas: Canvas, label: Label, box: Box) -> None:
     """Thin line from the anchor to the nearest point of lettering that stands too far to be read without one."""
-    _, end = _way(label, Box(corner.real, corner.imag, corner.real + w, corner.imag + h))
-    distance = abs(end - label.anchor)
-    if distance > NEAR + label.gap:
-        u = (end - label.anchor) / distance
+    if _led(label, box):
+        _, end = _way(label, box)
+        u = (end - label.anchor) / abs(end - label.anchor)
         # A label that keeps off its anchor stands beside a symbol: the line ends at that symbol's edge, not inside it.
         canvas.line(label.anchor + max(label.gap - BESIDE, 0.0) * u, end - 0.6 * u, "thin")

@@ -23,6 +23,10 @@ SLACK = 0.1
 SYMBOL = 0.6
 """By so much a symbol about the anchor may reach beyond the distance its letter keeps, mm."""
 
+SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
+LONG = 12.0
+"""Places along a vector where its letter may stand, when it is longer than so many mm."""
+
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
@@ -89,6 +93,9 @@ class Round:
         self.anchor = p
         self.a, self.b, self.of = ink.a[here], ink.b[here], ink.of[here]
         self.own = _own(ink, self, label)
+        self._vector = _vector(ink, self, label)
+        if self._vector is not None:  # what lies on it is named together with it
+            self.own |= np.maximum(_to_line(self.a, *self._vector), _to_line(self.b, *self._vector)) <= AT
 
     def reads(self, box: Box) -> str:
         """What is wrong with lettering in a rectangle: "crossed", "nearer", or "" for nothing."""
@@ -105,6 +112,27 @@ class Round:
         if gap > SLACK and _crossing(self.a[foreign], self.b[foreign], start, end).any():
             return "crossed"
         return "nearer" if gaps[foreign].min() < gap - SLACK else ""
+
+
+    def along(self) -> list[complex]:
+        """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
+        if self._vector is None:
+            return []
+        a, b = self._vector
+        return [a + share * (b - a) for share in SHARES if abs(a + share * (b - a) - self.anchor) > SYMBOL]
+
+
+def _vector(ink: Ink, here: Round, label: Label) -> tuple[complex, complex] | None:
+    """Ends of the vector beside which a label stands."""
+    if label.by is None or not label.by.step:
+        return None
+    for number in ink.of_step(label.by):
+        mark = ink.marks[number]
+        if (isinstance(mark, Line) and mark.by is not None and mark.by.role == "vector" and abs(mark.b - mark.a) > LONG
+                and min(abs(mark.a - label.anchor), abs(mark.b - label.anchor)) > 2 * AT
+                and _distance(np.array([mark.a]), np.array([mark.b]), label.anchor)[0] <= 2 * AT):
+            return mark.a, mark.b
+    return None
 
 
 def _own(ink: Ink, here: Round, label: Label) -> Flags:
@@ -134,6 +162,12 @@ def _distance(a: Any, b: Any, p: complex) -> Floats:
     length2 = np.maximum(np.abs(d) ** 2, 1e-18)
     t = np.clip(((p - a) * np.conj(d)).real / length2, 0.0, 1.0)
     return np.asarray(np.abs(a + t * d - p))
+
+
+def _to_line(p: Any, a: complex, b: complex) -> Floats:
+    """Distances of points to one segment."""
+    t = np.clip(((p - a) * np.conj(b - a)).real / abs(b - a) ** 2, 0.0, 1.0)
+    return np.asarray(np.abs(a + t * (b - a) - p))
 
 
 def _to_box(a: Any, b: Any, box: Box) -> tuple[Floats, Any, Any]:
