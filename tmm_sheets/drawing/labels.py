@@ -150,9 +150,8 @@ def _sampled(lines: list[Points]) -> Points:
 
 
 class _Places:
-    """Where a label may stand about its anchor: rectangles ``sides`` (x0, y0, x1, y1; shape (4, n)), their ``cost``, those ``free``.
-
-    The free ones are told by their numbers, the cheapest first.
+    """Where a label may stand about its anchor: rectangles ``sides`` (x0, y0, x1, y1; shape (4, n)), their ``cost``, and
+    numbers of the ``free`` ones, the cheapest first.
     """
 
     def __init__(self, grid: Grid, label: Label, w: float, h: float) -> None:
