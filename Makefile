@@ -30,7 +30,8 @@ wheel-test: $(VENV)/.tested  ## build the wheel, install it elsewhere, draw a pr
 gallery: $(VENV)/.tested  ## every shipped project, small, on contact sheets in out/gallery
 	$(BIN)/python -m tests.gallery
 
-gallery-check: gallery  ## the same; fails when a sheet cannot be drawn or a label finds no free place
+gallery-check: gallery  ## the same; fails when a sheet cannot be drawn, a label finds no free place or reads as something else
+	$(BIN)/python -m tests.labels
 
 gold: $(VENV)/.tested  ## accept the display lists as they are drawn now (look at the sheets first)
 	$(BIN)/python -m tests.sheets.gold

@@ -178,15 +178,21 @@ class _Places:
         self.free = free[np.argsort(self.cost[free], kind="stable")]
 
     def read(self, here: owners.Round, leaders: bool = True) -> int | None:
-        """The cheapest free place where the label reads as what it names, or has a leader that meets no lettering."""
+        """The cheapest free place where the label reads as what it names, or has a leader that meets no lettering.
+
+        A leader that crosses a strong line, or runs along any, is taken only where there is no other way.
+        """
+        poor = None
         for k in map(int, self.free):
             box = Box(*self.sides[:, k])
             if not _led(self.label, box):
                 if not here.reads(box):
                     return k
             elif leaders and not _over_lettering(self._grid, *_way(self.label, box)):
-                return k
-        return None
+                if here.leads(*_way(self.label, box)):
+                    return k
+                poor = k if poor is None else poor
+        return poor
 
     def least(self) -> int:
         """The cheapest place, or where none is free the one that is least inked."""

@@ -23,6 +23,10 @@ SLACK = 0.1
 SYMBOL = 0.6
 """By so much a symbol about the anchor may reach beyond the distance its letter keeps, mm."""
 
+PARALLEL, BESIDE = 0.15, 1.5
+"""A leader runs along a line when it turns from it by less than this (sine of the angle) and is nearer than so many mm."""
+STRONG = frozenset({"main", "curve", "vector", "axis", "hidden"})
+"""Line types that a leader had better not cross."""
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
 LONG = 12.0
 """Places along a vector where its letter may stand, when it is longer than so many mm."""
@@ -36,7 +40,7 @@ class Ink:
 
     def __init__(self, marks: Iterable[Mark]) -> None:
         self.marks = list(marks)
-        runs, numbers = [], []
+        runs, numbers, strong = [], [], []
         for number, mark in enumerate(self.marks):
             if isinstance(mark, Text) or (isinstance(mark, Line) and mark.style == "text"):
                 continue
@@ -45,9 +49,11 @@ class Ink:
                 points = _thinned(points)
             runs.append(np.stack((points[:-1], points[1:])))
             numbers.append(np.full(len(points) - 1, number))
+            strong.append(np.full(len(points) - 1, mark.style in STRONG))
         ends = np.concatenate(runs, axis=1) if runs else np.empty((2, 0), complex)
         self.a, self.b = ends
         self.of = np.concatenate(numbers) if numbers else np.empty(0, int)
+        self.strong: Flags = np.concatenate(strong) if strong else np.empty(0, bool)
         self._steps: dict[tuple[str, str, int], list[int]] = {}
         for number, mark in enumerate(self.marks):
             if mark.by is not None and mark.by.step and mark.by.role != "text":
@@ -62,6 +68,7 @@ class Ink:
             return
         self.a, self.b = np.concatenate((self.a, more.a)), np.concatenate((self.b, more.b))
         self.of = np.concatenate((self.of, more.of + len(self.marks)))
+        self.strong = np.concatenate((self.strong, more.strong))
         self.sides = np.concatenate((self.sides, more.sides), axis=1)
         self.marks += more.marks
 
@@ -92,6 +99,7 @@ class Round:
         here = ink.near(Box(p.real, p.imag, p.real, p.imag), reach)
         self.anchor = p
         self.a, self.b, self.of = ink.a[here], ink.b[here], ink.of[here]
+        self.strong = ink.strong[here]
         self.own = _own(ink, self, label)
         self._vector = _vector(ink, self, label)
         if self._vector is not None:  # what lies on it is named together with it
@@ -113,6 +121,18 @@ class Round:
             return "crossed"
         return "nearer" if gaps[foreign].min() < gap - SLACK else ""
 
+
+    def leads(self, start: complex, end: complex) -> bool:
+        """Whether a leader from the anchor crosses no strong line but its own and runs along none."""
+        along = end - start
+        d = self.b - self.a
+        parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * abs(along)
+        apart = np.minimum(_to_line(self.a, start, end), _to_line(self.b, start, end))
+        beside = np.minimum(apart, np.minimum(_distance(self.a, self.b, start + 0.5 * along), _distance(self.a, self.b, end)))
+        if (parallel & (beside < BESIDE)).any():
+            return False
+        strong = self.strong & ~self.own
+        return not _crossing(self.a[strong], self.b[strong], start, end).any()
 
     def along(self) -> list[complex]:
         """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
