@@ -38,3 +38,7 @@ class Box(NamedTuple):
     def contains(self, p: complex, slack: float = 0.0) -> bool:
         """True when the point lies inside or at most ``slack`` outside."""
         return self.x0 - slack <= p.real <= self.x1 + slack and self.y0 - slack <= p.imag <= self.y1 + slack
+
+    def nearest(self, p: complex) -> complex:
+        """The point of the rectangle nearest to a point."""
+        return complex(min(max(p.real, self.x0), self.x1), min(max(p.imag, self.y0), self.y1))

@@ -40,6 +40,7 @@ _DIRECTIONS = np.exp(1j * np.linspace(0, 2 * pi, 24, endpoint=False))
 _TURNING = 4.0 * np.abs(np.angle(_DIRECTIONS)) / pi
 """Cost of each direction, the first being the one asked for."""
 _MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
+_ALONG = np.linspace(0, 1, 24)[:, None]
 _FIRST_BEYOND = np.array([0, 0, 1, 1])[:, None]
 """A rectangle's cells: from the one its lower left corner is in to the one after that of its upper right corner."""
 
@@ -184,7 +185,7 @@ class _Places:
         """
         poor = None
         for k in map(int, self.free):
-            box = Box(*self.sides[:, k])
+            box = Box(*self.sides[:, k].tolist())
             if not _led(self.label, box):
                 if not here.reads(box):
                     return k
@@ -210,7 +211,7 @@ def _set(canvas: Canvas, grid: Grid, ink: owners.Ink, label: Label) -> bool:
         canvas.put(laid, complex(box.x0, box.y0 + laid.descent), 0.0, label.text)
         grid.boxes = np.vstack((grid.boxes, box))
         _leader(canvas, label, box)
-    ink.add(m for m in canvas.marks[first:] if isinstance(m, Line) and m.style != "text")
+    ink.add([m for m in canvas.marks[first:] if isinstance(m, Line) and m.style != "text"])
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
@@ -240,13 +241,14 @@ def _led(label: Label, box: Box) -> bool:
 
 def _way(label: Label, box: Box) -> tuple[complex, complex]:
     """From the anchor to the nearest point of the lettering."""
-    return label.anchor, complex(np.clip(label.anchor.real, box.x0, box.x1), np.clip(label.anchor.imag, box.y0, box.y1))
+    return label.anchor, box.nearest(label.anchor)
 
 
 def _over_lettering(grid: Grid, a: complex, b: complex) -> bool:
     x0, y0, x1, y1 = grid.boxes.T
-    t = np.linspace(0, 1, 24)[:, None]
-    p = a + t * (b - a)
+    if not len(x0):
+        return False
+    p = a + _ALONG * (b - a)
     return bool(((p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)).any())
 
 

@@ -6,7 +6,7 @@ nearer than any other, and the shortest way there must cross none. Where there i
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -61,11 +61,11 @@ class Ink:
         x, y = (np.stack((self.a.real, self.b.real)), np.stack((self.a.imag, self.b.imag)))
         self.sides = np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)])
 
-    def add(self, marks: Iterable[Mark]) -> None:
+    def add(self, marks: Sequence[Mark]) -> None:
         """More lines, such as leaders."""
-        more = Ink(marks)
-        if not len(more.of):
+        if not marks:
             return
+        more = Ink(marks)
         self.a, self.b = np.concatenate((self.a, more.a)), np.concatenate((self.b, more.b))
         self.of = np.concatenate((self.of, more.of + len(self.marks)))
         self.strong = np.concatenate((self.strong, more.strong))
@@ -108,7 +108,7 @@ class Round:
     def reads(self, box: Box) -> str:
         """What is wrong with lettering in a rectangle: "crossed", "nearer", or "" for nothing."""
         gaps, starts, ends = _to_box(self.a, self.b, box)
-        start, end = complex(np.clip(self.anchor.real, box.x0, box.x1), np.clip(self.anchor.imag, box.y0, box.y1)), self.anchor
+        start, end = box.nearest(self.anchor), self.anchor
         if self.own.any():
             k = int(np.argmin(np.where(self.own, gaps, np.inf)))
             if gaps[k] < abs(start - end):
