@@ -18,14 +18,16 @@ LEADING = 1.6
 """Distance of the lines of a note, in heights of its capitals."""
 LINES = (2, 1, 3, 4, 5)
 """Numbers of lines a note may have, the most welcome first."""
-CLEAR = 1.5
-"""Margin kept round a note, mm."""
+CLEAR, APART = 1.5, 6.0
+"""Margins kept above and below a note, and at its sides, where other lettering would be read on as one line, mm."""
 TOGETHER = "\u00a0"
 """Space of a note at which no line ends: between a number and its unit."""
 STEP = 1.0
 """Distance of the places tried, mm."""
 OUTSIDE = 4.0
-"""What a millimetre outside the view costs, in millimetres from its upper edge."""
+"""What a millimetre outside the view costs, in millimetres from its lower edge."""
+TITLE, BESIDE_TITLE = 17.0, 40.0
+"""Height of a title with its scale factor, mm, and what it costs to stand beside it: that would be read as part of it."""
 
 
 def place(canvas: Canvas, area: Box) -> list[Crowded]:
@@ -76,7 +78,8 @@ def _choice(grid: Grid, region: Box, note: Note, height: float, count: int) -> t
                        np.arange(region.y0 + CLEAR, region.y1 - h - CLEAR, STEP))
     sides = np.array([x.ravel(), y.ravel(), x.ravel() + w, y.ravel() + h])
     outside = np.maximum.reduce([box.x0 - sides[0], box.y0 - sides[1], sides[2] - box.x1, sides[3] - box.y1, np.zeros(x.size)])
-    cost = OUTSIDE * outside + np.abs(box.y1 - sides[3]) + 0.2 * np.abs(sides[0] + w / 2 - box.centre.real)
+    cost = OUTSIDE * outside + np.abs(sides[1] - box.y0) + 0.2 * np.abs(sides[0] + w / 2 - box.centre.real)
+    cost += BESIDE_TITLE * (sides[3] > box.y1 - TITLE)
     cost += height * LINES.index(count)
     covered = grid.under(grid.heavy, _with_margin(sides)) + grid.under(grid.light, _with_margin(sides))
     cost = np.where(covered > 0, np.inf, cost)
@@ -87,7 +90,7 @@ def _choice(grid: Grid, region: Box, note: Note, height: float, count: int) -> t
 
 
 def _with_margin(sides: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    return np.asarray(sides + CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None])
+    return np.asarray(sides + np.array([-APART, -CLEAR, APART, CLEAR])[:, None])
 
 
 def _set(canvas: Canvas, note: Note, corner: complex, lines: list[str], height: float) -> None:
