@@ -13,8 +13,9 @@ from tests.compare.cad_plants import Way, draw
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_file, cad_report
-from tmm_sheets.compare.cad.placing import Placing, lines
+from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project

@@ -13,11 +13,11 @@ from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6
-VIEW = ElementView(0, "view", "view", Box(0, 0, 841, 594))
+VIEW = ElementView(0, "view", Box(0, 0, 841, 594))
 
 
 def line(number, a, b, style="main"):
-    return Element(number, VIEW, "", "line", np.array([a, b]), style, "view")
+    return Element(number, VIEW, "", "line", np.array([a, b]), style)
 
 
 def paper():

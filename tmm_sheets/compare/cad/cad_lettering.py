@@ -10,8 +10,8 @@ import numpy.typing as npt
 from tmm_sheets.compare.cad import cad_text
 from tmm_sheets.compare.cad.cad_comparison import Comparison, grown
 from tmm_sheets.compare.cad.cad_findings import CadFinding
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
-from tmm_sheets.compare.cad.placing import KnownLines, lines
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
 
@@ -19,10 +19,7 @@ from tmm_sheets.drawing.marks import Points, Text
 def lettering(state: Comparison) -> None:
     """Check what texts say; lettering that no text is found for is sought as drawn letters."""
     numbers = [n for n, e in enumerate(state.elements) if e.kind == "text"]
-    wanted = []
-    for n in numbers:
-        e, middle = state.elements[n], complex(state.elements[n].points.mean())
-        wanted.append(cad_text.WantedText(e.text, state.moves[n](middle) + (e.points - middle), e.height))
+    wanted = [cad_text.WantedText(e.text, e.points, e.height) for e in (state.elements[n] for n in numbers)]
     got = cad_text.read(wanted, state.space.writings)
     rest = [(n, w) for k, (n, w) in enumerate(zip(numbers, wanted, strict=True)) if k not in got]
     for k, answer in got.items():
@@ -42,7 +39,7 @@ def lettering(state: Comparison) -> None:
 
 def _bars(state: Comparison, n: int) -> None:
     """Claim overbars and leader lines: they are the draughtsman's choice, but no extra ink."""
-    state.claims += [overlaps(lines([state.moves[n](p)]), state.theirs, 1.0) for p in state.elements[n].pieces]
+    state.claims += [overlaps(lines([p]), state.theirs, 1.0) for p in state.elements[n].pieces]
 
 
 def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.WantedText]]) -> None:
@@ -75,13 +72,10 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.Wa
 
 
 def _letters(state: Comparison, n: int) -> Iterator[Points]:
-    """The strokes of a text's letters; a view of another scale has letters of the same size."""
-    e = state.elements[n]
-    middle = complex(e.points.mean())
-    shift = complex(state.moves[n](middle)) - middle
-    for mark in e.marks:
+    """The strokes of a text's letters."""
+    for mark in state.elements[n].marks:
         if isinstance(mark, Text):
-            yield from (stroke + shift for stroke in letters(mark))
+            yield from letters(mark)
 
 
 def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:

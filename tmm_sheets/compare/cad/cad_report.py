@@ -61,7 +61,7 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
     """The report for the terminal on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     laid, outcome = found.laid, found.outcome
     lost = gone(outcome)
-    which = f"{name}, sheet {laid.n}: {path.name} ({laid.space.name})"
+    which = f"{name}, sheet {laid.known.n}: {path.name} ({laid.space.name})"
     out = [f"{which}, {len(outcome.findings)} elements, tolerance {pencil:g} mm", ""]
     rows = _deviations(found, lost)
     if rows:
@@ -144,7 +144,7 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
 
     return {
         "project": name,
-        "sheet": laid.n,
+        "sheet": laid.known.n,
         "drawing": path.name,
         "space": laid.space.name,
         "tolerance": pencil,
@@ -155,7 +155,8 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
             if v in places.moves else {})} for v, s in places.share.items()],
         "elements": [{
             "number": f.element.number, "view": f.element.view.name, "kind": f.element.kind, "name": f.element.name,
-            "step": f.element.of, "verdict": f.verdict, "deviation": round(f.deviation, 4), "shift": _point(f.shift),
+            "step": f.element.step, "position": f.element.position, "verdict": f.verdict,
+            "deviation": round(f.deviation, 4), "shift": _point(f.shift),
             "turn": _rounded(f.turn), "size": _rounded(f.size), "missing": f.missing, "what": f.what, "at": _point(f.at),
             "entities": [entity(laid.space.entities[k]) for k in f.entities],
         } for f in outcome.findings],

@@ -20,7 +20,7 @@ def filled(state: Comparison) -> None:
     for n, e in enumerate(state.elements):
         if n in state.found or not (e.kind == "fill" or (e.kind == "circle" and e.fills)):
             continue
-        centre = complex(state.heads[n][0].mean())
+        centre = complex(state.elements[n].fills[0].mean())
         off = np.abs(state.areas - centre) if len(state.areas) else np.zeros(0)
         if len(off) and off.min() < 2.0:
             k = int(off.argmin())
@@ -36,7 +36,7 @@ def filled(state: Comparison) -> None:
 
 def arrows(state: Comparison) -> None:
     """Check that arrows have their heads, at the right ends."""
-    heads = [(n, h) for n, e in enumerate(state.elements) if e.arrow for h in state.heads[n]]
+    heads = [(n, h) for n, e in enumerate(state.elements) if e.arrow for h in state.elements[n].fills]
     ours = np.array([complex(h.mean()) for _, h in heads], dtype=complex)
     for n, head in heads:
         finding = state.found.get(n)
@@ -65,20 +65,20 @@ def _tip(state: Comparison, n: int, head: Points, finding: CadFinding) -> comple
     tip = complex(head[0])
     if finding.shift is None or finding.verdict == "green" or state.elements[n].kind != "line":
         return tip
-    turned = (tip - state.moves[n](state.elements[n].middle)) * (np.exp(1j * np.radians(finding.turn or 0.0)) - 1)
+    turned = (tip - state.elements[n].middle) * (np.exp(1j * np.radians(finding.turn or 0.0)) - 1)
     return complex(tip + (finding.shift + turned))
 
 
 def _without_head(state: Comparison, n: int, tip: complex, ours: Points) -> None:
     """Tell that an arrow has no head at its tip; ``ours`` are the middles of all heads there should be."""
     e, finding = state.elements[n], state.found[n]
-    z = state.moves[n](e.points)
+    z = e.points
     tail = complex(z[0] if abs(z[0] - tip) > abs(z[-1] - tip) else z[-1])
     u = (tip - tail) / max(abs(tip - tail), 1e-9)
     t = (state.areas - tail) * np.conj(u)
     at_tail = np.flatnonzero((t.real > -0.5) & (t.real < 7.0) & (np.abs(t.imag) < 0.8))
     strange = [int(k) for k in at_tail if np.abs(ours - state.areas[k]).min() > 0.7]
-    if strange and e.kind == "line" and len(state.heads[n]) == 1:
+    if strange and e.kind == "line" and len(state.elements[n].fills) == 1:
         state.used_areas.update(strange)
         what, deviation = "points the other way", e.length
     else:
@@ -124,7 +124,7 @@ def hatching(state: Comparison) -> None:
     patterns = np.array([complex(a.points.mean()) for a in state.space.areas if not a.solid], dtype=complex)
     for n in numbers:
         mine, whole = owner == n, state.whole(n)
-        box = _box_round(state.moves[n](state.elements[n].points), 1.5)
+        box = _box_round(state.elements[n].points, 1.5)
         own = float((near.s1 - near.s0)[mine].sum()) > 0.8 * whole
         if own or _inside(patterns, box).any() or float(slanting.length[_inside(middles, box)].sum()) > 0.4 * whole:
             state.found[n] = state.finding(n, 0.0, "")

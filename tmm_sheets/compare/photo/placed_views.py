@@ -20,12 +20,11 @@ from tmm_sheets.compare.links import links
 from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.profiles import peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, Map
-from tmm_sheets.compare.photo.similarity import SYMBOL, Similarity, moved
 from tmm_sheets.compare.photo.stations import as_lines, similarity_base
 from tmm_sheets.compare.photo.traces import ExtraInk
-from tmm_sheets.compare.view_places import ViewPlace, mu_of
+from tmm_sheets.compare.placing import SYMBOL, Placing, moved
+from tmm_sheets.compare.view_places import ViewPlace
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.errors import BadInput
 from tmm_sheets.numbers import decimal
 
 FOUND = 0.5
@@ -53,7 +52,7 @@ class PlacedViews:
     elements: tuple[Element, ...]
     left_out: tuple[str, ...]
     notes: tuple[str, ...]
-    similarities: Mapping[ElementView, Similarity]
+    similarities: Mapping[ElementView, Placing]
 
     def strange(self, extra: ExtraInk) -> bool:
         """Whether ink of no element is too much: neither of a view left out, nor of a symbol in another scale."""
@@ -99,12 +98,12 @@ def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: An
     elements = [e for e in known if e.view.n == 0]
     placed: dict[ElementView, _PlacedView] = {}
     for view in dict.fromkeys(e.view for e in known if e.view.n):
-        start = _start(given[view], known, m) if view in given else None
+        start = given[view].placing(m.to_sheet(np.array(given[view].theirs)).tolist()) if view in given else None
         placed[view] = _place_view([e for e in known if e.view == view], start, leading, ink, level)
         elements += placed[view].elements
     similarities = {view: p.where for view, p in placed.items() if p.where is not None}
     lost = tuple(view.name for view in placed if view not in similarities)
-    return PlacedViews(tuple(elements), lost, tuple(_notes(placed, given, known)), similarities)
+    return PlacedViews(tuple(elements), lost, tuple(_notes(placed, given)), similarities)
 
 
 class _PlacedView(NamedTuple):
@@ -112,14 +111,14 @@ class _PlacedView(NamedTuple):
 
     share: float
     """Of its lines, that have ink."""
-    where: Similarity | None
+    where: Placing | None
     elements: list[Element]
     left_out: int
     """How many lines to other views are not there."""
 
 
 def _place_view(
-    mine: Sequence[Element], start: Similarity | None, leading: frozenset[int], ink: Any, level: float,
+    mine: Sequence[Element], start: Placing | None, leading: frozenset[int], ink: Any, level: float,
 ) -> _PlacedView:
     """Fit a view to the ink from ``start``, or from its own place when that is None.
 
@@ -127,7 +126,7 @@ def _place_view(
     """
     loose = leading if start is not None else frozenset()
     body = [e for e in mine if e.number not in loose]
-    where, share = _fit(body, start or Similarity(), ink, level, free=start is not None)
+    where, share = _fit(body, start or Placing(), ink, level, free=start is not None)
     if share < FOUND:
         return _PlacedView(share, None, [], 0)
     here = [moved(e, where) for e in mine]
@@ -135,26 +134,7 @@ def _place_view(
     return _PlacedView(share, where, there, len(here) - len(there))
 
 
-def _start(p: ViewPlace, known: Sequence[Element], m: Map) -> Similarity:
-    """The similarity by two points, or by one and a scale factor."""
-    at = m.to_sheet(np.array(p.theirs))
-    turn = complex((at[1] - at[0]) / (p.ours[1] - p.ours[0])) if len(at) == 2 else 1 + 0j
-    if p.mu is not None:
-        ours = _mu(p.view, known)
-        if ours is None:
-            raise BadInput(f'view "{p.view.name}": our sheet gives it no scale factor of its own to compare mu with',
-                           hint="leave mu out and give two points")  # fmt: skip
-        turn = turn / abs(turn) * ours / p.mu
-    return Similarity(turn, complex(at[0]) - turn * p.ours[0])
-
-
-def _mu(view: ElementView, known: Sequence[Element]) -> float | None:
-    """Our scale factor of a view: under its own title, or under the title it shares with others (plans of several positions)."""
-    alike = dict.fromkeys(e.view for e in known if e.view.draw == view.draw and e.view != view)
-    return next((mu for v in (view, *alike) if (mu := mu_of(v, known)) is not None), None)
-
-
-def _fit(mine: Sequence[Element], start: Similarity, ink: Any, level: float, free: bool) -> tuple[Similarity, float]:
+def _fit(mine: Sequence[Element], start: Placing, ink: Any, level: float, free: bool) -> tuple[Placing, float]:
     """The similarity that brings a view's lines onto ink, and their share that has some; the size is fitted only if ``free``.
 
     Tried from far and from nearby: among lines side by side the wider search may end at the wrong ones.
@@ -164,8 +144,8 @@ def _fit(mine: Sequence[Element], start: Similarity, ink: Any, level: float, fre
 
 
 def _searched(
-    mine: Sequence[Element], start: Similarity, ink: Any, level: float, free: bool, coarse_to_fine: Sequence[tuple[float, float]],
-) -> tuple[Similarity, float]:
+    mine: Sequence[Element], start: Placing, ink: Any, level: float, free: bool, coarse_to_fine: Sequence[tuple[float, float]],
+) -> tuple[Placing, float]:
     """One search through some steps."""
     lines = as_lines(mine, least=5.0, most=3000)
     if len(lines.points) < 20:
@@ -182,11 +162,11 @@ def _searched(
         use = strength > level
         hit = float((use & (np.abs(o) < 0.5)).mean())
         step = _step(p, normals, o, use, loose, free)
-        now = Similarity(step.turn * now.turn, step.turn * now.shift + step.shift)
+        now = Placing(step.turn * now.turn, step.turn * now.shift + step.shift)
     return now, hit
 
 
-def _step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool) -> Similarity:
+def _step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool) -> Placing:
     """The small similarity that takes points onto lines ``o`` mm off along their normals."""
     middle = p.mean()
     half = max(float(np.abs(p - middle).max()), 1.0)
@@ -200,7 +180,7 @@ def _step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool
         square = np.einsum("ni,nj->ij", base, base * w[:, None]) + 0.1 * np.eye(len(x))
         x = np.linalg.solve(square, np.einsum("ni,n->i", base * w[:, None], o))
     growth = complex(1 + (x[3] if free else 0.0) / half, x[2] / half)
-    return Similarity(growth, complex(x[0], x[1]) + complex(middle) * (1 - growth))
+    return Placing(growth, complex(x[0], x[1]) + complex(middle) * (1 - growth))
 
 
 def _drawn(e: Element, ink: Any, level: float) -> bool:
@@ -214,12 +194,12 @@ def _drawn(e: Element, ink: Any, level: float) -> bool:
 
 
 def _notes(
-    placed: Mapping[ElementView, _PlacedView], given: Mapping[ElementView, ViewPlace], known: Sequence[Element],
+    placed: Mapping[ElementView, _PlacedView], given: Mapping[ElementView, ViewPlace],
 ) -> Iterator[str]:
     """What is worth telling: of each view the file places, of views not found, of lines left out."""
     for view, p in placed.items():
         if view in given:
-            yield _told(view, p, given[view], known)
+            yield _told(view, p, given[view])
     absent = ", ".join(f'"{view.name}"' for view, p in placed.items() if p.where is None and view not in given)
     if absent:
         yield f"not in their places, and left out: {absent}; --views can tell where they stand"
@@ -227,13 +207,12 @@ def _notes(
         yield f"{count} lines that lead from one view to another are not where they are on our sheet, and were not compared"
 
 
-def _told(view: ElementView, placed: _PlacedView, given: ViewPlace, known: Sequence[Element]) -> str:
+def _told(view: ElementView, placed: _PlacedView, given: ViewPlace) -> str:
     """What became of a view the file places: how large it was drawn, against ours or against the scale factor it was given."""
     if placed.where is None:
         return f'view "{view.name}" was not found where --views says: {100 * placed.share:.0f} % of its lines are there'
-    size, degrees = abs(placed.where.turn), float(np.degrees(np.angle(placed.where.turn)))
+    size, degrees = placed.where.scale, placed.where.degrees
     text = f'view "{view.name}" was fitted: {size:.4f} times as large as on our sheet, turned by {decimal(degrees)}°'
-    ours = _mu(view, known)
-    if given.mu is not None and ours is not None:
-        text += f"; with mu = {given.mu:g} it ought to be {ours / given.mu:.4f}"
+    if given.mu is not None and view.mu is not None:
+        text += f"; with mu = {given.mu:g} it ought to be {view.mu / given.mu:.4f}"
     return text

@@ -76,7 +76,7 @@ class Rectified:
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:
     """Lines of the title block and of the box for the turned designation, by which a frame is recognized."""
-    return as_lines([e for e in known if e.of == "title block" and e.length < 800], 4.0)
+    return as_lines([e for e in known if e.role == "frame" and e.length < 800], 4.0)
 
 
 def rectify(
@@ -112,7 +112,7 @@ def rectify(
     scale = float(np.abs(np.diff(found.corners)).min() / FRAME.height)
     notes = _remarks(path, scale, smear, found.turned)
     say("correcting by the drawing's lines")
-    lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.of == "title block")])
+    lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.role == "frame")])
     ink = straighten(picture.grey, m, COARSE)
     better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE, RELIEF if by_lines else 2)
     if match >= MATCH:
