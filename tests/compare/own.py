@@ -40,7 +40,7 @@ def by_image(project, n, path):
         if f.verdict != "green":
             e = f.trace.element
             said.append((f.verdict, f"element {e.number} {e.kind} {e.style} {e.name!r}, {e.length:.0f} mm, about "
-                        f"({f.place.real:.1f}, {f.place.imag:.1f}), view {e.view.name!r}: {f.said}"))
+                        f"({f.at.real:.1f}, {f.at.imag:.1f}), view {e.view.name!r}: {f.what}"))
     said += [("extra", f"{x.width:.0f} x {x.height:.0f} mm about ({x.middle.real:.1f}, {x.middle.imag:.1f})") for x in extra]
     return said, sum(f.trace.status in ("measured", "missing") for f in findings)
 

@@ -128,8 +128,7 @@ class Element:
     @property
     def middle(self) -> complex:
         """The middle of its bounding rectangle, mm."""
-        z = self.points
-        return complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
+        return Box.around(self.points).centre
 
 
 def views(sheet: Composed) -> tuple[ElementView, ...]:
@@ -184,6 +183,14 @@ def said(markup: str) -> str:
     return "".join(run.text for run in letter(markup, 5.0).runs)
 
 
+def grown(corners: Points, by: float) -> Points:
+    """Corners of a rectangle, counter-clockwise, moved outwards by ``by`` mm."""
+    a, b, _, _ = corners
+    u = (b - a) / max(abs(b - a), 1e-9)
+    v = 1j * u
+    return corners + by * np.array([-u - v, u - v, u + v, v - u])
+
+
 def sampled(points: Points, step: float = 0.5) -> tuple[Points, Points]:
     """Points along a polyline at most ``step`` mm apart, and the unit normal at each, to the left of its direction."""
     run = np.abs(np.diff(points))
@@ -226,7 +233,11 @@ def _line(mark: Mark) -> Points:
     if isinstance(mark, Text):
         return text_box(mark)
     points = np.asarray(mark.points)
-    return np.append(points, points[:1]) if isinstance(mark, Fill) or mark.closed else points
+    return _closed(points) if isinstance(mark, Fill) or mark.closed else points
+
+
+def _closed(points: Points) -> Points:
+    return np.append(points, points[:1])
 
 
 def _element(number: int, view: ElementView, marks: Sequence[Mark], group: MarkGroup | None) -> Element:
@@ -244,7 +255,8 @@ def _element(number: int, view: ElementView, marks: Sequence[Mark], group: MarkG
                        2 * pi, fills=fills, marks=whole)
     if grouped == "hatch" or _hatch_line(marks[0]):
         pieces = tuple(map(_line, lines))
-        return Element(number, view, "", "hatch", _rectangle(np.concatenate(pieces)), "hatch", pieces=pieces, marks=whole)
+        outline = _closed(Box.around(np.concatenate(pieces)).corners)
+        return Element(number, view, "", "hatch", outline, "hatch", pieces=pieces, marks=whole)
     if not lines:
         return Element(number, view, "", "fill", _line(marks[0]), _style(marks[0]), fills=fills, marks=whole)
     return _drawn(number, view, lines, fills, whole)
@@ -290,11 +302,6 @@ def _around(texts: list[Text]) -> Points:
     z = np.concatenate([text_box(t) for t in texts]) / u
     x0, x1, y0, y1 = z.real.min(), z.real.max(), z.imag.min(), z.imag.max()
     return np.asarray(u * np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)]))
-
-
-def _rectangle(z: Points) -> Points:
-    x0, x1, y0, y1 = z.real.min(), z.real.max(), z.imag.min(), z.imag.max()
-    return np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1), complex(x0, y0)])
 
 
 def _called(by: Trace | None, sheet: Composed, symbols: Mapping[str, str]) -> str:

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.cad import cad_text
+from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
@@ -73,7 +73,7 @@ class Comparison:
         self.used_writings: set[int] = set()
         self.zones: list[Points] = []
         self.lettered: list[Points] = []
-        self.drawn_letters: list[tuple[int, cad_text.WantedText]] = []
+        self.drawn_letters: list[int] = []
 
     def ours(self, numbers: Sequence[int]) -> tuple[KnownLines, npt.NDArray[np.int64], Numbers]:
         """Straight pieces of the paths of some elements, the element of each piece, and how far along its path it begins, mm."""
@@ -173,17 +173,9 @@ def _paths(e: Element) -> list[Points]:
 
 def middle_of(z: Points) -> complex:
     """Middle of the bounding rectangle of points."""
-    return complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
+    return Box.around(z).centre
 
 
 def reach_of(z: Points) -> float:
     """Radius of the circle that marks points on an overlay, mm."""
     return min(max(float(np.abs(z - middle_of(z)).max()), 3.0), 20.0)
-
-
-def grown(corners: Points, by: float) -> Points:
-    """A rectangle extended by some millimetres on all sides."""
-    a, b, _, _ = corners
-    u = (b - a) / max(abs(b - a), 1e-9)
-    v = 1j * u
-    return corners + by * np.array([-u - v, u - v, u + v, v - u])

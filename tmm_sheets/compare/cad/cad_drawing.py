@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import view_places
 from tmm_sheets.compare.cad import cad_file, cad_overlay, cad_report, layout
-from tmm_sheets.compare.cad.cad_examined import Examined
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.matching import match
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.elements import views as views_of
+from tmm_sheets.compare.findings import worst
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput, Problem
@@ -41,7 +41,7 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     say("overlay")
     outcome, laid = found.outcome, found.laid
     gone = cad_report.gone(outcome)
-    shown = [f for f in cad_report.worst(outcome.findings) if f.element.view not in gone]
+    shown = [f for f in worst(outcome.findings) if f.element.view not in gone]
     marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
         [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
     looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
@@ -52,7 +52,7 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
 
 
 def examine(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
-            say: Callable[[str], None] = lambda _: None) -> Examined:
+            say: Callable[[str], None] = lambda _: None) -> cad_report.Examined:
     """Compare a DXF drawing with a sheet of a project.
 
     Parameters
@@ -87,7 +87,7 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
     if not _of_this_sheet(outcome):
         _refuse(project, laid, outcome, ink, sheet, path)
-    return Examined(laid, space, places, outcome, (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes))
+    return cad_report.Examined(laid, space, places, outcome, (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes))
 
 
 def _how(laid: Laid, unit: float | None) -> Iterator[str]:

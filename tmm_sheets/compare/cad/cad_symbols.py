@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_comparison import SIZE_OF_SYMBOL, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, moved
 from tmm_sheets.compare.cad.overlaps import overlaps
@@ -124,7 +125,7 @@ def hatching(state: Comparison) -> None:
     patterns = np.array([complex(a.points.mean()) for a in state.space.areas if not a.solid], dtype=complex)
     for n in numbers:
         mine, whole = owner == n, state.whole(n)
-        box = _box_round(state.elements[n].points, 1.5)
+        box = Box.around(state.elements[n].points, 1.5).corners
         own = float((near.s1 - near.s0)[mine].sum()) > 0.8 * whole
         if own or _inside(patterns, box).any() or float(slanting.length[_inside(middles, box)].sum()) > 0.4 * whole:
             state.found[n] = state.finding(n, 0.0, "")
@@ -133,12 +134,6 @@ def hatching(state: Comparison) -> None:
                 state.zones.append(box)
         else:
             state.found[n] = state.finding(n, 2 * state.tolerance, "not hatched", missing=True)
-
-
-def _box_round(z: Points, margin: float) -> Points:
-    """Corners of the bounding rectangle with a margin, counter-clockwise from the lower left."""
-    x0, x1, y0, y1 = z.real.min() - margin, z.real.max() + margin, z.imag.min() - margin, z.imag.max() + margin
-    return np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)])
 
 
 def _inside(z: Points, box: Points) -> npt.NDArray[np.bool_]:

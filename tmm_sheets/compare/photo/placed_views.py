@@ -20,7 +20,7 @@ from tmm_sheets.compare.links import links
 from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.profiles import peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, Map
-from tmm_sheets.compare.photo.stations import as_lines, similarity_base
+from tmm_sheets.compare.photo.stations import as_lines, fit, similarity_base
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.placing import SYMBOL, Placing, moved
 from tmm_sheets.compare.view_places import ViewPlace
@@ -62,18 +62,13 @@ class PlacedViews:
     @cached_property
     def _views(self) -> list[Box]:
         """Bounding boxes of the views that were found."""
-        return [_box([e.points for e in self.elements if e.view == view]) for view in self.similarities]
+        return [Box.around(np.concatenate([e.points for e in self.elements if e.view == view])) for view in self.similarities]
 
     @cached_property
     def _symbols(self) -> list[Box]:
         """Bounding boxes of the symbols in views of another scale than ours."""
         scaled = {view for view, where in self.similarities.items() if where.scaled}
-        return [_box([e.points]) for e in self.elements if e.view in scaled and e.kind in ("hatch", "fill")]
-
-
-def _box(lines: Sequence[Points]) -> Box:
-    z = np.concatenate(lines)
-    return Box(float(z.real.min()), float(z.imag.min()), float(z.real.max()), float(z.imag.max()))
+        return [Box.around(e.points) for e in self.elements if e.view in scaled and e.kind in ("hatch", "fill")]
 
 
 def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: Any) -> PlacedViews:
@@ -171,14 +166,7 @@ def _step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool
     middle = p.mean()
     half = max(float(np.abs(p - middle).max()), 1.0)
     base = similarity_base(p, normals, middle, half)
-    if not free:
-        base = base[:, :3]
-    x = np.zeros(base.shape[1])
-    for _ in range(10):
-        r = o - np.einsum("ni,i->n", base, x)
-        w = use / (1 + (r / loose) ** 2) ** 2
-        square = np.einsum("ni,nj->ij", base, base * w[:, None]) + 0.1 * np.eye(len(x))
-        x = np.linalg.solve(square, np.einsum("ni,n->i", base * w[:, None], o))
+    x = fit(base if free else base[:, :3], o, use, loose)
     growth = complex(1 + (x[3] if free else 0.0) / half, x[2] / half)
     return Placing(growth, complex(x[0], x[1]) + complex(middle) * (1 - growth))
 
