@@ -14,8 +14,10 @@ SAME = 0.02
 """A view whose size is off by less than this share is drawn to our scale."""
 HINGE, SYMBOL = 2.6, 15.0
 """Circles up to this radius, and other elements up to this extent, are drawn as large in every scale, mm."""
-SIGNS: frozenset[Role] = frozenset({"symbol", "point"})
-"""Roles of what may be so."""
+BESIDE = 8.0
+"""Ink this near to a symbol of a view in another scale may be the symbol, mm."""
+SIGNS: frozenset[Role] = frozenset({"symbol", "point", "axis", "table"})
+"""Roles of what is: bodies of sliders, marks of points, ticks, cells. A short vector, link or helper line is not."""
 
 
 class Placing(NamedTuple):

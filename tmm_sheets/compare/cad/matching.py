@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.cad import cad_extras, cad_lettering, cad_looks, cad_symbols, misplaced
 from tmm_sheets.compare.cad.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
@@ -22,7 +23,7 @@ from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.overlaps import Numbers, gaps, left, overlaps, union
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.links import links
-from tmm_sheets.compare.placing import Placing, symbol
+from tmm_sheets.compare.placing import BESIDE, Placing, symbol
 from tmm_sheets.drawing.styles import line_type
 
 
@@ -69,6 +70,8 @@ def _not_compared(state: Comparison) -> None:
     for n, e in enumerate(state.elements):
         if e.view in state.moved and state.moved[e.view].scaled and symbol(e):
             state.found[n] = CadFinding(e, None, 0.0, "a symbol in a view of another scale", e.middle, 5.0)
+            if e.role != "dimension":
+                state.zones.append(Box.around(e.points, BESIDE).corners)
 
 
 def _leading_elsewhere(state: Comparison) -> None:

@@ -18,11 +18,11 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.links import links
 from tmm_sheets.compare.photo.ink_levels import line_level
-from tmm_sheets.compare.photo.profiles import peaks, profiles
+from tmm_sheets.compare.photo.profiles import inked
 from tmm_sheets.compare.photo.sheet_map import FRAME, Map
 from tmm_sheets.compare.photo.stations import as_lines, fit, similarity_base
 from tmm_sheets.compare.photo.traces import ExtraInk
-from tmm_sheets.compare.placing import SYMBOL, Placing, moved
+from tmm_sheets.compare.placing import BESIDE, SYMBOL, Placing, moved
 from tmm_sheets.compare.view_places import ViewPlace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal
@@ -31,8 +31,6 @@ FOUND = 0.5
 """Least share of a view's lines that must be in place."""
 INKED = 0.5
 """Least share of ink in a line that leads to another view for it to be compared."""
-BESIDE = 8.0
-"""Ink this near to a symbol of a view in another scale may be the symbol, mm."""
 COARSE_TO_FINE = ((4.0, 1.0), (2.5, 0.7), (1.5, 0.5), (1.0, 0.3), (0.8, 0.2))
 """Reach within which lines are sought and distance from which on they count little, step by step, mm."""
 
@@ -146,16 +144,12 @@ def _searched(
     if len(lines.points) < 20:
         # Lettering alone: nothing to fit; it stands where it is said to.
         return start, 1.0
-    offsets = np.arange(-4.0, 4.05, 0.1)
     now = start
     hit = 0.0
     for reach, loose in coarse_to_fine:
         normals = lines.normals * now.turn / abs(now.turn)
         p = now(lines.points)
-        table = profiles(ink, lines._replace(points=p, normals=normals), offsets)
-        o, strength = peaks(table, offsets, 0.0, reach, 0.4)
-        use = strength > level
-        hit = float((use & (np.abs(o) < 0.5)).mean())
+        o, use, hit = inked(ink, lines._replace(points=p, normals=normals), reach, level)
         step = _step(p, normals, o, use, loose, free)
         now = Placing(step.turn * now.turn, step.turn * now.shift + step.shift)
     return now, hit
@@ -176,9 +170,7 @@ def _drawn(e: Element, ink: Any, level: float) -> bool:
     lines = as_lines([e], least=0.0)
     if not all(FRAME.contains(z) for z in e.points.tolist()) or not len(lines.points):
         return False
-    offsets = np.arange(-1.0, 1.05, 0.1)
-    _, strength = peaks(profiles(ink, lines, offsets), offsets, 0.0, 1.0, 0.4)
-    return float((strength > level).mean()) > INKED
+    return float(inked(ink, lines, 1.0, level)[1].mean()) > INKED
 
 
 def _notes(

@@ -22,7 +22,7 @@ from tmm_sheets.compare.photo import frame_fit, frame_search
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
-from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, peaks, profiles
+from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Map
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.errors import CannotBuild
@@ -194,13 +194,10 @@ def refine(
     # A line counts by its length up to some 30 mm.
     weight = 1 / np.sqrt(np.maximum(np.bincount(lines.line), 8) / 8.0)[lines.line]
     sides = sides._replace(weight=0.5 * sides.weight)
-    offsets = np.arange(-4.0, 4.05, 0.1)
     better, hit, scatter = m, 0.0, 1.0
     for reach, degree, loose in COARSE_TO_FINE:
         at = m.to_sheet(better.to_picture(lines.points))
-        o, strength = peaks(profiles(ink, lines, offsets, at - lines.points, scale), offsets, 0.0, reach, 0.4)
-        use = strength > level
-        hit = float((use & (np.abs(o) < 0.5)).mean())
+        o, use, hit = inked(ink, lines, reach, level, at - lines.points, scale)
         if not use.any():
             return better, scatter, hit
         scatter = 1.4826 * float(np.median(np.abs(o[use])))
