@@ -6,6 +6,7 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.elements import dashed, elements, said, sampled, views
+from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.labels import place
@@ -208,3 +209,9 @@ def test_the_scale_factor_of_a_view_is_that_of_the_plans_in_it():
     assert mu["Картина зацепления"] == 0.00025
     assert mu["Графики работ"] is None  # 10 J/mm upwards only
     assert mu["Структура механизма"] is None
+
+
+def test_elements_are_called_by_the_letters_of_their_steps():
+    names = {e.name for e in known_sheet(Project(read("lugansk/shaper")), 3).elements if e.kind != "text"}
+    assert {"φα1", "θ1", "ρf"} <= names  # steps phi1, theta1, rho
+    assert not names & {"phi1", "theta1", "rho"}

@@ -52,6 +52,26 @@ def called(e: Element) -> str:
     return f"{what} {e.name}".strip()
 
 
+def shifted(by: complex) -> str:
+    """A shift, mm, in words; a component of less than a quarter is left out."""
+    ways = ((by.imag, "up", "down"), (by.real, "right", "left"))
+    return f"{_mm(by)} too far " + " and ".join(one if x > 0 else other for x, one, other in ways if abs(x) > 0.25 * abs(by))
+
+
+def turned(by: float) -> str:
+    """A turn, degrees counter-clockwise, in words."""
+    return f"turned by {abs(by):.2f}° {'counter-clockwise' if by > 0 else 'clockwise'}"
+
+
+def excess(by: float, more: str = "large", less: str = "small") -> str:
+    """An excess, mm, in words."""
+    return f"{_mm(by)} too {more if by > 0 else less}"
+
+
+def _mm(by: complex) -> str:
+    return f"{abs(by):.{1 if abs(by) >= 1 else 2}f} mm"
+
+
 def origin(e: Element) -> dict[str, Any]:
     """An element for JSON: its number, what it is, and the step that left it."""
     return {"number": e.number, "view": e.view.name, "kind": e.kind, "name": e.name, "step": e.step, "position": e.position}

@@ -10,7 +10,6 @@ from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.findings import Finding
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.numbers import decimal
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,15 +81,3 @@ class CadOutcome:
     extras: tuple[ExtraStroke, ...]
     looks: tuple[LookFinding, ...] = ()
     notes: tuple[str, ...] = ()
-
-
-def moved(shift: complex, tolerance: float, how: str = "") -> list[str]:
-    """A shift in words, nothing for one within the tolerance."""
-    if abs(shift) <= tolerance:
-        return []
-    return [f"shifted {how}by {abs(shift):.2f} mm ({decimal(shift.real, sign=True)}, {decimal(shift.imag, sign=True)})"]
-
-
-def more(size: float) -> str:
-    """A difference of size, mm, in words."""
-    return f"{abs(size):.2f} mm too {'large' if size > 0 else 'small'}"

@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_comparison import SIZE_OF_SYMBOL, Comparison
-from tmm_sheets.compare.cad.cad_findings import CadFinding, moved
+from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.overlaps import overlaps
+from tmm_sheets.compare.findings import shifted
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
 
@@ -28,7 +29,7 @@ def filled(state: Comparison) -> None:
             state.used_areas.add(k)
             shift = complex(state.areas[k] - centre)
             counted = abs(shift) if e.kind == "circle" else max(abs(shift) - SIZE_OF_SYMBOL, 0.0)
-            state.found[n] = state.finding(n, counted, ", ".join(moved(shift, state.tolerance)), shift=shift,
+            state.found[n] = state.finding(n, counted, shifted(shift) if abs(shift) > state.tolerance else "", shift=shift,
                                           entities=(state.space.areas[k].entity,))
         else:
             what = "the dot is missing" if e.kind == "circle" else "not filled"

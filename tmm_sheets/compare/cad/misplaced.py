@@ -10,12 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, JOINT, LOOSE_STYLES, SIZE_OF_SYMBOL, Comparison
-from tmm_sheets.compare.cad.cad_findings import more, moved
 from tmm_sheets.compare.cad.overlaps import Circle, Left, Numbers, OverlapRun, Overlaps, circle, gaps, overlaps, pieces, runs, union
+from tmm_sheets.compare.findings import excess, shifted, turned
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.numbers import decimal
 
 FARTHEST = 25.0
 """A line whose ends are farther off than this, mm, is another line."""
@@ -48,9 +47,9 @@ def _take_circle(state: Comparison, n: int, c: Circle) -> None:
     shift, size = c.centre - e.centre, c.radius - e.radius
     counted = max(abs(size) - SIZE_OF_SYMBOL, 0.0) if e.radius <= HINGE else abs(size)
     missing = (1 - c.part) * 2 * pi * c.radius if c.part < FULL else 0.0
-    said = moved(shift, state.tolerance)
+    said = [shifted(shift)] if abs(shift) > state.tolerance else []
     if counted > state.tolerance:
-        said.append(f"radius {more(size)}")
+        said.append(f"radius {excess(size)} ({c.radius:.1f} for {e.radius:.1f})")
     if missing > 0.5:
         said.append(f"{missing:.1f} mm of it missing")
     state.found[n] = state.finding(n, max(abs(shift) + counted, missing), ", ".join(said), shift=shift, size=size,
@@ -189,11 +188,11 @@ def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: O
         ends.append(complex(0.0 if loose and 0 < v.real < BEYOND else v.real, v.imag))
     deviation = max(abs(v) for v in ends)
     across = abs((shift * np.conj(u)).imag)
-    said = moved(1j * u * (shift * np.conj(u)).imag, state.tolerance, "aside ")
+    said = [shifted(1j * u * (shift * np.conj(u)).imag)] if across > state.tolerance else []
     if abs(np.radians(turn)) * abs(q - p) / 2 > max(state.tolerance, 0.3 * across):
-        said.append(f"turned {decimal(turn, sign=True)}°")
+        said.append(turned(turn))
     if abs(size) > state.tolerance:
-        said.append(f"{abs(size):.2f} mm too {'long' if size > 0 else 'short'}")
+        said.append(excess(size, "long", "short"))
     elif abs((shift * np.conj(u)).real) > state.tolerance:
         said.append(f"{abs((shift * np.conj(u)).real):.2f} mm along itself")
     state.found[n] = state.finding(n, deviation, ", ".join(said), shift=shift, turn=turn, size=size,

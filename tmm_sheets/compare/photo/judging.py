@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.findings import Finding
+from tmm_sheets.compare.findings import Finding, excess, shifted, turned
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
 
@@ -102,7 +102,7 @@ def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_De
     for end, which, at in ((t.ends[0], "beginning", e.points[0]), (t.ends[1], "end", e.points[-1])):
         if not np.isfinite(end) or (loose and soft):
             continue
-        said = f"{abs(end):.1f} mm too {'long' if end > 0 else 'short'} at its {which}" if abs(end) > allowed else ""
+        said = f"{excess(end, 'long', 'short')} at its {which}" if abs(end) > allowed else ""
         off = min(abs(end), 2 * LOOSE) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)
 
@@ -113,23 +113,12 @@ def _similarity_in_words(t: Trace, tolerance: float) -> str:
     half = 0.5 * e.length if e.kind == "line" else float(np.abs(e.points - e.points.mean()).max())
     said = []
     if abs(t.growth) > 0.5 * tolerance:
-        word = "large" if t.growth > 0 else "small"
         if e.kind in ("circle", "arc"):
-            said.append(f"radius {abs(t.growth):.1f} mm too {word} ({e.radius + t.growth:.1f} for {e.radius:.1f})")
+            said.append(f"radius {excess(t.growth)} ({e.radius + t.growth:.1f} for {e.radius:.1f})")
         elif e.kind == "curve":
-            said.append(f"{100 * abs(t.growth) / half:.1f} % too {word}")
+            said.append(f"{excess(t.growth)} in {half:.0f} mm")
     if abs(t.shift) > 0.5 * tolerance:
-        said.append(f"{abs(t.shift):.1f} mm too far {_direction(t.shift)}")
+        said.append(shifted(t.shift))
     if e.kind != "circle" and abs(t.turn) * half > 0.5 * tolerance:
-        said.append(f"turned by {abs(degrees(t.turn)):.2f}° {'counter-clockwise' if t.turn > 0 else 'clockwise'}")
+        said.append(turned(degrees(t.turn)))
     return ", ".join(said) or f"off by up to {t.deviation:.1f} mm"
-
-
-def _direction(shift: complex) -> str:
-    """Direction of a shift in words, a component of less than a quarter left out."""
-    parts = []
-    if abs(shift.imag) > 0.25 * abs(shift):
-        parts.append("up" if shift.imag > 0 else "down")
-    if abs(shift.real) > 0.25 * abs(shift):
-        parts.append("right" if shift.real > 0 else "left")
-    return " and ".join(parts)
