@@ -31,6 +31,8 @@ FOUND = 0.5
 """Least share of a view's lines that must be in place."""
 INKED = 0.5
 """Least share of ink in a line that leads to another view for it to be compared."""
+PRIOR = 0.1
+"""Weight of the prior for no change: long vectors side by side tell next to nothing of what is along them."""
 COARSE_TO_FINE = ((4.0, 1.0), (2.5, 0.7), (1.5, 0.5), (1.0, 0.3), (0.8, 0.2))
 """Reach within which lines are sought and distance from which on they count little, step by step, mm."""
 
@@ -160,7 +162,7 @@ def _step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool
     middle = p.mean()
     half = max(float(np.abs(p - middle).max()), 1.0)
     base = similarity_base(p, normals, middle, half)
-    x = fit(base if free else base[:, :3], o, use, loose)
+    x = fit(base if free else base[:, :3], o, use, loose, PRIOR)
     growth = complex(1 + (x[3] if free else 0.0) / half, x[2] / half)
     return Placing(growth, complex(x[0], x[1]) + complex(middle) * (1 - growth))
 
