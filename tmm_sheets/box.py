@@ -5,7 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from tmm_sheets.drawing.marks import Points
+    import numpy as np
+    import numpy.typing as npt
+
+    Points = npt.NDArray[np.complex128]
 
 
 class Box(NamedTuple):
