@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    Points = npt.NDArray[np.complex128]
 
 
 class Box(NamedTuple):
@@ -12,6 +18,20 @@ class Box(NamedTuple):
     y0: float
     x1: float
     y1: float
+
+    @classmethod
+    def around(cls, z: Points, margin: float = 0.0) -> Box:
+        """Bounding rectangle of points with a margin."""
+        return cls(float(z.real.min()) - margin, float(z.imag.min()) - margin, float(z.real.max()) + margin,
+                   float(z.imag.max()) + margin)
+
+    @property
+    def corners(self) -> Points:
+        """Corners, counter-clockwise from the lower left one."""
+        import numpy as np
+
+        x0, y0, x1, y1 = self
+        return np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)])
 
     @property
     def width(self) -> float:

@@ -39,8 +39,8 @@ def by_image(project, n, path):
     for f in findings:
         if f.verdict != "green":
             e = f.trace.element
-            said.append((f.verdict, f"element {e.number} {e.kind} {e.style} {e.name!r} of {e.of!r}, {e.length:.0f} mm, about "
-                        f"({f.place.real:.1f}, {f.place.imag:.1f}), view {e.view.name!r}: {f.said}"))
+            said.append((f.verdict, f"element {e.number} {e.kind} {e.style} {e.name!r}, {e.length:.0f} mm, about "
+                        f"({f.at.real:.1f}, {f.at.imag:.1f}), view {e.view.name!r}: {f.what}"))
     said += [("extra", f"{x.width:.0f} x {x.height:.0f} mm about ({x.middle.real:.1f}, {x.middle.imag:.1f})") for x in extra]
     return said, sum(f.trace.status in ("measured", "missing") for f in findings)
 
@@ -52,7 +52,7 @@ def by_cad(project, n, path):
     for f in found.outcome.findings:
         e = f.element
         if f.verdict != "green":
-            said.append((str(f.verdict), f"element {e.number} {e.kind} {e.style} {e.name!r} of {e.of!r}, view {e.view.name!r}: "
+            said.append((str(f.verdict), f"element {e.number} {e.kind} {e.style} {e.name!r}, view {e.view.name!r}: "
                         f"{f.what}"))
         elif f.deviation > 0.01:
             said.append(("off", f"element {e.number} {e.kind} {e.style} {f.deviation:.3f} mm"))

@@ -13,8 +13,9 @@ from tests.compare.cad_plants import Way, draw
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_file, cad_report
-from tmm_sheets.compare.cad.placing import Placing, lines
+from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
@@ -257,6 +258,8 @@ def test_views_given_by_a_file(tmp_path):
     told = next(v for v in report.tree["views"] if v["view"] == view.name)
     assert told["size"] == pytest.approx(0.5, abs=1e-3)
     assert judged(report, CIRCLE.number)["verdict"] == "green"
+    near = [x for x in report.tree["extra"] if abs(complex(*x["at"]) - place(view.box.centre)) < 60]
+    assert len([x for x in near if x["what"] == "line"]) < 5  # hatching is not compared there, nor is it too much (21 pieces)
 
 
 def test_a_wrong_place_in_the_file_of_views_is_told_and_the_view_looked_for(tmp_path):

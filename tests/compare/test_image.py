@@ -174,7 +174,7 @@ def test_bad_files(tmp_path):
         assert "JPG, PNG or PDF" in str(caught.value)
     with pytest.raises(CannotBuild, match=r"blank\.png: nothing in the picture is as dark as a drawn line"):
         image.compare(project(), N, blank(tmp_path))
-    with pytest.raises(BadInput, match="no sheet 9"):
+    with pytest.raises(BadInput, match="--sheet 9"):
         image.compare(project(), 9, tmp_path / "none.jpg")
     small = tmp_path / "small.png"
     small.write_bytes(cv2.imencode(".png", np.full((600, 800), 220, np.uint8))[1].tobytes())

@@ -12,8 +12,8 @@ from tmm_sheets.compare.elements import elements, views
 from tmm_sheets.compare.photo import placed_views as placing
 from tmm_sheets.compare.photo import tracing
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.similarity import Similarity, moved
 from tmm_sheets.compare.photo.traces import ExtraInk
+from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Text
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
@@ -135,7 +135,7 @@ def test_lines_side_by_side_are_not_taken_for_one_another():
 
 
 def test_symbols_and_lettering_keep_their_size_in_another_scale():
-    where = Similarity(1.5 * np.exp(0.1j), 20 - 10j)
+    where = Placing(1.5 * np.exp(0.1j), 20 - 10j)
     ours = {kind: next(e for e in known() if e.view.name == PLAN and e.kind == kind) for kind in ("text", "circle", "line")}
     text, circle, line = (moved(e, where) for e in ours.values())
     assert (text.height, circle.radius, line.length) == pytest.approx(
@@ -152,7 +152,7 @@ def test_strange_ink_where_a_view_was_left_out():
     """Ink of the view left out may be anywhere but inside the others."""
     ink, _ = drawn()
     placed = placing.place(known(), (), Flat(), ink)
-    middle = next(v for v in placed.similarities if v.draw == "kinematics.position_plans").box.centre
+    middle = next(v for v in placed.similarities if v.name == "Планы положений механизма").box.centre
     assert placed.strange(ExtraInk(middle, 20.0, 20.0, 28.0))
     assert not placed.strange(ExtraInk(ABOUT[WHEEL], 20.0, 20.0, 28.0))
 

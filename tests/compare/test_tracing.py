@@ -13,11 +13,11 @@ from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6
-VIEW = ElementView(0, "view", "view", Box(0, 0, 841, 594))
+VIEW = ElementView(0, "view", Box(0, 0, 841, 594))
 
 
 def line(number, a, b, style="main"):
-    return Element(number, VIEW, "", "line", np.array([a, b]), style, "view")
+    return Element(number, VIEW, "", "line", np.array([a, b]), style)
 
 
 def paper():
@@ -56,7 +56,7 @@ def test_a_line_that_ends_at_another_is_measured_at_both_sides_of_it(off):
     assert found[0].ends[0] == pytest.approx(0, abs=0.3)
     f = judge(found[0], 0.25, 0.15)
     assert f.verdict == ("red" if abs(off) > 2 else "amber")
-    assert ("too long at its end" if off > 0 else "too short at its end") in f.said
+    assert ("too long at its end" if off > 0 else "too short at its end") in f.what
     assert judge(found[1], 0.25, 0.15).verdict == "green"
     assert extra == []
 

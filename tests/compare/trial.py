@@ -124,7 +124,7 @@ class Tally:
         outcome = "dense" if unseen(f, p) else f.verdict if f.verdict != "green" else "missed"
         self.found[kind, size][outcome] += 1
         if outcome == "missed" and "thin" not in kind:
-            self.examples.append(f"missed {label}: {p.kind} {p.size:.1f} element {e.number} {f.said} {f.off:.2f}")
+            self.examples.append(f"missed {label}: {p.kind} {p.size:.1f} element {e.number} {f.what} {f.deviation:.2f}")
 
     def add_untouched(self, label, f):
         """An element without a planted error."""
@@ -132,7 +132,7 @@ class Tally:
         self.elements["dense" if f.unknown else "judged"] += 1
         if f.verdict != "green":
             self.false[f.verdict] += 1
-            self.examples.append(f"false {label}: {f.verdict} element {e.number} {e.kind} {e.style} {f.said}")
+            self.examples.append(f"false {label}: {f.verdict} element {e.number} {e.kind} {e.style} {f.what}")
 
     def merge(self, other):
         for key, c in other.found.items():

@@ -15,10 +15,10 @@ Points are complex, mm of the sheet, x to the right, y up (as everywhere in ``dr
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, pi
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
@@ -28,15 +28,13 @@ from tmm_sheets.drawing import dashes
 from tmm_sheets.drawing.canvas import MarkGroup
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Role, Text, Trace, View
 from tmm_sheets.sheets.sheet import Composed
 
 Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
 
 STRAIGHT = 0.01
 """Points within this distance of a chord, mm, are on a straight line."""
-NAMES = {"title block": "Рамка и основная надпись"}
-"""Names of views that have no title on the sheet."""
 SAGITTA = 0.005
 """Sagitta of the chords by which ``points`` approximates an arc, mm."""
 
@@ -48,16 +46,16 @@ class ElementView:
     Attributes
     ----------
     n : number on the sheet, from 0 (the frame with the title block)
-    name : title on the sheet in Russian, without lettering markup ("Планы положений механизма"), or ``draw`` where it has none;
-        of equal names on one sheet the second is "…, 2"
-    draw : the arrangement's name for it ("cam.table")
+    name : its title in Russian, without lettering markup ("Планы положений механизма"); of equal names on one sheet the second is
+        "…, 2"
     box : its place on the sheet
+    mu : its scale factor, unit of the plan per mm; None where it has none, or several
     """
 
     n: int
     name: str
-    draw: str
     box: Box
+    mu: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,20 +67,19 @@ class Element:
     number : from 1, the same for the same sheet of the same project
     view : the view it belongs to
     name : what a report calls it: what the step that left it is called, with the position where the view shows several
-        ("B–C(3)", "p–b"); the text itself for lettering; without a step what drew it ("position plan 3") if that says more than the
-        view, else empty. Not unique.
+        ("B–C(3)", "p–b"); the text itself for lettering; empty without a step. Not unique.
     kind : "line", "arc", "circle" (also filled dots), "curve", "text", "hatch", "fill" (heads without a line, quadrants)
     points : centre line, complex, shape (n,), mm: both ends of a line (the tip of an arrow last), an arc or circle in chords
         with a sagitta of 0.005 mm, a curve's own vertices (the first again at the end if closed); text: the four corners
         of its box, counter-clockwise from the lower left; hatch and fill: the outline or bounding rectangle, closed
     style : line type of ``templates/linetypes.toml``
-    of : what drew it: the name of the view or of a construction step
     centre, radius : of arcs and circles, mm
     start, end : angles of an arc, rad, counter-clockwise
     text, height, angle : of lettering: letters in reading order, height of a capital, mm, and direction, rad
     fills : its filled polygons: arrow heads
     pieces : the strokes of a hatching, or the bars and leader line of lettering, each an array of points
     marks : the marks it consists of
+    by : the step that left it, its position, and its role on the sheet
     """
 
     number: int
@@ -91,7 +88,6 @@ class Element:
     kind: Kind
     points: Points
     style: str
-    of: str
     centre: complex = 0j
     radius: float = 0.0
     start: float = 0.0
@@ -102,11 +98,27 @@ class Element:
     fills: tuple[Points, ...] = ()
     pieces: tuple[Points, ...] = ()
     marks: tuple[Mark, ...] = field(default=(), repr=False)
+    by: Trace | None = None
 
     @property
     def length(self) -> float:
         """Length of the centre line, mm."""
         return float(np.abs(np.diff(self.points)).sum())
+
+    @property
+    def step(self) -> str:
+        """The path of the step that left it, empty without one."""
+        return self.by.step if self.by is not None else ""
+
+    @property
+    def position(self) -> str:
+        """The label of the position it belongs to, empty where there is none."""
+        return self.by.position if self.by is not None else ""
+
+    @property
+    def role(self) -> Role:
+        """What it is on the sheet."""
+        return self.by.role if self.by is not None else "text" if self.kind == "text" else "symbol"
 
     @property
     def arrow(self) -> bool:
@@ -116,27 +128,47 @@ class Element:
     @property
     def middle(self) -> complex:
         """The middle of its bounding rectangle, mm."""
-        z = self.points
-        return complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
+        return Box.around(self.points).centre
 
 
 def views(sheet: Composed) -> tuple[ElementView, ...]:
     """The views of a sheet in drawing order, the frame first; a titled part of a view is a view."""
-    return _views(sheet)[0]
+    return tuple(ElementView(n, view.name, view.box, _scale_factor(sheet, view)) for n, view in enumerate(sheet.drawing.views))
 
 
-def elements(sheet: Composed) -> tuple[Element, ...]:
-    """The elements of a sheet in drawing order, labels last, numbered from 1; every mark belongs to exactly one."""
-    found, of_part = _views(sheet)
-    starts = np.array([p.first for p in sheet.parts])
+def _scale_factor(sheet: Composed, view: View) -> float | None:
+    """The scale factor of the plans that lie in a view; None where none does, where they have several or differ along the axes."""
+    frames = [f for f in sheet.frames if f.plan in sheet.scales and _within(view, sheet.parts[f.view].first)]
+    found = {mu for f in frames for mu in f.mu}
+    return found.pop() if len(found) == 1 else None
+
+
+def _within(view: View, mark: int) -> bool:
+    return any(first <= mark < end for first, end in view.spans)
+
+
+def elements(sheet: Composed, symbols: Mapping[str, str] = MappingProxyType({})) -> tuple[Element, ...]:
+    """The elements of a sheet in drawing order, labels last, numbered from 1; every mark belongs to exactly one.
+
+    ``symbols`` are the letters of steps that are not called by their names, in lettering markup, by the path of the step.
+    """
+    found = views(sheet)
+    of_mark = np.zeros(len(sheet.drawing.marks), np.int64)
+    for n, view in enumerate(sheet.drawing.views):
+        for first, end in view.spans:
+            of_mark[first:end] = n
     marks = sheet.drawing.marks
     out: list[Element] = []
     for first, end, group in _groups(marks, sheet.groups):
-        part = group.part if group is not None and group.part >= 0 else int(np.searchsorted(starts, first, "right")) - 1
-        e = _element(len(out) + 1, found[of_part[part]], marks[first:end], group)
-        name = e.name or _called(e.marks, sheet, e.of if e.of != e.view.draw else "")
-        out.append(replace(e, name=name))
+        e = _element(len(out) + 1, found[of_mark[first]], marks[first:end], group)
+        by = next((m.by for m in e.marks if m.by is not None and (m.by.step or m.by.name)), e.marks[0].by)
+        out.append(replace(e, name=e.name or _called(by, sheet, symbols), by=by))
     return tuple(out)
+
+
+def drawn(element: Element) -> tuple[Points, ...]:
+    """Where an element is drawn, dashed lines whole; nothing of lettering."""
+    return () if element.kind == "text" else element.pieces if element.kind == "hatch" else (element.points,)
 
 
 def dashed(element: Element) -> tuple[Points, ...]:
@@ -151,6 +183,14 @@ def said(markup: str) -> str:
     return "".join(run.text for run in letter(markup, 5.0).runs)
 
 
+def grown(corners: Points, by: float) -> Points:
+    """Corners of a rectangle, counter-clockwise, moved outwards by ``by`` mm."""
+    a, b, _, _ = corners
+    u = (b - a) / max(abs(b - a), 1e-9)
+    v = 1j * u
+    return corners + by * np.array([-u - v, u - v, u + v, v - u])
+
+
 def sampled(points: Points, step: float = 0.5) -> tuple[Points, Points]:
     """Points along a polyline at most ``step`` mm apart, and the unit normal at each, to the left of its direction."""
     run = np.abs(np.diff(points))
@@ -161,36 +201,6 @@ def sampled(points: Points, step: float = 0.5) -> tuple[Points, Points]:
     k = np.clip(np.searchsorted(along, t, "right") - 1, 0, len(run) - 1)
     unit = np.diff(points)[k] / run[k]
     return points[k] + (t - along[k]) * unit, 1j * unit
-
-
-def _views(sheet: Composed) -> tuple[tuple[ElementView, ...], list[int]]:
-    """The views, and for every part of the sheet the number of its view.
-
-    What a view draws before its first title belongs to that title. Parts without marks or labels are no views: a project does not
-    need all that its arrangement names.
-    """
-    firsts = [p.first for p in sheet.parts]
-    labelled = {g.part for g in sheet.groups}
-    found: list[tuple[str, str, Box]] = []
-    of_part: list[int] = []
-    untitled = False
-    for n, (part, end) in enumerate(zip(sheet.parts, [*firsts[1:], firsts[-1]], strict=True)):
-        title = said(part.title) if part.title else ""
-        before = len(found)
-        if title and untitled and found[-1][1] == part.draw:
-            found[-1] = (title, part.draw, found[-1][2])
-        elif end > part.first or n in labelled or not found:
-            found.append((title or NAMES.get(part.draw, part.draw), part.draw, part.box))
-        of_part.append(len(found) - 1)
-        untitled = not title and len(found) > before
-    return tuple(_numbered(found)), of_part
-
-
-def _numbered(found: Sequence[tuple[str, str, Box]]) -> Iterator[ElementView]:
-    count: Counter[str] = Counter()
-    for n, (name, draw, box) in enumerate(found):
-        count[name] += 1
-        yield ElementView(n, name if count[name] == 1 else f"{name}, {count[name]}", draw, box)
 
 
 def _groups(marks: Sequence[Mark], groups: Sequence[MarkGroup]) -> Iterator[tuple[int, int, MarkGroup | None]]:
@@ -223,13 +233,17 @@ def _line(mark: Mark) -> Points:
     if isinstance(mark, Text):
         return text_box(mark)
     points = np.asarray(mark.points)
-    return np.append(points, points[:1]) if isinstance(mark, Fill) or mark.closed else points
+    return _closed(points) if isinstance(mark, Fill) or mark.closed else points
+
+
+def _closed(points: Points) -> Points:
+    return np.append(points, points[:1])
 
 
 def _element(number: int, view: ElementView, marks: Sequence[Mark], group: MarkGroup | None) -> Element:
     """The element that consists of some marks."""
     grouped = group.kind if group is not None else ""
-    whole, of = tuple(marks), marks[0].of
+    whole = tuple(marks)
     fills = tuple(np.asarray(m.points) for m in marks if isinstance(m, Fill))
     lines = [m for m in marks if not isinstance(m, Fill | Text)]
     if any(isinstance(m, Text) for m in marks):
@@ -237,13 +251,14 @@ def _element(number: int, view: ElementView, marks: Sequence[Mark], group: MarkG
     if grouped == "dot":
         outline = _line(marks[0])
         centre = complex(fills[0].mean())
-        return Element(number, view, "", "circle", outline, _style(marks[0]), of, centre, float(abs(outline[0] - centre)), 0.0,
+        return Element(number, view, "", "circle", outline, _style(marks[0]), centre, float(abs(outline[0] - centre)), 0.0,
                        2 * pi, fills=fills, marks=whole)
     if grouped == "hatch" or _hatch_line(marks[0]):
         pieces = tuple(map(_line, lines))
-        return Element(number, view, "", "hatch", _rectangle(np.concatenate(pieces)), "hatch", of, pieces=pieces, marks=whole)
+        outline = _closed(Box.around(np.concatenate(pieces)).corners)
+        return Element(number, view, "", "hatch", outline, "hatch", pieces=pieces, marks=whole)
     if not lines:
-        return Element(number, view, "", "fill", _line(marks[0]), _style(marks[0]), of, fills=fills, marks=whole)
+        return Element(number, view, "", "fill", _line(marks[0]), _style(marks[0]), fills=fills, marks=whole)
     return _drawn(number, view, lines, fills, whole)
 
 
@@ -255,7 +270,7 @@ def _lettering(number: int, view: ElementView, marks: tuple[Mark, ...]) -> Eleme
     texts = [m for m in marks if isinstance(m, Text)]
     words = "".join(t.text for t in texts)
     strokes = tuple(_line(m) for m in marks if not isinstance(m, Fill | Text))
-    return Element(number, view, words, "text", _around(texts), "text", marks[0].of, text=words,
+    return Element(number, view, words, "text", _around(texts), "text", text=words,
                    height=max(t.height for t in texts), angle=texts[0].angle, pieces=strokes, marks=marks)
 
 
@@ -266,19 +281,19 @@ def _drawn(
     mark = lines[0]
     if isinstance(mark, Arc):
         full = mark.end - mark.start > 2 * pi - 1e-9
-        return Element(number, view, "", "circle" if full else "arc", _line(mark), mark.style, mark.of, mark.centre, mark.radius,
+        return Element(number, view, "", "circle" if full else "arc", _line(mark), mark.style, mark.centre, mark.radius,
                        mark.start, mark.end, fills=fills, marks=marks)
     points = np.concatenate([_line(m) for m in lines])
     u = points[np.abs(points - points[0]).argmax()] - points[0]
     u /= abs(u)
     on = (points - points[0]) * u.conjugate()
     if np.abs(on.imag).max() > STRAIGHT:
-        return Element(number, view, "", "curve", points, mark.style, mark.of, fills=fills, marks=marks)
+        return Element(number, view, "", "curve", points, mark.style, fills=fills, marks=marks)
     # The tip of an arrow reaches beyond its shaft.
     tips = [(complex(f[0]) - points[0]) * u.conjugate() for f in fills]
     t = np.concatenate((on.real, [z.real for z in tips if abs(z.imag) < STRAIGHT]))
     ends = points[0] + u * np.array([t.min(), t.max()])
-    return Element(number, view, "", "line", ends, mark.style, mark.of, fills=fills, marks=marks)
+    return Element(number, view, "", "line", ends, mark.style, fills=fills, marks=marks)
 
 
 def _around(texts: list[Text]) -> Points:
@@ -289,16 +304,10 @@ def _around(texts: list[Text]) -> Points:
     return np.asarray(u * np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)]))
 
 
-def _rectangle(z: Points) -> Points:
-    x0, x1, y0, y1 = z.real.min(), z.real.max(), z.imag.min(), z.imag.max()
-    return np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1), complex(x0, y0)])
-
-
-def _called(marks: Sequence[Mark], sheet: Composed, of: str) -> str:
-    """Name of an element by the step that left its marks, with the position where its place is that of several."""
-    by = next((m.by for m in marks if m.by is not None and (m.by.step or m.by.name)), None)
-    if by is None:
-        return of
-    name = said(by.name or by.step.rpartition("/")[2])
+def _called(by: Trace | None, sheet: Composed, symbols: Mapping[str, str]) -> str:
+    """Name of what a step has left, with the position where its place is that of several; empty without a step."""
+    if by is None or not (by.step or by.name):
+        return ""
+    name = said(by.name or symbols.get(by.step) or by.step.rpartition("/")[2])
     frame = sheet.frames[by.frame].position if by.frame >= 0 else ""
     return f"{name}({by.position})" if by.position not in ("", frame) else name

@@ -11,23 +11,20 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.drawing.marks import Role
 
 BEYOND = 15.0
 """How far such a line must reach beyond everything else in its view, mm."""
-STYLES = {"construction", "thin", "centre"}
+LEADING: frozenset[Role] = frozenset({"construction", "axis"})
+"""Roles of lines that may do so."""
 
 
 def links(elements: Sequence[Element]) -> frozenset[int]:
     """Numbers of the elements that lead out of their views."""
     places: dict[ElementView, list[Element]] = {}
     for e in elements:
-        if e.view.n and e.style not in STYLES:
+        if e.view.n and e.role not in LEADING:
             places.setdefault(e.view, []).append(e)
-    boxes = {view: _box(found) for view, found in places.items()}
-    return frozenset(e.number for e in elements if e.kind == "line" and e.style in STYLES and e.view in boxes
+    boxes = {view: Box.around(np.concatenate([e.points for e in found])) for view, found in places.items()}
+    return frozenset(e.number for e in elements if e.kind == "line" and e.role in LEADING and e.view in boxes
                      and not all(boxes[e.view].contains(complex(z), BEYOND) for z in e.points))
-
-
-def _box(found: Sequence[Element]) -> Box:
-    z = np.concatenate([e.points for e in found])
-    return Box(float(z.real.min()), float(z.imag.min()), float(z.real.max()), float(z.imag.max()))

@@ -3,7 +3,7 @@
 It is a TOML file with a table for each view that is not in its place::
 
     [[view]]
-    name = "План ускорений (положение 2)"     # its title on our sheet, or the arrangement's name for it (kinematics.structure)
+    name = "План ускорений (положение 2)"     # its title on our sheet
     ours = [[512.4, 430.0], [561.0, 402.5]]   # two points of it on our sheet, mm from the lower left corner of the paper
     theirs = [[1033, 820], [1180, 741]]       # the same points in the image, pixels from its upper left corner, or in the drawing,
                                               # its units
@@ -14,7 +14,6 @@ With ``mu`` one point is enough; a second one then only tells how the view is tu
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections import Counter
 from collections.abc import Sequence
@@ -25,7 +24,8 @@ from pathlib import Path
 from typing import Any
 
 from tmm_sheets import texts
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.elements import ElementView
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.errors import BadInput, Problem
 
 
@@ -37,6 +37,22 @@ class ViewPlace:
     ours: tuple[complex, ...]
     theirs: tuple[complex, ...]
     mu: float | None = None
+
+    def placing(self, at: Sequence[complex]) -> Placing:
+        """The placing of the view by two points, or one and a scale factor; ``at`` is ``theirs`` laid on our sheet, mm.
+
+        Raises
+        ------
+        BadInput
+            If a scale factor is given for a view that has none of its own on our sheet.
+        """
+        turn = (at[1] - at[0]) / (self.ours[1] - self.ours[0]) if len(at) == 2 else 1 + 0j
+        if self.mu is not None:
+            if self.view.mu is None:
+                raise BadInput(f'view "{self.view.name}": our sheet gives it no scale factor of its own to compare mu with',
+                               "leave mu out and give two points")
+            turn *= self.view.mu / self.mu / abs(turn)
+        return Placing(turn, at[0] - turn * self.ours[0])
 
 
 def read(path: Path, views: Sequence[ElementView]) -> tuple[ViewPlace, ...]:
@@ -128,11 +144,9 @@ def _named(name: Any, views: Sequence[ElementView]) -> ElementView | None:
     if not isinstance(name, str) or not name.strip():
         return None
     wanted = _plain(name)
-    for known in ({_plain(v.name): v for v in reversed(views)}, {_plain(v.draw): v for v in reversed(views)}):
-        if wanted in known:
-            return known[wanted]
+    whole = [v for v in views if _plain(v.name) == wanted]
     begin = [v for v in views if _plain(v.name).startswith(wanted)]
-    return begin[0] if len(begin) == 1 else None
+    return (whole or begin)[0] if whole or len(begin) == 1 else None
 
 
 def _plain(text: str) -> str:
@@ -149,12 +163,3 @@ def _points(value: Any) -> tuple[complex, ...] | None:
 
 def _number(x: Any) -> bool:
     return isinstance(x, int | float) and not isinstance(x, bool) and isfinite(x)
-
-
-def mu_of(view: ElementView, elements: Sequence[Element]) -> float | None:
-    """The scale factor under the title of a view, 0.0025 for "μ_l = 0,0025 м/мм"; None when there is none or several."""
-    found = set()
-    for e in elements:
-        if e.view == view and e.kind == "text" and "μ" in e.text:
-            found |= {float(m.replace(",", ".")) for m in re.findall(r"=\s*(\d+(?:,\d+)?)\s*\D", e.text)}
-    return found.pop() if len(found) == 1 else None

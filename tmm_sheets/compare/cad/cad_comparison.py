@@ -11,22 +11,21 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.cad import cad_text
+from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import Interval, Left, Numbers, Overlaps, together
-from tmm_sheets.compare.cad.placing import KnownLines, Placing, lines
 from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Fill, Line, Points, Text
 from tmm_sheets.drawing.styles import line_type
 
 JOINT = 0.3
 """Greatest gap between pieces of one line, mm."""
-SYMBOL = 2.6
-"""Greatest radius of a symbol (hinge, dot), mm: its place counts, its size hardly."""
 SIZE_OF_SYMBOL = 1.0
-"""How much the radius of a symbol may differ, mm."""
+"""How much the radius of a hinge or dot may differ, mm: its place counts, its size hardly."""
 LOOSE_STYLES = {"construction", "centre", "hatch", "axis"}
 """Auxiliary lines: they may end up to :data:`BEYOND` mm beyond their ends."""
 BEYOND = 10.0
@@ -39,8 +38,9 @@ class Comparison:
 
     Attributes
     ----------
-    elements, space, tolerance : what is compared, mm, and how far a point may be off, mm
-    moves, paths, heads : by element: the move of its view, the lines it must have ink along, its arrow heads, both moved
+    elements, space, tolerance : what is compared, where the drawing has its views, mm, and how far a point may be off, mm
+    moved : views that stand elsewhere than on the sheet
+    paths : by element, the lines it must have ink along
     theirs, entity : pieces of their lines, and the entity of each
     found : findings by element
     claims : their ink that belongs to elements
@@ -59,12 +59,11 @@ class Comparison:
 
     def __init__(self, elements: Sequence[Element], space: DrawingSpace, moves: Mapping[ElementView, Placing],
                  tolerance: float) -> None:
-        self.elements, self.space, self.tolerance = elements, space, tolerance
-        self.moves = [moves.get(e.view, Placing()) for e in elements]
+        self.elements = [moved(e, moves[e.view]) if e.view in moves else e for e in elements]
+        self.space, self.tolerance, self.moved = space, tolerance, moves
         self.theirs = space.lines
         self.entity = np.array([s.entity for s in space.strokes], dtype=np.int64)[self.theirs.owner]
-        self.paths = [self._paths(e, m) for e, m in zip(elements, self.moves, strict=True)]
-        self.heads = [tuple(m(f) for f in e.fills) for e, m in zip(elements, self.moves, strict=True)]
+        self.paths = [_paths(e) for e in self.elements]
         self.found: dict[int, CadFinding] = {}
         self.claims: list[Overlaps] = []
         self.inked: dict[int, list[Interval]] = {}
@@ -74,20 +73,7 @@ class Comparison:
         self.used_writings: set[int] = set()
         self.zones: list[Points] = []
         self.lettered: list[Points] = []
-        self.drawn_letters: list[tuple[int, cad_text.WantedText]] = []
-
-    def _paths(self, e: Element, move: Placing) -> list[Points]:
-        """The lines an element must have ink along, where its view is."""
-        if e.kind in ("text", "fill"):
-            return []
-        if e.kind == "hatch":
-            return [move(p) for p in e.pieces]
-        ink = [m for m in e.marks if not isinstance(m, Fill | Text)]
-        if ink and e.kind == "circle" and e.radius <= SYMBOL:
-            return [move(e.centre) + (e.points - e.centre)]
-        if e.kind == "line" and len(ink) == 1 and isinstance(ink[0], Line):
-            return [move(np.array([ink[0].a, ink[0].b]))]  # the shaft of an arrow, without its head
-        return [move(e.points)] if ink else []
+        self.drawn_letters: list[int] = []
 
     def ours(self, numbers: Sequence[int]) -> tuple[KnownLines, npt.NDArray[np.int64], Numbers]:
         """Straight pieces of the paths of some elements, the element of each piece, and how far along its path it begins, mm."""
@@ -133,8 +119,8 @@ class Comparison:
                  size: float | None = None, missing: bool = False, entities: tuple[int, ...] = (),
                  at: complex | None = None) -> CadFinding:
         """A finding for element ``n``, judged by its deviation, mm."""
-        e, m = self.elements[n], self.moves[n]
-        z = m(e.points)
+        e = self.elements[n]
+        z = e.points
         middle, reach = (middle_of(z), reach_of(z)) if at is None else (at, min(reach_of(z), 5.0))
         judged = verdict(deviation, self.tolerance)
         return CadFinding(e, judged, deviation, what, middle, reach, shift, turn, size, missing, entities)
@@ -173,19 +159,23 @@ class Comparison:
         return np.array([self.theirs.a[r.piece] + r.a * u, self.theirs.a[r.piece] + r.b * u])
 
 
+def _paths(e: Element) -> list[Points]:
+    """The lines an element must have ink along."""
+    if e.kind in ("text", "fill"):
+        return []
+    if e.kind == "hatch":
+        return list(e.pieces)
+    ink = [m for m in e.marks if not isinstance(m, Fill | Text)]
+    if e.kind == "line" and len(ink) == 1 and isinstance(ink[0], Line):
+        return [np.array([ink[0].a, ink[0].b])]  # the shaft of an arrow, without its head
+    return [e.points] if ink else []
+
+
 def middle_of(z: Points) -> complex:
     """Middle of the bounding rectangle of points."""
-    return complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
+    return Box.around(z).centre
 
 
 def reach_of(z: Points) -> float:
     """Radius of the circle that marks points on an overlay, mm."""
     return min(max(float(np.abs(z - middle_of(z)).max()), 3.0), 20.0)
-
-
-def grown(corners: Points, by: float) -> Points:
-    """A rectangle extended by some millimetres on all sides."""
-    a, b, _, _ = corners
-    u = (b - a) / max(abs(b - a), 1e-9)
-    v = 1j * u
-    return corners + by * np.array([-u - v, u - v, u + v, v - u])

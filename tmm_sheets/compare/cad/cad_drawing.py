@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import view_places
 from tmm_sheets.compare.cad import cad_file, cad_overlay, cad_report, layout
-from tmm_sheets.compare.cad.cad_examined import Examined
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.matching import match
-from tmm_sheets.compare.cad.placing import Placing
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.elements import views as views_of
+from tmm_sheets.compare.findings import worst
+from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.report import Report
-from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal
-from tmm_sheets.sheets.sheet import composed
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -43,18 +41,18 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     say("overlay")
     outcome, laid = found.outcome, found.laid
     gone = cad_report.gone(outcome)
-    shown = [f for f in cad_report.worst(outcome.findings) if f.element.view not in gone]
+    shown = [f for f in worst(outcome.findings) if f.element.view not in gone]
     marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
         [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
     looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
-    exact = _exact(laid.elements, found.places.moves)
-    files = cad_overlay.files(laid.n, laid.sheet.drawing, exact, found.space, marked, looks)
+    exact = [p for f in outcome.findings for p in drawn(f.element)]
+    files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, marked, looks)
     name = project.variant.project.name
     return Report(cad_report.text(name, path, found, pencil), cad_report.tree(name, path, found, pencil), files, found.notes)
 
 
 def examine(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
-            say: Callable[[str], None] = lambda _: None) -> Examined:
+            say: Callable[[str], None] = lambda _: None) -> cad_report.Examined:
     """Compare a DXF drawing with a sheet of a project.
 
     Parameters
@@ -71,28 +69,25 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     BadInput
         If the file cannot be read as DXF, there is no such sheet, or the drawing is of none of them.
     """
-    count = len(project.variant.sheets)
-    if sheet is not None and not 1 <= sheet <= count:
-        raise BadInput(f"--sheet {sheet}: {project.variant.project.name} has {count} sheet{'s' * (count > 1)}",
-                       f"--sheet 1 to --sheet {count}" if count > 1 else "give --sheet 1, or leave it out")
+    numbers = sheet_numbers(project, sheet)
     say(f"reading {path.name}")
     ink = cad_file.read(path)
-    sheets = {}
-    for n in [sheet] if sheet is not None else range(1, count + 1):
+    known = []
+    for n in numbers:
         say(f"sheet {n}")
-        sheets[n] = composed(project, n)
-    if views is not None and sheet is None and count > 1:
+        known.append(known_sheet(project, n))
+    if views is not None and len(numbers) > 1:
         raise BadInput("--views needs --sheet N: its views are those of one sheet")
     say("laying it over the sheet")
-    laid = lay(sheets, ink)
-    given = view_places.read(views, views_of(laid.sheet)) if views is not None else ()
+    laid = lay(known, ink)
+    given = view_places.read(views, views_of(laid.known.sheet)) if views is not None else ()
     space = laid.space.placed(laid.placing)
     say("placing the views")
-    places = layout.find(laid.elements, space.lines, space.writings, [(p, laid.placing) for p in given], say)
-    outcome = match(laid.elements, space, places.moves, pencil, say)
+    places = layout.find(laid.known.elements, space.lines, space.writings, [(p, laid.placing) for p in given], say)
+    outcome = match(laid.known.elements, space, places.moves, pencil, say)
     if not _of_this_sheet(outcome):
         _refuse(project, laid, outcome, ink, sheet, path)
-    return Examined(laid, space, places, outcome, (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes))
+    return cad_report.Examined(laid, space, places, outcome, (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes))
 
 
 def _how(laid: Laid, unit: float | None) -> Iterator[str]:
@@ -149,22 +144,10 @@ def _refuse(project: Project, laid: Laid, outcome: CadOutcome, ink: CadInk, aske
     hint = "is it the right project and variant? a drawing with a layout of its own can be told with --views where its views are"
     count = len(project.variant.sheets)
     if asked is not None and count > 1:
-        other, fit = fitting({n: composed(project, n) for n in range(1, count + 1) if n != asked}, ink)
+        other, fit = fitting([known_sheet(project, n) for n in range(1, count + 1) if n != asked], ink)
         if fit > max(laid.share + 0.15, 0.4):
             hint = f"it looks like sheet {other}: use --sheet {other}, or leave --sheet out"
-    what = f"sheet {laid.n}" if asked is not None or count == 1 else f"any of the {count} sheets"
+    what = f"sheet {laid.known.n}" if asked is not None or count == 1 else f"any of the {count} sheets"
     hint = "; ".join((*ink.notes, hint))
     share = _green(_judged_lines(outcome))
     raise BadInput(Problem(f"only {share:.0%} of the lines of {what} are in this drawing", str(path), hint=hint))
-
-
-def _exact(found: Sequence[Element], moves: Mapping[ElementView, Placing]) -> list[Points]:
-    """Lines of the exact sheet where the drawing has its views."""
-    out: list[Points] = []
-    for e in found:
-        move = moves.get(e.view, Placing())
-        if e.kind == "hatch":
-            out += [move(p) for p in e.pieces]
-        elif e.kind != "text":
-            out.append(move(e.points))
-    return out

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.cad import cad_lettering
-from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, SYMBOL, Comparison, middle_of, reach_of
+from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, Comparison, middle_of, reach_of
 from tmm_sheets.compare.cad.cad_findings import ExtraStroke
 from tmm_sheets.compare.cad.cad_ink import normal
+from tmm_sheets.compare.cad.line_fit import lines, shapes
 from tmm_sheets.compare.cad.overlaps import Left, left, pieces
-from tmm_sheets.compare.cad.placing import lines, shapes
+from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
 
@@ -88,11 +89,10 @@ def _free_zones(state: Comparison) -> list[Any]:
     import shapely
 
     zones = [_polygon(z) for z in state.zones]
-    for n, e in enumerate(state.elements):
-        if e.kind == "circle" and e.radius <= SYMBOL:
-            c = complex(state.moves[n](e.centre))
-            zones.append(shapely.Point(c.real, c.imag).buffer(e.radius + 0.2))
-        zones += [_polygon(h).buffer(0.35) for h in state.heads[n] if len(h) > 2]
+    for e in state.elements:
+        if e.kind == "circle" and e.radius <= HINGE:
+            zones.append(shapely.Point(e.centre.real, e.centre.imag).buffer(e.radius + 0.2))
+        zones += [_polygon(h).buffer(0.35) for h in e.fills if len(h) > 2]
     for a in state.space.areas:
         if np.ptp(a.points.real) + np.ptp(a.points.imag) < 20:
             zones.append(shapely.MultiPoint(np.column_stack((a.points.real, a.points.imag))).convex_hull.buffer(0.05))
@@ -178,7 +178,7 @@ def _continues(state: Comparison, n: int, chain: list[Left], owners: Owners) -> 
         return False
     if state.elements[n].kind != "line":
         return True
-    z = state.moves[n](state.elements[n].points)
+    z = state.elements[n].points
     u = (z[-1] - z[0]) / abs(z[-1] - z[0])
     d = state.theirs.b[chain[0].piece] - state.theirs.a[chain[0].piece]
     middle = complex(state.ends(chain[0]).mean())
@@ -262,7 +262,7 @@ def _heaps(middles: Points, near: float = 5.0) -> Iterator[list[int]]:
 
 
 def _extra_areas(state: Comparison) -> Iterator[ExtraStroke]:
-    ours = [complex(h.mean()) for heads in state.heads for h in heads]
+    ours = [complex(h.mean()) for e in state.elements for h in e.fills]
     known = np.array(ours, dtype=complex)
     for k, area in enumerate(state.space.areas):
         z = area.points

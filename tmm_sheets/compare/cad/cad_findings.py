@@ -6,33 +6,25 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from tmm_sheets.compare.cad.cad_ink import Entity
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.elements import ElementView
+from tmm_sheets.compare.findings import Finding
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.numbers import decimal
 
 
 @dataclass(frozen=True, eq=False)
-class CadFinding:
-    """The outcome for one element.
+class CadFinding(Finding):
+    """The outcome for one element, where the drawing has its view.
 
     Attributes
     ----------
-    verdict : None if the element was not compared
-    deviation : how far it is off, mm
-    what : the same in words
-    at, reach : centre and radius of a circle round the place on the sheet, mm
+    reach : radius of a circle round the place, mm
     shift, turn, size : shift (right, up), mm, turn, degrees counter-clockwise, and excess of length or radius, mm, where these can
         be told apart
     missing : whether it is not there at all
     entities : numbers of the entities of the drawing it is made of
     """
 
-    element: Element
-    verdict: Verdict | None
-    deviation: float
-    what: str
-    at: complex
     reach: float
     shift: complex | None = None
     turn: float | None = None
@@ -89,15 +81,3 @@ class CadOutcome:
     extras: tuple[ExtraStroke, ...]
     looks: tuple[LookFinding, ...] = ()
     notes: tuple[str, ...] = ()
-
-
-def moved(shift: complex, tolerance: float, how: str = "") -> list[str]:
-    """A shift in words, nothing for one within the tolerance."""
-    if abs(shift) <= tolerance:
-        return []
-    return [f"shifted {how}by {abs(shift):.2f} mm ({decimal(shift.real, sign=True)}, {decimal(shift.imag, sign=True)})"]
-
-
-def more(size: float) -> str:
-    """A difference of size, mm, in words."""
-    return f"{abs(size):.2f} mm too {'large' if size > 0 else 'small'}"

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_patterns import Pattern
-from tmm_sheets.compare.cad.placing import KnownLines, Placing, lines
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 
 

@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.cad import cad_text
-from tmm_sheets.compare.cad.cad_comparison import Comparison, grown
+from tmm_sheets.compare.cad.cad_comparison import Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
-from tmm_sheets.compare.cad.placing import KnownLines, lines
+from tmm_sheets.compare.elements import grown
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
 
@@ -19,12 +20,8 @@ from tmm_sheets.drawing.marks import Points, Text
 def lettering(state: Comparison) -> None:
     """Check what texts say; lettering that no text is found for is sought as drawn letters."""
     numbers = [n for n, e in enumerate(state.elements) if e.kind == "text"]
-    wanted = []
-    for n in numbers:
-        e, middle = state.elements[n], complex(state.elements[n].points.mean())
-        wanted.append(cad_text.WantedText(e.text, state.moves[n](middle) + (e.points - middle), e.height))
+    wanted = [state.elements[n] for n in numbers]
     got = cad_text.read(wanted, state.space.writings)
-    rest = [(n, w) for k, (n, w) in enumerate(zip(numbers, wanted, strict=True)) if k not in got]
     for k, answer in got.items():
         n = numbers[k]
         entities = tuple(state.space.writings[i].entity for i in answer.writings)
@@ -36,19 +33,19 @@ def lettering(state: Comparison) -> None:
             state.found[n] = state.finding(n, 4 * state.tolerance, f'reads "{answer.says}" instead of "{state.elements[n].text}"',
                                           entities=entities)
         _bars(state, n)
-        state.lettered.append(grown(wanted[k].corners, 0.8))
-    _strokes_of_letters(state, rest)
+        state.lettered.append(grown(wanted[k].points, 0.8))
+    _strokes_of_letters(state, [n for k, n in enumerate(numbers) if k not in got])
 
 
 def _bars(state: Comparison, n: int) -> None:
     """Claim overbars and leader lines: they are the draughtsman's choice, but no extra ink."""
-    state.claims += [overlaps(lines([state.moves[n](p)]), state.theirs, 1.0) for p in state.elements[n].pieces]
+    state.claims += [overlaps(lines([p]), state.theirs, 1.0) for p in state.elements[n].pieces]
 
 
-def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.WantedText]]) -> None:
+def _strokes_of_letters(state: Comparison, rest: Sequence[int]) -> None:
     """Find lettering that is drawn with lines, letter by letter."""
     strokes, owner = [], []
-    for n, _ in rest:
+    for n in rest:
         for stroke in _letters(state, n):
             strokes.append(stroke)
             owner.append(n)
@@ -57,31 +54,28 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[tuple[int, cad_text.Wa
     covered = _covered(near, ours, len(strokes))
     size = np.array([float(np.abs(np.diff(s)).sum()) for s in strokes])
     of = np.array(owner, dtype=np.int64)
-    for n, want in rest:
-        mine = of == n
+    for n in rest:
+        mine, want = of == n, state.elements[n]
         whole, share = size[mine].sum(), covered[mine].sum()
         # A single stroke of a letter may be short, but it is not mostly absent.
         lost = (size[mine] - covered[mine])[size[mine] > 0.3 * want.height]
         if whole > 0 and share > 0.85 * whole and lost.max(initial=0.0) < 0.25 * want.height:
             state.claims.append(near.only(of[ours.owner[near.ours]] == n))
             _bars(state, n)
-            state.drawn_letters.append((n, want))
+            state.drawn_letters.append(n)
             state.found[n] = state.finding(n, 0.0, "")
         elif share > 0.4 * whole > 0:
             state.found[n] = _other_letters(state, n)
-            state.lettered.append(grown(want.corners, 0.8))
+            state.lettered.append(grown(want.points, 0.8))
         else:
             state.found[n] = state.finding(n, 2 * state.tolerance, f'text "{state.elements[n].text}" missing', missing=True)
 
 
 def _letters(state: Comparison, n: int) -> Iterator[Points]:
-    """The strokes of a text's letters; a view of another scale has letters of the same size."""
-    e = state.elements[n]
-    middle = complex(e.points.mean())
-    shift = complex(state.moves[n](middle)) - middle
-    for mark in e.marks:
+    """The strokes of a text's letters."""
+    for mark in state.elements[n].marks:
         if isinstance(mark, Text):
-            yield from (stroke + shift for stroke in letters(mark))
+            yield from letters(mark)
 
 
 def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:
@@ -92,8 +86,9 @@ def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:
     for r in rest:
         free[r.piece] += r.b - r.a if r.b - r.a > 0.1 else 0.0
     whole = np.bincount(state.theirs.owner, state.theirs.length)
-    for n, want in state.drawn_letters:
-        box = shapely.Polygon(np.column_stack((want.corners.real, want.corners.imag))).buffer(-0.1)
+    for n in state.drawn_letters:
+        want = state.elements[n]
+        box = shapely.Polygon(np.column_stack((want.points.real, want.points.imag))).buffer(-0.1)
         inside = state.theirs.tree.query(box, predicate="contains")
         inside = inside[whole[state.theirs.owner[inside]] < 4 * want.height]
         if free[inside].sum() > 0.45 * want.height:

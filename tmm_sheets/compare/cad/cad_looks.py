@@ -131,7 +131,7 @@ def _elsewhere(state: Comparison, n: int) -> list[InkStretch]:
     """The ink of a straight line that is elsewhere, as if it were in its place."""
     if state.elements[n].kind != "line":
         return []
-    z = state.moves[n](state.elements[n].points)
+    z = state.elements[n].points
     u = (z[-1] - z[0]) / abs(z[-1] - z[0])
     found: list[InkStretch] = []
     for j, a, b in state.owned[n]:

@@ -4,28 +4,41 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets.compare.cad.cad_examined import Examined
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
-from tmm_sheets.compare.cad.cad_ink import Entity
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
+from tmm_sheets.compare.cad.laying import Laid
+from tmm_sheets.compare.cad.layout import Layout
+from tmm_sheets.compare.elements import ElementView
+from tmm_sheets.compare.findings import called, origin, table, worst
 
-SHOWN = 60
-"""Most rows of a table in the terminal; the JSON has all."""
-WIDE = 74
-"""Most characters of a cell."""
 MANY = 4
 """Most numbers of elements in a row on line types and widths."""
 VIEW_GONE = 0.15
 """A view with most of it missing is told as missing if less than this share of it is right."""
 
 
-def worst(findings: Sequence[CadFinding]) -> list[CadFinding]:
-    """The findings that are not green, red first, the largest deviation first."""
-    rank = {"red": 0, "amber": 1}
-    return sorted((f for f in findings if f.verdict in rank), key=lambda f: (rank[str(f.verdict)], -f.deviation, f.element.number))
+@dataclass(frozen=True)
+class Examined:
+    """A drawing compared with a sheet.
+
+    Attributes
+    ----------
+    laid : the drawing laid over the sheet, in its own units
+    space : the same in mm of the sheet
+    places : where its views are
+    outcome : what was found
+    notes : what was done to the drawing and what deserves a warning, one line each
+    """
+
+    laid: Laid
+    space: DrawingSpace
+    places: Layout
+    outcome: CadOutcome
+    notes: tuple[str, ...]
 
 
 def gone(outcome: CadOutcome) -> set[ElementView]:
@@ -35,19 +48,6 @@ def gone(outcome: CadOutcome) -> set[ElementView]:
         by_view.setdefault(f.element.view, []).append(f)
     return {v for v, found in by_view.items() if len(found) > 5 and sum(f.missing for f in found) > 0.6 * len(found)
             and sum(f.verdict == "green" for f in found) < VIEW_GONE * len(found)}
-
-
-def _called(e: Element) -> str:
-    if e.kind == "text":
-        return "text"
-    what: str = e.kind
-    if e.arrow and e.kind == "line":
-        what = "arrow"
-    elif e.kind == "circle" and e.fills:
-        what = "dot"
-    elif e.kind == "hatch":
-        what = "hatching"
-    return f"{what} {e.name}".strip()
 
 
 def _found_by(entities: Sequence[Entity]) -> str:
@@ -61,11 +61,11 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
     """The report for the terminal on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     laid, outcome = found.laid, found.outcome
     lost = gone(outcome)
-    which = f"{name}, sheet {laid.n}: {path.name} ({laid.space.name})"
+    which = f"{name}, sheet {laid.known.n}: {path.name} ({laid.space.name})"
     out = [f"{which}, {len(outcome.findings)} elements, tolerance {pencil:g} mm", ""]
     rows = _deviations(found, lost)
     if rows:
-        out += [*_table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows), ""]
+        out += [*table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows), ""]
     out += [f'missing altogether: view "{v.name}", {sum(f.element.view == v for f in outcome.findings)} elements'
             for v in sorted(lost, key=lambda v: v.n)]
     for title, head, rows in (
@@ -73,7 +73,7 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
         ("of another type or width of line:", ("no.", "view", "lines", "what", "verdict", "in the drawing"), _looks(found)),
     ):
         if rows:
-            out += [title, *_table(head, rows), ""]
+            out += [title, *table(head, rows), ""]
     return "\n".join([*out, _summary(outcome, lost)])
 
 
@@ -92,7 +92,7 @@ def _summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
 def _deviations(found: Examined, lost: set[ElementView]) -> list[tuple[str, ...]]:
     """A row for every element that is not green, except those of missing views."""
     entities = found.laid.space.entities
-    return [(str(f.element.number), f.element.view.name, _called(f.element), f.what, str(f.verdict),
+    return [(str(f.element.number), f.element.view.name, called(f.element), f.what, str(f.verdict),
              _found_by([entities[k] for k in f.entities])) for f in worst(found.outcome.findings) if f.element.view not in lost]
 
 
@@ -116,15 +116,6 @@ def _looks(found: Examined) -> list[tuple[str, ...]]:
     return rows
 
 
-def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
-    shown = [tuple(c if len(c) <= WIDE else c[: WIDE - 1] + "…" for c in row) for row in rows[:SHOWN]]
-    widths = [max(len(row[k]) for row in (head, *shown)) for k in range(len(head))]
-    out = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (head, *shown)]
-    if len(rows) > SHOWN:
-        out.append(f"... and {len(rows) - SHOWN} more; --json has all")
-    return out
-
-
 def _point(z: complex | None) -> list[float] | None:
     return None if z is None else [round(z.real, 3), round(z.imag, 3)]
 
@@ -144,7 +135,7 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
 
     return {
         "project": name,
-        "sheet": laid.n,
+        "sheet": laid.known.n,
         "drawing": path.name,
         "space": laid.space.name,
         "tolerance": pencil,
@@ -153,9 +144,8 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
         "views": [{"view": v.name, "share": round(s, 4), **(
             {"shift": _point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
             if v in places.moves else {})} for v, s in places.share.items()],
-        "elements": [{
-            "number": f.element.number, "view": f.element.view.name, "kind": f.element.kind, "name": f.element.name,
-            "step": f.element.of, "verdict": f.verdict, "deviation": round(f.deviation, 4), "shift": _point(f.shift),
+        "elements": [origin(f.element) | {
+            "verdict": f.verdict, "deviation": round(f.deviation, 4), "shift": _point(f.shift),
             "turn": _rounded(f.turn), "size": _rounded(f.size), "missing": f.missing, "what": f.what, "at": _point(f.at),
             "entities": [entity(laid.space.entities[k]) for k in f.entities],
         } for f in outcome.findings],

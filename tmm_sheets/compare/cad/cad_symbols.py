@@ -8,9 +8,11 @@ from math import pi
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_comparison import SIZE_OF_SYMBOL, Comparison
-from tmm_sheets.compare.cad.cad_findings import CadFinding, moved
+from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.overlaps import overlaps
+from tmm_sheets.compare.findings import shifted
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
 
@@ -20,14 +22,14 @@ def filled(state: Comparison) -> None:
     for n, e in enumerate(state.elements):
         if n in state.found or not (e.kind == "fill" or (e.kind == "circle" and e.fills)):
             continue
-        centre = complex(state.heads[n][0].mean())
+        centre = complex(state.elements[n].fills[0].mean())
         off = np.abs(state.areas - centre) if len(state.areas) else np.zeros(0)
         if len(off) and off.min() < 2.0:
             k = int(off.argmin())
             state.used_areas.add(k)
             shift = complex(state.areas[k] - centre)
             counted = abs(shift) if e.kind == "circle" else max(abs(shift) - SIZE_OF_SYMBOL, 0.0)
-            state.found[n] = state.finding(n, counted, ", ".join(moved(shift, state.tolerance)), shift=shift,
+            state.found[n] = state.finding(n, counted, shifted(shift) if abs(shift) > state.tolerance else "", shift=shift,
                                           entities=(state.space.areas[k].entity,))
         else:
             what = "the dot is missing" if e.kind == "circle" else "not filled"
@@ -36,7 +38,7 @@ def filled(state: Comparison) -> None:
 
 def arrows(state: Comparison) -> None:
     """Check that arrows have their heads, at the right ends."""
-    heads = [(n, h) for n, e in enumerate(state.elements) if e.arrow for h in state.heads[n]]
+    heads = [(n, h) for n, e in enumerate(state.elements) if e.arrow for h in state.elements[n].fills]
     ours = np.array([complex(h.mean()) for _, h in heads], dtype=complex)
     for n, head in heads:
         finding = state.found.get(n)
@@ -65,20 +67,20 @@ def _tip(state: Comparison, n: int, head: Points, finding: CadFinding) -> comple
     tip = complex(head[0])
     if finding.shift is None or finding.verdict == "green" or state.elements[n].kind != "line":
         return tip
-    turned = (tip - state.moves[n](state.elements[n].middle)) * (np.exp(1j * np.radians(finding.turn or 0.0)) - 1)
+    turned = (tip - state.elements[n].middle) * (np.exp(1j * np.radians(finding.turn or 0.0)) - 1)
     return complex(tip + (finding.shift + turned))
 
 
 def _without_head(state: Comparison, n: int, tip: complex, ours: Points) -> None:
     """Tell that an arrow has no head at its tip; ``ours`` are the middles of all heads there should be."""
     e, finding = state.elements[n], state.found[n]
-    z = state.moves[n](e.points)
+    z = e.points
     tail = complex(z[0] if abs(z[0] - tip) > abs(z[-1] - tip) else z[-1])
     u = (tip - tail) / max(abs(tip - tail), 1e-9)
     t = (state.areas - tail) * np.conj(u)
     at_tail = np.flatnonzero((t.real > -0.5) & (t.real < 7.0) & (np.abs(t.imag) < 0.8))
     strange = [int(k) for k in at_tail if np.abs(ours - state.areas[k]).min() > 0.7]
-    if strange and e.kind == "line" and len(state.heads[n]) == 1:
+    if strange and e.kind == "line" and len(state.elements[n].fills) == 1:
         state.used_areas.update(strange)
         what, deviation = "points the other way", e.length
     else:
@@ -124,7 +126,7 @@ def hatching(state: Comparison) -> None:
     patterns = np.array([complex(a.points.mean()) for a in state.space.areas if not a.solid], dtype=complex)
     for n in numbers:
         mine, whole = owner == n, state.whole(n)
-        box = _box_round(state.moves[n](state.elements[n].points), 1.5)
+        box = Box.around(state.elements[n].points, 1.5).corners
         own = float((near.s1 - near.s0)[mine].sum()) > 0.8 * whole
         if own or _inside(patterns, box).any() or float(slanting.length[_inside(middles, box)].sum()) > 0.4 * whole:
             state.found[n] = state.finding(n, 0.0, "")
@@ -133,12 +135,6 @@ def hatching(state: Comparison) -> None:
                 state.zones.append(box)
         else:
             state.found[n] = state.finding(n, 2 * state.tolerance, "not hatched", missing=True)
-
-
-def _box_round(z: Points, margin: float) -> Points:
-    """Corners of the bounding rectangle with a margin, counter-clockwise from the lower left."""
-    x0, x1, y0, y1 = z.real.min() - margin, z.real.max() + margin, z.imag.min() - margin, z.imag.max() + margin
-    return np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)])
 
 
 def _inside(z: Points, box: Points) -> npt.NDArray[np.bool_]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
 
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_ink import Writing, normal
-from tmm_sheets.drawing.marks import Points
+from tmm_sheets.compare.elements import Element
 
 CLOSE = 0.3
 """How far beyond the box of a text the middle of a part of it may be, mm."""
@@ -24,20 +23,6 @@ FAR = 12.0
 
 
 @dataclass(frozen=True)
-class WantedText:
-    """Lettering of ours: what it says, the corners of its box, counter-clockwise from the lower left, and its height, mm."""
-
-    text: str
-    corners: Points
-    height: float
-
-    @cached_property
-    def middle(self) -> complex:
-        """Middle of the box."""
-        return complex(self.corners.mean())
-
-
-@dataclass(frozen=True)
 class FoundText:
     """``writings`` are the numbers of the texts found for a wanted one, ``says`` what they say if that is something else."""
 
@@ -45,7 +30,7 @@ class FoundText:
     says: str | None = None
 
 
-def read(wanted: Sequence[WantedText], writings: Sequence[Writing]) -> dict[int, FoundText]:
+def read(wanted: Sequence[Element], writings: Sequence[Writing]) -> dict[int, FoundText]:
     """The texts found for wanted ones, by the number of the wanted one.
 
     The same text near by comes first, of about the same size, which an index is not; then several texts that make one (a letter and
@@ -65,7 +50,7 @@ def read(wanted: Sequence[WantedText], writings: Sequence[Writing]) -> dict[int,
 class _Reading:
     """Wanted texts, texts of the drawing, and which of them belong together so far."""
 
-    def __init__(self, wanted: Sequence[WantedText], writings: Sequence[Writing]) -> None:
+    def __init__(self, wanted: Sequence[Element], writings: Sequence[Writing]) -> None:
         self.wanted, self.writings = wanted, writings
         self.at = np.array([w.at for w in writings], dtype=complex)
         self.found: dict[int, FoundText] = {}
@@ -92,7 +77,7 @@ class _Reading:
                 if order := self._spelling(near, want):
                     self._take(n, *order)
 
-    def _spelling(self, near: list[int], want: WantedText) -> list[int]:
+    def _spelling(self, near: list[int], want: Element) -> list[int]:
         """The texts in an order in which they make the wanted one; none if there is no such order.
 
         They follow one another by their middles or by their left ends; of indices above one another either may be first.
@@ -104,9 +89,9 @@ class _Reading:
                 return order
         return []
 
-    def _along(self, near: list[int], want: WantedText, ends: float = 0.5, lift: float = 0.0) -> list[int]:
+    def _along(self, near: list[int], want: Element, ends: float = 0.5, lift: float = 0.0) -> list[int]:
         """Texts in the direction of a wanted one, by their left ends (0.5) or middles (0); ``lift`` puts off what stands higher."""
-        along = want.corners[1] - want.corners[0]
+        along = want.points[1] - want.points[0]
         u = np.conj(along) / max(abs(along), 1e-9)
         place = {k: (self.writings[k].at - want.middle) * u - ends * self.writings[k].width for k in near}
         return sorted(near, key=lambda k: (place[k].real + lift * place[k].imag, k))
@@ -132,16 +117,16 @@ class _Reading:
                 order = self._along(list(parts), want)
                 self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
 
-    def _missing(self) -> Iterator[tuple[int, WantedText]]:
+    def _missing(self) -> Iterator[tuple[int, Element]]:
         return ((n, want) for n, want in enumerate(self.wanted) if n not in self.found)
 
     def _take(self, n: int, *texts: int, says: str | None = None) -> None:
         self.found[n] = FoundText(texts, says)
         self.free.difference_update(texts)
 
-    def _about(self, want: WantedText, reach: float = 5.0) -> list[int]:
+    def _about(self, want: Element, reach: float = 5.0) -> list[int]:
         """Texts whose middle is not far from the rectangle."""
-        size = abs(complex(want.corners[2] - want.corners[0])) / 2
+        size = abs(complex(want.points[2] - want.points[0])) / 2
         return np.flatnonzero(np.abs(self.at - want.middle) < size + reach).tolist()
 
 
@@ -166,15 +151,15 @@ def _digits(text: str) -> str:
     return "".join(c for c in text if c.isdigit())
 
 
-def _inside(want: WantedText, z: complex, margin: float) -> bool:
+def _inside(want: Element, z: complex, margin: float) -> bool:
     """Whether a point is in the box or within a margin of it."""
-    a, b, _, d = want.corners
+    a, b, _, d = want.points
     u = (b - a) / max(abs(b - a), 1e-9)
     p = (z - a) * np.conj(u)
     return bool(-margin <= p.real <= abs(b - a) + margin and -margin <= p.imag <= abs(d - a) + margin)
 
 
-def _beyond(want: WantedText, w: Writing) -> float:
+def _beyond(want: Element, w: Writing) -> float:
     """Distance of the middles, less the error that an estimated width may have."""
     along = (w.at - want.middle) * np.exp(-1j * w.angle)
     return float(np.hypot(max(abs(along.real) - 0.25 * w.width, 0.0), along.imag))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,10 +10,11 @@ import numpy as np
 from tmm_sheets.compare.cad import layout
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_text import meant
-from tmm_sheets.compare.cad.placing import HIT, RATIOS, KnownLines, Placing, candidates, lines, refine, search, snapped
-from tmm_sheets.compare.elements import Element, elements
+from tmm_sheets.compare.cad.line_fit import HIT, RATIOS, KnownLines, candidates, lines, refine, search, snapped
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.sheets.sheet import Composed
 
 SIDES = (816.0, 841.0, 584.0, 594.0)
 """Lengths of the sides of the frame and of the paper, mm."""
@@ -25,19 +26,16 @@ PART = 100.0
 
 @dataclass(frozen=True)
 class Laid:
-    """A drawing laid over a sheet: ``space`` by ``placing``, with ``share`` of the sheet's lines found in it."""
+    """A drawing laid over a known sheet: ``space`` by ``placing``, with ``share`` of the sheet's lines found in it."""
 
-    n: int
-    sheet: Composed
-    elements: tuple[Element, ...]
+    known: KnownSheet
     space: DrawingSpace
     placing: Placing
     share: float
 
 
-def lay(sheets: Mapping[int, Composed], ink: CadInk) -> Laid:
+def lay(known: Sequence[KnownSheet], ink: CadInk) -> Laid:
     """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines, even mirrored or of one view only."""
-    known = _known(sheets)
     # With a frame the rest may have another layout: then the lettering tells the sheet.
     tried = _by_frame(known, ink)
     if not tried:
@@ -49,40 +47,23 @@ def lay(sheets: Mapping[int, Composed], ink: CadInk) -> Laid:
     return _refined(_best(tried), ink.unit)
 
 
-def fitting(sheets: Mapping[int, Composed], ink: CadInk) -> tuple[int, float]:
+def fitting(known: Sequence[KnownSheet], ink: CadInk) -> tuple[int, float]:
     """The sheet a drawing seems to be of, and the share of its lines found at a quick look."""
-    known = _known(sheets)
     best = _best(_by_frame(known, ink) or list(_by_lines(known, ink, mirrored=False)))
-    return best.n, best.share
+    return best.known.n, best.share
 
 
-@dataclass(frozen=True)
-class _KnownSheet:
-    """A sheet with its elements and points along their lines, mm."""
-
-    n: int
-    sheet: Composed
-    elements: tuple[Element, ...]
-    points: Points
-
-    def laid(self, space: DrawingSpace, placing: Placing, share: float) -> Laid:
-        return Laid(self.n, self.sheet, self.elements, space, placing, share)
-
-
-def _known(sheets: Mapping[int, Composed]) -> list[_KnownSheet]:
-    return [_KnownSheet(n, sheet, found, layout.ink(found)) for n, sheet in sheets.items() for found in [elements(sheet)]]
-
-
-def _by_frame(known: Sequence[_KnownSheet], ink: CadInk) -> list[Laid]:
+def _by_frame(known: Sequence[KnownSheet], ink: CadInk) -> list[Laid]:
     """Placings by the frame alone, of one space after another until one is beyond doubt."""
     frame = _frame(known[0].elements)
     tried: list[Laid] = []
+    drawn = [layout.ink(sheet.elements) for sheet in known]
     for space in ink.spaces:
         for placing in _of_frame(frame, space.lines, ink.unit):
-            for sheet in known:
-                picked = sheet.points[:: max(len(sheet.points) // 3000, 1)]
+            for sheet, points in zip(known, drawn, strict=True):
+                picked = points[:: max(len(points) // 3000, 1)]
                 share = space.lines.share(placing.back(picked), HIT / placing.scale)
-                tried.append(sheet.laid(space, placing, share))
+                tried.append(Laid(sheet, space, placing, share))
         if tried and _best(tried).share >= SURE:
             break
     return tried
@@ -100,18 +81,19 @@ def _of_frame(frame: Points, theirs: KnownLines, unit: float | None) -> list[Pla
     return [way.after(trial.placing) for way in ways]
 
 
-def _by_lines(known: Sequence[_KnownSheet], ink: CadInk, *, mirrored: bool) -> Iterator[Laid]:
+def _by_lines(known: Sequence[KnownSheet], ink: CadInk, *, mirrored: bool) -> Iterator[Laid]:
     """The best placing of each space on each sheet by all of its lines."""
+    drawn = [layout.ink(sheet.elements) for sheet in known]
     for space in ink.spaces:
-        for sheet in known:
-            scales = candidates(space.lines, ink.unit, float(np.ptp(sheet.points.real)), SIDES)
-            found = search(sheet.points, space.lines, scales, mirrored=mirrored)
-            yield sheet.laid(space, found.placing, found.share)
+        for sheet, points in zip(known, drawn, strict=True):
+            scales = candidates(space.lines, ink.unit, float(np.ptp(points.real)), SIDES)
+            found = search(points, space.lines, scales, mirrored=mirrored)
+            yield Laid(sheet, space, found.placing, found.share)
             if found.share > 0.8:
                 break
 
 
-def _by_parts(known: Iterable[_KnownSheet], ink: CadInk) -> Iterator[Laid]:
+def _by_parts(known: Iterable[KnownSheet], ink: CadInk) -> Iterator[Laid]:
     """Placings of a drawing of a few views only: those that put most of its own lines on ours."""
     for sheet in known:
         ours = lines([e.points for e in sheet.elements if e.view.n and e.kind not in ("text", "hatch", "fill")])
@@ -123,7 +105,7 @@ def _by_parts(known: Iterable[_KnownSheet], ink: CadInk) -> Iterator[Laid]:
                     continue
                 trial = search(z, ours, [1.0], tries=4)
                 if trial.share >= SURE:
-                    yield sheet.laid(space, trial.placing.inverse().after(scale), trial.share)
+                    yield Laid(sheet, space, trial.placing.inverse().after(scale), trial.share)
 
 
 def _best(tried: Sequence[Laid]) -> Laid:
@@ -136,15 +118,15 @@ def _best(tried: Sequence[Laid]) -> Laid:
 def _words(laid: Laid) -> float:
     """Share of the words of a sheet that are somewhere in the drawing."""
     there = {meant(w.text) for w in laid.space.writings}
-    ours = {meant(e.text) for e in laid.elements if e.kind == "text" and len(e.text) > 3}
+    ours = {meant(e.text) for e in laid.known.elements if e.kind == "text" and len(e.text) > 3}
     return len(ours & there) / max(len(ours), 1)
 
 
 def _refined(laid: Laid, unit: float | None) -> Laid:
     """The placing refined: on all lines if most are in their places, else on the frame if there is one."""
-    theirs, z, free = laid.space.lines, layout.ink(laid.elements), True
+    theirs, z, free = laid.space.lines, layout.ink(laid.known.elements), True
     if laid.share < SURE:
-        frame = _frame(laid.elements)
+        frame = _frame(laid.known.elements)
         if theirs.share(laid.placing.back(frame), HIT / laid.placing.scale) > 0.9:
             z = frame
         else:

@@ -9,12 +9,12 @@ import numpy as np
 
 from tmm_sheets.compare.cad.cad_ink import Writing
 from tmm_sheets.compare.cad.cad_text import meant
-from tmm_sheets.compare.cad.placing import KnownLines, Placing, lines, refine, search
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines, refine, search
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.view_places import ViewPlace, mu_of
+from tmm_sheets.compare.placing import Placing
+from tmm_sheets.compare.view_places import ViewPlace
 from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.errors import BadInput
 from tmm_sheets.numbers import decimal
 
 MOST = 800
@@ -79,7 +79,7 @@ class _ViewFinder:
 
     def __init__(self, elements: Sequence[Element], theirs: KnownLines, writings: Sequence[Writing],
                  say: Callable[[str], None]) -> None:
-        self.elements, self.theirs, self.say = elements, theirs, say
+        self.theirs, self.say = theirs, say
         self.views = list(dict.fromkeys(e.view for e in elements))
         every = {v: ink([e for e in elements if e.view == v]) for v in self.views}
         self.points = {v: z[:: max(len(z) // MOST, 1)] for v, z in every.items()}
@@ -101,7 +101,10 @@ class _ViewFinder:
 
     def _place_given(self, place: ViewPlace, whole: Placing) -> None:
         v = place.view
-        move = _given(place, whole, self.elements, self.theirs, self.points[v])
+        move = place.placing([complex(whole(z)) for z in place.theirs])
+        if len(self.points[v]) >= ENOUGH:
+            near = refine(self.points[v], self.theirs, move.inverse(), (4.0, 2.0, 1.0, 0.5, 0.25), place.mu is None)
+            move = max(move, near.placing.inverse(), key=lambda m: self._inked(v, m))
         share = self._inked(v, move)
         if share < WRONG and len(self.points[v]) >= ENOUGH:
             self.notes.append(f'"{v.name}" is not where --views says: {share:.0%} of its lines are there; it was looked for')
@@ -134,7 +137,7 @@ class _ViewFinder:
 
     def _inked(self, v: ElementView, move: Placing) -> float:
         """Share of a view's points that have ink."""
-        return _share(self.points[v], self.theirs, move)
+        return self.theirs.share(move(self.points[v]), NEAR)
 
     def _read(self, v: ElementView, move: Placing) -> float:
         """Share of a view's texts that are where they should be."""
@@ -199,28 +202,6 @@ def _unused(theirs: KnownLines, known: Points) -> KnownLines:
     keep[hits * MOST_STEP >= 0.5 * theirs.length] = False
     keep[hits == 0] = True
     return theirs.only(keep)
-
-
-def _share(points: Points, theirs: KnownLines, move: Placing) -> float:
-    return theirs.share(move(points), NEAR)
-
-
-def _given(place: ViewPlace, whole: Placing, elements: Sequence[Element], theirs: KnownLines, points: Points) -> Placing:
-    """The move two points, or one and a scale factor, determine, refined if the ink allows it."""
-    at = [complex(whole(z)) for z in place.theirs]
-    turn = (at[1] - at[0]) / (place.ours[1] - place.ours[0]) if len(at) == 2 else 1 + 0j
-    if place.mu is not None:
-        mu = mu_of(place.view, elements)
-        if mu is None:
-            raise BadInput(f'view "{place.view.name}": our sheet gives it no scale factor of its own to compare mu with',
-                           "leave mu out and give two points")
-        turn = turn / abs(turn) * mu / place.mu
-    move = Placing(turn, at[0] - turn * place.ours[0])
-    if len(points) < ENOUGH:
-        return move
-    near = refine(points, theirs, move.inverse(), (4.0, 2.0, 1.0, 0.5, 0.25), place.mu is None)
-    better = near.placing.inverse()
-    return better if _share(points, theirs, better) > _share(points, theirs, move) else move
 
 
 def _where(view: ElementView, move: Placing) -> str:

@@ -15,14 +15,15 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.cad import cad_extras, cad_lettering, cad_looks, cad_symbols, misplaced
 from tmm_sheets.compare.cad.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.overlaps import Numbers, gaps, left, overlaps, union
-from tmm_sheets.compare.cad.placing import Placing
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.links import links
+from tmm_sheets.compare.placing import BESIDE, Placing, symbol
 from tmm_sheets.drawing.styles import line_type
 
 
@@ -66,21 +67,19 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
 
 def _not_compared(state: Comparison) -> None:
     """In a view of another scale symbols keep their size: they are not compared."""
-    for n, (e, m) in enumerate(zip(state.elements, state.moves, strict=True)):
-        if abs(m.scale - 1) < 1e-3:
-            continue
-        size = float(np.ptp(e.points.real) + np.ptp(e.points.imag))
-        small = e.kind in ("hatch", "fill") or (e.kind in ("curve", "arc") and size < 40)
-        if small or (e.kind == "line" and e.length < 16 and e.style != "vector"):
-            state.found[n] = CadFinding(e, None, 0.0, "a symbol in a view of another scale", complex(m(e.middle)), 5.0)
+    for n, e in enumerate(state.elements):
+        if e.view in state.moved and state.moved[e.view].scaled and symbol(e):
+            state.found[n] = CadFinding(e, None, 0.0, "a symbol in a view of another scale", e.middle, 5.0)
+            if e.role != "dimension":
+                state.zones.append(Box.around(e.points, BESIDE).corners)
 
 
 def _leading_elsewhere(state: Comparison) -> None:
     """Lines from one view to another that are missing where a view is elsewhere are no errors."""
     leading = links(state.elements)
-    for n, (e, m) in enumerate(zip(state.elements, state.moves, strict=True)):
-        if e.number in leading and m != Placing() and state.found[n].missing:
-            state.found[n] = CadFinding(e, None, 0.0, "leads to another view, which stands elsewhere", complex(m(e.middle)), 5.0)
+    for n, e in enumerate(state.elements):
+        if e.number in leading and e.view in state.moved and state.found[n].missing:
+            state.found[n] = CadFinding(e, None, 0.0, "leads to another view, which stands elsewhere", e.middle, 5.0)
 
 
 def _right(state: Comparison) -> None:

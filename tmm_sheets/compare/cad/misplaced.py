@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, JOINT, LOOSE_STYLES, SIZE_OF_SYMBOL, SYMBOL, Comparison
-from tmm_sheets.compare.cad.cad_findings import more, moved
+from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, JOINT, LOOSE_STYLES, SIZE_OF_SYMBOL, Comparison
 from tmm_sheets.compare.cad.overlaps import Circle, Left, Numbers, OverlapRun, Overlaps, circle, gaps, overlaps, pieces, runs, union
+from tmm_sheets.compare.findings import excess, shifted, turned
+from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.numbers import decimal
 
 FARTHEST = 25.0
 """A line whose ends are farther off than this, mm, is another line."""
@@ -32,7 +32,7 @@ def circles(state: Comparison, rest: Sequence[Left]) -> None:
     centres, radii = np.array([c.centre for c in made], dtype=complex), np.array([c.radius for c in made])
     pairs = []
     for n in wanted:
-        at, r = _place(state, n)
+        at, r = state.elements[n].centre, state.elements[n].radius
         off = np.abs(centres - at) + np.abs(radii - r)
         pairs += [(float(off[k]), n, int(k)) for k in np.flatnonzero(off < min(max(3.0, 0.5 * r), 12.0))]
     used: set[int] = set()
@@ -42,20 +42,14 @@ def circles(state: Comparison, rest: Sequence[Left]) -> None:
             _take_circle(state, n, made[k])
 
 
-def _place(state: Comparison, n: int) -> tuple[complex, float]:
-    """Centre and radius of a circle where its view is; symbols keep their size."""
-    e, m = state.elements[n], state.moves[n]
-    return complex(m(e.centre)), e.radius * (1.0 if e.radius <= SYMBOL else m.scale)
-
-
 def _take_circle(state: Comparison, n: int, c: Circle) -> None:
-    at, r = _place(state, n)
-    shift, size = c.centre - at, c.radius - r
-    counted = max(abs(size) - SIZE_OF_SYMBOL, 0.0) if state.elements[n].radius <= SYMBOL else abs(size)
+    e = state.elements[n]
+    shift, size = c.centre - e.centre, c.radius - e.radius
+    counted = max(abs(size) - SIZE_OF_SYMBOL, 0.0) if e.radius <= HINGE else abs(size)
     missing = (1 - c.part) * 2 * pi * c.radius if c.part < FULL else 0.0
-    said = moved(shift, state.tolerance)
+    said = [shifted(shift)] if abs(shift) > state.tolerance else []
     if counted > state.tolerance:
-        said.append(f"radius {more(size)}")
+        said.append(f"radius {excess(size)} ({c.radius:.1f} for {e.radius:.1f})")
     if missing > 0.5:
         said.append(f"{missing:.1f} mm of it missing")
     state.found[n] = state.finding(n, max(abs(shift) + counted, missing), ", ".join(said), shift=shift, size=size,
@@ -141,7 +135,7 @@ class _Runs:
 
     def near(self, n: int) -> Iterator[_Trial]:
         """The runs in the direction of a line and near it, either way round."""
-        p, q = (complex(z) for z in self.state.moves[n](self.state.elements[n].points))
+        p, q = (complex(z) for z in self.state.elements[n].points)
         u = (q - p) / abs(q - p)
         farthest = min(max(3.0, 0.35 * abs(q - p)), FARTHEST)
         a, b, before, after = self.a, self.b, self.before, self.after
@@ -180,7 +174,7 @@ def _tip(state: Comparison, end: complex, other: complex) -> complex:
 
 
 def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: OverlapRun, rest: Sequence[Left]) -> None:
-    p, q = (complex(z) for z in state.moves[n](state.elements[n].points))
+    p, q = (complex(z) for z in state.elements[n].points)
     c, d = found
     u = (q - p) / abs(q - p)
     shift = (c + d) / 2 - (p + q) / 2
@@ -194,11 +188,11 @@ def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: O
         ends.append(complex(0.0 if loose and 0 < v.real < BEYOND else v.real, v.imag))
     deviation = max(abs(v) for v in ends)
     across = abs((shift * np.conj(u)).imag)
-    said = moved(1j * u * (shift * np.conj(u)).imag, state.tolerance, "aside ")
+    said = [shifted(1j * u * (shift * np.conj(u)).imag)] if across > state.tolerance else []
     if abs(np.radians(turn)) * abs(q - p) / 2 > max(state.tolerance, 0.3 * across):
-        said.append(f"turned {decimal(turn, sign=True)}°")
+        said.append(turned(turn))
     if abs(size) > state.tolerance:
-        said.append(f"{abs(size):.2f} mm too {'long' if size > 0 else 'short'}")
+        said.append(excess(size, "long", "short"))
     elif abs((shift * np.conj(u)).real) > state.tolerance:
         said.append(f"{abs((shift * np.conj(u)).real):.2f} mm along itself")
     state.found[n] = state.finding(n, deviation, ", ".join(said), shift=shift, turn=turn, size=size,
@@ -279,7 +273,7 @@ def incomplete(state: Comparison) -> None:
             continue
         e, whole = state.elements[n], state.whole(n)
         if _missing(state, n) == np.inf:
-            if not (e.kind == "circle" and e.radius <= SYMBOL and e.fills):  # dots are sought among the filled areas
+            if not (e.kind == "circle" and e.radius <= HINGE and e.fills):  # dots are sought among the filled areas
                 state.found[n] = state.finding(n, whole, "missing", missing=True)
             continue
         a, b = max(gaps(state.inked[n], whole), key=lambda g: g[1] - g[0])

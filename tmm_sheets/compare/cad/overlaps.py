@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.cad.placing import KnownLines, shapes
+from tmm_sheets.compare.cad.line_fit import KnownLines, shapes
 from tmm_sheets.drawing.marks import Points
 
 Numbers = npt.NDArray[np.float64]

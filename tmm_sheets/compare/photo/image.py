@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import view_places
-from tmm_sheets.compare.elements import Element, elements
+from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.elements import views as views_of
+from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.photo import placed_views, rectification, tracing
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
@@ -19,8 +20,7 @@ from tmm_sheets.compare.photo.photograph import Picture, read
 from tmm_sheets.compare.photo.rectification import LONGEST, MATCH, Rectified, rectify
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.compare.report import Report
-from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.errors import CannotBuild
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -58,18 +58,15 @@ def compare(
     CannotBuild
         When the picture has no frame, shows another sheet, or is too blurred or too small, or no view of ``views`` is in it.
     """
-    count = len(project.variant.sheets)
-    if not 1 <= n <= count:
-        raise BadInput(f"{project.variant.project.name} has {count} sheets; there is no sheet {n}",
-                       hint=f"--sheet 1 to --sheet {count}")  # fmt: skip
+    sheet_numbers(project, n)
     say("reading the picture and composing the sheet")
     with ThreadPoolExecutor(1) as aside:  # decoding runs beside Python
         reading = aside.submit(read, path)
-        sheet = composed(project, n)
-        known = elements(sheet)
+        ours = known_sheet(project, n)
         picture = reading.result()
+    known = ours.elements
     # Before the rectification, so that what is wrong with the file is told at once.
-    places = view_places.read(views, views_of(sheet)) if views is not None else ()
+    places = view_places.read(views, views_of(ours.sheet)) if views is not None else ()
     found = rectify(picture, known, path, say, not places)
     notes = (*picture.notes, *found.notes)
     placed = None
@@ -113,7 +110,7 @@ def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
         if k == n:
             continue
         say(f"trying sheet {k}")
-        lines = as_lines([e for e in elements(composed(project, k)) if e.length < LONGEST], most=2500)
+        lines = as_lines([e for e in known_sheet(project, k).elements if e.length < LONGEST], most=2500)
         _, _, match = rectification.refine(found.map, found.sides, found.ink, lines, found.level)
         if match > share:
             best, share = k, match

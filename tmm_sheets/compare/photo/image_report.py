@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.elements import Element, dashed
+from tmm_sheets.compare.elements import dashed
+from tmm_sheets.compare.findings import called, origin, table, worst
 from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding, judge
 from tmm_sheets.compare.photo.rectification import Rectified
@@ -29,8 +30,7 @@ class _Judged:
 
     @cached_property
     def bad(self) -> list[PhotoFinding]:
-        order = {"red": 0, "amber": 1}
-        return sorted((f for f in self.findings if f.verdict != "green"), key=lambda f: (order[f.verdict], -f.share))
+        return worst(self.findings)
 
     @cached_property
     def count(self) -> dict[str, int]:
@@ -83,23 +83,11 @@ def image_report(
 
 def _table(judged: _Judged) -> list[str]:
     """The lines of the table of what is off, after an empty one; none when nothing is."""
-    rows = [(str(k), f.verdict, f"{f.off:.1f}" if f.off else "", _called(f.trace.element), f.trace.element.view.name, f.said)
+    rows = [(str(k), f.verdict or "", f"{f.deviation:.1f}" if f.deviation else "", called(f.element), f.element.view.name, f.what)
             for k, f in enumerate(judged.bad, 1)]  # fmt: skip
     rows += [(str(k), "amber", f"{x.length:.0f}", "extra ink", "", f"{x.width:.0f} x {x.height:.0f} mm about "
               f"x = {x.middle.real:.0f}, y = {x.middle.imag:.0f}") for k, x in judged.numbered_extra()]  # fmt: skip
-    if not rows:
-        return []
-    head = ("No.", "", "mm", "Element", "View", "What")
-    widths = [min(max(len(r[i]) for r in (head, *rows)), 44) for i in range(5)]
-    lines = [""]
-    for r in (head, *rows):
-        cells = [c[:44].rjust(w) if i in (0, 2) else c[:44].ljust(w) for i, (c, w) in enumerate(zip(r, widths, strict=False))]
-        lines.append("  ".join([*cells, r[5]]).rstrip())
-    return lines
-
-
-def _called(e: Element) -> str:
-    return f"{e.kind} {e.name}".strip()
+    return ["", *table(("No.", "", "mm", "Element", "View", "What"), rows)] if rows else []
 
 
 def _tree(judged: _Judged) -> dict[str, Any]:
@@ -116,9 +104,9 @@ def _tree(judged: _Judged) -> dict[str, Any]:
 
 def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]:
     """The overlays by the suffix of their files."""
-    flags = [overlay.Flag(k, f.verdict, f.place, _shown(f.trace)) for k, f in enumerate(judged.bad, 1)]
+    flags = [overlay.Flag(k, str(f.verdict), f.at, _shown(f.trace)) for k, f in enumerate(judged.bad, 1)]
     flags += [overlay.Flag(k, "amber", x.middle, np.zeros(0, complex)) for k, x in judged.numbered_extra()]
-    exact = [p for f in judged.findings if f.trace.element.kind != "text" for p in dashed(f.trace.element)]
+    exact = [p for f in judged.findings if f.element.kind != "text" for p in dashed(f.element)]
     with ThreadPoolExecutor(1) as aside:  # half of the time goes into packing, which runs beside Python
         drawn = aside.submit(overlay.png, found.ink, found.level, exact, flags)
         page = overlay.pdf(found.ink, found.level, exact, flags, title)
@@ -137,9 +125,8 @@ def _row(f: PhotoFinding) -> dict[str, Any]:
     t = f.trace
     ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
     measured = t.status in ("measured", "shared")
-    return {
-        "number": t.element.number, "view": t.element.view.name, "name": t.element.name, "kind": t.element.kind,
-        "status": t.status, "verdict": f.verdict, "said": f.said,
+    return origin(f.element) | {
+        "status": t.status, "verdict": f.verdict, "said": f.what,
         "shift": [round(t.shift.real, 2), round(t.shift.imag, 2)] if measured else None,
         "turn_deg": round(degrees(t.turn), 3) if measured else None, "growth": round(t.growth, 2) if measured else None,
         "ends": ends, "deviation": round(t.deviation, 2) if measured else None, "tolerance": round(f.tolerance, 2),

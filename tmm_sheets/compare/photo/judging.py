@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tmm_sheets.compare.findings import Finding, excess, shifted, turned
 from tmm_sheets.compare.photo.traces import Trace, open_line
-from tmm_sheets.compare.report import Verdict, verdict
+from tmm_sheets.compare.report import verdict
 
 LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
 """Lines whose ends mean nothing exact: by hand they are overdrawn."""
@@ -19,24 +20,17 @@ SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
 IN_REACH = "within a pencil's reach"
 
 
-@dataclass(frozen=True)
-class PhotoFinding:
-    """A trace judged: by how much it is off, in words, and whether that is within a pencil's reach.
-
-    ``off`` is the deviation that counts most, ``tolerance`` what is allowed for it, mm; ``place`` is where it is.
-    """
+@dataclass(frozen=True, eq=False)
+class PhotoFinding(Finding):
+    """A trace judged: the deviation that counts most, and the ``tolerance`` for it, mm."""
 
     trace: Trace
-    verdict: Verdict
-    said: str
-    off: float
     tolerance: float
-    place: complex
 
     @property
     def share(self) -> float:
         """Deviation by tolerance."""
-        return self.off / self.tolerance
+        return self.deviation / self.tolerance
 
     @property
     def unknown(self) -> bool:
@@ -83,15 +77,15 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Ph
         deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
         worst = max(deviations, key=lambda d: d.share)
         said = "; ".join(d.said for d in deviations if d.said)
-        return PhotoFinding(t, verdict(worst.off, worst.allowed), said or IN_REACH, worst.off, worst.allowed, worst.place)
+        return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or IN_REACH, worst.place, t, worst.allowed)
     if t.status == "missing":
-        return PhotoFinding(t, "red", "missing", e.length, tolerance, middle)
+        return PhotoFinding(e, "red", e.length, "missing", middle, t, tolerance)
     if t.status == "absent lettering":
-        return PhotoFinding(t, "amber", "no lettering here", 0.0, tolerance, complex(e.points.mean()))
+        return PhotoFinding(e, "amber", 0.0, "no lettering here", complex(e.points.mean()), t, tolerance)
     if t.status == "shared" and t.deviation <= tolerance:
-        return PhotoFinding(t, "green", f"{IN_REACH}, with others in one stroke", t.deviation, tolerance, middle)
+        return PhotoFinding(e, "green", t.deviation, f"{IN_REACH}, with others in one stroke", middle, t, tolerance)
     word = "not measurable: too near to others" if t.status in ("dense", "shared") else "there"
-    return PhotoFinding(t, "green", word, 0.0, tolerance, middle)
+    return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
 
 
 def _displacement(t: Trace, tolerance: float, middle: complex) -> _Deviation:
@@ -108,7 +102,7 @@ def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_De
     for end, which, at in ((t.ends[0], "beginning", e.points[0]), (t.ends[1], "end", e.points[-1])):
         if not np.isfinite(end) or (loose and soft):
             continue
-        said = f"{abs(end):.1f} mm too {'long' if end > 0 else 'short'} at its {which}" if abs(end) > allowed else ""
+        said = f"{excess(end, 'long', 'short')} at its {which}" if abs(end) > allowed else ""
         off = min(abs(end), 2 * LOOSE) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)
 
@@ -119,23 +113,12 @@ def _similarity_in_words(t: Trace, tolerance: float) -> str:
     half = 0.5 * e.length if e.kind == "line" else float(np.abs(e.points - e.points.mean()).max())
     said = []
     if abs(t.growth) > 0.5 * tolerance:
-        word = "large" if t.growth > 0 else "small"
         if e.kind in ("circle", "arc"):
-            said.append(f"radius {abs(t.growth):.1f} mm too {word} ({e.radius + t.growth:.1f} for {e.radius:.1f})")
+            said.append(f"radius {excess(t.growth)} ({e.radius + t.growth:.1f} for {e.radius:.1f})")
         elif e.kind == "curve":
-            said.append(f"{100 * abs(t.growth) / half:.1f} % too {word}")
+            said.append(f"{excess(t.growth)} in {half:.0f} mm")
     if abs(t.shift) > 0.5 * tolerance:
-        said.append(f"{abs(t.shift):.1f} mm too far {_direction(t.shift)}")
+        said.append(shifted(t.shift))
     if e.kind != "circle" and abs(t.turn) * half > 0.5 * tolerance:
-        said.append(f"turned by {abs(degrees(t.turn)):.2f}° {'counter-clockwise' if t.turn > 0 else 'clockwise'}")
+        said.append(turned(degrees(t.turn)))
     return ", ".join(said) or f"off by up to {t.deviation:.1f} mm"
-
-
-def _direction(shift: complex) -> str:
-    """Direction of a shift in words, a component of less than a quarter left out."""
-    parts = []
-    if abs(shift.imag) > 0.25 * abs(shift):
-        parts.append("up" if shift.imag > 0 else "down")
-    if abs(shift.real) > 0.25 * abs(shift):
-        parts.append("right" if shift.real > 0 else "left")
-    return " and ".join(parts)

@@ -18,22 +18,21 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.links import links
 from tmm_sheets.compare.photo.ink_levels import line_level
-from tmm_sheets.compare.photo.profiles import peaks, profiles
+from tmm_sheets.compare.photo.profiles import inked
 from tmm_sheets.compare.photo.sheet_map import FRAME, Map
-from tmm_sheets.compare.photo.similarity import SYMBOL, Similarity, moved
-from tmm_sheets.compare.photo.stations import as_lines, similarity_base
+from tmm_sheets.compare.photo.stations import as_lines, fit, similarity_base
 from tmm_sheets.compare.photo.traces import ExtraInk
-from tmm_sheets.compare.view_places import ViewPlace, mu_of
+from tmm_sheets.compare.placing import BESIDE, SYMBOL, Placing, moved
+from tmm_sheets.compare.view_places import ViewPlace
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.errors import BadInput
 from tmm_sheets.numbers import decimal
 
 FOUND = 0.5
 """Least share of a view's lines that must be in place."""
 INKED = 0.5
 """Least share of ink in a line that leads to another view for it to be compared."""
-BESIDE = 8.0
-"""Ink this near to a symbol of a view in another scale may be the symbol, mm."""
+PRIOR = 0.1
+"""Weight of the prior for no change: long vectors side by side tell next to nothing of what is along them."""
 COARSE_TO_FINE = ((4.0, 1.0), (2.5, 0.7), (1.5, 0.5), (1.0, 0.3), (0.8, 0.2))
 """Reach within which lines are sought and distance from which on they count little, step by step, mm."""
 
@@ -53,7 +52,7 @@ class PlacedViews:
     elements: tuple[Element, ...]
     left_out: tuple[str, ...]
     notes: tuple[str, ...]
-    similarities: Mapping[ElementView, Similarity]
+    similarities: Mapping[ElementView, Placing]
 
     def strange(self, extra: ExtraInk) -> bool:
         """Whether ink of no element is too much: neither of a view left out, nor of a symbol in another scale."""
@@ -63,18 +62,13 @@ class PlacedViews:
     @cached_property
     def _views(self) -> list[Box]:
         """Bounding boxes of the views that were found."""
-        return [_box([e.points for e in self.elements if e.view == view]) for view in self.similarities]
+        return [Box.around(np.concatenate([e.points for e in self.elements if e.view == view])) for view in self.similarities]
 
     @cached_property
     def _symbols(self) -> list[Box]:
         """Bounding boxes of the symbols in views of another scale than ours."""
         scaled = {view for view, where in self.similarities.items() if where.scaled}
-        return [_box([e.points]) for e in self.elements if e.view in scaled and e.kind in ("hatch", "fill")]
-
-
-def _box(lines: Sequence[Points]) -> Box:
-    z = np.concatenate(lines)
-    return Box(float(z.real.min()), float(z.imag.min()), float(z.real.max()), float(z.imag.max()))
+        return [Box.around(e.points) for e in self.elements if e.view in scaled and e.kind in ("hatch", "fill")]
 
 
 def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: Any) -> PlacedViews:
@@ -99,12 +93,12 @@ def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: An
     elements = [e for e in known if e.view.n == 0]
     placed: dict[ElementView, _PlacedView] = {}
     for view in dict.fromkeys(e.view for e in known if e.view.n):
-        start = _start(given[view], known, m) if view in given else None
+        start = given[view].placing(m.to_sheet(np.array(given[view].theirs)).tolist()) if view in given else None
         placed[view] = _place_view([e for e in known if e.view == view], start, leading, ink, level)
         elements += placed[view].elements
     similarities = {view: p.where for view, p in placed.items() if p.where is not None}
     lost = tuple(view.name for view in placed if view not in similarities)
-    return PlacedViews(tuple(elements), lost, tuple(_notes(placed, given, known)), similarities)
+    return PlacedViews(tuple(elements), lost, tuple(_notes(placed, given)), similarities)
 
 
 class _PlacedView(NamedTuple):
@@ -112,14 +106,14 @@ class _PlacedView(NamedTuple):
 
     share: float
     """Of its lines, that have ink."""
-    where: Similarity | None
+    where: Placing | None
     elements: list[Element]
     left_out: int
     """How many lines to other views are not there."""
 
 
 def _place_view(
-    mine: Sequence[Element], start: Similarity | None, leading: frozenset[int], ink: Any, level: float,
+    mine: Sequence[Element], start: Placing | None, leading: frozenset[int], ink: Any, level: float,
 ) -> _PlacedView:
     """Fit a view to the ink from ``start``, or from its own place when that is None.
 
@@ -127,7 +121,7 @@ def _place_view(
     """
     loose = leading if start is not None else frozenset()
     body = [e for e in mine if e.number not in loose]
-    where, share = _fit(body, start or Similarity(), ink, level, free=start is not None)
+    where, share = _fit(body, start or Placing(), ink, level, free=start is not None)
     if share < FOUND:
         return _PlacedView(share, None, [], 0)
     here = [moved(e, where) for e in mine]
@@ -135,26 +129,7 @@ def _place_view(
     return _PlacedView(share, where, there, len(here) - len(there))
 
 
-def _start(p: ViewPlace, known: Sequence[Element], m: Map) -> Similarity:
-    """The similarity by two points, or by one and a scale factor."""
-    at = m.to_sheet(np.array(p.theirs))
-    turn = complex((at[1] - at[0]) / (p.ours[1] - p.ours[0])) if len(at) == 2 else 1 + 0j
-    if p.mu is not None:
-        ours = _mu(p.view, known)
-        if ours is None:
-            raise BadInput(f'view "{p.view.name}": our sheet gives it no scale factor of its own to compare mu with',
-                           hint="leave mu out and give two points")  # fmt: skip
-        turn = turn / abs(turn) * ours / p.mu
-    return Similarity(turn, complex(at[0]) - turn * p.ours[0])
-
-
-def _mu(view: ElementView, known: Sequence[Element]) -> float | None:
-    """Our scale factor of a view: under its own title, or under the title it shares with others (plans of several positions)."""
-    alike = dict.fromkeys(e.view for e in known if e.view.draw == view.draw and e.view != view)
-    return next((mu for v in (view, *alike) if (mu := mu_of(v, known)) is not None), None)
-
-
-def _fit(mine: Sequence[Element], start: Similarity, ink: Any, level: float, free: bool) -> tuple[Similarity, float]:
+def _fit(mine: Sequence[Element], start: Placing, ink: Any, level: float, free: bool) -> tuple[Placing, float]:
     """The similarity that brings a view's lines onto ink, and their share that has some; the size is fitted only if ``free``.
 
     Tried from far and from nearby: among lines side by side the wider search may end at the wrong ones.
@@ -164,43 +139,32 @@ def _fit(mine: Sequence[Element], start: Similarity, ink: Any, level: float, fre
 
 
 def _searched(
-    mine: Sequence[Element], start: Similarity, ink: Any, level: float, free: bool, coarse_to_fine: Sequence[tuple[float, float]],
-) -> tuple[Similarity, float]:
+    mine: Sequence[Element], start: Placing, ink: Any, level: float, free: bool, coarse_to_fine: Sequence[tuple[float, float]],
+) -> tuple[Placing, float]:
     """One search through some steps."""
     lines = as_lines(mine, least=5.0, most=3000)
     if len(lines.points) < 20:
         # Lettering alone: nothing to fit; it stands where it is said to.
         return start, 1.0
-    offsets = np.arange(-4.0, 4.05, 0.1)
     now = start
     hit = 0.0
     for reach, loose in coarse_to_fine:
         normals = lines.normals * now.turn / abs(now.turn)
         p = now(lines.points)
-        table = profiles(ink, lines._replace(points=p, normals=normals), offsets)
-        o, strength = peaks(table, offsets, 0.0, reach, 0.4)
-        use = strength > level
-        hit = float((use & (np.abs(o) < 0.5)).mean())
+        o, use, hit = inked(ink, lines._replace(points=p, normals=normals), reach, level)
         step = _step(p, normals, o, use, loose, free)
-        now = Similarity(step.turn * now.turn, step.turn * now.shift + step.shift)
+        now = Placing(step.turn * now.turn, step.turn * now.shift + step.shift)
     return now, hit
 
 
-def _step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool) -> Similarity:
+def _step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool) -> Placing:
     """The small similarity that takes points onto lines ``o`` mm off along their normals."""
     middle = p.mean()
     half = max(float(np.abs(p - middle).max()), 1.0)
     base = similarity_base(p, normals, middle, half)
-    if not free:
-        base = base[:, :3]
-    x = np.zeros(base.shape[1])
-    for _ in range(10):
-        r = o - np.einsum("ni,i->n", base, x)
-        w = use / (1 + (r / loose) ** 2) ** 2
-        square = np.einsum("ni,nj->ij", base, base * w[:, None]) + 0.1 * np.eye(len(x))
-        x = np.linalg.solve(square, np.einsum("ni,n->i", base * w[:, None], o))
+    x = fit(base if free else base[:, :3], o, use, loose, PRIOR)
     growth = complex(1 + (x[3] if free else 0.0) / half, x[2] / half)
-    return Similarity(growth, complex(x[0], x[1]) + complex(middle) * (1 - growth))
+    return Placing(growth, complex(x[0], x[1]) + complex(middle) * (1 - growth))
 
 
 def _drawn(e: Element, ink: Any, level: float) -> bool:
@@ -208,18 +172,16 @@ def _drawn(e: Element, ink: Any, level: float) -> bool:
     lines = as_lines([e], least=0.0)
     if not all(FRAME.contains(z) for z in e.points.tolist()) or not len(lines.points):
         return False
-    offsets = np.arange(-1.0, 1.05, 0.1)
-    _, strength = peaks(profiles(ink, lines, offsets), offsets, 0.0, 1.0, 0.4)
-    return float((strength > level).mean()) > INKED
+    return float(inked(ink, lines, 1.0, level)[1].mean()) > INKED
 
 
 def _notes(
-    placed: Mapping[ElementView, _PlacedView], given: Mapping[ElementView, ViewPlace], known: Sequence[Element],
+    placed: Mapping[ElementView, _PlacedView], given: Mapping[ElementView, ViewPlace],
 ) -> Iterator[str]:
     """What is worth telling: of each view the file places, of views not found, of lines left out."""
     for view, p in placed.items():
         if view in given:
-            yield _told(view, p, given[view], known)
+            yield _told(view, p, given[view])
     absent = ", ".join(f'"{view.name}"' for view, p in placed.items() if p.where is None and view not in given)
     if absent:
         yield f"not in their places, and left out: {absent}; --views can tell where they stand"
@@ -227,13 +189,12 @@ def _notes(
         yield f"{count} lines that lead from one view to another are not where they are on our sheet, and were not compared"
 
 
-def _told(view: ElementView, placed: _PlacedView, given: ViewPlace, known: Sequence[Element]) -> str:
+def _told(view: ElementView, placed: _PlacedView, given: ViewPlace) -> str:
     """What became of a view the file places: how large it was drawn, against ours or against the scale factor it was given."""
     if placed.where is None:
         return f'view "{view.name}" was not found where --views says: {100 * placed.share:.0f} % of its lines are there'
-    size, degrees = abs(placed.where.turn), float(np.degrees(np.angle(placed.where.turn)))
+    size, degrees = placed.where.scale, placed.where.degrees
     text = f'view "{view.name}" was fitted: {size:.4f} times as large as on our sheet, turned by {decimal(degrees)}°'
-    ours = _mu(view, known)
-    if given.mu is not None and ours is not None:
-        text += f"; with mu = {given.mu:g} it ought to be {ours / given.mu:.4f}"
+    if given.mu is not None and view.mu is not None:
+        text += f"; with mu = {given.mu:g} it ought to be {view.mu / given.mu:.4f}"
     return text

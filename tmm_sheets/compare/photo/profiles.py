@@ -103,6 +103,15 @@ def peaks(profile: Any, offsets: Floats, centre: Any, reach: float, half: float)
     return (weight * offsets).sum(1) / np.where(total > 0, total, 1), np.where(total > 0, top, 0.0)
 
 
+def inked(ink: Any, lines: ProfileLines, reach: float, level: float, shift: Points | None = None,
+          scale: float = SCALE) -> tuple[Floats, Any, float]:
+    """Where lines have ink within ``reach`` mm: offsets, mm, which points have some, and the share that has it within 0.5 mm."""
+    offsets = np.arange(-4.0, 4.05, 0.1)
+    o, strength = peaks(profiles(ink, lines, offsets, shift, scale), offsets, 0.0, reach, 0.4)
+    use = strength > level
+    return o, use, float((use & (np.abs(o) < 0.5)).mean())
+
+
 def follow(profile: Any, steps: int = 2, stiffness: float = 0.5) -> npt.NDArray[np.int64]:
     """The darkest smooth path through each table of profiles, by dynamic programming.
 

@@ -22,7 +22,7 @@ from tmm_sheets.compare.photo import frame_fit, frame_search
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
-from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, peaks, profiles
+from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Map
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.errors import CannotBuild
@@ -76,7 +76,7 @@ class Rectified:
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:
     """Lines of the title block and of the box for the turned designation, by which a frame is recognized."""
-    return as_lines([e for e in known if e.of == "title block" and e.length < 800], 4.0)
+    return as_lines([e for e in known if e.role == "frame" and e.length < 800], 4.0)
 
 
 def rectify(
@@ -112,7 +112,7 @@ def rectify(
     scale = float(np.abs(np.diff(found.corners)).min() / FRAME.height)
     notes = _remarks(path, scale, smear, found.turned)
     say("correcting by the drawing's lines")
-    lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.of == "title block")])
+    lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.role == "frame")])
     ink = straighten(picture.grey, m, COARSE)
     better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE, RELIEF if by_lines else 2)
     if match >= MATCH:
@@ -194,13 +194,10 @@ def refine(
     # A line counts by its length up to some 30 mm.
     weight = 1 / np.sqrt(np.maximum(np.bincount(lines.line), 8) / 8.0)[lines.line]
     sides = sides._replace(weight=0.5 * sides.weight)
-    offsets = np.arange(-4.0, 4.05, 0.1)
     better, hit, scatter = m, 0.0, 1.0
     for reach, degree, loose in COARSE_TO_FINE:
         at = m.to_sheet(better.to_picture(lines.points))
-        o, strength = peaks(profiles(ink, lines, offsets, at - lines.points, scale), offsets, 0.0, reach, 0.4)
-        use = strength > level
-        hit = float((use & (np.abs(o) < 0.5)).mean())
+        o, use, hit = inked(ink, lines, reach, level, at - lines.points, scale)
         if not use.any():
             return better, scatter, hit
         scatter = 1.4826 * float(np.median(np.abs(o[use])))

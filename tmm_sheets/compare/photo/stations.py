@@ -95,7 +95,7 @@ def expected_ink(e: Element) -> float:
     return sum(x for x in pattern if x > 0) / sum(map(abs, pattern)) if pattern and e.length > 8 else 1.0
 
 
-def fit(base: Floats, o: Floats, use: Any, loose: float) -> Floats:
+def fit(base: Floats, o: Floats, use: Any, loose: float, prior: float = 0.02) -> Floats:
     """Robust least squares with Geman-McClure weights and a weak prior for no displacement.
 
     Parameters
@@ -106,6 +106,8 @@ def fit(base: Floats, o: Floats, use: Any, loose: float) -> Floats:
         Offsets of the line, mm, and which of them count, (n,).
     loose
         Residual from which on an offset counts little, mm.
+    prior
+        Weight of the prior.
 
     Returns
     -------
@@ -115,7 +117,7 @@ def fit(base: Floats, o: Floats, use: Any, loose: float) -> Floats:
     for k in range(8):
         r = o - base @ x
         w = use / (1 + (r / (loose if k > 1 else 3 * loose)) ** 2) ** 2
-        a = base.T @ (base * w[:, None]) + 0.02 * np.eye(base.shape[1])
+        a = base.T @ (base * w[:, None]) + prior * np.eye(base.shape[1])
         before, x = x, np.linalg.solve(a, base.T @ (w * o))
         if k > 2 and np.abs(x - before).max(initial=0.0) < SETTLED:
             break

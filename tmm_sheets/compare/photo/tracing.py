@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.displacement import displaced
 from tmm_sheets.compare.photo.extra_ink import extra_ink
 from tmm_sheets.compare.photo.ink_levels import ink_levels
@@ -26,7 +26,7 @@ from tmm_sheets.compare.photo.own_place import in_place, strips
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.stations import measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
-from tmm_sheets.compare.photo.wiping import fill, grown, wipe_found, wipe_small
+from tmm_sheets.compare.photo.wiping import fill, wipe_found, wipe_small
 
 WRITTEN = 0.02  # share of its place with ink from which on lettering counts as there
 
@@ -64,7 +64,7 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
     out = {t.element.number: t for t in (*found, *ended)} | _presence(small, ink, level)
     for e in elements:  # a hand may have written here
         if e.kind == "text":
-            fill(left, grown(e, 0.8 * e.height + 1.0), 0)
+            fill(left, grown(e.points, 0.8 * e.height + 1.0), 0)
     return [out[e.number] for e in elements], extra_ink(left, level)
 
 
@@ -99,7 +99,7 @@ def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
     out = np.zeros_like(ink)
     for e in elements:
         if e.kind == "text":
-            fill(out, grown(e, 0.3))
+            fill(out, grown(e.points, 0.3))
     return out
 
 
@@ -110,7 +110,7 @@ def _presence(small: Sequence[Element], ink: Any, level: float) -> dict[int, Tra
     if not words:
         return out
     u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 12)))
-    corners = np.stack([grown(e, 1.0) for e in words])
+    corners = np.stack([grown(e.points, 1.0) for e in words])
     a, b, _, d = corners.T[:, :, None]
     shares = (sample(ink, pixels(a + u * (b - a) + v * (d - a))) > level).mean(1)
     for e, share in zip(words, shares.tolist(), strict=True):

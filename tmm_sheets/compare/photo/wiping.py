@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.profiles import SCALE, pixels
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.drawing.marks import Points
@@ -52,21 +52,12 @@ def wipe_found(picture: Any, t: Trace, value: int = 255) -> None:
         paint(picture, t.element, t.at, ROOM if t.status == "measured" else DENSE_ROOM, value)
 
 
-def grown(e: Element, margin: float) -> Points:
-    """The corners of lettering moved outwards by ``margin`` mm."""
-    p = e.points
-    u = np.exp(1j * e.angle)
-    q = (p - p.mean()) * np.conj(u)
-    q = np.sign(q.real) * (np.abs(q.real) + margin) + 1j * np.sign(q.imag) * (np.abs(q.imag) + margin)
-    return np.asarray(q * u + p.mean())
-
-
 def wipe_small(wiped: Any, e: Element) -> None:
     """Wipe out what is not measured (lettering, hatching, dots, short strokes) where it belongs, generously."""
     import cv2
 
     if e.kind == "text":
-        fill(wiped, grown(e, 0.6))
+        fill(wiped, grown(e.points, 0.6))
         for p in e.pieces:
             cv2.polylines(wiped, [fixed(p)], False, 255, round(1.5 * SCALE), cv2.LINE_8, 4)
     else:

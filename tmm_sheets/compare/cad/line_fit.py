@@ -1,4 +1,4 @@
-"""Placing a drawing on the sheet: the scale, turn and shift that bring its lines onto the known ones.
+"""Straight pieces of many lines, and the placing that brings those of a drawing onto the known ones.
 
 A placing is found by correlating pictures of both (fast Fourier transform) for each plausible scale and quarter turn, then refined
 on the lines themselves by a robust fit, in which wrong lines hardly count. Points are complex.
@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 
 CELL = 3.0
@@ -22,45 +23,6 @@ CELLS = 540
 """Cells along each side of such a picture: drawings larger than 1.6 m are out of the question."""
 HIT = 1.0
 """Distance, mm, within which a line must pass a point for :meth:`KnownLines.share` to count it."""
-
-
-class Placing(NamedTuple):
-    """Takes a point ``z`` of the drawing, first reflected in the x axis if ``mirrored``, to ``turn * z + shift`` on the sheet."""
-
-    turn: complex = 1 + 0j
-    shift: complex = 0j
-    mirrored: bool = False
-
-    def __call__(self, z: Any) -> Any:
-        """The point on the sheet, mm, of a point of the drawing."""
-        return self.turn * (np.conj(z) if self.mirrored else z) + self.shift
-
-    def back(self, z: Any) -> Any:
-        """The point of the drawing of a point on the sheet."""
-        z = (z - self.shift) / self.turn
-        return np.conj(z) if self.mirrored else z
-
-    def inverse(self) -> Placing:
-        """The placing that takes the sheet to the drawing."""
-        turn = np.conj(1 / self.turn) if self.mirrored else 1 / self.turn
-        shift = np.conj(self.shift) if self.mirrored else self.shift
-        return Placing(complex(turn), complex(-turn * shift), self.mirrored)
-
-    @property
-    def scale(self) -> float:
-        """Millimetres of the sheet per unit of the drawing."""
-        return abs(self.turn)
-
-    @property
-    def degrees(self) -> float:
-        """Angle by which the drawing has to be turned, -180 .. 180."""
-        return float(np.degrees(np.angle(self.turn)))
-
-    def after(self, first: Placing) -> Placing:
-        """The placing that does ``first`` and then this one."""
-        turn = np.conj(first.turn) if self.mirrored else first.turn
-        shift = np.conj(first.shift) if self.mirrored else first.shift
-        return Placing(complex(self.turn * turn), complex(self.turn * shift + self.shift), self.mirrored != first.mirrored)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,46 @@
+"""A sheet of a project as it is compared: drawn, and put together to what a drawer sees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from tmm_sheets.compare.elements import Element, elements
+from tmm_sheets.errors import BadInput
+from tmm_sheets.sheets.sheet import Composed, composed
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+
+@dataclass(frozen=True)
+class KnownSheet:
+    """Sheet ``n`` (from 1) with its elements."""
+
+    n: int
+    sheet: Composed = field(repr=False)
+    elements: tuple[Element, ...] = field(repr=False)
+
+
+def known_sheet(project: Project, n: int) -> KnownSheet:
+    """Draw sheet ``n``, its elements called by the letters of the steps that left them."""
+    sheet = composed(project, n)
+    plans = (plan for plans in project.plans.values() for plan in (plans or {}).values())
+    return KnownSheet(n, sheet, elements(sheet, {step.path: step.symbol for plan in plans for step in plan if step.symbol}))
+
+
+def sheet_numbers(project: Project, asked: int | None) -> range:
+    """The sheet asked for, all of a project if none is.
+
+    Raises
+    ------
+    BadInput
+        If there is no such sheet.
+    """
+    count = len(project.variant.sheets)
+    if asked is None:
+        return range(1, count + 1)
+    if not 1 <= asked <= count:
+        raise BadInput(f"--sheet {asked}: {project.variant.project.name} has {count} sheet{'s' * (count > 1)}",
+                       f"--sheet 1 to --sheet {count}" if count > 1 else "give --sheet 1, or leave it out")
+    return range(asked, asked + 1)
