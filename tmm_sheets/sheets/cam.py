@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from functools import wraps
 from itertools import pairwise
 from math import degrees, pi, radians
@@ -15,12 +14,11 @@ import numpy as np
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, Points, Role
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.player import Stage, play
+from tmm_sheets.sheets.player import Stage, placed, play
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.cams.cam_closure import Spring
     from tmm_sheets.methods.cams.cam_motion import FollowerMotion
@@ -49,46 +47,12 @@ def for_cams(view: View) -> View:
     return drawn
 
 
-def placed(canvas: Canvas, plan: Plan, origin: complex, mu: float | tuple[float, float], turn: float = 0.0) -> Stage:
-    """Place a plan on the sheet; which position a mark belongs to is told with the mark."""
-    number = canvas.placed(plan.name, "", origin, mu, turn)
-    frame: Any = canvas.frames[number]
-    return Stage(canvas, plan, 0, frame, number)
-
-
-@contextmanager
-def of(s: Stage, step: Step | str, role: Role, k: int | None = None) -> Iterator[None]:
-    """The marks drawn inside come from that step, at one position or at all."""
-    name = step if isinstance(step, str) else step.name
-    with s.canvas.traced(role, f"{s.plan.name}/{name}", "" if k is None else s.plan.labels[k], s.number):
-        yield
-
-
-def mark_line(s: Stage, step: Step | str, a: complex, b: complex, style: str = "construction", k: int | None = None,
-              role: Role = "construction") -> None:
-    """Line that a step leaves."""
-    with of(s, step, role, k):
-        s.canvas.line(a, b, style)
-
-
-def mark_dot(s: Stage, step: Step | str, at: complex, radius: float, k: int | None = None) -> None:
-    """Dot of a point."""
-    with of(s, step, "point", k):
-        s.canvas.dot(at, radius)
-
-
-def draw_curve(s: Stage, step: Step, style: str, points: Any = None, closed: bool = False) -> None:
-    """Smooth curve through the points of a step, or through others that it goes through, mm."""
-    with of(s, step, "curve"):
-        s.canvas.polyline(s.frame(step.value) if points is None else points, style, closed=closed)
-
-
 def axes(s: Stage, step: Step | str, x: float, y: tuple[float, float], before: float = 3.0) -> None:
     """Axes of a diagram of a step, reaching to ``x`` and from ``y[0]`` to ``y[1]``, mm from its origin."""
     o = s.frame(0j)
-    with of(s, step, "axis"):
-        s.canvas.arrow(o + 1j * (y[0] - before), o + 1j * y[1], "axis", 3.0)
-        s.canvas.arrow(o, o + x, "axis", 3.0)
+    pen = s.pen(step, "axis")
+    pen.arrow(o + 1j * (y[0] - before), o + 1j * y[1], "axis", 3.0)
+    pen.arrow(o, o + x, "axis", 3.0)
 
 
 def distinct(labels: tuple[str, ...], x: Points) -> list[int]:
@@ -105,8 +69,7 @@ def standard(width: float, height: float, room_x: float, room_y: float) -> tuple
 
 def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str]) -> None:
     """Lines of results at the foot of a view's place."""
-    for i, line in enumerate(lines):
-        canvas.text(complex(box.x0 + 6.0, box.y0 + 3.0 + 7.0 * (len(lines) - 1 - i)), line, 3.5)
+    canvas.lines(complex(box.x0 + 6.0, box.y0 + 3.0 + 7.0 * (len(lines) - 1)), lines, 7.0)
 
 
 # --- diagrams of the motion -----------------------------------------------------------------------------------------
@@ -155,7 +118,7 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     for s, up, down, points, ordinates, symbol, head, step in every:
         _diagram(s, ordinates[0], up, down, end, symbol, head)
         _ordinates(s, m, ordinates)
-        draw_curve(course if step is m.between else s, step, "curve", s.frame(0j) + points)
+        (course if step is m.between else s).curve(step, s.frame(0j) + points)
     if m.circle:
         _auxiliary_circle(stages[0], m)
     _integration(stages[0], stages[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
@@ -171,11 +134,11 @@ def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], up
     for k in (0, n, n + 1, 2 * n + 1):
         step = m.numbers[f"x_{m.law.labels[k]}"]
         x = origins[0].real + float(step.value)
-        with of(s, step, "construction"):
-            for upper, lower, up in zip(origins, origins[1:], ups[1:], strict=False):
-                head = lower.imag + up
-                canvas.line(complex(x, upper.imag), complex(x, head + 11.0), "construction")
-                canvas.line(complex(x, head + 4.0), complex(x, lower.imag), "construction")
+        pen = s.pen(step, "construction")
+        for upper, lower, up in zip(origins, origins[1:], ups[1:], strict=False):
+            head = lower.imag + up
+            pen.line(complex(x, upper.imag), complex(x, head + 11.0), "construction")
+            pen.line(complex(x, head + 4.0), complex(x, lower.imag), "construction")
 
 
 def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
@@ -201,8 +164,7 @@ def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:
         f"{first} = {second}·μ_φ·H_1",
         f"{zero} = {first}·μ_φ·H_2",
     )
-    for i, line in enumerate(lines, 1):
-        canvas.text(complex(at.real, at.imag - 8.0 * i), line, 3.5)
+    canvas.lines(at - 8.0j, lines, 8.0)
 
 
 def _diagram(s: Stage, step: Step, up: float, down: float, end: float, symbol: str, head: str) -> None:
@@ -221,7 +183,7 @@ def _ordinates(s: Stage, m: FollowerMotion, steps: list[Step]) -> None:
     narrow = min(np.diff(points.real[kept]), default=10.0) < 6.0
     for k in kept:
         at = s.frame(points[k].real)
-        mark_line(s, steps[k], at, s.at(steps[k]), "thin")
+        s.line(steps[k], at, s.at(steps[k]), "thin")
         side = -1j if points[k].imag > -1e-6 else 1j
         s.canvas.label(at, m.law.labels[k], side, 2.5 if narrow else 3.5, 0.7, leader=False)
 
@@ -237,28 +199,26 @@ def _auxiliary_circle(s: Stage, m: FollowerMotion) -> None:
         at = np.array([s.at(m.circle[first + k]) for k in range(half)])
         radius = float(abs(at[0] - centre))
         radii[name] = radius
-        with of(s, name, "construction"):
-            canvas.circle(centre, radius, "thin")
+        s.pen(name, "construction").circle(centre, radius, "thin")
         shown: list[complex] = []
         for k, p in enumerate(at):
             play(s, [m.dds[first + k]])
             if any(abs(p - q) < 0.5 for q in shown):
                 continue
             shown.append(p)
-            mark_line(s, m.circle[first + k], centre, p, "construction")
-            mark_dot(s, m.circle[first + k], p, 0.5)
+            s.line(m.circle[first + k], centre, p)
+            s.dot(m.circle[first + k], 0.5, "main", p)
             same = [m.law.labels[first + j] for j in range(half) if abs(at[j] - p) < 0.5]
             outwards = (p - centre) / radius
             canvas.label(p, ", ".join(same), -outwards if radius >= largest - 1e-9 else outwards, 2.5, 0.5, leader=False)
     reach = largest + 3.0
-    with of(s, "M", "axis"):
-        canvas.line(centre - reach, centre + reach, "centre")
-        canvas.line(centre - 1j * reach, centre + 1j * reach, "centre")
+    pen = s.pen("M", "axis")
+    pen.line(centre - reach, centre + reach, "centre")
+    pen.line(centre - 1j * reach, centre + 1j * reach, "centre")
     angle = 1.15
     for name, radius in radii.items():
         tip = centre + rect(radius, pi - angle)
-        with of(s, name, "dimension"):
-            canvas.arrow(centre, tip, "thin", 2.5)
+        s.pen(name, "dimension").arrow(centre, tip, "thin", 2.5)
         canvas.label(centre + rect(0.6 * radius, pi - angle), name, 1j * rect(1, pi - angle), 3.5, 0.6, leader=False)
 
 
@@ -273,12 +233,12 @@ def _integration(upper: Stage, lower: Stage, m: FollowerMotion, symbol: str, end
         middle, carried = plan[f"{symbol}_m{label}"], plan[f"{symbol}_{label}′"]
         height = 1j * complex(middle.value).imag
         start, end = (upper.frame(complex(plan[name].value).real + height) for name in (first, last))
-        mark_line(upper, middle, start, end, "thin")
-        mark_line(upper, carried, upper.at(carried), start, "construction")
+        upper.line(middle, start, end, "thin")
+        upper.line(carried, upper.at(carried), start)
         play(upper, [f"{symbol}_P{label}′"])
         play(lower, [last])
         lowest = min(lowest, complex(carried.value).imag)
-    mark_dot(upper, f"{symbol}_P", at, 0.6)
+    upper.dot(f"{symbol}_P", 0.6, "main", at)
     canvas.label(at, pole, -1 + 1j, 3.5, 0.8, leader=False)
     play(upper, [f"{symbol}_P"], "axis")
     canvas.dimension(at, complex(origin), min(lowest, -down) - 7.0, distance)
@@ -307,15 +267,14 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     canvas.label(o + across.mm(360) + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
     for limit, side in ((allowed, 1.0), (-allowed, -1.0)):
         level = o + 1j * tall.mm(limit)
-        with canvas.traced("construction", f"{cam.zone.plan.name}/{cam.zone.borders[0].name}", "", course.number):
-            canvas.line(level, level + across.mm(360), "hidden")
+        course.line(cam.zone.borders[0], level, level + across.mm(360), "hidden")
         name = f"[α] = {number(limit)}°" if side > 0 else "−[α]"
         canvas.label(level + across.mm(300), name, 1j * side, 3.5, 0.8, leader=False)
-    draw_curve(course, dense.angles, "curve", o + across.mm(np.degrees(dense.phi)) + 1j * tall.mm(y))
+    course.curve(dense.angles, o + across.mm(np.degrees(dense.phi)) + 1j * tall.mm(y))
     at = o + across.mm(np.degrees(inv.phi))
     values = tall.mm(np.degrees(inv.angles.value))
     for k in range(len(at)):
-        mark_line(found, inv.angles, at[k], at[k] + 1j * values[k], "thin", k=k)
+        found.position(k).line(inv.angles, at[k], at[k] + 1j * values[k], "thin")
     n = cam.law.parts
     for k in (0, n // 2, n, n + 1, n + 1 + n // 2, 2 * n + 1):
         if k != n + 1 or abs(at[n + 1] - at[n]) > 4:
@@ -399,26 +358,25 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     axes(course, steps[1], end + 10, (tall.mm(low), tall.mm(top) + 8))
     canvas.text(o + complex(2.5, tall.mm(top) + 4.5), "F, Q, Н", 3.5)
     canvas.label(o + end + 7, "φ, град", 1j, 3.5, 1.5, leader=False)
-    draw_curve(course, steps[1], "curve", at(phi, force))
-    draw_curve(course, steps[2], "main", np.concatenate(([o], at(phi, inertia), [o + end])))
+    course.curve(steps[1], at(phi, force))
+    course.curve(steps[2], np.concatenate(([o], at(phi, inertia), [o + end])), "main")
     x, forces = at(law.positions, 0.0), spring.at_positions
     for k in distinct(law.labels, x.real):
-        with canvas.traced("construction", f"{cam.exact.positions.plan.name}/{forces.name}", law.labels[k], found.number):
-            canvas.line(complex(x[k]), complex(at(law.positions[k], forces.value[k])), "thin")
+        pen = canvas.tracing("construction", forces.path, law.labels[k], found.number)
+        pen.line(complex(x[k]), complex(at(law.positions[k], forces.value[k])), "thin")
         canvas.label(complex(x[k]), law.labels[k], -1j, 2.5, 0.6, leader=False)
     k = int(np.argmax(force))
     canvas.label(complex(at(phi[k], force[k])), "F", 1j, 3.5, 1.0)
     k = int(np.argmin(inertia))
     canvas.label(complex(at(phi[k], inertia[k])), "Q", 1.0 + 0j, 3.5, 1.0)
     worst = float(spring.force(law.s(spring.worst_phi)))
-    with of(found, "k_min", "point"):
-        for y in (worst, worst / spring.worst):
-            canvas.dot(complex(at(spring.worst_phi, y)), 0.8)
+    pen = found.pen("k_min", "point")
+    for y in (worst, worst / spring.worst):
+        pen.dot(complex(at(spring.worst_phi, y)), 0.8)
     if not beside:
         lines_of_text(canvas, box, lines)
         return
-    for i, line in enumerate(lines):
-        canvas.text(complex(box.x1 - text + 12.0, box.y1 - 34.0 - 8.0 * i), line, 3.5)
+    canvas.lines(complex(box.x1 - text + 12.0, box.y1 - 34.0), lines, 8.0)
 
 
 def _spring_lines(spring: Spring, straight: bool) -> list[str]:

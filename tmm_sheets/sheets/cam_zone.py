@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import degrees, pi, radians, tan
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +14,8 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import axes, distinct, draw_curve, for_cams, lines_of_text, mark_dot, mark_line, of, placed
-from tmm_sheets.sheets.player import Stage, play
+from tmm_sheets.sheets.cam import axes, distinct, for_cams, lines_of_text
+from tmm_sheets.sheets.player import Stage, placed, play
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
@@ -56,32 +55,32 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     cone = np.array([v, at(low - depth * slope), at(low + depth * slope)])
     hatch_polygon(canvas, cone, 4.0)
     for (touch, side), top, step, border in zip(touches, tops, z.touching, z.borders, strict=True):
-        mark_line(stage, border, at(top), at(low - depth * slope * side), "axis")
+        stage.line(border, at(top), at(low - depth * slope * side), "axis")
         if abs(touch) > 0:
-            mark_dot(stage, step, at(touch), 0.6)
+            stage.dot(step, 0.6, "main", at(touch))
         canvas.label(at(touch), step.name, side + 0j, 3.5, 1.0)
     reach = float(curve.real[np.argmax(np.abs(curve.real))])
-    with of(smooth, z.curve, "axis"):
-        canvas.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
-        canvas.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
-        canvas.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
+    pen = smooth.pen(z.curve, "axis")
+    pen.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
+    pen.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
+    pen.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
     canvas.label(at(complex(reach)) + 8 * z.right, "S', м", -1j, 3.5, 1.5, leader=False)
-    draw_curve(smooth, z.curve, "curve")
+    smooth.curve(z.curve)
     points, labels = np.asarray(z.points.value), z.plan.labels
     for k in range(len(points)):
         if k and abs(points[k] - points[k - 1]) < 1e-9:
             continue
-        mark_line(stage, z.points, at(1j * points[k].imag), at(points[k]), "thin", k=k)
-        mark_dot(stage, z.points, at(points[k]), 0.5, k=k)
+        stage.position(k).line(z.points, at(1j * points[k].imag), at(points[k]), "thin")
+        stage.position(k).dot(z.points, 0.5, "main", at(points[k]))
         away = points[k] - 1j * stroke / 2
         canvas.label(at(points[k]), labels[k], complex(away), 3.5, 0.8)
-    mark_line(stage, "r_0", o, b, "main")
-    mark_line(stage, "C", c, o, "thin")
-    mark_line(stage, "V" if "V" in z.plan else "O", v, v + 1j * scale.mm(0.75 * z.s0), "centre", role="axis")
-    with of(stage, "O", "axis"):
-        if abs(v - o) > 1:
-            canvas.line(o - 4j, at(complex(axis.real, 0.0)), "centre")
-    mark_dot(stage, "O", o, 0.9)
+    stage.line("r_0", o, b, "main")
+    stage.line("C", c, o, "thin")
+    stage.line("V" if "V" in z.plan else "O", v, v + 1j * scale.mm(0.75 * z.s0), "centre", "axis")
+    pen = stage.pen("O", "axis")
+    if abs(v - o) > 1:
+        pen.line(o - 4j, at(complex(axis.real, 0.0)), "centre")
+    stage.dot("O", 0.9, "main", o)
     canvas.label(o, "O", -1j + z.right, 5.0, 1.5)
     canvas.label(b, "B", -z.right + 0j, 3.5, 1.0)
     canvas.label(c, "C", -z.right - 1j, 3.5, 0.8)
@@ -129,14 +128,13 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     picture = Box(at(complex(x0)).real - 6, at(1j * low).imag, at(complex(x1)).real + 6, at(1j * y1).imag + 4)
     _permitted(stage, cam, picture, scale)
     _rocker_positions(stage, cam)
-    draw_curve(smooth, z.curve, "curve")
+    smooth.curve(z.curve)
     _rocker_and_axis(stage, cam, picture)
     measured = _rocker_lines(cam, scale)
     if not beside:
         lines_of_text(canvas, box, measured)
         return
-    for i, line in enumerate(measured):
-        canvas.text(complex(box.x1 - text + 6.0, box.y1 - 40.0 - 8.0 * i), line, 3.5)
+    canvas.lines(complex(box.x1 - text + 6.0, box.y1 - 40.0), measured, 8.0)
 
 
 def _permitted(s: Stage, cam: RockerCam, picture: Box, scale: Scale) -> None:
@@ -152,14 +150,13 @@ def _permitted(s: Stage, cam: RockerCam, picture: Box, scale: Scale) -> None:
     for k, ray in enumerate(rays):
         shown = segment_inside(picture, complex(at(ray.tip)), complex(at(ray.tip)) + reach * ray.direction)
         if shown and (k < 2 or abs(ray.tip - rays[k - 2].tip) > 1e-9):
-            with of(s, z.points, "construction", k // 2):
-                canvas.line(*shown, "construction")
+            s.position(k // 2).line(z.points, *shown)
     for touch, border in zip(z.touching, z.borders, strict=True):
         tip = s.at(touch)
         shown = segment_inside(picture, tip, tip + reach * complex(border.value))
         if shown:
-            mark_line(s, border, *shown, "axis")
-        mark_dot(s, touch, tip, 0.7)
+            s.line(border, *shown, "axis")
+        s.dot(touch, 0.7, "main", tip)
 
 
 def _rocker_positions(s: Stage, cam: RockerCam) -> None:
@@ -169,13 +166,13 @@ def _rocker_positions(s: Stage, cam: RockerCam) -> None:
     numbered = [k for k in range(len(starts)) if k == 0 or abs(starts[k] - starts[k - 1]) > 1e-9]
     rising = [k for k in numbered if k <= cam.law.parts]
     for k in rising[1:]:
-        play(replace(s, k=k), [z.axis], "thin")
-    draw_curve(s, z.axis, "thin", np.array([complex(at(p)) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))]))
+        play(s.position(k), [z.axis], "thin")
+    s.curve(z.axis, np.array([complex(at(p)) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))]), "thin")
     for k in numbered:
-        mark_line(s, z.points, complex(at(starts[k])), complex(at(tips[k])), "thin", k=k)
-        mark_dot(s, z.points, complex(at(tips[k])), 0.5, k=k)
+        s.position(k).line(z.points, complex(at(starts[k])), complex(at(tips[k])), "thin")
+        s.position(k).dot(z.points, 0.5, "main", complex(at(tips[k])))
     for k in rising:
-        mark_dot(s, z.axis, complex(at(starts[k])), 0.6, k=k)
+        s.position(k).dot(z.axis, 0.6, "main", complex(at(starts[k])))
         canvas.label(complex(at(starts[k])), labels[k], complex(starts[k] - pivot), 3.5, 0.8)
     for k in numbered:
         if abs(at(tips[k]) - at(starts[k])) > 6:
@@ -188,19 +185,17 @@ def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box) -> None:
     pivot = complex(z.plan["A"].value)
     a, o, b = (s.at(name) for name in ("A", "O", "B_0"))
     for p, name in ((a, "A"), (b, "B_0")):
-        with of(s, name, "symbol"):
-            hinge(canvas, p)
+        hinge(s.pen(name, "symbol"), p)
     for name, ends in (("r_0", (o, b)), ("B_0", (b, a)), ("l_0", (a, o))):
-        with of(s, name, "link" if name == "B_0" else "construction"):
-            bar(canvas, ends, (a, b))
-    mark_dot(s, "O", o, 0.9)
+        bar(s.pen(name, "link" if name == "B_0" else "construction"), ends, (a, b))
+    s.dot("O", 0.9, "main", o)
     canvas.label(o, "O", -1j, 5.0, 1.5)
     canvas.label(a, "A", pivot - 0.5j * abs(pivot), 3.5, 2.2)
     canvas.label(b, "B_0", -pivot - 0.6j * abs(pivot), 3.5, 2.2)
     canvas.label((o + b) / 2, "r_0", 1j * (o - b), 3.5, 0.8)
     canvas.label((o + a) / 2, "l_0", 1j * (o - a), 3.5, 0.8)
     radius = 0.45 * min(abs(o - b), picture.height / 2)
-    mark_line(s, "B_0", b, b - 1.3j * radius, "centre", role="axis")
+    s.line("B_0", b, b - 1.3j * radius, "centre", "axis")
     for lo, hi in ((-pi / 2, -pi / 2 + z.alpha), (-pi / 2 - z.alpha, -pi / 2)):
         canvas.angle_mark(b, lo, hi, radius, "[α]")
 
@@ -241,27 +236,27 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     axes(course, steps[2], end + 9, (-scale.mm(down), scale.mm(up) + 9))
     canvas.text(o + complex(2.5, scale.mm(up) + 6.0), "S + S'', м", 3.5)
     canvas.label(o + end + 6, "φ", 1j, 3.5, 1.5, leader=False)
-    draw_curve(course, steps[1], "centre", at(phi, s))
+    course.curve(steps[1], at(phi, s), "centre")
     k = int(np.argmax(s))
     canvas.label(complex(at(phi[k], s[k])), "S", -1 + 1j, 3.5, 0.8)
     k = int(np.argmax(total))
     canvas.label(complex(at(phi[k], total[k])), "S + S''", 1 + 1j, 3.5, 0.8)
-    draw_curve(course, steps[2], "curve", np.concatenate(([o], at(phi, total), [o + end])))
+    course.curve(steps[2], np.concatenate(([o], at(phi, total), [o + end])))
     sums, base = np.asarray(plate.sums.value), cam.exact.positions.s.value
     along = at(law.positions, 0.0)
     kept = distinct(law.labels, along.real)
     sides = [at(law.positions, step.value) for step in plate.sides]
     for k in kept:
         for point in dict.fromkeys(complex(np.round(points[k], 6)) for points in sides):
-            with of(found, plate.sums, "construction", k):
-                canvas.line(complex(along[k]), point, "thin")
-                canvas.line(complex(at(law.positions[k], base[k])), point, "construction")
-            mark_dot(found, plate.sums, point, 0.4, k=k)
+            pen = found.position(k).pen(plate.sums, "construction")
+            pen.line(complex(along[k]), point, "thin")
+            pen.line(complex(at(law.positions[k], base[k])), point, "construction")
+            found.position(k).dot(plate.sums, 0.4, "main", point)
         canvas.label(complex(along[k]), law.labels[k], -1j if sums[k] > 0 else 1j, 2.5, 0.6, leader=False)
     lowest = int(np.argmin(total))
     if down > 0:
         level = complex(at(phi[lowest], total[lowest]))
-        mark_line(found, "r_min", complex(o.real - 6.0, level.imag), level, "construction")
+        found.line("r_min", complex(o.real - 6.0, level.imag), level)
         canvas.dimension(complex(o.real, o.imag), complex(o.real, level.imag), -7.0, "a")
     r_min = max(plate.r_min, 0.0)
     lines_of_text(canvas, box, [

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, handy
@@ -77,6 +78,18 @@ def joined(points: dict[str, complex], pairs: Iterable[tuple[str, str]], near: f
         else:
             groups.append([name])
     return groups
+
+
+def together(points: Sequence[complex] | NDArray[Any], near: float) -> list[list[int]]:
+    """Numbers of points that share a place: each stands with the first one less than ``near`` away."""
+    places: list[list[int]] = []
+    for i, z in enumerate(points):
+        same = next((place for place in places if abs(points[place[0]] - z) < near), None)
+        if same is None:
+            places.append([i])
+        else:
+            same.append(i)
+    return places
 
 
 def pick(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, least: float) -> Scale:

@@ -21,7 +21,7 @@ from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
-from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, pick
+from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, pick, together
 from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
@@ -228,8 +228,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
         s.letters(point, linkage.indexed(point.name), 1 - 0.5j if point.name in pos.mechanism.fixed else 0j, gap=2.8)
     _link_numbers(s, pos, drawn)
     for name in centres:
-        with s.of(name, "symbol"):
-            symbols.centre_of_mass(canvas, s.at(name))
+        symbols.centre_of_mass(s.pen(name, "symbol"), s.at(name))
     draw_arms(s, about, shown)
     draw_forces(s, shown)
     _from_moments(project, canvas, box, g, k, frame.scale)
@@ -256,8 +255,7 @@ def _loaded_frame(project: Project, canvas: Canvas, scale: tuple[str, str, str],
 
 def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
     """Arrow of a couple."""
-    with s.of(couple.step, "symbol"):
-        symbols.rotation_arrow(s.canvas, at, radius, towards, couple.value, couple.symbol)
+    symbols.rotation_arrow(s.pen(couple.step, "symbol"), at, radius, towards, couple.value, couple.symbol)
 
 
 def _link_numbers(s: Stage, pos: Positions, drawn: Iterable[linkage.Shape]) -> None:
@@ -329,9 +327,9 @@ def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
     """Arrows with their tails at the points they act at."""
     for force, arrow in _arrows(shown):
         tail, u = s.frame(force.at), arrow / abs(arrow)
-        with s.of(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else ""):
-            s.canvas.arrow(tail, tail + arrow, "vector")
-            s.canvas.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
+        pen = s.pen(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else "")
+        pen.arrow(tail, tail + arrow, "vector")
+        pen.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
 
 
 def _foot(s: Shown, about: complex) -> complex:
@@ -348,7 +346,7 @@ def _feet(about: complex, shown: Iterable[Shown]) -> list[complex]:
 def draw_arms(s: Stage, about: complex, shown: Iterable[Shown], points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
     shown = [force for force in shown if abs(force.vector) > 0]
-    canvas, seen, centre = s.canvas, list[complex](), s.frame(about)
+    seen, centre = list[complex](), s.frame(about)
     busy = [centre, *points, *(s.frame(force.at) for force in shown), *(s.frame(_foot(force, about)) for force in shown)]
     for force in sorted(shown, key=lambda force: -abs(force.vector)):  # forces on one line share the arm of the largest
         u = force.vector / abs(force.vector)
@@ -358,14 +356,14 @@ def draw_arms(s: Stage, about: complex, shown: Iterable[Shown], points: Iterable
             continue
         seen.append(foot)
         letters = re.sub("F_|[_{}]", "", force.symbol.replace(BAR, ""))
-        with s.of(force.arm, "construction", f"h{letters}"):
-            if abs(foot - tail) > 0.5:
-                canvas.ray_line(tail, foot, "thin", 2.0)
-            canvas.line(centre, foot, "thin")
-            canvas.dot(foot, 0.35, "thin")
-            places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
-            at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-            canvas.label(at, f"h_{{{letters}}}", 1j * (foot - centre), 2.5, 0.8)
+        pen = s.pen(force.arm, "construction", f"h{letters}")
+        if abs(foot - tail) > 0.5:
+            pen.ray_line(tail, foot, "thin", 2.0)
+        pen.line(centre, foot, "thin")
+        pen.dot(foot, 0.35, "thin")
+        places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
+        at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
+        pen.label(at, f"h_{{{letters}}}", 1j * (foot - centre), 2.5, 0.8)
         busy.append(at)
 
 
@@ -474,8 +472,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         s.letters(point, linkage.indexed(point.name), gap=2.8)
     draw_arms(s, pivot, [force for force in shown if force.at != pivot])
     draw_forces(s, shown)
-    with s.of(study.velocities.omega[c.link], "symbol"):
-        symbols.rotation_arrow(canvas, s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
+    symbols.rotation_arrow(s.pen(study.velocities.omega[c.link], "symbol"), s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
         _turning(s, s.at(centre), 24.0, away, Couple(linkage.indexed(project.balancing), 0j, float(moment.at(k)), moment))
@@ -519,8 +516,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.title(box, f"Рычаг Жуковского (положение {project.cycle.labels[k]})", text)
     turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
     for seg in lv.velocities.plan.segments:
-        with turned.of(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}"):
-            canvas.line(turned.at(seg.tail), turned.at(seg.head), "axis")
+        turned.pen(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}").line(turned.at(seg.tail), turned.at(seg.head), "axis")
     s = stage(canvas, lv.plan, k, frame)
     s.dot("p", 0.9)
     s.letters("p", "p", gap=1.2)
@@ -534,14 +530,11 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 def _turned_letters(s: Stage, points: Mapping[str, Step]) -> None:
     """Dots of the turned plan's points and their letters with a prime; those of one place together."""
-    joint: dict[tuple[int, int], list[str]] = {}
-    for name, step in points.items():
-        q = s.at(step)
-        joint.setdefault((round(q.real * 2), round(q.imag * 2)), []).append(name)
-    for names in joint.values():
-        first = points[names[0]]
+    names = list(points)
+    for same in together([s.at(step) for step in points.values()], 0.5):
+        first = points[names[same[0]]]
         s.dot(first)
-        s.letters(first, ", ".join(f"{linkage.indexed(name)}′" for name in names), s.at(first) - s.frame(0j), gap=1.2)
+        s.letters(first, ", ".join(f"{linkage.indexed(names[i])}′" for i in same), s.at(first) - s.frame(0j), gap=1.2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
