@@ -267,7 +267,7 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     canvas.label(o + across.mm(360) + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
     for limit, side in ((allowed, 1.0), (-allowed, -1.0)):
         level = o + 1j * tall.mm(limit)
-        course.line(cam.zone.borders[0], level, level + across.mm(360), "hidden")
+        canvas.tracing("construction", cam.zone.borders[0].path).line(level, level + across.mm(360), "hidden")
         name = f"[α] = {number(limit)}°" if side > 0 else "−[α]"
         canvas.label(level + across.mm(300), name, 1j * side, 3.5, 0.8, leader=False)
     course.curve(dense.angles, o + across.mm(np.degrees(dense.phi)) + 1j * tall.mm(y))
@@ -370,9 +370,8 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     k = int(np.argmin(inertia))
     canvas.label(complex(at(phi[k], inertia[k])), "Q", 1.0 + 0j, 3.5, 1.0)
     worst = float(spring.force(law.s(spring.worst_phi)))
-    pen = found.pen("k_min", "point")
-    for y in (worst, worst / spring.worst):
-        pen.dot(complex(at(spring.worst_phi, y)), 0.8)
+    for step, y in zip(steps[1:], (worst, worst / spring.worst), strict=True):
+        course.dot(step, 0.8, "main", complex(at(spring.worst_phi, y)))
     if not beside:
         lines_of_text(canvas, box, lines)
         return

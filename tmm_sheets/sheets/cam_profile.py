@@ -421,10 +421,9 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     s = placed(canvas, plan, complex(origin), scale.mu)
     at = s.frame
     placed(canvas, beside.plan, complex(origin), scale.mu).curve(beside.centres, at(near))
-    for (a, b) in pairwise(chords):
-        pen = s.pen("M", "construction")
-        pen.line(at(a), at(b), "thin")
-        pen.ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
+    for (a, b), end in zip(pairwise(chords), "DG", strict=True):
+        s.line(f"{end}_ρ", at(a), at(b), "thin")
+        s.pen("M", "construction").ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
     s.pen("ρ_min", "dimension").arrow(at(centre), at(d), "thin", 3.0)
     s.dot("M", 0.7, "main", at(centre))
     outwards = (d - centre) / abs(d - centre)

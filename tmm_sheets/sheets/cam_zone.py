@@ -245,13 +245,13 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     sums, base = np.asarray(plate.sums.value), cam.exact.positions.s.value
     along = at(law.positions, 0.0)
     kept = distinct(law.labels, along.real)
-    sides = [at(law.positions, step.value) for step in plate.sides]
+    sides = [(at(law.positions, step.value), step) for step in reversed(plate.sides)]
     for k in kept:
-        for point in dict.fromkeys(complex(np.round(points[k], 6)) for points in sides):
-            pen = found.position(k).pen(plate.sums, "construction")
-            pen.line(complex(along[k]), point, "thin")
-            pen.line(complex(at(law.positions[k], base[k])), point, "construction")
-            found.position(k).dot(plate.sums, 0.4, "main", point)
+        here = found.position(k)
+        for point, step in reversed({complex(np.round(points[k], 6)): step for points, step in sides}.items()):
+            here.line(step, complex(along[k]), point, "thin")
+            here.line(step, complex(at(law.positions[k], base[k])), point)
+            here.dot(step, 0.4, "main", point)
         canvas.label(complex(along[k]), law.labels[k], -1j if sums[k] > 0 else 1j, 2.5, 0.6, leader=False)
     lowest = int(np.argmin(total))
     if down > 0:

@@ -243,7 +243,7 @@ class _GearPicture:
         k = self.strip_tooth(wheel)
         outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
         half = len(outline) // 2
-        s.curve("E", outline[half:], "thin")
+        s.pen("E", "hatch").polyline(outline[half:], "thin")
         hatch_between(c, outline[:half], outline[half:][::-1])
         ends = outline[0], outline[half - 1]
         names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
@@ -400,14 +400,15 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     # rounded: where letters stand must not hang on the last digit
     y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
     highest = float(max(y1.max(), y2.max()))
-    share = np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value)) / scale.mu
+    share = _ways(gear, plan) / scale.mu
     xs = np.round(left + first + share, 9)
     axis = upper.y1 - highest - 8
     s = _along(canvas, gear, plan, complex(left + first, axis), scale)
     _axis_line(s, gear, complex(left, axis), whole, first, scale)
     ordinate = float(y1[np.argmin(np.abs(share))])
-    s.line("yV1", complex(left, axis), complex(left + whole, axis + y1[-1]), "curve", "curve")
-    s.line("yV2", complex(left, axis + y2[0]), complex(left + whole, axis), "curve", "curve")
+    speeds = placed(canvas, plan, complex(left + first, axis), (scale.mu, 1.0))
+    speeds.line("yV1", complex(left, axis), complex(left + whole, axis + y1[-1]), "curve", "curve")
+    speeds.line("yV2", complex(left, axis + y2[0]), complex(left + whole, axis), "curve", "curve")
     canvas.label(complex(left + whole, axis + y1[-1]), "V_1", away=-1 + 0.3j, height=5)
     canvas.label(complex(left, axis + y2[0]), "V_2", away=1 + 0.5j, height=5)
 
@@ -419,7 +420,7 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     deepest = zero - (lower.y0 + 2)
     origin = complex(left, zero)
     t = _along(canvas, gear, plan, origin + first, scale)
-    _theta(_along(canvas, gear, gear.smooth_sliding, origin + first, scale), zero, mu, deepest)
+    _theta(placed(canvas, gear.smooth_sliding, origin + first, (scale.mu, mu.mu)), gear, -deepest * mu.mu)
     t.line("K", origin - 6, origin + whole + 8, "axis", "axis")
     pen = t.pen("theta1", "axis")
     pen.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
@@ -436,6 +437,11 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         t.position(k).line("K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
     canvas.label(complex(left + first, axis + ordinate), f"{number(ordinate)} мм", away=1 - 0.2j, height=3.5)
+
+
+def _ways(gear: Any, plan: Plan) -> Any:
+    """Ways of the contact point along the line of action from the pole, m."""
+    return np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value))
 
 
 def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale) -> Stage:
@@ -463,22 +469,18 @@ def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
     return mu, 1 / mu.mu
 
 
-def _theta(s: Stage, zero: float, mu: Scale, deepest: float) -> None:
+def _theta(s: Stage, gear: Any, lowest: float) -> None:
     """Both curves, cut where they leave the place on their way to minus infinity."""
-    x = np.real(s.frame(s.plan["K"].value))
-    for i in (1, 2):
-        y = np.asarray(s.plan[f"theta{i}"].value) / mu.mu
-        inside = y >= -deepest
-        k = int(np.argmax(inside)) if i == 1 else int(len(y) - 1 - np.argmax(inside[::-1]))
-        beyond = k - 1 if i == 1 else k + 1
-        px, py = x[inside], y[inside]
-        if 0 <= beyond < len(y) and np.isfinite(y[beyond]):
-            t = (-deepest - y[k]) / (y[beyond] - y[k])
-            cut = x[k] + t * (x[beyond] - x[k])
-            px, py = (np.append(cut, px), np.append(-deepest, py)) if i == 1 else (np.append(px, cut), np.append(py, -deepest))
-        s.curve(f"theta{i}", px + 1j * (zero + py), "curve")
-        end = 0 if i == 1 else -1
-        s.canvas.label(complex(px[end], zero + 0.6 * py[end]), f"θ_{i}", away=complex(1 if i == 1 else -1, 0), height=5, gap=3)
+    x = _ways(gear, s.plan)
+    for i, onward in ((1, 1), (2, -1)):  # from where each comes up from below
+        way, y = x[::onward], np.asarray(s.plan[f"theta{i}"].value)[::onward]
+        k = int(np.argmax(y >= lowest))
+        points = way[y >= lowest] + 1j * y[y >= lowest]
+        if k and np.isfinite(y[k - 1]):
+            t = (lowest - y[k]) / (y[k - 1] - y[k])
+            points = np.insert(points, 0, way[k] + t * (way[k - 1] - way[k]) + 1j * lowest)
+        s.curve(f"theta{i}", s.frame(points[::onward]))
+        s.canvas.label(complex(s.frame(points[0].real + 0.6j * points[0].imag)), f"θ_{i}", away=onward, height=5, gap=3)
 
 
 def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

@@ -42,10 +42,10 @@ class Window:
         if inside:
             s.line(step, *inside, style, role)
 
-    def curve(self, s: Stage, step: Step | str, points: Any, style: str) -> None:
+    def curve(self, s: Stage, step: Step | str, points: Any, style: str, role: Role = "curve") -> None:
         """Curve of a step through points."""
         for part in polyline_inside(self.box, np.asarray(points)):
-            s.curve(step, part, style)
+            s.pen(step, role).polyline(part, style)
 
     def edge(self) -> None:
         """The edge of the picture."""

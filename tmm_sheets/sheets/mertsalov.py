@@ -84,7 +84,9 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     x = s.angle.mm(fw.samples)
     curve = s.inertia.mm(fw.inertia(fw.samples))
     graphs.check_room(box, g.origin.imag + float(curve.max()) + graphs.HEAD, "mertsalov.inertia")
-    of, terms = (stage(canvas, p, None, g.place()) for p in (fw.inertia_plan, fw.reduced.numbered.plan))
+    of = stage(canvas, fw.inertia_plan, None, g.place())
+    doubled = s.inertia.mu * fw.reduced.omega1**2  # the terms are doubled energies
+    terms = stage(canvas, fw.reduced.numbered.plan, None, g.place(s.angle.mu, doubled))
     of.curve("points", g(x + 1j * curve))
     parts = _terms(fw)
     for n, (name, step, part) in enumerate(parts, 1):

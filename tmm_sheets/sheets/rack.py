@@ -64,7 +64,7 @@ class _RackPicture:
         self.window = Window(canvas, Box(inner.x0, low, inner.x1 - MARGIN, inner.y1))
         # the plan's origin is the wheel's centre
         self.at = Frame(scale, self.pole - scale.mm(1j * self.rack.r))
-        self.stage = stage(canvas, gear.generating, 0, self.at)
+        self.stage = stage(canvas, gear.generating, None, self.at)
 
     def height(self, y: float) -> float:
         """Ordinate on the sheet at ``y`` m over the reference line of the rack."""
@@ -142,7 +142,7 @@ class _RackPicture:
         c = self.canvas
         top = self.gear.addendum * self.gear.m
         outline = self.at(self.rack.placed(self.rack.outline(-1, 1, top), 0.0))
-        self.window.curve(self.stage, "M", outline, "axis")
+        self.window.curve(self.stage, "M", outline, "axis", "symbol")
         shape = self.gear.generated(self.wheel)
         teeth = shape.outline(-2, 2, step=0.5 * self.at.scale.mu)
         # The engagement's tooth 0, turned so that a space stands over the centre.
