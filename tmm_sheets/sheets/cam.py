@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard, handy
+from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
@@ -58,13 +58,6 @@ def axes(s: Stage, step: Step | str, x: float, y: tuple[float, float], before: f
 def distinct(labels: tuple[str, ...], x: Points) -> list[int]:
     """Positions to be numbered: where two fall together (no dwell between), the first."""
     return [k for k in range(len(labels)) if k == 0 or abs(x[k] - x[k - 1]) > 1e-9]
-
-
-def standard(width: float, height: float, room_x: float, room_y: float) -> tuple[int, int, Scale]:
-    """Largest standard scale (real, drawn) at which an object of ``width`` x ``height`` m fits its room, mm."""
-    both = fit_standard(width * 1e3, room_x), fit_standard(height * 1e3, room_y)
-    real, drawn = min(both, key=lambda s: s[1] / s[0])
-    return real, drawn, Scale("μ_l", 1e-3 * real / drawn, "м/мм")
 
 
 def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str]) -> None:

@@ -15,6 +15,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cam import axes, distinct, for_cams, lines_of_text
+from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
 
 if TYPE_CHECKING:
@@ -272,13 +273,11 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
 @for_cams
 def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The flat follower with the sizes of its plate, to scale."""
-    from tmm_sheets.sheets.cam import standard
-
     cam: FlatCam = project.cam
     p = cam.plate
     room = box.inset(12, 26, 12, 34)
-    real, drawn, scale = standard(p.l1 + p.l2, 0.3 * (p.l1 + p.l2), room.width, room.height - 24)
-    canvas.title(box, "Тарелка толкателя", f"М {drawn}:{real}")
+    scale = standard((p.l1 + p.l2, room.width), (0.3 * (p.l1 + p.l2), room.height - 24))
+    canvas.title(box, "Тарелка толкателя", ratio(scale))
     left, right = (p.l1, p.l2) if cam.right > 0 else (p.l2, p.l1)
     with canvas.as_role("symbol"):
         axis = _plate_symbol(canvas, room, scale.mm(left), scale.mm(right))

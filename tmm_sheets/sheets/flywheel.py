@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fit_standard, times
+from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import graphs
-from tmm_sheets.sheets.frame import together
+from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
@@ -343,10 +343,9 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
     rim = w.form == "rim"
     d, b, h = 1000 * w.diameter, 1000 * w.width, 1000 * w.thickness if rim else 0.0
     outer = d + h
-    scales = (fit_standard(outer + b, box.width - 56), fit_standard(outer, box.height - 36))
-    real, drawn = max(scales, key=lambda x: x[0] / x[1])
-    left = canvas.title(box, "Эскиз маховика", f"М {drawn}:{real}")
-    k = drawn / real
+    scale = standard(((outer + b) * 1e-3, box.width - 56), (outer * 1e-3, box.height - 36))
+    left = canvas.title(box, "Эскиз маховика", ratio(scale))
+    k = 1e-3 / scale.mu
     gap = (box.width - (outer + b) * k - 20) / 3
     centre = complex(box.x0 + gap + outer * k / 2, (left.y0 + left.y1) / 2 - 2)
     side = complex(box.x1 - gap - 20 - b * k / 2, centre.imag)

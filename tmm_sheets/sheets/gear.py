@@ -15,16 +15,8 @@ from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Dimension
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.frame import Frame
-from tmm_sheets.sheets.gear_marks import (
-    CIRCLES,
-    Window,
-    gap,
-    hatch_between,
-    ratio,
-    ruled_table,
-    standard,
-)
+from tmm_sheets.sheets.frame import Frame, ratio, standard
+from tmm_sheets.sheets.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
 from tmm_sheets.sheets.player import Stage, placed, play, stage
 
 EDGE = 24.0
@@ -62,7 +54,7 @@ class _GearPicture:
         self.mu: Scale = gear.picture_scale(room)
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
             canvas.scales[f"gear-{name}"] = self.mu
-        self.box = canvas.title(box, "Картина зацепления", f"М {ratio(self.mu)}")
+        self.box = canvas.title(box, "Картина зацепления", ratio(self.mu))
         one, two = (w.ra / self.mu.mu + 4 for w in gear.wheels)
         spare = self.box.height - gear.a_w / self.mu.mu
         # The smaller wheel is shown whole, if that leaves room beyond the other's centre; both are cut alike otherwise.
@@ -326,8 +318,8 @@ class _Detail:
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
         margin = 18.0
-        mu = standard(1.25 * gear.p, box.width - margin)
-        inner = canvas.title(box, "Зона зацепления", f"М {ratio(mu)}")
+        mu = standard((1.25 * gear.p, box.width - margin))
+        inner = canvas.title(box, "Зона зацепления", ratio(mu))
         place = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
         self.pole = place.centre
         tall = mu.mm(max(w.ra - w.rw + gear.clearance * gear.m for w in gear.wheels)) + 8
@@ -390,12 +382,12 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     room = box.width - 34
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
     if not room / 2 < scale.mm(one.t_pole + two.t_pole) <= room:
-        scale = standard(one.t_pole + two.t_pole, room)
+        scale = standard((one.t_pole + two.t_pole, room))
     canvas.scales["gear-sliding"] = scale
     whole = scale.mm(one.t_pole + two.t_pole)
     plan = gear.sliding
     first = one.t_pole / scale.mu
-    upper = canvas.title(box, "Графики скоростей", f"М {ratio(scale)}")
+    upper = canvas.title(box, "Графики скоростей", ratio(scale))
     left = (box.x0 + box.x1 - whole) / 2
     # rounded: where letters stand must not hang on the last digit
     y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
@@ -569,7 +561,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     one, two = gear.wheels
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
     notes = [
-        f"Принято: масштаб картины зацепления {ratio(scale)};",
+        f"Принято: масштаб картины зацепления {ratio(scale)[2:]};",
         f"отрезки P_{{w}}N_1 и P_{{w}}N_2 разделены на {gear.parts(one, scale)} и {gear.parts(two, scale)} части;",
         *([f"ордината скоростей в полюсе {number(float(gear.sliding['yV1'].value[3]))} мм;"]
           if "gear-sliding" in canvas.scales or gear.profile == "fillet" else []),

@@ -1,4 +1,4 @@
-"""What the views of gears and reducers share: windows, tables, standard scales, names of circles."""
+"""What the views of gears and reducers share: windows, tables, names of circles."""
 
 from __future__ import annotations
 
@@ -8,12 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
 from tmm_sheets.drawing.marks import Box, Role
-from tmm_sheets.numbers import number
 from tmm_sheets.sheets.player import Stage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
@@ -131,15 +129,3 @@ def spread(heights: list[float], least: float) -> list[float]:
         if not moved:
             break
     return out
-
-
-def standard(span: float, room: float) -> Scale:
-    """Largest GOST 2.302 scale with which ``span`` metres take at most ``room`` mm."""
-    real, drawn = fit_standard(span * 1e3, room)
-    return Scale("μ_l", real / drawn * 1e-3, "м/мм")
-
-
-def ratio(scale: Scale) -> str:
-    """A GOST 2.302 scale as it is written: 4:1, 1:2,5."""
-    real = scale.mu * 1e3
-    return f"{number(1 / real)}:1" if real <= 1 else f"1:{number(real)}"

@@ -13,8 +13,8 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.frame import Frame
-from tmm_sheets.sheets.gear_marks import Window, gap, ratio, standard
+from tmm_sheets.sheets.frame import Frame, ratio, standard
+from tmm_sheets.sheets.gear_marks import Window, gap
 from tmm_sheets.sheets.player import Stage, stage
 
 MARGIN = 16.0
@@ -55,9 +55,9 @@ class _RackPicture:
         top = max((self.rack.shift + gear.addendum) * m, self.wheel.ra - self.rack.r)
         bottom = self.rack.r - self.wheel.rf + BELOW * m
         inner = box.inset(0, 0, MARGIN, 16 + NOTES)
-        scale = min(standard(PITCHES * pi * m, inner.width), standard(top + bottom, inner.height), key=lambda s: -s.mu)
+        scale = standard((PITCHES * pi * m, inner.width), (top + bottom, inner.height))
         canvas.scales["gear-rack"] = scale
-        inner = canvas.title(box, f"Станочное зацепление колеса {self.wheel.number}", f"М {ratio(scale)}")
+        inner = canvas.title(box, f"Станочное зацепление колеса {self.wheel.number}", ratio(scale))
         # What height is left goes to the wheel, whose centre may come to stand on the picture.
         self.pole = complex((inner.x0 + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)
         low = max(inner.y0, self.pole.imag - min(self.rack.r / scale.mu + 12, 2.2 * bottom / scale.mu))

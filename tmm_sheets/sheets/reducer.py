@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard, handy
+from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.gear_marks import ratio, ruled_table, spread
+from tmm_sheets.sheets.frame import ratio, standard
+from tmm_sheets.sheets.gear_marks import ruled_table, spread
 from tmm_sheets.sheets.player import Stage, placed, play
 
 COLUMN = 19.0
@@ -52,12 +53,10 @@ class _Scheme:
         self.side = max(self.reach, one, two)
         self.width = self.columns() * COLUMN + 2 * STUB
         inner = box.inset(0, 0, 0, 18)
-        real, drawn = fit_standard(max(
-            (self.top + self.bottom) * 1e3 * 1.0 / (inner.height - 16),
-            2 * self.side * 1e3 / (inner.width - self.width - NARROWEST - 24)), 1.0)
-        self.mu = Scale("μ_l", real / drawn * 1e-3, "м/мм")
+        beside = inner.width - self.width - NARROWEST - 24
+        self.mu = standard((self.top + self.bottom, inner.height - 16), (2 * self.side, beside))
         canvas.scales["reducer-scheme"] = self.mu
-        self.box = canvas.title(box, "Схема редуктора, картина скоростей и вид с торца", f"М {ratio(self.mu)}")
+        self.box = canvas.title(box, "Схема редуктора, картина скоростей и вид с торца", ratio(self.mu))
         spare = self.box.height - (self.top + self.bottom) / self.mu.mu
         self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
         self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
