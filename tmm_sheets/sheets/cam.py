@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import wraps
 from itertools import pairwise
 from math import degrees, pi, radians
@@ -19,6 +20,7 @@ from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.player import Stage, placed, play
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.cams.cam_closure import Spring
     from tmm_sheets.methods.cams.cam_motion import FollowerMotion
@@ -237,6 +239,49 @@ def _integration(upper: Stage, lower: Stage, m: FollowerMotion, symbol: str, end
     canvas.dimension(at, complex(origin), min(lowest, -down) - 7.0, distance)
 
 
+# --- diagrams over the cam angle ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class OverAngle:
+    """Place of a diagram over the cam angle: scale factors and origin, mm, and how far it reaches from there, mm.
+
+    ``unit`` is that of the ordinates' scale factor in the unit of the plan.
+    """
+
+    across: Scale
+    tall: Scale
+    unit: float
+    o: complex
+    length: float
+    low: float
+    high: float
+
+    @classmethod
+    def fitted(cls, room: Box, end: float, span: tuple[float, float], scale: tuple[str, str], above: float = 0.0,
+               unit: float = 1.0) -> OverAngle:
+        """In the middle of a room, of which the ordinates leave ``above`` mm free; ``scale`` is sign and unit of theirs."""
+        low, high = (value / unit for value in span)
+        across = Scale("μ_φ", handy(degrees(end) / room.width), "град/мм")
+        tall = Scale(scale[0], handy((high - low) / (room.height - above)), scale[1])
+        length, low, high = float(across.mm(degrees(end))), tall.mm(low), tall.mm(high)
+        o = complex(room.x0 + (room.width - length) / 2, room.y0 - low + (room.height - (high - low)) / 2)
+        return cls(across, tall, unit, o, length, low, high)
+
+    def placed(self, canvas: Canvas, plan: Plan) -> Stage:
+        """A plan as this diagram: abscissae in radians, ordinates in its unit."""
+        return placed(canvas, plan, self.o, (radians(self.across.mu), self.unit * self.tall.mu))
+
+    def axes(self, s: Stage, step: Step, beyond: tuple[float, float], text: str, above: float) -> None:
+        """Axes of the diagram of a step, so far beyond it, mm, with the sign of its ordinates."""
+        axes(s, step, self.length + beyond[0], (self.low, self.high + beyond[1]))
+        s.canvas.text(self.o + complex(2.5, self.high + above), text, 3.5)
+
+    def from_axis(self, points: Any) -> Any:
+        """A curve that jumps from the axis at its beginning and back to it at its end."""
+        return np.concatenate(([self.o], points, [self.o + self.length]))
+
+
 # --- pressure angle -------------------------------------------------------------------------------------------------
 
 
@@ -245,29 +290,22 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     """Pressure angle over a turn of the cam, measured at the finished profile, with the permitted value."""
     cam: RollerCam = project.cam
     dense, inv = cam.dense, cam.inversion
-    y = np.degrees(dense.angles.value)
-    allowed = degrees(cam.alpha)
-    up, down = max(float(y.max()), allowed), max(float(-y.min()), allowed)
-    area = Box(box.x0 + 10, box.y0 + 12, box.x1 - 8, box.y1 - 26)
-    across = Scale("μ_φ", handy(360 / (area.width - 10)), "град/мм")
-    tall = Scale("μ_α", handy((up + down) / (area.height - 8)), "град/мм")
-    canvas.title(box, "Угол давления", f"{tall},  {across}")
-    o = complex(area.x0 + (area.width - 10 - across.mm(360)) / 2, area.centre.imag - 4 + tall.mm(down - up) / 2)
-    mu = radians(across.mu), radians(tall.mu)
-    course, found = placed(canvas, dense.plan, o, mu), placed(canvas, inv.plan, o, mu)
-    axes(course, dense.angles, across.mm(360) + 9, (-tall.mm(down), tall.mm(up) + 9))
-    canvas.text(o + complex(2.5, tall.mm(up) + 5.5), "α, град", 3.5)
-    canvas.label(o + across.mm(360) + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
-    for limit, side in ((allowed, 1.0), (-allowed, -1.0)):
-        level = o + 1j * tall.mm(limit)
-        canvas.tracing("construction", cam.zone.borders[0].path).line(level, level + across.mm(360), "hidden")
-        name = f"[α] = {number(limit)}°" if side > 0 else "−[α]"
-        canvas.label(level + across.mm(300), name, 1j * side, 3.5, 0.8, leader=False)
-    course.curve(dense.angles, o + across.mm(np.degrees(dense.phi)) + 1j * tall.mm(y))
-    at = o + across.mm(np.degrees(inv.phi))
-    values = tall.mm(np.degrees(inv.angles.value))
+    found = dense.angles.value
+    low, high = min(float(found.min()), -cam.alpha), max(float(found.max()), cam.alpha)
+    d = OverAngle.fitted(box.inset(10, 8, 18, 30), 2 * pi, (low, high), ("μ_α", "град/мм"), 8.0, radians(1.0))
+    canvas.title(box, "Угол давления", f"{d.tall},  {d.across}")
+    course, marked = d.placed(canvas, dense.plan), d.placed(canvas, inv.plan)
+    d.axes(course, dense.angles, (9.0, 9.0), "α, град", 5.5)
+    canvas.label(d.o + d.length + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
+    for side in (1, -1):
+        level = course.frame(1j * side * cam.alpha)
+        canvas.tracing("construction", cam.zone.borders[0].path).line(level, level + d.length, "hidden")
+        name = f"[α] = {number(degrees(cam.alpha))}°" if side > 0 else "−[α]"
+        canvas.label(level + 5 / 6 * d.length, name, 1j * side, 3.5, 0.8, leader=False)
+    course.curve(dense.angles, course.frame(dense.phi + 1j * found))
+    at, values = course.frame(inv.phi), inv.angles.value
     for k in range(len(at)):
-        found.position(k).line(inv.angles, at[k], at[k] + 1j * values[k], "thin")
+        marked.position(k).line(inv.angles, at[k], course.frame(inv.phi[k] + 1j * values[k]), "thin")
     n = cam.law.parts
     for k in (0, n // 2, n, n + 1, n + 1 + n // 2, 2 * n + 1):
         if k != n + 1 or abs(at[n + 1] - at[n]) > 4:
@@ -336,35 +374,24 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     lines = _spring_lines(spring, law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
     beside = box.width > 1.7 * box.height
-    area = box.inset(14, 8, text, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 8, 32)
-    across = Scale("μ_φ", handy(degrees(law.fall.end) / (area.width - 12)), "град/мм")
-    tall = Scale("μ_F", handy((top - low) / area.height), "Н/мм")
-    canvas.title(box, "Замыкающая пружина", f"{tall},  {across}")
-    end = float(across.mm(degrees(law.fall.end)))
-    o = complex(area.x0 + (area.width - 12 - end) / 2, area.y0 - tall.mm(low) + (area.height - tall.mm(top - low)) / 2)
-
-    def at(angle: Any, y: Any) -> Any:
-        return o + across.mm(np.degrees(angle)) + 1j * tall.mm(y)
-
-    mu = radians(across.mu), tall.mu
-    course, found = placed(canvas, spring.course_plan, o, mu), placed(canvas, spring.plan, o, mu)
-    axes(course, steps[1], end + 10, (tall.mm(low), tall.mm(top) + 8))
-    canvas.text(o + complex(2.5, tall.mm(top) + 4.5), "F, Q, Н", 3.5)
-    canvas.label(o + end + 7, "φ, град", 1j, 3.5, 1.5, leader=False)
-    course.curve(steps[1], at(phi, force))
-    course.curve(steps[2], np.concatenate(([o], at(phi, inertia), [o + end])), "main")
-    x, forces = at(law.positions, 0.0), spring.at_positions
+    area = box.inset(14, 8, text + 12, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
+    d = OverAngle.fitted(area, law.fall.end, (low, top), ("μ_F", "Н/мм"))
+    canvas.title(box, "Замыкающая пружина", f"{d.tall},  {d.across}")
+    course, found = d.placed(canvas, spring.course_plan), d.placed(canvas, spring.plan)
+    d.axes(course, steps[1], (10.0, 8.0), "F, Q, Н", 4.5)
+    canvas.label(d.o + d.length + 7, "φ, град", 1j, 3.5, 1.5, leader=False)
+    course.curve(steps[1], course.frame(phi + 1j * force))
+    course.curve(steps[2], d.from_axis(course.frame(phi + 1j * inertia)), "main")
+    x, forces = course.frame(law.positions), spring.at_positions
     for k in distinct(law.labels, x.real):
         pen = canvas.tracing("construction", forces.path, law.labels[k], found.number)
-        pen.line(complex(x[k]), complex(at(law.positions[k], forces.value[k])), "thin")
+        pen.line(complex(x[k]), complex(course.frame(law.positions[k] + 1j * forces.value[k])), "thin")
         canvas.label(complex(x[k]), law.labels[k], -1j, 2.5, 0.6, leader=False)
-    k = int(np.argmax(force))
-    canvas.label(complex(at(phi[k], force[k])), "F", 1j, 3.5, 1.0)
-    k = int(np.argmin(inertia))
-    canvas.label(complex(at(phi[k], inertia[k])), "Q", 1.0 + 0j, 3.5, 1.0)
+    for name, values, peak, away in (("F", force, np.argmax(force), 1j), ("Q", inertia, np.argmin(inertia), 1 + 0j)):
+        canvas.label(complex(course.frame(phi[peak] + 1j * values[peak])), name, away, 3.5, 1.0)
     worst = float(spring.force(law.s(spring.worst_phi)))
     for step, y in zip(steps[1:], (worst, worst / spring.worst), strict=True):
-        course.dot(step, 0.8, "main", complex(at(spring.worst_phi, y)))
+        course.dot(step, 0.8, "main", complex(course.frame(spring.worst_phi + 1j * y)))
     if not beside:
         lines_of_text(canvas, box, lines)
         return

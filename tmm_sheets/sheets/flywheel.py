@@ -483,12 +483,16 @@ def _sizes(fw: Flywheel) -> list[str]:
 # --- parts shared by the views --------------------------------------------------------------------------
 
 
-def _with_tangents(project: Any) -> Wittenbauer:
+def by_method(project: Any, method: str, hint: str) -> Any:
+    """The project's flywheel, which a view must find by its own method."""
     fw = project.flywheel
-    if fw.method != "wittenbauer":
-        raise CannotBuild(f'the energy-mass diagram belongs to flywheel.method = "wittenbauer", not "{fw.method}"',
-                          "take the views of mertsalov in the arrangement of the sheet")
-    return cast("Wittenbauer", fw)
+    if fw.method != method:
+        raise CannotBuild(f'this view belongs to flywheel.method = "{method}", not "{fw.method}"', hint)
+    return fw
+
+
+def _with_tangents(project: Any) -> Wittenbauer:
+    return cast("Wittenbauer", by_method(project, "wittenbauer", "take the views of mertsalov in the arrangement of the sheet"))
 
 
 def indices(fw: Flywheel) -> tuple[str, str]:

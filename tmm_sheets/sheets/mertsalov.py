@@ -18,7 +18,6 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
 from tmm_sheets.sheets.player import Stage, stage
@@ -37,11 +36,7 @@ LEGEND = 6.0
 
 
 def _procedure(project: Any) -> Mertsalov:
-    fw = project.flywheel
-    if fw.method != "mertsalov":
-        raise CannotBuild(f'this view belongs to flywheel.method = "mertsalov", not "{fw.method}"',
-                          "take the arrangement flywheel among the project's sheets")
-    return cast("Mertsalov", fw)
+    return cast("Mertsalov", flywheel.by_method(project, "mertsalov", "take the arrangement flywheel among the project's sheets"))
 
 
 def _signs(options: Options) -> tuple[str, str, str, str]:
