@@ -299,7 +299,7 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     canvas.label(d.o + d.length + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
     for side in (1, -1):
         level = course.frame(1j * side * cam.alpha)
-        canvas.tracing("construction", cam.zone.borders[0].path).line(level, level + d.length, "hidden")
+        course.line(cam.zone.borders[0], level, level + d.length, "hidden", "axis")
         name = f"[α] = {number(degrees(cam.alpha))}°" if side > 0 else "−[α]"
         canvas.label(level + 5 / 6 * d.length, name, 1j * side, 3.5, 0.8, leader=False)
     course.curve(dense.angles, course.frame(dense.phi + 1j * found))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from typing import TYPE_CHECKING, Any
@@ -50,8 +50,17 @@ class Shown:
 
     @property
     def whole(self) -> bool:
-        """Whether it is there and no part of a reaction that was split."""
-        return abs(self.vector) > 0 and "^" not in self.symbol
+        """Whether it is no part of a reaction that was split."""
+        return "^" not in self.symbol
+
+    @property
+    def along(self) -> complex:
+        """Unit vector of the force."""
+        return self.vector / abs(self.vector)
+
+    def foot(self, about: complex) -> complex:
+        """Foot of the perpendicular from a point on the line of action, in the plan's unit."""
+        return self.at + float(((about - self.at) * np.conj(self.along)).real) * self.along
 
 
 GAP = 4.0
@@ -212,9 +221,8 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     pos = project.study.positions
     shown, couples = _outer_forces(project, g, k)
     drawn = [shape for shape in linkage.shapes(pos) if shape.link in g.links]
-    names = dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n)
-    centres = [str(c) for c in (project.mechanism.links[link].centre for link in g.links) if c and c not in names]
-    points = [pos.points[name] for name in (*names, *dict.fromkeys(centres))]
+    hinges, centres = _scheme_points(project, g, drawn)
+    points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.points[g.kind.about(g)].at(k))
     frame = _loaded_frame(project, canvas, (f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм"), box.inset(3.0, 5.0, 3.0, 19.0),
                           [*(complex(p.at(k)) for p in points), *(force.at for force in shown)], shown, about)
@@ -237,6 +245,13 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     _link_couples(project, s, drawn)
 
 
+def _scheme_points(project: Project, g: StructuralGroup, drawn: Iterable[linkage.Shape]) -> tuple[list[str], list[str]]:
+    """Hinges and blocks of a group's links, and their centres of mass that are none of these."""
+    hinges = list(dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n))
+    centres = (project.mechanism.links[link].centre for link in g.links)
+    return hinges, [str(c) for c in centres if c and c not in hinges]
+
+
 def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) -> None:
     """Couples of the links round their centres of mass, or their first points."""
     for shape in drawn:
@@ -248,7 +263,7 @@ def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) ->
 def _loaded_frame(project: Project, canvas: Canvas, scale: tuple[str, str, str], place: Box, points: Iterable[complex],
                   shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = ()) -> Frame:
     """Frame of points with forces and their arms about a point, and of ``more``: points with what reaches from them, mm."""
-    rest = [*((foot, 0j) for foot in _feet(about, shown)), *more]
+    rest = [*((force.foot(about), 0j) for force in shown if force.whole), *more]
     z, d = _reach(points, shown)
     return fit_frame(project, canvas, *scale, [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)], place)
 
@@ -295,19 +310,15 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
 
 def _arrows(shown: Iterable[Shown]) -> list[tuple[Shown, complex]]:
     """Arrow of each force in mm; forces along one ray from one point get different lengths."""
-    forces = [s for s in shown if abs(s.vector) > 0]
-    largest = max((abs(s.vector) for s in forces), default=1.0)
+    forces = sorted(shown, key=lambda s: abs(s.vector))
     size = max((abs(a.at - b.at) for a in forces for b in forces), default=0.0)
-    taken: list[tuple[complex, complex, float]] = []
-    found = []
-    for s in sorted(forces, key=lambda s: abs(s.vector)):
-        u = s.vector / abs(s.vector)
-        length = SHORT + (LONG - SHORT) * (abs(s.vector) / largest) ** 0.5
-        for at, v, used in taken:
-            if abs(at - s.at) <= 0.01 * size and abs(u - v) < 0.2 and length < used + 9.0:
-                length = used + 9.0
-        taken.append((s.at, u, length))
-        found.append((s, length * u))
+    found: list[tuple[Shown, complex]] = []
+    for s in forces:
+        length = SHORT + (LONG - SHORT) * (abs(s.vector) / abs(forces[-1].vector)) ** 0.5
+        for other, arrow in found:
+            if abs(other.at - s.at) <= 0.01 * size and abs(s.along - other.along) < 0.2 and length < abs(arrow) + 9.0:
+                length = abs(arrow) + 9.0
+        found.append((s, length * s.along))
     return found
 
 
@@ -326,32 +337,18 @@ def _reach(points: Iterable[complex], shown: Iterable[Shown]) -> tuple[list[comp
 def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
     """Arrows with their tails at the points they act at."""
     for force, arrow in _arrows(shown):
-        tail, u = s.frame(force.at), arrow / abs(arrow)
+        tail, u = s.frame(force.at), force.along
         pen = s.pen(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else "")
         pen.arrow(tail, tail + arrow, "vector")
         pen.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
 
 
-def _foot(s: Shown, about: complex) -> complex:
-    """Foot of the perpendicular from a point on the line of action of a force, in the plan's unit."""
-    u = s.vector / abs(s.vector)
-    return s.at + float(((about - s.at) * np.conj(u)).real) * u
-
-
-def _feet(about: complex, shown: Iterable[Shown]) -> list[complex]:
-    """Feet of the arms that are drawn about a point, in the plan's unit."""
-    return [_foot(s, about) for s in shown if s.whole]
-
-
-def draw_arms(s: Stage, about: complex, shown: Iterable[Shown], points: Iterable[complex] = ()) -> None:
+def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
-    shown = [force for force in shown if abs(force.vector) > 0]
     seen, centre = list[complex](), s.frame(about)
-    busy = [centre, *points, *(s.frame(force.at) for force in shown), *(s.frame(_foot(force, about)) for force in shown)]
+    busy = [centre, *points, *(s.frame(force.at) for force in shown), *(s.frame(force.foot(about)) for force in shown)]
     for force in sorted(shown, key=lambda force: -abs(force.vector)):  # forces on one line share the arm of the largest
-        u = force.vector / abs(force.vector)
-        tail = s.frame(force.at)
-        foot = tail + ((centre - tail) * np.conj(u)).real * u
+        tail, foot = s.frame(force.at), s.frame(force.foot(about))
         if abs(foot - centre) < 1.5 or not force.whole or any(abs(foot - f) < 0.6 for f in seen):
             continue
         seen.append(foot)
@@ -404,8 +401,9 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
     terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
     _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
-    asked = [(s, t, h) for s, t, h, unknown in sides if unknown] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
-    found = [f"{s.replace(BAR, '')} = {newtons(clean(abs(complex(h.at(k)) - complex(t.at(k))), size))} Н" for s, t, h in asked]
+    asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
+    lengths = [(sign.replace(BAR, ""), abs(complex(s.value(head)) - complex(s.value(tail)))) for sign, tail, head in asked]
+    found = [f"{sign} = {newtons(clean(force, size))} Н" for sign, force in lengths]
     _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
 
 
@@ -482,8 +480,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:
     """Direction from the crank's pivot into the widest angle between its arms, base, forces and their arms."""
-    acting = [force for force in shown if abs(force.vector) > 0]
-    lines = [force.vector if force.at == pivot else _foot(force, pivot) - pivot for force in acting]
+    lines = [force.vector if force.at == pivot else force.foot(pivot) - pivot for force in shown]
     return linkage.widest_gap([*(z - pivot for z in pins), -1j, *lines], 6)
 
 

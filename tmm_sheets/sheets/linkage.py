@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -139,10 +139,9 @@ def outlines(s: Stage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
     return sides + list(shape.arms)
 
 
-def draw(s: Stage, pos: Positions, style: str, only: Iterable[str] | None = None) -> None:
+def draw(s: Stage, pos: Positions, style: str, only: Collection[str] | None = None) -> None:
     """Links of the mechanism at a position: with all symbols in style main, as bare lines otherwise."""
-    wanted = set(pos.mechanism.links if only is None else only)
-    drawn = [shape for shape in shapes(pos) if shape.link in wanted]
+    drawn = [shape for shape in shapes(pos) if only is None or shape.link in only]
     # A dict, not a set: the order of the marks must be the same in every run.
     at = {name: s.at(pos.points[name]) for shape in drawn for name in (*shape.bar, shape.block or "") if name}
     gaps = at if style == "main" else [name for name in at if name in pos.mechanism.fixed]
@@ -255,14 +254,13 @@ def _ram(canvas: Canvas, s: Stage, pos: Positions, shape: Shape, style: str) -> 
     line(z - half * u - thick * v, z + half * u - thick * v, style)
 
 
-def draw_guides(s: Stage, pos: Positions, only: Iterable[str] | None = None) -> None:
+def draw_guides(s: Stage, pos: Positions, only: Collection[str] | None = None) -> None:
     """Fixed guides of the blocks and rams, hatched on the side away from the link."""
     m = pos.mechanism
-    wanted = set(m.links if only is None else only)
     for g in m.groups:
         ram = g.kind.ram(g)
         for link, name in (*([(ram, g.guides[0])] if ram else []), *g.kind.sliders(g)):
-            if link in wanted and m.guides[name].link == m.frame:
+            if (only is None or link in only) and m.guides[name].link == m.frame:
                 pen = s.pen(pos.guide_directions[name], "symbol")
                 z, u = s.at(pos.points[str(g.inner)]), complex(s.value(pos.guide_directions[name]))
                 if link == ram:
