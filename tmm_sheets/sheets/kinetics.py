@@ -21,7 +21,7 @@ from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
-from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, pick, together
+from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, together
 from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
@@ -376,7 +376,7 @@ def _polygon(fp: ForcePlan, k: int) -> tuple[dict[str, complex], Box]:
 
 def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
     """Force polygon with numbered vertices, its equation and the values found."""
-    points, real = _polygon(fp, k)
+    points, _ = _polygon(fp, k)
     canvas.of = fp.plan.name
     inside = box.inset(*AROUND)
     size = project.study.forces.force_size(k)
@@ -384,19 +384,17 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     if not sides:
         _fitted(canvas, canvas.title(box, fp.plan.title).centre, "В этом положении сил нет", 3.5, box.width - 4.0)
         return
-    need = max(real.width / inside.width, real.height / inside.height)
-    scale = pick(project, canvas, fp.plan.name, "μ_F", "Н/мм", need)
-    frame = Frame(scale, inside.centre - scale.mm(real.centre))
-    canvas.title(box, fp.plan.title, str(scale), 5.0)
+    frame = fit_frame(project, canvas, fp.plan.name, "μ_F", "Н/мм", list(points.values()), [0j] * len(points), inside)
+    canvas.title(box, fp.plan.title, str(frame.scale))
     flat_crossings.warn(project, canvas, box, fp.plan)
     s = stage(canvas, fp.plan, k, frame)
-    tiny = _draw_sides(s, sides, frame(real.centre))
+    tiny = _draw_sides(s, sides, inside.centre)
     extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
     for seg in extra:
         s.vector(seg.tail, seg.head)
         s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2)
     for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
-        s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - frame(real.centre), 2.5, 0.8)
+        s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
     terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
