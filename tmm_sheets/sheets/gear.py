@@ -163,7 +163,7 @@ class _GearPicture:
             centre = self.of(f"O{i}")
             away = (foot - centre) / abs(foot - centre)
             inward = (pole - foot) / abs(pole - foot)
-            s.line(f"N{i}", centre, foot, "thin")
+            s.line(f"N{i}", centre, foot, "thin", "axis")
             corner = foot + 3 * inward - 3 * away
             s.line(f"N{i}", foot - 3 * away, corner, "thin", "symbol")
             s.line(f"N{i}", corner, foot + 3 * inward, "thin", "symbol")
@@ -214,7 +214,7 @@ class _GearPicture:
             if k != parts:
                 play(s, [f"E{k}"])
                 out = (t - centre) / abs(t - centre)
-                s.line(f"{k}′", t - 10 * out, t, "construction")
+                s.line(f"{k}′", t - 10 * out, t, "construction", "axis")
             s.dot(f"E{k}", 0.5, "thin")
             if 0 < k != parts:
                 c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
@@ -425,8 +425,8 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         values = [plan[f"theta{i}"].value[k] for i in (1, 2)]
         low = min([v for v in values if np.isfinite(v) and v > -deepest * mu.mu] or [0.0])
         # Projection lines leave the title between the graphs free.
-        s.position(k).line("K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
-        t.position(k).line("K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
+        s.position(k).line("K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction", "axis")
+        t.position(k).line("K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction", "axis")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
     canvas.label(complex(left + first, axis + ordinate), f"{number(ordinate)} мм", away=1 - 0.2j, height=3.5)
 

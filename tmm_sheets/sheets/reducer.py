@@ -326,7 +326,7 @@ class _Scheme:
             names.setdefault(round(s.at(name).imag, 1), []).append(name)
         for group in names.values():
             end = s.at(group[0])
-            s.line(group[0], complex(self.box.x0 + STUB, end.imag), end, "construction")
+            s.line(group[0], complex(self.box.x0 + STUB, end.imag), end, "construction", "axis")
             s.dot(group[0], 0.7, "main")
             letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
             self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
