@@ -22,6 +22,28 @@ def test_marks_know_their_steps_and_lie_where_these_say(name):
     checked, wrong = traced.untrue(project, sheets)
     assert not wrong
     assert min(checked[role] for role in ("point", "vector", "construction", "link")) > 20
+    assert checked["curve"] >= 9
+
+
+@pytest.fixture(scope="module")
+def shaper():
+    project = Project(read("lugansk/shaper"))
+    return project, traced.drawn(project, ("flywheel", "gears", "cams"))
+
+
+@pytest.mark.parametrize(("role", "step", "other"), [
+    ("curve", "total-work/points", "work/A(φ)"), ("curve", "gear-sliding-between/theta1", "gear-sliding-between/theta2"),
+    ("curve", "gear-tooth-1/E", "gear-tooth-2/E"), ("point", "cam-profile/B", "cam-profile/N"),
+    ("construction", "gear-engagement/rb1", "gear-engagement/rb2"), ("curve", "cam-profile-between/α", "cam-profile-between/OA")])
+def test_a_mark_of_a_graph_that_tells_a_wrong_step_is_found(shaper, role, step, other):
+    project, sheets = shaper
+    n, sheet = next((n, sheet) for n, sheet in sheets.items() if any(m.by and m.by.step == step for m in sheet.drawing.marks))
+    marks = list(sheet.drawing.marks)
+    mine = [i for i, m in enumerate(marks) if m.by and m.by[:2] == (role, step) and not isinstance(m, Text)]
+    i = mine[len(mine) // 2]  # all points of a profile lie on the circle r0 where the cam dwells
+    marks[i] = marks[i]._replace(by=marks[i].by._replace(step=other))
+    changed = replace(sheet, drawing=replace(sheet.drawing, marks=tuple(marks)))
+    assert len(traced.untrue(project, {n: changed})[1]) == 1
 
 
 @pytest.fixture(scope="module")

@@ -10,14 +10,16 @@ from __future__ import annotations
 import argparse
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tmm_sheets.catalogue import read
+from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Text
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points, Polyline, Text, flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.sheet import Composed, every
@@ -34,8 +36,11 @@ DONE = tuple(ROOMS)
 PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/8:3", "transport/press@07-ЭПС-718")
 """One project of each family, and an engine."""
 UNCOUNTED = {"symbol", "table", "dimension", "hatch", "text", "frame"}
+CHECKED = ("point", "vector", "construction", "link", "curve")
 EXACT = 0.001
 """mm"""
+SMOOTH = 0.05
+"""How far a chord of a smooth curve may lie beside it, mm."""
 PRODUCED = 4.0
 """How far a helper line is drawn beyond its end at most, mm."""
 
@@ -119,15 +124,18 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
             if m.by.step not in known:
                 wrong.append(f"sheet {n}: {m.by.step} is no step")
                 continue
-            if m.by.role not in ("point", "vector", "construction", "link") or m.by.frame < 0:
+            if m.by.role not in CHECKED or m.by.frame < 0:
                 continue
             if isinstance(m, Text) or (isinstance(m, Fill) and m.by.role != "point"):
                 continue  # letters and heads
-            if sheet.parts[sheet.frames[m.by.frame].view].draw.partition(".")[0] not in ROOMS["linkage"]:
-                continue  # test_flywheel_sheet, test_gear_marks and test_cam_sheet look at theirs
-            step = known[m.by.step]
-            off = min(distance(m, step, k, sheet.frames[m.by.frame], known, tips.get(i))
-                      for k in places(m.by.position, of[step.plan]))
+            step, frame = known[m.by.step], sheet.frames[m.by.frame]
+            where = places(m.by.position, of[step.plan])
+            if sheet.parts[frame.view].draw.partition(".")[0] in ROOMS["linkage"]:
+                if m.by.role == "curve":
+                    continue  # through further angles than the plan's; test_diagrams looks at them
+                off = min(distance(m, step, k, frame, known, tips.get(i)) for k in where)
+            else:
+                off = min(apart(m, step, k if m.by.position else None, frame, project) for k in where)
             checked[m.by.role] += 1
             if not off <= EXACT:
                 wrong.append(f"sheet {n}: {m.by.role} {m.by.step} at {m.by.position or 'all'}: off by {off:.4f} mm")
@@ -159,6 +167,91 @@ def distance(m: Mark, step: Step, k: int, frame: PlacedFrame, known: dict[str, S
         force = next(value_at(a, k) for a in step.args if isinstance(a, Step) and a.rule.gives == "force")
         drawn += [abs(abs(m.b - m.a) - abs(value) / frame.mu[1]), min(_across(m.b, m.a, force), _across(m.b, m.a, -force))]
     return min(drawn, default=np.inf)
+
+
+def apart(m: Mark, step: Step, k: int | None, frame: PlacedFrame, project: Project) -> float:
+    """The same where plans are graphs or one construction for all positions: flywheel, gears and cams, mm.
+
+    A mark of a point or of an ordinate over an axis goes through it, and its curve through all of them; where a curve is drawn
+    through points closer together, or in part, its own go through that of the step. A line shows a length, or lies as far from
+    the zero of the plan, or goes through the points it was measured between.
+    """
+    value = step.value if k is None else step.at(k)
+    if isinstance(value, Curve):
+        inside = (flat(m) - frame.origin) * np.exp(-1j * frame.turn)
+        return float(np.abs(inside.imag - value(inside.real * frame.mu[0]) / frame.mu[1]).max())
+    drawn = [_from_helper(m, h, frame) for at in range(np.size(value)) for h in _helpers(step, at if k is None else k)]
+    if step.rule.gives == "direction":
+        along = frame(np.ravel(value)) - frame(0j)
+        line = flat(m)
+        straight = [(a, b) for a, b in pairwise(line) if abs(b - a) > 1.0 or len(line) == 2]
+        return min([*drawn, *(_across(b, a, sense * u) for a, b in straight for u in along for sense in (1, -1))])
+    points = _points(m, step, k, frame, project)
+    if points is not None and m.by.role == "curve":
+        through = max((_from_line(z, m) for z in points), default=np.inf)
+        course = Polyline(points, "")
+        drawn += [through, max(_from_line(z, course) for z in flat(m))] if len(points) > 1 else [through]
+        return max(min(drawn) - SMOOTH, 0.0)
+    if points is not None and m.by.role == "point":
+        drawn += [abs(_middle(m) - z) for z in points]
+        if not np.iscomplexobj(value) and len(points) > 1:
+            drawn.append(max(_from_line(_middle(m), Polyline(points, "")) - SMOOTH, 0.0))
+    elif points is not None:
+        drawn += [_from_line(z, m) for z in points]
+        drawn += [abs(m.centre - z) for z in points if isinstance(m, Arc)]
+    if not np.iscomplexobj(value) and isinstance(m, Line | Arc):
+        size = np.abs(np.ravel(value).astype(float)) / frame.mu[1]
+        if isinstance(m, Arc):
+            return min([*drawn, *abs(m.radius - size)])
+        zero = _from_line(frame.origin, m)
+        between = [a for a in step.args if isinstance(a, Step) and _is_point(a) and not np.ndim(a.value)]
+        ends = [complex(frame(complex(a.value))) for a in between]
+        drawn += [*abs(abs(m.b - m.a) - size), *abs(zero - size)]
+        drawn += [max(_from_line(z, m) for z in ends)] if ends else []
+    return float(min(drawn))
+
+
+def _points(m: Mark, step: Step, k: int | None, frame: PlacedFrame, project: Project) -> Points | None:
+    """Where the points of a step lie on the sheet, or the ends of its ordinates over the axis of a graph, but those of zero."""
+    value = step.value if k is None else step.at(k)
+    if np.iscomplexobj(value) and step.rule.gives != "force":
+        points = np.ravel(frame(np.asarray(value)))
+        return points[~np.isnan(points)]
+    x = _abscissae(step, project)
+    if x is None:
+        return None
+    y = np.abs(step.value) if step.rule.gives == "force" else np.asarray(step.value)
+    if k is not None:
+        again = [project.cycle.period] if step.plan == "reduction" else []  # position 0 closes the cycle
+        return np.asarray(frame(x[k] + np.array([0.0, *again]) + 1j * y[k]))
+    drawn = ((flat(m) - frame.origin) * np.exp(-1j * frame.turn)).real * frame.mu[0]
+    there = np.isfinite(y) & (y != 0) & (x >= drawn.min() - 1e-9) & (x <= drawn.max() + 1e-9)
+    return np.asarray(frame(x[there] + 1j * y[there]))
+
+
+def _abscissae(step: Step, project: Project) -> Any:
+    """Angles at which the values of a step were taken, or ways along the line of action; None where it is no row."""
+    if not np.ndim(step.value):
+        return None
+    if step.plan == "reduction":
+        return project.cycle.turned
+    rows = {s.name: np.asarray(s.value) for s in step.ancestors() if np.size(s.value) == np.size(step.value)}
+    if "K" in rows:
+        ways = rows["K"]
+        return np.real(ways * np.conj(ways[-1] - ways[0])) / abs(ways[-1] - ways[0])
+    return rows.get("φ")
+
+
+def _from_line(z: complex, m: Mark) -> float:
+    """Distance of a point from the line of a mark; a straight one may be produced."""
+    if isinstance(m, Arc):
+        return float(abs(abs(z - m.centre) - m.radius))
+    if isinstance(m, Line):
+        return float(abs(((z - m.a) * np.conj(m.b - m.a)).imag) / abs(m.b - m.a))
+    line = flat(m)
+    a, b = (ends[line[:-1] != line[1:]] for ends in (line[:-1], line[1:]))
+    t = np.clip(((z - a) * np.conj(b - a)).real / np.abs(b - a) ** 2, 0, 1)
+    return float(np.abs(z - a - t * (b - a)).min())
 
 
 def _off_link(m: Mark, frame: PlacedFrame, k: int, known: dict[str, Step]) -> float:

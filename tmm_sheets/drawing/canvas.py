@@ -5,6 +5,7 @@ from __future__ import annotations
 from cmath import phase, rect
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from copy import copy
 from dataclasses import dataclass, field
 from functools import wraps
 from math import ceil, cos, pi, sin
@@ -128,6 +129,12 @@ class Canvas:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
         self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box, len(self.scales)))
 
+    def tracing(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Canvas:
+        """The same canvas for marks of one role that come from that step, see :class:`Trace`."""
+        other = copy(self)
+        other.by = Trace(role, step, position, frame, name)
+        return other
+
     @contextmanager
     def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Iterator[None]:
         """The marks drawn inside have this role and come from that step, see :class:`Trace`."""
@@ -202,6 +209,11 @@ class Canvas:
         self.fill(at + radius * (np.cos(t) + 1j * np.sin(t)), style)
         self._one("dot", len(self.marks) - 1)
 
+    def arrow_head(self, tip: complex, u: complex, size: float = 3.5, style: str = "thin") -> None:
+        """Arrow head at ``tip`` along the unit direction ``u``, ``size`` mm long (GOST 2.307)."""
+        across = 1j * size * ARROW[1] / ARROW[0] * u
+        self.fill((tip, tip - size * u + across, tip - size * u - across), style)
+
     def arrow(self, a: complex, b: complex, style: str = "main", head: float | None = None) -> None:
         """Arrow from ``a`` to ``b``; the head shrinks with short arrows and is left out below half a millimetre."""
         length = abs(b - a)
@@ -209,10 +221,9 @@ class Canvas:
             return
         u = (b - a) / length
         size = min(ARROW[0] if head is None else head, 0.6 * length)
-        half = size * ARROW[1] / ARROW[0]
         first = len(self.marks)
         self.line(a, b - 0.9 * size * u, style)
-        self.fill((b, b - size * u + 1j * half * u, b - size * u - 1j * half * u), style)
+        self.arrow_head(b, u, size, style)
         self._one("arrow", first)
 
     def arc_arrow(self, centre: complex, radius: float, start: float, end: float, style: str = "axis", head: float = 3.0) -> None:
@@ -225,8 +236,7 @@ class Canvas:
         tip = centre + rect(radius, end)
         # The head lies along the chord of its own length, so it seems to sit on the arc.
         u = rect(1, end + sense * (pi / 2 - 0.5 * head / radius))
-        half = head * ARROW[1] / ARROW[0]
-        self.fill((tip, tip - head * u + 1j * half * u, tip - head * u - 1j * half * u), style)
+        self.arrow_head(tip, u, head, style)
         self._one("arrow", first)
 
     @in_role("hatch")
@@ -249,6 +259,11 @@ class Canvas:
         shift = {"left": 0.0, "centre": -laid.width / 2, "right": -laid.width}[align]
         self.put(laid, at + rect(1, angle) * shift, angle, markup)
         return laid
+
+    def lines(self, at: complex, lines: Iterable[str], step: float, height: float = 3.5, align: Align = "left") -> None:
+        """Lines of text one under another, ``step`` mm from baseline to baseline."""
+        for i, line in enumerate(lines):
+            self.text(at - 1j * i * step, line, height, align)
 
     def put(self, laid: Lettering, at: complex, angle: float = 0.0, markup: str = "") -> None:
         """Set laid out lettering with the left end of its baseline at ``at``."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import wraps
 from itertools import pairwise
 from math import degrees, pi, radians
@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard, handy
+from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, Points, Role
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.player import Stage, play
+from tmm_sheets.sheets.player import Stage, placed, play
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -49,46 +49,12 @@ def for_cams(view: View) -> View:
     return drawn
 
 
-def placed(canvas: Canvas, plan: Plan, origin: complex, mu: float | tuple[float, float], turn: float = 0.0) -> Stage:
-    """Place a plan on the sheet; which position a mark belongs to is told with the mark."""
-    number = canvas.placed(plan.name, "", origin, mu, turn)
-    frame: Any = canvas.frames[number]
-    return Stage(canvas, plan, 0, frame, number)
-
-
-@contextmanager
-def of(s: Stage, step: Step | str, role: Role, k: int | None = None) -> Iterator[None]:
-    """The marks drawn inside come from that step, at one position or at all."""
-    name = step if isinstance(step, str) else step.name
-    with s.canvas.traced(role, f"{s.plan.name}/{name}", "" if k is None else s.plan.labels[k], s.number):
-        yield
-
-
-def mark_line(s: Stage, step: Step | str, a: complex, b: complex, style: str = "construction", k: int | None = None,
-              role: Role = "construction") -> None:
-    """Line that a step leaves."""
-    with of(s, step, role, k):
-        s.canvas.line(a, b, style)
-
-
-def mark_dot(s: Stage, step: Step | str, at: complex, radius: float, k: int | None = None) -> None:
-    """Dot of a point."""
-    with of(s, step, "point", k):
-        s.canvas.dot(at, radius)
-
-
-def draw_curve(s: Stage, step: Step, style: str, points: Any = None, closed: bool = False) -> None:
-    """Smooth curve through the points of a step, or through others that it goes through, mm."""
-    with of(s, step, "curve"):
-        s.canvas.polyline(s.frame(step.value) if points is None else points, style, closed=closed)
-
-
 def axes(s: Stage, step: Step | str, x: float, y: tuple[float, float], before: float = 3.0) -> None:
     """Axes of a diagram of a step, reaching to ``x`` and from ``y[0]`` to ``y[1]``, mm from its origin."""
     o = s.frame(0j)
-    with of(s, step, "axis"):
-        s.canvas.arrow(o + 1j * (y[0] - before), o + 1j * y[1], "axis", 3.0)
-        s.canvas.arrow(o, o + x, "axis", 3.0)
+    pen = s.pen(step, "axis")
+    pen.arrow(o + 1j * (y[0] - before), o + 1j * y[1], "axis", 3.0)
+    pen.arrow(o, o + x, "axis", 3.0)
 
 
 def distinct(labels: tuple[str, ...], x: Points) -> list[int]:
@@ -96,17 +62,9 @@ def distinct(labels: tuple[str, ...], x: Points) -> list[int]:
     return [k for k in range(len(labels)) if k == 0 or abs(x[k] - x[k - 1]) > 1e-9]
 
 
-def standard(width: float, height: float, room_x: float, room_y: float) -> tuple[int, int, Scale]:
-    """Largest standard scale (real, drawn) at which an object of ``width`` x ``height`` m fits its room, mm."""
-    both = fit_standard(width * 1e3, room_x), fit_standard(height * 1e3, room_y)
-    real, drawn = min(both, key=lambda s: s[1] / s[0])
-    return real, drawn, Scale("μ_l", 1e-3 * real / drawn, "м/мм")
-
-
 def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str]) -> None:
     """Lines of results at the foot of a view's place."""
-    for i, line in enumerate(lines):
-        canvas.text(complex(box.x0 + 6.0, box.y0 + 3.0 + 7.0 * (len(lines) - 1 - i)), line, 3.5)
+    canvas.lines(complex(box.x0 + 6.0, box.y0 + 3.0 + 7.0 * (len(lines) - 1)), lines, 7.0)
 
 
 # --- diagrams of the motion -----------------------------------------------------------------------------------------
@@ -155,7 +113,7 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     for s, up, down, points, ordinates, symbol, head, step in every:
         _diagram(s, ordinates[0], up, down, end, symbol, head)
         _ordinates(s, m, ordinates)
-        draw_curve(course if step is m.between else s, step, "curve", s.frame(0j) + points)
+        (course if step is m.between else s).curve(step, s.frame(0j) + points)
     if m.circle:
         _auxiliary_circle(stages[0], m)
     _integration(stages[0], stages[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
@@ -171,11 +129,11 @@ def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], up
     for k in (0, n, n + 1, 2 * n + 1):
         step = m.numbers[f"x_{m.law.labels[k]}"]
         x = origins[0].real + float(step.value)
-        with of(s, step, "construction"):
-            for upper, lower, up in zip(origins, origins[1:], ups[1:], strict=False):
-                head = lower.imag + up
-                canvas.line(complex(x, upper.imag), complex(x, head + 11.0), "construction")
-                canvas.line(complex(x, head + 4.0), complex(x, lower.imag), "construction")
+        pen = s.pen(step, "construction")
+        for upper, lower, up in zip(origins, origins[1:], ups[1:], strict=False):
+            head = lower.imag + up
+            pen.line(complex(x, upper.imag), complex(x, head + 11.0), "construction")
+            pen.line(complex(x, head + 4.0), complex(x, lower.imag), "construction")
 
 
 def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
@@ -201,8 +159,7 @@ def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:
         f"{first} = {second}·μ_φ·H_1",
         f"{zero} = {first}·μ_φ·H_2",
     )
-    for i, line in enumerate(lines, 1):
-        canvas.text(complex(at.real, at.imag - 8.0 * i), line, 3.5)
+    canvas.lines(at - 8.0j, lines, 8.0)
 
 
 def _diagram(s: Stage, step: Step, up: float, down: float, end: float, symbol: str, head: str) -> None:
@@ -221,7 +178,7 @@ def _ordinates(s: Stage, m: FollowerMotion, steps: list[Step]) -> None:
     narrow = min(np.diff(points.real[kept]), default=10.0) < 6.0
     for k in kept:
         at = s.frame(points[k].real)
-        mark_line(s, steps[k], at, s.at(steps[k]), "thin")
+        s.line(steps[k], at, s.at(steps[k]), "thin")
         side = -1j if points[k].imag > -1e-6 else 1j
         s.canvas.label(at, m.law.labels[k], side, 2.5 if narrow else 3.5, 0.7, leader=False)
 
@@ -237,28 +194,26 @@ def _auxiliary_circle(s: Stage, m: FollowerMotion) -> None:
         at = np.array([s.at(m.circle[first + k]) for k in range(half)])
         radius = float(abs(at[0] - centre))
         radii[name] = radius
-        with of(s, name, "construction"):
-            canvas.circle(centre, radius, "thin")
+        s.pen(name, "construction").circle(centre, radius, "thin")
         shown: list[complex] = []
         for k, p in enumerate(at):
             play(s, [m.dds[first + k]])
             if any(abs(p - q) < 0.5 for q in shown):
                 continue
             shown.append(p)
-            mark_line(s, m.circle[first + k], centre, p, "construction")
-            mark_dot(s, m.circle[first + k], p, 0.5)
+            s.line(m.circle[first + k], centre, p)
+            s.dot(m.circle[first + k], 0.5, "main", p)
             same = [m.law.labels[first + j] for j in range(half) if abs(at[j] - p) < 0.5]
             outwards = (p - centre) / radius
             canvas.label(p, ", ".join(same), -outwards if radius >= largest - 1e-9 else outwards, 2.5, 0.5, leader=False)
     reach = largest + 3.0
-    with of(s, "M", "axis"):
-        canvas.line(centre - reach, centre + reach, "centre")
-        canvas.line(centre - 1j * reach, centre + 1j * reach, "centre")
+    pen = s.pen("M", "axis")
+    pen.line(centre - reach, centre + reach, "centre")
+    pen.line(centre - 1j * reach, centre + 1j * reach, "centre")
     angle = 1.15
     for name, radius in radii.items():
         tip = centre + rect(radius, pi - angle)
-        with of(s, name, "dimension"):
-            canvas.arrow(centre, tip, "thin", 2.5)
+        s.pen(name, "dimension").arrow(centre, tip, "thin", 2.5)
         canvas.label(centre + rect(0.6 * radius, pi - angle), name, 1j * rect(1, pi - angle), 3.5, 0.6, leader=False)
 
 
@@ -273,15 +228,58 @@ def _integration(upper: Stage, lower: Stage, m: FollowerMotion, symbol: str, end
         middle, carried = plan[f"{symbol}_m{label}"], plan[f"{symbol}_{label}′"]
         height = 1j * complex(middle.value).imag
         start, end = (upper.frame(complex(plan[name].value).real + height) for name in (first, last))
-        mark_line(upper, middle, start, end, "thin")
-        mark_line(upper, carried, upper.at(carried), start, "construction")
+        upper.line(middle, start, end, "thin")
+        upper.line(carried, upper.at(carried), start)
         play(upper, [f"{symbol}_P{label}′"])
         play(lower, [last])
         lowest = min(lowest, complex(carried.value).imag)
-    mark_dot(upper, f"{symbol}_P", at, 0.6)
+    upper.dot(f"{symbol}_P", 0.6, "main", at)
     canvas.label(at, pole, -1 + 1j, 3.5, 0.8, leader=False)
     play(upper, [f"{symbol}_P"], "axis")
     canvas.dimension(at, complex(origin), min(lowest, -down) - 7.0, distance)
+
+
+# --- diagrams over the cam angle ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class OverAngle:
+    """Place of a diagram over the cam angle: scale factors and origin, mm, and how far it reaches from there, mm.
+
+    ``unit`` is that of the ordinates' scale factor in the unit of the plan.
+    """
+
+    across: Scale
+    tall: Scale
+    unit: float
+    o: complex
+    length: float
+    low: float
+    high: float
+
+    @classmethod
+    def fitted(cls, room: Box, end: float, span: tuple[float, float], scale: tuple[str, str], above: float = 0.0,
+               unit: float = 1.0) -> OverAngle:
+        """In the middle of a room, of which the ordinates leave ``above`` mm free; ``scale`` is sign and unit of theirs."""
+        low, high = (value / unit for value in span)
+        across = Scale("μ_φ", handy(degrees(end) / room.width), "град/мм")
+        tall = Scale(scale[0], handy((high - low) / (room.height - above)), scale[1])
+        length, low, high = float(across.mm(degrees(end))), tall.mm(low), tall.mm(high)
+        o = complex(room.x0 + (room.width - length) / 2, room.y0 - low + (room.height - (high - low)) / 2)
+        return cls(across, tall, unit, o, length, low, high)
+
+    def placed(self, canvas: Canvas, plan: Plan) -> Stage:
+        """A plan as this diagram: abscissae in radians, ordinates in its unit."""
+        return placed(canvas, plan, self.o, (radians(self.across.mu), self.unit * self.tall.mu))
+
+    def axes(self, s: Stage, step: Step, beyond: tuple[float, float], text: str, above: float) -> None:
+        """Axes of the diagram of a step, so far beyond it, mm, with the sign of its ordinates."""
+        axes(s, step, self.length + beyond[0], (self.low, self.high + beyond[1]))
+        s.canvas.text(self.o + complex(2.5, self.high + above), text, 3.5)
+
+    def from_axis(self, points: Any) -> Any:
+        """A curve that jumps from the axis at its beginning and back to it at its end."""
+        return np.concatenate(([self.o], points, [self.o + self.length]))
 
 
 # --- pressure angle -------------------------------------------------------------------------------------------------
@@ -292,30 +290,22 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     """Pressure angle over a turn of the cam, measured at the finished profile, with the permitted value."""
     cam: RollerCam = project.cam
     dense, inv = cam.dense, cam.inversion
-    y = np.degrees(dense.angles.value)
-    allowed = degrees(cam.alpha)
-    up, down = max(float(y.max()), allowed), max(float(-y.min()), allowed)
-    area = Box(box.x0 + 10, box.y0 + 12, box.x1 - 8, box.y1 - 26)
-    across = Scale("μ_φ", handy(360 / (area.width - 10)), "град/мм")
-    tall = Scale("μ_α", handy((up + down) / (area.height - 8)), "град/мм")
-    canvas.title(box, "Угол давления", f"{tall},  {across}")
-    o = complex(area.x0 + (area.width - 10 - across.mm(360)) / 2, area.centre.imag - 4 + tall.mm(down - up) / 2)
-    mu = radians(across.mu), radians(tall.mu)
-    course, found = placed(canvas, dense.plan, o, mu), placed(canvas, inv.plan, o, mu)
-    axes(course, dense.angles, across.mm(360) + 9, (-tall.mm(down), tall.mm(up) + 9))
-    canvas.text(o + complex(2.5, tall.mm(up) + 5.5), "α, град", 3.5)
-    canvas.label(o + across.mm(360) + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
-    for limit, side in ((allowed, 1.0), (-allowed, -1.0)):
-        level = o + 1j * tall.mm(limit)
-        with canvas.traced("construction", f"{cam.zone.plan.name}/{cam.zone.borders[0].name}", "", course.number):
-            canvas.line(level, level + across.mm(360), "hidden")
-        name = f"[α] = {number(limit)}°" if side > 0 else "−[α]"
-        canvas.label(level + across.mm(300), name, 1j * side, 3.5, 0.8, leader=False)
-    draw_curve(course, dense.angles, "curve", o + across.mm(np.degrees(dense.phi)) + 1j * tall.mm(y))
-    at = o + across.mm(np.degrees(inv.phi))
-    values = tall.mm(np.degrees(inv.angles.value))
+    found = dense.angles.value
+    low, high = min(float(found.min()), -cam.alpha), max(float(found.max()), cam.alpha)
+    d = OverAngle.fitted(box.inset(10, 8, 18, 30), 2 * pi, (low, high), ("μ_α", "град/мм"), 8.0, radians(1.0))
+    canvas.title(box, "Угол давления", f"{d.tall},  {d.across}")
+    course, marked = d.placed(canvas, dense.plan), d.placed(canvas, inv.plan)
+    d.axes(course, dense.angles, (9.0, 9.0), "α, град", 5.5)
+    canvas.label(d.o + d.length + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
+    for side in (1, -1):
+        level = course.frame(1j * side * cam.alpha)
+        course.line(cam.zone.borders[0], level, level + d.length, "hidden", "axis")
+        name = f"[α] = {number(degrees(cam.alpha))}°" if side > 0 else "−[α]"
+        canvas.label(level + 5 / 6 * d.length, name, 1j * side, 3.5, 0.8, leader=False)
+    course.curve(dense.angles, course.frame(dense.phi + 1j * found))
+    at, values = course.frame(inv.phi), inv.angles.value
     for k in range(len(at)):
-        mark_line(found, inv.angles, at[k], at[k] + 1j * values[k], "thin", k=k)
+        marked.position(k).line(inv.angles, at[k], course.frame(inv.phi[k] + 1j * values[k]), "thin")
     n = cam.law.parts
     for k in (0, n // 2, n, n + 1, n + 1 + n // 2, 2 * n + 1):
         if k != n + 1 or abs(at[n + 1] - at[n]) > 4:
@@ -384,41 +374,28 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     lines = _spring_lines(spring, law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
     beside = box.width > 1.7 * box.height
-    area = box.inset(14, 8, text, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 8, 32)
-    across = Scale("μ_φ", handy(degrees(law.fall.end) / (area.width - 12)), "град/мм")
-    tall = Scale("μ_F", handy((top - low) / area.height), "Н/мм")
-    canvas.title(box, "Замыкающая пружина", f"{tall},  {across}")
-    end = float(across.mm(degrees(law.fall.end)))
-    o = complex(area.x0 + (area.width - 12 - end) / 2, area.y0 - tall.mm(low) + (area.height - tall.mm(top - low)) / 2)
-
-    def at(angle: Any, y: Any) -> Any:
-        return o + across.mm(np.degrees(angle)) + 1j * tall.mm(y)
-
-    mu = radians(across.mu), tall.mu
-    course, found = placed(canvas, spring.course_plan, o, mu), placed(canvas, spring.plan, o, mu)
-    axes(course, steps[1], end + 10, (tall.mm(low), tall.mm(top) + 8))
-    canvas.text(o + complex(2.5, tall.mm(top) + 4.5), "F, Q, Н", 3.5)
-    canvas.label(o + end + 7, "φ, град", 1j, 3.5, 1.5, leader=False)
-    draw_curve(course, steps[1], "curve", at(phi, force))
-    draw_curve(course, steps[2], "main", np.concatenate(([o], at(phi, inertia), [o + end])))
-    x, forces = at(law.positions, 0.0), spring.at_positions
+    area = box.inset(14, 8, text + 12, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
+    d = OverAngle.fitted(area, law.fall.end, (low, top), ("μ_F", "Н/мм"))
+    canvas.title(box, "Замыкающая пружина", f"{d.tall},  {d.across}")
+    course, found = d.placed(canvas, spring.course_plan), d.placed(canvas, spring.plan)
+    d.axes(course, steps[1], (10.0, 8.0), "F, Q, Н", 4.5)
+    canvas.label(d.o + d.length + 7, "φ, град", 1j, 3.5, 1.5, leader=False)
+    course.curve(steps[1], course.frame(phi + 1j * force))
+    course.curve(steps[2], d.from_axis(course.frame(phi + 1j * inertia)), "main")
+    x, forces = course.frame(law.positions), spring.at_positions
     for k in distinct(law.labels, x.real):
-        with canvas.traced("construction", f"{cam.exact.positions.plan.name}/{forces.name}", law.labels[k], found.number):
-            canvas.line(complex(x[k]), complex(at(law.positions[k], forces.value[k])), "thin")
+        pen = canvas.tracing("construction", forces.path, law.labels[k], found.number)
+        pen.line(complex(x[k]), complex(course.frame(law.positions[k] + 1j * forces.value[k])), "thin")
         canvas.label(complex(x[k]), law.labels[k], -1j, 2.5, 0.6, leader=False)
-    k = int(np.argmax(force))
-    canvas.label(complex(at(phi[k], force[k])), "F", 1j, 3.5, 1.0)
-    k = int(np.argmin(inertia))
-    canvas.label(complex(at(phi[k], inertia[k])), "Q", 1.0 + 0j, 3.5, 1.0)
+    for name, values, peak, away in (("F", force, np.argmax(force), 1j), ("Q", inertia, np.argmin(inertia), 1 + 0j)):
+        canvas.label(complex(course.frame(phi[peak] + 1j * values[peak])), name, away, 3.5, 1.0)
     worst = float(spring.force(law.s(spring.worst_phi)))
-    with of(found, "k_min", "point"):
-        for y in (worst, worst / spring.worst):
-            canvas.dot(complex(at(spring.worst_phi, y)), 0.8)
+    for step, y in zip(steps[1:], (worst, worst / spring.worst), strict=True):
+        course.dot(step, 0.8, "main", complex(course.frame(spring.worst_phi + 1j * y)))
     if not beside:
         lines_of_text(canvas, box, lines)
         return
-    for i, line in enumerate(lines):
-        canvas.text(complex(box.x1 - text + 12.0, box.y1 - 34.0 - 8.0 * i), line, 3.5)
+    canvas.lines(complex(box.x1 - text + 12.0, box.y1 - 34.0), lines, 8.0)
 
 
 def _spring_lines(spring: Spring, straight: bool) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from dataclasses import replace
 from itertools import pairwise
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
@@ -15,8 +14,9 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import draw_curve, for_cams, lines_of_text, mark_dot, mark_line, of, placed, standard
-from tmm_sheets.sheets.player import Stage, play
+from tmm_sheets.sheets.cam import for_cams, lines_of_text
+from tmm_sheets.sheets.frame import ratio, standard
+from tmm_sheets.sheets.player import Stage, placed, play
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -34,32 +34,29 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         # No free corner: the figure leaves the foot of its place to the table.
         picture = _ProfilePicture(cam, Box(room.x0, room.y0 + _table_size(cam)[1] + 6, room.x1, room.y1))
     canvas.scales[cam.inversion.plan.name] = picture.scale
-    canvas.title(box, "Построение профиля кулачка", f"М {picture.drawn}:{picture.real}   {picture.scale}")
-    inv, at, r = cam.inversion, picture.at, picture.roller
+    canvas.title(box, "Построение профиля кулачка", f"{ratio(picture.scale)}   {picture.scale}")
+    inv, at = cam.inversion, picture.at
     s, dense = (placed(canvas, i.plan, picture.origin, picture.scale.mu, phase(picture.turn)) for i in (inv, cam.dense))
     _circles(s, picture)
     _inverted(s, picture)
     if "roller" in cam.traits:
-        draw_curve(dense, cam.dense.centres, "centre", at(cam.dense.centres.value[:-1]), closed=True)
-    labels = _joined(inv)
-    for k, p in enumerate(inv.centres.value):
-        if k not in labels:
-            continue
-        if r > 0:
-            play(replace(s, k=k), ["F"], "main" if k == 0 else "construction")
-        if k == 0 and r > 8:
+        dense.curve(cam.dense.centres, at(cam.dense.centres.value[:-1]), "centre", closed=True)
+    for k, label in _joined(inv).items():
+        here, centre = s.position(k), s.position(k).at(inv.centres)
+        if picture.roller > 0:
+            play(here, ["F"], "main" if k == 0 else "construction")
+        if k == 0 and picture.roller > 8:
             # On the side from which the cam turns: the arcs of the inversion lie on the other.
-            tip = rect(r, picture.first - cam.right * pi / 3)
-            with of(s, "F", "dimension", k):
-                canvas.arrow(at(p), at(p) + tip, "thin", 3.0)
-            canvas.label(at(p) + 0.6 * tip, "r_p", 1j * tip * -cam.right, 3.5, 0.6, leader=False)
-        mark_dot(s, inv.centres, at(p), 0.6, k=k)
+            tip = rect(picture.roller, picture.first - cam.right * pi / 3)
+            here.pen("F", "dimension").arrow(centre, centre + tip, "thin", 3.0)
+            canvas.label(centre + 0.6 * tip, "r_p", 1j * tip * -cam.right, 3.5, 0.6, leader=False)
+        here.dot(inv.centres, 0.6, "main")
         if k:
-            canvas.label(at(p), labels[k], complex(p) * picture.turn, 3.5, 0.8)
-    draw_curve(dense, cam.dense.plan["F"], "curve", at(cam.dense.plan["F"].value[:-1]), closed=True)
+            canvas.label(centre, label, centre - picture.origin, 3.5, 0.8)
+    dense.curve(cam.dense.plan["F"], at(cam.dense.plan["F"].value[:-1]), "curve", closed=True)
     if "F′" in inv.plan:
         _second_disc(s, dense, picture)
-    {"tappet": _tappet, "rocker": _rocker, "flat": _flat}[picture.kind](s, picture)
+    {"tappet": _rod, "rocker": _rocker, "flat": _flat}[picture.kind](s, picture)
     _phase_angles(s, picture)
     size = _table_size(cam)
     corner = picture.corner(size) or complex(room.x0, room.y0 + size[1])
@@ -101,27 +98,26 @@ class _ProfilePicture:
             along = complex(np.exp(-1j * phase(complex(inv.plan["A_0"].value))))
             turns += [1j, -1.0 + 0j, -1j, *(along * complex(np.exp(1j * k * pi / 12)) for k in np.argsort(np.arange(24) % 6))]
         margin, over = (7.0, 0.0) if self.kind == "rocker" else (0.0, GUIDE)
-        self.turn = max(turns, key=lambda turn: self._fitted(points * turn, margin, over)[1])
+        self.turn = max(turns, key=lambda turn: 1 / self._fitted(points * turn, margin, over).mu)
         self.points = points * self.turn
-        (self.real, self.drawn, self.scale), _ = self._fitted(self.points, margin, over)
+        self.scale = self._fitted(self.points, margin, over)
         x0, x1 = float(self.points.real.min()), float(self.points.real.max())
         y0, y1 = float(self.points.imag.min()), float(self.points.imag.max())
         top = max(self.scale.mm(y1), self.scale.mm(self.guide) + over) if over else self.scale.mm(y1)
         middle = complex(self.scale.mm((x0 + x1) / 2), (self.scale.mm(y0) + top) / 2)
         self.origin = complex(room.centre - middle)
         self.roller = float(self.scale.mm(radius))
+        self.hole = min(1.8, 0.3 * self.roller)  # that its axis turns in
         self.start = phase(complex(inv.plan["A_0" if self.kind == "rocker" else "B_0"].value) * self.turn)
         self.first = phase(complex(inv.plan["B_0"].value) * self.turn)
 
-    def _fitted(self, points: Points, margin: float, over: float) -> tuple[tuple[int, int, Scale], float]:
-        """Largest standard scale at which the figure fits, and its enlargement."""
+    def _fitted(self, points: Points, margin: float, over: float) -> Scale:
+        """Largest standard scale at which the figure fits."""
         width, height = float(np.ptp(points.real)), float(np.ptp(points.imag))
-        found = standard(width, height, self.room.width - 2 * margin, self.room.height - 2 * margin)
+        fitted = [(width, self.room.width - 2 * margin), (height, self.room.height - 2 * margin)]
         if over:
-            tall = self.guide - float(points.imag.min())
-            with_guide = standard(width, tall, self.room.width, self.room.height - over)
-            found = min(found, with_guide, key=lambda s: s[1] / s[0])
-        return found, found[1] / found[0]
+            fitted.append((self.guide - float(points.imag.min()), self.room.height - over))
+        return standard(*fitted)
 
     def at(self, p: Any) -> Any:
         """Point of the cam's frame on paper."""
@@ -220,23 +216,20 @@ def _circles(s: Stage, picture: _ProfilePicture) -> None:
     if picture.kind == "tappet":
         radii.append(("e", abs(cam.zone.e), 0.17))  # type: ignore[attr-defined]
     for (_, radius, _), step in zip(radii, ("C" if picture.kind == "rocker" else "N", "T"), strict=False):
-        with of(s, step, "construction"):
-            canvas.circle(origin, scale.mm(radius), "thin")
+        s.pen(step, "construction").circle(origin, scale.mm(radius), "thin")
     reach = scale.mm(cam.r0) + 6.0
     for way in (reach, 1j * reach):
         shown = segment_inside(picture.room, origin - way, origin + way)
         if shown:
-            mark_line(s, "O", *shown, "centre", role="axis")
-    with of(s, "O", "symbol"):
-        canvas.circle(origin, 3.0, "main")
+            s.line("O", *shown, "centre", "axis")
+    s.pen("O", "symbol").circle(origin, 3.0, "main")
     idle = cam.law.lower_dwell
     start = picture.first
     for name, radius, share in radii:
         if scale.mm(radius) > 8:
             angle = start + cam.right * (idle.start + share * idle.angle)
             tip = origin + rect(scale.mm(radius), angle)
-            with of(s, "O", "dimension"):
-                canvas.arrow(origin + rect(3.0, angle), tip, "thin", 3.0)
+            s.pen("O", "dimension").arrow(origin + rect(3.0, angle), tip, "thin", 3.0)
             back = max(scale.mm(radius) - 11.0, 0.6 * scale.mm(radius))
             canvas.label(origin + rect(back, angle), name, 1j * rect(1, angle), 3.5, 0.6)
     canvas.label(origin, "O", -1 - 1j, 5.0, 3.5)
@@ -255,48 +248,42 @@ def _arcs(inv: Inversion, right: float) -> list[tuple[complex, float]]:
 
 def _inverted(s: Stage, picture: _ProfilePicture) -> None:
     """Follower lines or arms in the inverted motion, and arcs about O through the marks of the path."""
-    cam, at, canvas = picture.cam, picture.at, s.canvas
+    cam = picture.cam
     inv, right = cam.inversion, cam.right
-    for k, (centre, line, end) in enumerate(zip(inv.centres.value, inv.lines.value, inv.ends.value, strict=True)):
-        with of(s, inv.ends if picture.kind == "rocker" else inv.lines, "construction", k):
-            if picture.kind != "rocker":
-                start = picture.origin if inv.feet is None else at(inv.feet.value[k])
-                canvas.line(start, at(centre) + 5.0 * line * picture.turn, "construction")
-            elif k:
-                canvas.line(at(end), at(centre), "construction")
+    for k, along in enumerate(inv.lines.value):
+        here = s.position(k)
+        if picture.kind != "rocker":
+            start = picture.origin if inv.feet is None else here.at(inv.feet)
+            here.line(inv.lines, start, here.at(inv.centres) + 5.0 * along * picture.turn)
+        elif k:
+            here.line(inv.ends, here.at(inv.ends), here.at(inv.centres))
     for mark, turn in _arcs(inv, right):
         start = phase(mark * picture.turn)
         ends = sorted((start, start + right * turn))
-        with of(s, inv.centres, "construction", int(np.argmin(np.abs(inv.axis.value - mark)))):
-            canvas.arc(picture.origin, abs(at(mark) - picture.origin), ends[0], ends[1], "construction")
+        here = s.position(int(np.argmin(np.abs(inv.axis.value - mark))))
+        radius = abs(here.at(inv.axis) - picture.origin)
+        here.pen(inv.centres, "construction").arc(picture.origin, radius, ends[0], ends[1], "construction")
 
 
-def _tappet(s: Stage, picture: _ProfilePicture) -> None:
+def _rod(s: Stage, picture: _ProfilePicture) -> None:
     """Translating follower in position 0: roller, rod, guide, and the marks of its path."""
-    _rod(s, picture, min(1.8, 0.3 * picture.roller))
-
-
-def _rod(s: Stage, picture: _ProfilePicture, hole: float) -> None:
-    inv, at, canvas = picture.cam.inversion, picture.at, s.canvas
-    marks = inv.axis.value
-    with of(s, inv.axis, "symbol", 0):
-        _guided(canvas, picture, at(marks[0]), hole)
+    inv = picture.cam.inversion
+    _guided(s.position(0).pen(inv.axis, "symbol"), picture, s.position(0).at(inv.axis))
     last, side = -10.0, 1.0
-    for k in range(len(marks) // 2):
-        p = at(marks[k])
-        mark_line(s, inv.axis, p - 1.8, p + 1.8, "thin", k=k, role="point")
+    for k in range(len(inv.axis.value) // 2):
+        p = s.position(k).at(inv.axis)
+        s.position(k).line(inv.axis, p - 1.8, p + 1.8, "thin", "point")
         # Marks that lie close together are numbered on both sides in turn.
         side = -side if p.imag - last < 5.0 else -1.0
         last = p.imag
-        canvas.label(p + 1.8 * side, inv.plan.labels[k], side + 0j, 3.5, 0.4)
+        s.canvas.label(p + 1.8 * side, inv.plan.labels[k], side + 0j, 3.5, 0.4)
 
 
-def _guided(canvas: Canvas, picture: _ProfilePicture, low: complex, hole: float) -> None:
+def _guided(canvas: Canvas, picture: _ProfilePicture, low: complex) -> None:
     """Rod from ``low`` up, with its guide and the hole of the roller's axis, mm."""
-    if hole:
-        canvas.circle(low, hole, "main")
+    canvas.circle(low, picture.hole, "main")
     stand = complex(low.real, picture.origin.imag + picture.scale.mm(picture.guide))
-    canvas.line(low + 1j * hole, stand + 1j * (GUIDE - 1.0), "main")
+    canvas.line(low + 1j * picture.hole, stand + 1j * (GUIDE - 1.0), "main")
     for side in (-1.0, 1.0):
         a, b = stand + complex(2.2 * side, 5.0), stand + complex(2.2 * side, GUIDE - 5.0)
         canvas.line(a, b, "main")
@@ -310,33 +297,29 @@ def _rocker(s: Stage, picture: _ProfilePicture) -> None:
     a0, b0 = s.at("A_0"), s.at("B_0")
     radius = abs(a0 - picture.origin)
     ends = sorted(picture.start + cam.right * v for v in (0.0, cam.law.fall.end))
-    with of(s, inv.ends, "construction"):
-        canvas.arc(picture.origin, radius, ends[0], ends[1], "thin")
+    s.pen(inv.ends, "construction").arc(picture.origin, radius, ends[0], ends[1], "thin")
     for name, end in (("A_0", a0), ("B_0", b0)):
-        mark_line(s, name, picture.origin, end, "thin")
-    pivots = inv.ends.value
-    for k in range(1, len(pivots)):
-        if abs(pivots[k] - pivots[k - 1]) > 1e-9:
-            mark_dot(s, inv.ends, at(pivots[k]), 0.6, k=k)
-            canvas.label(at(pivots[k]), f"A_{{{inv.plan.labels[k]}}}", complex(pivots[k]) * picture.turn, 2.5, 0.7)
+        s.line(name, picture.origin, end, "thin")
+    for k, (before, after) in enumerate(pairwise(inv.ends.value), 1):
+        if abs(after - before) > 1e-9:
+            here = s.position(k)
+            here.dot(inv.ends, 0.6, "main")
+            canvas.label(here.at(inv.ends), f"A_{{{here.label}}}", here.at(inv.ends) - picture.origin, 2.5, 0.7)
     marks = at(inv.axis.value[: len(inv.axis.value) // 2])
     arm = abs(b0 - a0)
     first = phase(complex(marks[0] - a0))
     last = first + float(np.angle((marks[-1] - a0) / (marks[0] - a0)))
-    with of(s, inv.axis, "construction"):
-        canvas.arc(a0, arm, min(first, last), max(first, last), "thin")
+    s.pen(inv.axis, "construction").arc(a0, arm, min(first, last), max(first, last), "thin")
     for k, p in enumerate(marks):
         u = (p - a0) / arm
-        mark_line(s, inv.axis, complex(p - 1.8 * u), complex(p + 1.8 * u), "thin", k=k, role="point")
+        s.position(k).line(inv.axis, complex(p - 1.8 * u), complex(p + 1.8 * u), "thin", "point")
         if k:
             canvas.label(complex(p + 1.8 * u), inv.plan.labels[k], complex(u), 2.5, 0.4)
-    hole = min(1.8, 0.3 * picture.roller)
     u = (b0 - a0) / arm
-    with of(s, "A_0", "symbol"):
-        pivot(canvas, a0, -1j if (b0 - a0).imag >= -1e-9 else 1j)
-    with of(s, "B_0", "symbol"):
-        canvas.line(a0 + 1.6 * u, b0 - hole * u, "main")
-        canvas.circle(b0, hole, "main")
+    pivot(s.pen("A_0", "symbol"), a0, -1j if (b0 - a0).imag >= -1e-9 else 1j)
+    pen = s.pen("B_0", "symbol")
+    pen.line(a0 + 1.6 * u, b0 - picture.hole * u, "main")
+    pen.circle(b0, picture.hole, "main")
     canvas.label(a0, "A_0", (a0 - b0) / arm, 3.5, 3.0)
     canvas.label(b0, "B_0", -u + 1j, 3.5, 2.0)
     canvas.label(picture.origin + 0.55 * (a0 - picture.origin), "l_0", 1j * (a0 - picture.origin), 3.5, 0.6)
@@ -347,10 +330,10 @@ def _flat(s: Stage, picture: _ProfilePicture) -> None:
     cam, at = picture.cam, picture.at
     inv = cam.inversion
     for k, (a, b) in enumerate(_plates(cam)):
-        mark_line(s, "⊥ON", complex(at(a)), complex(at(b)), "main" if k == 0 else "construction", k=k)
-    for k, p in enumerate(inv.plan["F"].value):
-        mark_dot(s, "F", at(p), 0.5, k=k)
-    _rod(s, picture, 0.0)
+        s.position(k).line("⊥ON", complex(at(a)), complex(at(b)), "main" if k == 0 else "construction")
+    for k in range(len(inv.plan.labels)):
+        s.position(k).dot("F", 0.5, "main")
+    _rod(s, picture)
 
 
 def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
@@ -359,7 +342,7 @@ def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
     dense, inv = cam.dense, cam.inversion
     outline = dense.plan["F′"].value
     for name, style in (("B′", "twodot"), ("F′", "hidden")):
-        draw_curve(course, dense.plan[name], style, at(dense.plan[name].value[:-1]), closed=True)
+        course.curve(dense.plan[name], at(dense.plan[name].value[:-1]), style, closed=True)
     for name, own in (("диск 1", dense.plan["F"].value), ("диск 2", outline)):
         # Where this disc stands out furthest over the other one.
         other = outline if name == "диск 1" else dense.plan["F"].value
@@ -368,23 +351,20 @@ def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
         furthest = np.flatnonzero(away > away.max() - 1e-9)
         k = int(furthest[len(furthest) // 2]) * 4
         canvas.label(complex(at(own[k])), name, complex(own[k]) * picture.turn, 3.5, 1.5)
-    points = at(inv.plan["B′"].value)
-    first, second = complex(at(inv.centres.value[0])), complex(points[0])
-    with of(s, "F′", "construction", 0):
-        canvas.circle(second, picture.roller, "main")
-    with of(s, "B′", "symbol", 0):
-        canvas.circle(second, min(1.8, 0.3 * picture.roller), "main")
-    for k, p in enumerate(points[1:], 1):
-        mark_dot(s, "B′", complex(p), 0.4, k=k)
+    start = s.position(0)
+    first, second = start.at(inv.centres), start.at("B′")
+    start.pen("F′", "construction").circle(second, picture.roller, "main")
+    start.pen("B′", "symbol").circle(second, picture.hole, "main")
+    for k in range(1, len(inv.plan.labels)):
+        s.position(k).dot("B′", 0.4, "main")
     if picture.kind == "rocker":
-        a0 = complex(at(inv.plan["A_0"].value))
+        a0 = s.at("A_0")
         u = (second - a0) / abs(second - a0)
-        with of(s, "B′", "symbol", 0):
-            canvas.line(a0 + 1.6 * u, second - min(1.8, 0.3 * picture.roller) * u, "main")
+        start.line("B′", a0 + 1.6 * u, second - picture.hole * u, "main", "symbol")
         canvas.label(second, "B′_0", 1j * u, 3.5, picture.roller + 1.0)
     else:
         u = (second - first) / abs(second - first)
-        mark_line(s, "B′", first + picture.roller * u, second - picture.roller * u, "centre", k=0)
+        start.line("B′", first + picture.roller * u, second - picture.roller * u, "centre")
         canvas.label(second, "B′_0", u + 0.6, 3.5, picture.roller + 1.0)
 
 
@@ -396,11 +376,10 @@ def _phase_angles(s: Stage, picture: _ProfilePicture) -> None:
     radius = 0.78 * inner if inner > 0.35 * reach else 0.42 * reach
     for p in cam.law.phases:
         ends = sorted(start + cam.right * v for v in (p.start, p.end))
-        mark_line(s, cam.inversion.ends, origin, origin + rect(reach, start + cam.right * p.start), "thin")
+        s.line(cam.inversion.ends, origin, origin + rect(reach, start + cam.right * p.start), "thin")
         canvas.angle_mark(origin, ends[0], ends[1], radius, p.symbol)
     turn = 0.5 * radius
-    with of(s, "O", "symbol"):
-        canvas.arc_arrow(origin, turn, start + cam.right * 0.3, start - cam.right * 1.3, "axis")
+    s.pen("O", "symbol").arc_arrow(origin, turn, start + cam.right * 0.3, start - cam.right * 1.3, "axis")
     canvas.label(origin + rect(turn, start - cam.right * 0.6), "ω", rect(1, start - cam.right * 0.6), 5.0, 1.0)
     idle = max(cam.law.phases, key=lambda p: p.angle if p.travel == 0 and p.first == 0 else 0.0)
     # Nearer to the end of the fall: a rocker's arm lies over the beginning of the rise.
@@ -408,8 +387,7 @@ def _phase_angles(s: Stage, picture: _ProfilePicture) -> None:
     room, around = picture.room, reach + 9.0
     if not all(room.contains(origin + rect(around + 2.0, middle + turned)) for turned in (-0.25, 0.0, 0.25)):
         around = reach - 7.0
-    with of(s, "O", "symbol"):
-        canvas.arc_arrow(origin, around, middle - 0.22 * cam.right, middle + 0.22 * cam.right, "axis")
+    s.pen("O", "symbol").arc_arrow(origin, around, middle - 0.22 * cam.right, middle + 0.22 * cam.right, "axis")
     canvas.label(origin + rect(around, middle), "−ω", rect(1, middle) * (1 if around > reach else -1), 5.0, 1.0)
 
 
@@ -426,24 +404,22 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     every = np.array([*near, centre])
     text = 34.0
     room = Box(box.x0 + 8, box.y0 + text, box.x1 - 8, box.y1 - 24)
-    real, drawn, scale = standard(float(np.ptp(every.real)), float(np.ptp(every.imag)), room.width, room.height)
-    canvas.title(box, "Выбор радиуса ролика", f"М {drawn}:{real}")
+    scale = standard((float(np.ptp(every.real)), room.width), (float(np.ptp(every.imag)), room.height))
+    canvas.title(box, "Выбор радиуса ролика", ratio(scale))
     middle = complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2)
     origin = room.centre - scale.mm(middle)
 
     s = placed(canvas, plan, complex(origin), scale.mu)
     at = s.frame
-    draw_curve(placed(canvas, beside.plan, complex(origin), scale.mu), beside.centres, "curve", at(near))
-    for (a, b) in pairwise(chords):
-        with of(s, "M", "construction"):
-            canvas.line(at(a), at(b), "thin")
-            canvas.ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
-    with of(s, "ρ_min", "dimension"):
-        canvas.arrow(at(centre), at(d), "thin", 3.0)
-    mark_dot(s, "M", at(centre), 0.7)
+    placed(canvas, beside.plan, complex(origin), scale.mu).curve(beside.centres, at(near))
+    for (a, b), end in zip(pairwise(chords), "DG", strict=True):
+        s.line(f"{end}_ρ", at(a), at(b), "thin")
+        s.pen("M", "construction").ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
+    s.pen("ρ_min", "dimension").arrow(at(centre), at(d), "thin", 3.0)
+    s.dot("M", 0.7, "main")
     outwards = (d - centre) / abs(d - centre)
     for name, p in zip("EDG", chords, strict=True):
-        mark_dot(s, f"{name}_ρ", at(p), 0.7)
+        s.dot(f"{name}_ρ", 0.7, "main")
         canvas.label(at(p), name, outwards + 0.6 * (p - d) / max(abs(p - d), 1e-12), 3.5, 1.5)
     canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
     canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import degrees, pi, radians, tan
+from math import pi, tan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,8 +14,9 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import axes, distinct, draw_curve, for_cams, lines_of_text, mark_dot, mark_line, of, placed
-from tmm_sheets.sheets.player import Stage, play
+from tmm_sheets.sheets.cam import OverAngle, distinct, for_cams, lines_of_text
+from tmm_sheets.sheets.frame import ratio, standard
+from tmm_sheets.sheets.player import Stage, placed, play
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
@@ -34,21 +34,20 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     tops = [apex + (min(t.imag + 0.25 * stroke, 1.05 * stroke) - apex.imag) * complex(side * slope, 1.0) for t, side in touches]
     room = box.inset(10, 27, 10, 34)
 
-    def fitted(share: float) -> tuple[float, float]:
-        """Scale factor, and the depth (m, negative) to which the zone is drawn: below the axis a share of the figure."""
+    def fitted(share: float) -> tuple[float, float, list[float]]:
+        """Scale factor, the depth (m, negative) to which the zone is drawn, below the axis a share of the figure; abscissae, m."""
         depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + (apex - axis).imag
         xs = [*curve.real, *(t.real for t in tops), apex.real - depth * slope, apex.real + depth * slope, 0.0]
-        return handy(max(float(np.ptp(xs)) / room.width, (stroke - apex.imag + depth) / room.height)), -depth
+        return handy(max(float(np.ptp(xs)) / room.width, (stroke - apex.imag + depth) / room.height)), -depth, xs
 
     # The finest scale factor counts, then the deepest zone.
-    mu, lowest = min(fitted(share) for share in (0.3, 0.22, 0.15))
+    mu, lowest, xs = min(fitted(share) for share in (0.3, 0.22, 0.15))
     depth = -lowest
     low = apex - 1j * depth
-    xs = np.array([*curve.real, *(t.real for t in tops), apex.real - depth * slope, apex.real + depth * slope, 0.0])
     scale = Scale("μ_S", mu, "м/мм")
     canvas.scales[z.plan.name] = scale
     canvas.title(box, "Определение основных размеров", f"μ_S = μ_S' = {number(scale.mu)} м/мм")
-    origin = room.centre - scale.mm(complex((xs.max() + xs.min()) / 2, (stroke + low.imag) / 2))
+    origin = room.centre - scale.mm(complex((max(xs) + min(xs)) / 2, (stroke + low.imag) / 2))
 
     stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
     at = stage.frame
@@ -56,32 +55,29 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     cone = np.array([v, at(low - depth * slope), at(low + depth * slope)])
     hatch_polygon(canvas, cone, 4.0)
     for (touch, side), top, step, border in zip(touches, tops, z.touching, z.borders, strict=True):
-        mark_line(stage, border, at(top), at(low - depth * slope * side), "axis")
+        stage.line(border, at(top), at(low - depth * slope * side), "axis")
         if abs(touch) > 0:
-            mark_dot(stage, step, at(touch), 0.6)
+            stage.dot(step, 0.6, "main", at(touch))
         canvas.label(at(touch), step.name, side + 0j, 3.5, 1.0)
     reach = float(curve.real[np.argmax(np.abs(curve.real))])
-    with of(smooth, z.curve, "axis"):
-        canvas.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
-        canvas.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
-        canvas.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
+    pen = smooth.pen(z.curve, "axis")
+    pen.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
+    pen.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
+    pen.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
     canvas.label(at(complex(reach)) + 8 * z.right, "S', м", -1j, 3.5, 1.5, leader=False)
-    draw_curve(smooth, z.curve, "curve")
+    smooth.curve(z.curve)
     points, labels = np.asarray(z.points.value), z.plan.labels
-    for k in range(len(points)):
-        if k and abs(points[k] - points[k - 1]) < 1e-9:
-            continue
-        mark_line(stage, z.points, at(1j * points[k].imag), at(points[k]), "thin", k=k)
-        mark_dot(stage, z.points, at(points[k]), 0.5, k=k)
-        away = points[k] - 1j * stroke / 2
-        canvas.label(at(points[k]), labels[k], complex(away), 3.5, 0.8)
-    mark_line(stage, "r_0", o, b, "main")
-    mark_line(stage, "C", c, o, "thin")
-    mark_line(stage, "V" if "V" in z.plan else "O", v, v + 1j * scale.mm(0.75 * z.s0), "centre", role="axis")
-    with of(stage, "O", "axis"):
-        if abs(v - o) > 1:
-            canvas.line(o - 4j, at(complex(axis.real, 0.0)), "centre")
-    mark_dot(stage, "O", o, 0.9)
+    for k in distinct(labels, points):
+        here = stage.position(k)
+        here.line(z.points, at(1j * points[k].imag), at(points[k]), "thin")
+        here.dot(z.points, 0.5, "main")
+        canvas.label(at(points[k]), labels[k], complex(points[k] - 1j * stroke / 2), 3.5, 0.8)
+    stage.line("r_0", o, b, "main")
+    stage.line("C", c, o, "thin")
+    stage.line("V" if "V" in z.plan else "O", v, v + 1j * scale.mm(0.75 * z.s0), "centre", "axis")
+    if abs(v - o) > 1:
+        stage.line("O", o - 4j, at(complex(axis.real, 0.0)), "centre", "axis")
+    stage.dot("O", 0.9, "main")
     canvas.label(o, "O", -1j + z.right, 5.0, 1.5)
     canvas.label(b, "B", -z.right + 0j, 3.5, 1.0)
     canvas.label(c, "C", -z.right - 1j, 3.5, 0.8)
@@ -129,14 +125,13 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     picture = Box(at(complex(x0)).real - 6, at(1j * low).imag, at(complex(x1)).real + 6, at(1j * y1).imag + 4)
     _permitted(stage, cam, picture, scale)
     _rocker_positions(stage, cam)
-    draw_curve(smooth, z.curve, "curve")
+    smooth.curve(z.curve)
     _rocker_and_axis(stage, cam, picture)
     measured = _rocker_lines(cam, scale)
     if not beside:
         lines_of_text(canvas, box, measured)
         return
-    for i, line in enumerate(measured):
-        canvas.text(complex(box.x1 - text + 6.0, box.y1 - 40.0 - 8.0 * i), line, 3.5)
+    canvas.lines(complex(box.x1 - text + 6.0, box.y1 - 40.0), measured, 8.0)
 
 
 def _permitted(s: Stage, cam: RockerCam, picture: Box, scale: Scale) -> None:
@@ -152,30 +147,29 @@ def _permitted(s: Stage, cam: RockerCam, picture: Box, scale: Scale) -> None:
     for k, ray in enumerate(rays):
         shown = segment_inside(picture, complex(at(ray.tip)), complex(at(ray.tip)) + reach * ray.direction)
         if shown and (k < 2 or abs(ray.tip - rays[k - 2].tip) > 1e-9):
-            with of(s, z.points, "construction", k // 2):
-                canvas.line(*shown, "construction")
+            s.position(k // 2).line(z.points, *shown)
     for touch, border in zip(z.touching, z.borders, strict=True):
         tip = s.at(touch)
         shown = segment_inside(picture, tip, tip + reach * complex(border.value))
         if shown:
-            mark_line(s, border, *shown, "axis")
-        mark_dot(s, touch, tip, 0.7)
+            s.line(border, *shown, "axis")
+        s.dot(touch, 0.7, "main", tip)
 
 
 def _rocker_positions(s: Stage, cam: RockerCam) -> None:
     """Path of the roller's axis, the rocker in the numbered positions of the rise, the segments in all of them."""
     z, labels, canvas, at = cam.zone, cam.zone.plan.labels, s.canvas, s.frame
     pivot, starts, tips = complex(z.plan["A"].value), np.asarray(z.axis.value), np.asarray(z.points.value)
-    numbered = [k for k in range(len(starts)) if k == 0 or abs(starts[k] - starts[k - 1]) > 1e-9]
+    numbered = distinct(labels, starts)
     rising = [k for k in numbered if k <= cam.law.parts]
     for k in rising[1:]:
-        play(replace(s, k=k), [z.axis], "thin")
-    draw_curve(s, z.axis, "thin", np.array([complex(at(p)) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))]))
-    for k in numbered:
-        mark_line(s, z.points, complex(at(starts[k])), complex(at(tips[k])), "thin", k=k)
-        mark_dot(s, z.points, complex(at(tips[k])), 0.5, k=k)
+        play(s.position(k), [z.axis], "thin")
+    s.curve(z.axis, np.array([complex(at(p)) for p in z.cones.starts(cam.law.rise, np.linspace(0, 1, 65))]), "thin")
+    for here in map(s.position, numbered):
+        here.line(z.points, here.at(z.axis), here.at(z.points), "thin")
+        here.dot(z.points, 0.5, "main")
     for k in rising:
-        mark_dot(s, z.axis, complex(at(starts[k])), 0.6, k=k)
+        s.position(k).dot(z.axis, 0.6, "main")
         canvas.label(complex(at(starts[k])), labels[k], complex(starts[k] - pivot), 3.5, 0.8)
     for k in numbered:
         if abs(at(tips[k]) - at(starts[k])) > 6:
@@ -188,19 +182,17 @@ def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box) -> None:
     pivot = complex(z.plan["A"].value)
     a, o, b = (s.at(name) for name in ("A", "O", "B_0"))
     for p, name in ((a, "A"), (b, "B_0")):
-        with of(s, name, "symbol"):
-            hinge(canvas, p)
+        hinge(s.pen(name, "symbol"), p)
     for name, ends in (("r_0", (o, b)), ("B_0", (b, a)), ("l_0", (a, o))):
-        with of(s, name, "link" if name == "B_0" else "construction"):
-            bar(canvas, ends, (a, b))
-    mark_dot(s, "O", o, 0.9)
+        bar(s.pen(name, "link" if name == "B_0" else "construction"), ends, (a, b))
+    s.dot("O", 0.9, "main")
     canvas.label(o, "O", -1j, 5.0, 1.5)
     canvas.label(a, "A", pivot - 0.5j * abs(pivot), 3.5, 2.2)
     canvas.label(b, "B_0", -pivot - 0.6j * abs(pivot), 3.5, 2.2)
     canvas.label((o + b) / 2, "r_0", 1j * (o - b), 3.5, 0.8)
     canvas.label((o + a) / 2, "l_0", 1j * (o - a), 3.5, 0.8)
     radius = 0.45 * min(abs(o - b), picture.height / 2)
-    mark_line(s, "B_0", b, b - 1.3j * radius, "centre", role="axis")
+    s.line("B_0", b, b - 1.3j * radius, "centre", "axis")
     for lo, hi in ((-pi / 2, -pi / 2 + z.alpha), (-pi / 2 - z.alpha, -pi / 2)):
         canvas.angle_mark(b, lo, hi, radius, "[α]")
 
@@ -224,44 +216,35 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     law, plate = cam.law, cam.plate
     steps = plate.course
     phi, s, total = (step.value for step in steps)
-    up, down = max(float(total.max()), law.stroke), max(float(-total.min()), 0.0)
-    room = box.inset(14, 44, 14, 34)
-    across = Scale("μ_φ", handy(degrees(law.fall.end) / room.width), "град/мм")
-    scale = Scale("μ_S", handy((up + down) / (room.height - 10)), "м/мм")
+    span = min(float(total.min()), 0.0), max(float(total.max()), law.stroke)
+    d = OverAngle.fitted(box.inset(14, 44, 14, 34), law.fall.end, span, ("μ_S", "м/мм"), 10.0)
+    o, scale = d.o, d.tall
     canvas.scales[plate.plan.name] = scale
     canvas.title(box, "Определение r_0 и размеров тарелки", f"μ_S = μ_S'' = {number(scale.mu)} м/мм")
-    end = float(across.mm(degrees(law.fall.end)))
-    o = complex(room.x0 + (room.width - end) / 2, room.y0 + scale.mm(down) + (room.height - scale.mm(up + down)) / 2)
-
-    def at(angle: Any, y: Any) -> Any:
-        return o + across.mm(np.degrees(angle)) + 1j * scale.mm(y)
-
-    pair = radians(across.mu), scale.mu
-    course, found = placed(canvas, plate.course_plan, o, pair), placed(canvas, plate.plan, o, pair)
-    axes(course, steps[2], end + 9, (-scale.mm(down), scale.mm(up) + 9))
-    canvas.text(o + complex(2.5, scale.mm(up) + 6.0), "S + S'', м", 3.5)
-    canvas.label(o + end + 6, "φ", 1j, 3.5, 1.5, leader=False)
-    draw_curve(course, steps[1], "centre", at(phi, s))
-    k = int(np.argmax(s))
-    canvas.label(complex(at(phi[k], s[k])), "S", -1 + 1j, 3.5, 0.8)
-    k = int(np.argmax(total))
-    canvas.label(complex(at(phi[k], total[k])), "S + S''", 1 + 1j, 3.5, 0.8)
-    draw_curve(course, steps[2], "curve", np.concatenate(([o], at(phi, total), [o + end])))
+    course, found = d.placed(canvas, plate.course_plan), d.placed(canvas, plate.plan)
+    at = course.frame
+    d.axes(course, steps[2], (9.0, 9.0), "S + S'', м", 6.0)
+    canvas.label(o + d.length + 6, "φ", 1j, 3.5, 1.5, leader=False)
+    course.curve(steps[1], at(phi + 1j * s), "centre")
+    for name, values, away in (("S", s, -1 + 1j), ("S + S''", total, 1 + 1j)):
+        k = int(np.argmax(values))
+        canvas.label(complex(at(phi[k] + 1j * values[k])), name, away, 3.5, 0.8)
+    course.curve(steps[2], d.from_axis(at(phi + 1j * total)))
     sums, base = np.asarray(plate.sums.value), cam.exact.positions.s.value
-    along = at(law.positions, 0.0)
+    along = at(law.positions)
     kept = distinct(law.labels, along.real)
-    sides = [at(law.positions, step.value) for step in plate.sides]
+    sides = [(at(law.positions + 1j * step.value), step) for step in reversed(plate.sides)]
     for k in kept:
-        for point in dict.fromkeys(complex(np.round(points[k], 6)) for points in sides):
-            with of(found, plate.sums, "construction", k):
-                canvas.line(complex(along[k]), point, "thin")
-                canvas.line(complex(at(law.positions[k], base[k])), point, "construction")
-            mark_dot(found, plate.sums, point, 0.4, k=k)
+        here = found.position(k)
+        for point, step in reversed({complex(np.round(points[k], 6)): step for points, step in sides}.items()):
+            here.line(step, complex(along[k]), point, "thin")
+            here.line(step, complex(at(law.positions[k] + 1j * base[k])), point)
+            here.dot(step, 0.4, "main", point)
         canvas.label(complex(along[k]), law.labels[k], -1j if sums[k] > 0 else 1j, 2.5, 0.6, leader=False)
     lowest = int(np.argmin(total))
-    if down > 0:
-        level = complex(at(phi[lowest], total[lowest]))
-        mark_line(found, "r_min", complex(o.real - 6.0, level.imag), level, "construction")
+    if span[0] < 0:
+        level = complex(at(phi[lowest] + 1j * total[lowest]))
+        found.line("r_min", complex(o.real - 6.0, level.imag), level)
         canvas.dimension(complex(o.real, o.imag), complex(o.real, level.imag), -7.0, "a")
     r_min = max(plate.r_min, 0.0)
     lines_of_text(canvas, box, [
@@ -277,13 +260,11 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
 @for_cams
 def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The flat follower with the sizes of its plate, to scale."""
-    from tmm_sheets.sheets.cam import standard
-
     cam: FlatCam = project.cam
     p = cam.plate
     room = box.inset(12, 26, 12, 34)
-    real, drawn, scale = standard(p.l1 + p.l2, 0.3 * (p.l1 + p.l2), room.width, room.height - 24)
-    canvas.title(box, "Тарелка толкателя", f"М {drawn}:{real}")
+    scale = standard((p.l1 + p.l2, room.width), (0.3 * (p.l1 + p.l2), room.height - 24))
+    canvas.title(box, "Тарелка толкателя", ratio(scale))
     left, right = (p.l1, p.l2) if cam.right > 0 else (p.l2, p.l1)
     with canvas.as_role("symbol"):
         axis = _plate_symbol(canvas, room, scale.mm(left), scale.mm(right))

@@ -15,16 +15,18 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fit_standard, times
+from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import graphs
+from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
@@ -50,23 +52,18 @@ def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     steps = dict(zip(names, r.force_steps, strict=True))
     for name in names:
         for line in _acting(fw, name):
-            curve = g(line)
-            axis = g.origin.imag
-            with of.of(steps[name], "curve"):
-                canvas.polyline(np.concatenate(([complex(curve[0].real, axis)], curve, [complex(curve[-1].real, axis)])))
-            highest = curve[int(np.argmax(line.imag))]
-            top = max(top, float(line.imag.max()))
-            if len(names) > 1 and line.imag.max() > 4.0:
-                canvas.label(highest, name, 1 + 0.3j, 3.5)
+            of.curve(steps[name], g(_down_to_axis(line)))
+            highest = line[int(np.argmax(line.imag))]
+            top = max(top, float(highest.imag))
+            if len(names) > 1 and highest.imag > 4.0:
+                canvas.label(g(highest), name, 1 + 0.3j, 3.5)
     graphs.check_room(box, g.origin.imag + top, "flywheel.force_graph")
-    with of.of(r.force_steps[0], "axis"):
-        graphs.axes(canvas, g, s.angle.mm(r.period), 0.0, top, f"{names[0] if len(names) == 1 else letter_of}, {unit}")
-        graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.ones(len(fw.labels)))
+    axes(fw, of, r.force_steps[0], g, 0.0, top, f"{names[0] if len(names) == 1 else letter_of}, {unit}", np.ones(len(fw.labels)))
     for k, x in enumerate(s.angle.mm(r.phi)):
         if top and k:
             here, name = max((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items())
-            with canvas.traced("construction", steps[name].path, fw.labels[k % len(r.labels)], of.number):
-                canvas.line(g(x), g(x + 1j * s.force.mm(here)), "thin")
+            at = of.position(k % len(r.labels))
+            at.line(steps[name], g(x), g(x + 1j * s.force.mm(here)), "thin")
 
 
 def _acting(fw: Flywheel, name: str) -> list[Any]:
@@ -89,7 +86,7 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Reduced moments with the pole, the ordinates in the middles of the intervals, their rays and the constant moment."""
     fw: Flywheel = project.flywheel
     s, r, plan = fw.scales, fw.reduced, fw.work_plan
-    varying, constant = _indices(fw)
+    varying, constant = indices(fw)
     # Of very many intervals (a digitised diagram) one between any two numbers stands for all.
     drawn = [n for n in fw.intervals if len(fw.intervals) <= CROWD * len(fw.labels) or n[-1:] not in ascii_lowercase]
     left_out = f"; показаны {len(drawn)} из {len(fw.intervals)} лучей" if len(drawn) < len(fw.intervals) else ""
@@ -103,23 +100,18 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "flywheel.moments")
     canvas.of = plan.name
     of, drive = (stage(canvas, p, None, g.place()) for p in (fw.moment_plan, fw.driving_plan))
-    with of.of("M", "curve"):
-        canvas.polyline(g(np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))))
+    of.curve("M", g(_down_to_axis(line)))
     length = s.angle.mm(r.period)
-    with drive.of("dK", "curve"):
-        canvas.line(g(1j * level), g(length + 1j * level), "curve")
+    drive.line("dK", g(1j * level), g(length + 1j * level), "curve", "curve")
     points = fw.moment_plan["M"].value
     # Where the curve runs along the axis its numbers stand on the side the graph leaves free.
     body = line.imag[int(np.argmax(np.abs(line.imag)))]
-    with of.of("M", "axis"):
-        graphs.axes(canvas, g, length, low, high, "M, Н·м")
-        graphs.numbers(canvas, g, s.angle.mm(r.phi), fw.labels, np.where(np.abs(points.imag) < 1.0, body, points.imag))
+    axes(fw, of, "M", g, low, high, "M, Н·м", np.where(np.abs(points.imag) < 1.0, body, points.imag))
     uprights(of, "M")
     pole = plan["P"].value
     rays = stage(canvas, plan, None, g.place())
     _rays(rays, fw, drawn)
-    with drive.of("K′", "construction"):
-        canvas.line(g(pole), drive.at("K′"), "construction")
+    drive.line("K′", g(pole), drive.at("K′"))
     drive.letters("K′", "K′", -1 + 0.6j if level > 0 else -1 - 0.6j)
     rays.dot("P", 0.6, "main")
     rays.letters("P", "P", -1 + 1j)
@@ -129,6 +121,18 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
     canvas.label(g(falling), f"M_{varying}^пр", 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
     canvas.label(g(0.78 * length + 1j * level), f"M_{constant}^пр", -1j if level > 0 else 1j, height=5)
+
+
+def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any) -> None:
+    """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive."""
+    angle, r, pen = fw.scales.angle, fw.reduced, of.pen(step, "axis")
+    graphs.axes(pen, g, angle.mm(r.period), low, high, ordinate)
+    graphs.numbers(pen, g, angle.mm(r.phi), fw.labels, side)
+
+
+def _down_to_axis(line: Any) -> Any:
+    """A curve of the diagram with both its ends brought down to the abscissa."""
+    return np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))
 
 
 def uprights(s: Stage, step: str) -> None:
@@ -152,16 +156,15 @@ def _moment_curve(fw: Flywheel) -> Any:
 def _rays(s: Stage, fw: Flywheel, intervals: list[str]) -> None:
     """Ordinates in the middles of the intervals, carried over to the ordinate axis, and the rays from the pole to them."""
     plan = s.plan
-    shown: dict[float, list[str]] = {}
-    for name in intervals:
-        middle = plan[f"m{name}"].value
-        if abs(middle.imag) > 0.05:
-            same = next((y for y in shown if abs(y - middle.imag) < 1e-6), middle.imag)
-            shown.setdefault(same, []).append(f"{name}{fw.mark}")
-            play(s, [f"m{name}", f"{name}{fw.mark}"])
+    heights = {f"{name}{fw.mark}": float(plan[f"m{name}"].value.imag) for name in intervals}
+    heights = {name: y for name, y in heights.items() if abs(y) > 0.05}
+    for name in heights:
+        play(s, [f"m{name.removesuffix(fw.mark)}", name])
     play(s, ["P"], "axis")
     labelled: list[float] = []
-    for y, names in sorted(shown.items(), key=lambda item: -abs(item[0])):
+    every = list(heights)
+    shown = [[every[i] for i in same] for same in together(list(heights.values()), 1e-6)]
+    for y, names in sorted(((heights[names[0]], names) for names in shown), key=lambda item: -abs(item[0])):
         play(s, [f"P{names[0]}"])
         # Points of the ordinate axis that nearly coincide cannot all be lettered; the rays tell them apart.
         if all(abs(y - other) >= 4.5 for other in labelled):
@@ -173,7 +176,7 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Work of the varying moment by chords parallel to the rays, and the straight line that balances the cycle."""
     fw: Flywheel = project.flywheel
     s = fw.scales
-    varying, constant = _indices(fw)
+    varying, constant = indices(fw)
     graphs.heading(canvas, box, options, "Графики работ", f"{s.work}")
     canvas.of = fw.work_plan.name
     ends = np.array([e.value for e in fw.work_ends])
@@ -183,21 +186,16 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     g = graphs.Graph(complex(options["axis"], (box.y0 + box.y1 - (low + high)) / 2))
     graphs.check_room(box, g.origin.imag + high, "flywheel.works")
     of, drive = (stage(canvas, p, None, g.place()) for p in (fw.work_plan, fw.driving_plan))
-    with of.of("A(φ)", "curve"):
-        canvas.polyline(g(curve))
-    with drive.of("K", "curve"):
-        canvas.line(g(0j), g(end), "curve")
+    of.curve("A(φ)", g(curve))
+    drive.line("K", g(0j), g(end), "curve", "curve")
     play(of, fw.borders[1:])
     uprights = []
     for k, label in zip(fw.at_positions, fw.labels, strict=True):
         x = ends[k].real
         heights = (0.0, ends[k].imag, x * end.imag / end.real)
         uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
-        with canvas.traced("construction", fw.total_plan["ΣA"].path, label):
-            canvas.line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
-    with of.of("A(φ)", "axis"):
-        graphs.axes(canvas, g, end.real, low, high, "A, Дж")
-        graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, np.zeros(len(fw.labels)))
+        canvas.tracing("construction", fw.total_plan["ΣA"].path, label).line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
+    axes(fw, of, "A(φ)", g, low, high, "A, Дж", np.zeros(len(fw.labels)))
     k = len(curve) // 2
     canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
@@ -218,15 +216,11 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
              f"{s.energy}{_enlarged(ratio)}")
     canvas.of = fw.total_plan.name
     g = _energy_graph(fw, box, options)
-    points = fw.total_plan["points"].value
     curve = s.angle.mm(fw.samples) + 1j * fw.energy_curve(fw.samples)
     of = stage(canvas, fw.total_plan, None, g.place())
-    with of.of("points", "curve"):
-        canvas.polyline(g(curve))
+    of.curve("points", g(curve))
     uprights(of, "points")
-    with of.of("points", "axis"):
-        graphs.axes(canvas, g, points[-1].real, curve.imag.min(), curve.imag.max(), "ΔE, Дж")
-        graphs.numbers(canvas, g, s.angle.mm(fw.reduced.phi), fw.labels, points.imag)
+    axes(fw, of, "points", g, curve.imag.min(), curve.imag.max(), "ΔE, Дж", fw.total_plan["points"].value.imag)
 
 
 def _enlarged(ratio: float) -> str:
@@ -250,22 +244,18 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     phi = fw.samples[fw.samples <= turn * (1 + 1e-12)]
     curve = angle.mm(phi) + 1j * s.inertia.mm(fw.inertia(fw.samples)[:len(phi)])
     of = stage(canvas, fw.inertia_plan, None, g.place())
-    with of.of("points", "curve"):
-        canvas.polyline(g(curve))
-    joint: dict[float, list[str]] = {}
-    for k, (p, name) in enumerate(zip(fw.inertia_plan["points"].value, fw.labels, strict=True)):
-        same = next((x for x in joint if abs(x - p.real) < 1e-6), p.real)
-        joint.setdefault(same, []).append(name)
-        if len(joint[same]) == 1:
-            play(of.position(k), ["points"], "thin")
-    for x, names in joint.items():
+    of.curve("points", g(curve))
+    levels = together(fw.inertia_plan["points"].value.real, 1e-6)
+    for same in levels:
+        play(of.position(same[0]), ["points"], "thin")
+    for x, same in ((fw.inertia_plan["points"].value[same[0]].real, same) for same in levels):
         # The first number stands above the axis of J, which begins to the left of the curve.
-        canvas.text(g(x) - 2.0 + (-1.2j if x > 0 else 0.8j), ", ".join(names), 3.5, "right")
+        canvas.text(g(x) - 2.0 + (-1.2j if x > 0 else 0.8j), ", ".join(fw.labels[k] for k in same), 3.5, "right")
     reach = curve.imag.max() + graphs.OVER
-    with of.of("points", "axis"):
-        canvas.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
-        canvas.text(g(length + graphs.OVER) - 2, "φ_1", 5, "right")
-        canvas.arrow(g(-4j), g(1j * reach), "axis", 3.0)
+    pen = of.pen("points", "axis")
+    pen.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
+    pen.text(g(length + graphs.OVER) - 2, "φ_1", 5, "right")
+    pen.arrow(g(-4j), g(1j * reach), "axis", 3.0)
     canvas.text(g(1j * reach) - 2 + 2j, "J^пр, кг·м^2", 3.5, "right")
 
 
@@ -284,28 +274,24 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     title = _narrow_title(canvas, Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), f"{s.energy}", f"{s.inertia}")
     curve = fw.energy_mass_curve(fw.samples)
     of = stage(canvas, plan, None, g.place())
-    with of.of("points", "curve"):
-        canvas.polyline(g(curve))
+    of.curve("points", g(curve))
     middle = complex(np.mean(curve.real), np.mean(curve.imag))
     x, masses = s.angle.mm(fw.reduced.phi), fw.inertia_plan["points"].value
-    seen: dict[complex, list[str]] = {}
     for k, p in enumerate(points[:-1]):
-        # Produced to the graphs that they come from.
-        with canvas.traced("construction", plan["points"].path, fw.labels[k]):
-            canvas.line(energy(complex(x[k], p.imag)), g(p), "construction")
-            canvas.line(turned(masses[k]), g(p), "construction")
-        of.position(k).dot("points", 0.7, "main")
-        near = next((q for q in seen if abs(q - p) < 1.0), p)
-        seen.setdefault(near, []).append(fw.labels[k])
-    for p, names in seen.items():
-        of.position(fw.labels.index(names[0])).letters("points", ", ".join(names), (p - middle) / abs(p - middle))
+        here = of.position(k)
+        for origin in (energy(complex(x[k], p.imag)), turned(masses[k])):  # produced to the graphs that they come from
+            here.line("points", origin, g(p))
+        here.dot("points", 0.7, "main")
+    for near in together(points[:-1], 1.0):
+        away = points[near[0]] - middle
+        of.position(near[0]).letters("points", ", ".join(fw.labels[k] for k in near), away / abs(away))
     reach = curve.real.max() + graphs.OVER
     low, high = _energy_range(fw)
-    with of.of("points", "axis"):
-        canvas.arrow(g(-12.0), g(reach), "axis", 3.0)
-        canvas.label(g(reach), "J^пр, кг·м^2", -1 + 1j, 3.5, 1.5, leader=False)
-        canvas.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
-        canvas.text(g(1j * (high + graphs.OVER)) + 2, "ΔE, Дж", 3.5)
+    pen = of.pen("points", "axis")
+    pen.arrow(g(-12.0), g(reach), "axis", 3.0)
+    pen.label(g(reach), "J^пр, кг·м^2", -1 + 1j, 3.5, 1.5, leader=False)
+    pen.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
+    pen.text(g(1j * (high + graphs.OVER)) + 2, "ΔE, Дж", 3.5)
     beside = abs(fw.ab_mm) < 12.0
     for name, end in (("max", "a"), ("min", "b")):
         cut, u = plan[end].value, plan[f"t_{name}"].value
@@ -313,21 +299,18 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
         for bound in (title.y1, box.y0 + 2):
             t = (bound - g.origin.imag - cut.imag) / u.imag
             room = min(room, t) if t > 0 else room
-        with canvas.traced("construction", plan[end].path):
-            canvas.line(g(cut - 6 * u), g(cut + room * u), "axis")
+        canvas.tracing("construction", plan[end].path).line(g(cut - 6 * u), g(cut + room * u), "axis")
         # The angles of tangents close together are marked one above the other.
         vertex = cut + (0.7 if beside and name == "max" else 0.45) * room * u
-        with of.of(f"ψ_{name}", "dimension"):
-            canvas.line(g(vertex), g(vertex + 45), "thin")
-            canvas.angle_mark(complex(g(vertex)), 0.0, float(plan[f"ψ_{name}"].value), 40.0,
-                              f"ψ_{name} = {fixed(degrees(plan[f'ψ_{name}'].value), 2)}°")
+        pen, angle = of.pen(f"ψ_{name}", "dimension"), float(plan[f"ψ_{name}"].value)
+        pen.line(g(vertex), g(vertex + 45), "thin")
+        pen.angle_mark(complex(g(vertex)), 0.0, angle, 40.0, f"ψ_{name} = {fixed(degrees(angle), 2)}°")
         of.dot(f"T_{name}", 0.7, "main")
         of.letters(end, end, -1 + (1j if (end == "a") == (fw.ab_mm >= 0) else -1j), height=5)
     ends = sorted((plan["a"].value, plan["b"].value), key=lambda z: float(z.imag))
     length = fixed(fw.ab_mm, 1) if abs(fw.ab_mm) >= 1 else number(fw.ab_mm, 2)
     text = f"|ab| = {length}" if fw.ab_mm >= 0 else f"ab = {length}"
-    with of.of("ab", "dimension"):
-        _segment(canvas, g, ends[0], ends[1], [p.imag for p in points], text)
+    _segment(of.pen("ab", "dimension"), g, ends[0], ends[1], [p.imag for p in points], text)
 
 
 def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
@@ -337,11 +320,9 @@ def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
         return canvas.title(gap, name, ", ".join(factors))
     lines = [name, *factors] if letter(name, 5.0).width <= gap.width - 2 else [*name.split(), *factors]
     height = max(min(5.0, *(5.0 * (gap.width - 2) / letter(line, 5.0).width for line in lines)), 2.5)
-    y = gap.y1
-    for line in lines:
-        y -= 1.6 * height
-        canvas.text(complex(gap.centre.real, y), line, height, "centre")
-    return Box(gap.x0, gap.y0, gap.x1, y - 3.0)
+    step = 1.6 * height
+    canvas.lines(complex(gap.centre.real, gap.y1 - step), lines, step, height, "centre")
+    return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * step - 3.0)
 
 
 def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -362,10 +343,9 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
     rim = w.form == "rim"
     d, b, h = 1000 * w.diameter, 1000 * w.width, 1000 * w.thickness if rim else 0.0
     outer = d + h
-    scales = (fit_standard(outer + b, box.width - 56), fit_standard(outer, box.height - 36))
-    real, drawn = max(scales, key=lambda x: x[0] / x[1])
-    left = canvas.title(box, "Эскиз маховика", f"М {drawn}:{real}")
-    k = drawn / real
+    scale = standard(((outer + b) * 1e-3, box.width - 56), (outer * 1e-3, box.height - 36))
+    left = canvas.title(box, "Эскиз маховика", ratio(scale))
+    k = 1e-3 / scale.mu
     gap = (box.width - (outer + b) * k - 20) / 3
     centre = complex(box.x0 + gap + outer * k / 2, (left.y0 + left.y1) / 2 - 2)
     side = complex(box.x1 - gap - 20 - b * k / 2, centre.imag)
@@ -413,8 +393,7 @@ def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
     if not np.isnan(delta):
         lines.append(f"Без маховика δ = {number(delta, 4)} {'≤' if delta <= fw.data.delta else '>'} {number(fw.data.delta)}")
     height = min(5.0, *(5.0 * left.width / letter(line, 5.0).width for line in lines))
-    for i, line in enumerate(lines):
-        canvas.text(left.centre + 2.0j * height * (len(lines) / 2 - i - 1), line, height, "centre")
+    canvas.lines(left.centre + 2.0j * height * (len(lines) / 2 - 1), lines, 2.0 * height, height, "centre")
 
 
 def disagreement(fw: Flywheel) -> list[str]:
@@ -441,7 +420,7 @@ def inertia_table(project: Any, canvas: Canvas, box: Box, options: Options) -> N
 def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Table of moment, works and change of energy at the positions."""
     fw: Flywheel = project.flywheel
-    varying, constant = _indices(fw)
+    varying, constant = indices(fw)
     rows = [
         ["Положение", *fw.labels],
         graphs.row(f"M_{varying}^пр, Н·м", fw.M_reduced),
@@ -475,8 +454,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     step = min(left.height / len(rows), 13.0)
     widest = max(letter(row, 5.0).width for row in rows)
     height = 5.0 if step >= 8 and widest <= box.width else 3.5
-    for i, row in enumerate(rows):
-        canvas.text(complex(box.x0, left.y1 - (i + 1) * step + 3), row, height)
+    canvas.lines(complex(box.x0, left.y1 - step + 3), rows, step, height)
 
 
 def _difference(fw: Flywheel) -> str:
@@ -505,15 +483,19 @@ def _sizes(fw: Flywheel) -> list[str]:
 # --- parts shared by the views --------------------------------------------------------------------------
 
 
-def _with_tangents(project: Any) -> Wittenbauer:
+def by_method(project: Any, method: str, hint: str) -> Any:
+    """The project's flywheel, which a view must find by its own method."""
     fw = project.flywheel
-    if fw.method != "wittenbauer":
-        raise CannotBuild(f'the energy-mass diagram belongs to flywheel.method = "wittenbauer", not "{fw.method}"',
-                          "take the views of mertsalov in the arrangement of the sheet")
-    return cast("Wittenbauer", fw)
+    if fw.method != method:
+        raise CannotBuild(f'this view belongs to flywheel.method = "{method}", not "{fw.method}"', hint)
+    return fw
 
 
-def _indices(fw: Flywheel) -> tuple[str, str]:
+def _with_tangents(project: Any) -> Wittenbauer:
+    return cast("Wittenbauer", by_method(project, "wittenbauer", "take the views of mertsalov in the arrangement of the sheet"))
+
+
+def indices(fw: Flywheel) -> tuple[str, str]:
     """Indices of the varying moment and of the constant one: resistance and drive, for an engine exchanged."""
     return ("с", "д") if fw.reduced.resisting else ("д", "с")
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.scale import Scale, handy
+from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import plain
+from tmm_sheets.numbers import number, plain
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -79,6 +80,18 @@ def joined(points: dict[str, complex], pairs: Iterable[tuple[str, str]], near: f
     return groups
 
 
+def together(points: Sequence[complex] | NDArray[Any], near: float) -> list[list[int]]:
+    """Numbers of points that share a place: each stands with the first one less than ``near`` away."""
+    places: list[list[int]] = []
+    for i, z in enumerate(points):
+        same = next((place for place in places if abs(points[place[0]] - z) < near), None)
+        if same is None:
+            places.append([i])
+        else:
+            same.append(i)
+    return places
+
+
 def pick(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, least: float) -> Scale:
     """Scale factor of a plan: the project file's, or the smallest handy one that is not less than ``least``.
 
@@ -99,6 +112,18 @@ def pick(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str,
     canvas.scales[name] = scale
     canvas.chosen.add(name)
     return scale
+
+
+def standard(*fitted: tuple[float, float]) -> Scale:
+    """Largest GOST 2.302 scale with which every span, m, takes no more than its room, mm."""
+    real, drawn = max((fit_standard(span * 1e3, room) for span, room in fitted), key=lambda scale: scale[0] / scale[1])
+    return Scale("μ_l", real / drawn * 1e-3, "м/мм")
+
+
+def ratio(scale: Scale) -> str:
+    """A GOST 2.302 scale as it is written: М 4:1, М 1:2,5."""
+    real = scale.mu * 1e3
+    return f"М {number(1 / real)}:1" if real <= 1 else f"М 1:{number(real)}"
 
 
 def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, points: Any, offsets: Any, box: Box) -> Frame:

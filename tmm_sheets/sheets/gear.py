@@ -13,22 +13,11 @@ from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, Dimension, PlacedFrame
+from tmm_sheets.drawing.marks import Box, Dimension
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.frame import Frame
-from tmm_sheets.sheets.gear_marks import (
-    CIRCLES,
-    Window,
-    arrow_head,
-    curve,
-    gap,
-    hatch_between,
-    line,
-    ratio,
-    ruled_table,
-    standard,
-)
-from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.sheets.frame import Frame, ratio, standard
+from tmm_sheets.sheets.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
+from tmm_sheets.sheets.player import Stage, placed, play, stage
 
 EDGE = 24.0
 """Least distance of a wheel's centre from the edge of the picture, mm."""
@@ -43,7 +32,6 @@ DEEPEST = 10.0
 def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Engagement picture to a standard scale with the line of centres vertical."""
     picture = _GearPicture(project.gear, canvas, box)
-    canvas.of = "gear.engagement"
     picture.circles()
     picture.line_of_action()
     picture.radii()
@@ -53,7 +41,6 @@ def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         picture.overlap(wheel)
         picture.dimensions(wheel)
         picture.rotation(wheel)
-    canvas.of = ""
 
 
 class _GearPicture:
@@ -67,7 +54,7 @@ class _GearPicture:
         self.mu: Scale = gear.picture_scale(room)
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
             canvas.scales[f"gear-{name}"] = self.mu
-        self.box = canvas.title(box, "Картина зацепления", f"М {ratio(self.mu)}")
+        self.box = canvas.title(box, "Картина зацепления", ratio(self.mu))
         one, two = (w.ra / self.mu.mu + 4 for w in gear.wheels)
         spare = self.box.height - gear.a_w / self.mu.mu
         # The smaller wheel is shown whole, if that leaves room beyond the other's centre; both are cut alike otherwise.
@@ -107,8 +94,7 @@ class _GearPicture:
             centre = self.of(f"O{wheel.number}")
             self.window.circles(self.stage, [wheel])
             self.window.line(self.stage, f"O{wheel.number}", centre - 12, centre + 12, "centre")
-            with self.stage.of(f"O{wheel.number}", "symbol"):
-                self.canvas.circle(centre, 2.0, "main")
+            self.stage.pen(f"O{wheel.number}", "symbol").circle(centre, 2.0, "main")
             self.canvas.label(centre, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
 
     def radii(self) -> None:
@@ -121,9 +107,9 @@ class _GearPicture:
                     self.name_on_arc(centre, radius, symbol % wheel.number)
                     continue
                 tip, first = centre + rect(radius, direction), len(self.canvas.marks)
-                with self.stage.of(f"{key}{wheel.number}", "dimension"):
-                    self.canvas.line(centre + rect(2.0, direction), tip - rect(2.5, direction), "thin")
-                    arrow_head(self.canvas, tip, rect(1, direction))
+                pen = self.stage.pen(f"{key}{wheel.number}", "dimension")
+                pen.line(centre + rect(2.0, direction), tip - rect(2.5, direction), "thin")
+                pen.arrow_head(tip, rect(1, direction))
                 text = f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}"
                 laid = letter(text, 3.5)
                 outer = self.mm(wheel.rf) - 4
@@ -167,7 +153,7 @@ class _GearPicture:
         self.window.line(s, "N1N2", pole - h * reach, pole + h * reach, "thin")
         for end in (pole - h * reach, pole + h * reach):
             c.label(end, "t", away=end - pole, height=5, leader=False)
-        line(s, "B", a, b, "main", "curve")
+        s.line("B", a, b, "main", "curve")
         for name, point in (("A", a), ("B", b)):
             s.dot(name, 0.9, "main")
             c.label(point, name, away=1j * u, height=5, gap=1.5)
@@ -177,20 +163,18 @@ class _GearPicture:
             centre = self.of(f"O{i}")
             away = (foot - centre) / abs(foot - centre)
             inward = (pole - foot) / abs(pole - foot)
-            line(s, f"N{i}", centre, foot, "thin")
-            corner = foot - 3 * away
-            with s.of(f"N{i}", "symbol"):
-                c.line(corner, corner + 3 * inward, "thin")
-                c.line(corner + 3 * inward, foot + 3 * inward, "thin")
+            s.line(f"N{i}", centre, foot, "thin", "axis")
+            corner = foot + 3 * inward - 3 * away
+            s.line(f"N{i}", foot - 3 * away, corner, "thin", "symbol")
+            s.line(f"N{i}", corner, foot + 3 * inward, "thin", "symbol")
             s.dot(f"N{i}", 0.8, "main")
             c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
         alpha = f"α_w = {degrees_and_minutes(self.gear.alpha_w)}"
         radius = (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2
         start, end = (pi, pi + self.gear.alpha_w) if h < 0 else (-self.gear.alpha_w, 0.0)
-        with s.of("alpha_w", "dimension"):
-            c.angle_mark(pole, start, end, radius, "α_w")
-            o1 = self.of("O1")
-            self.angle(o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
+        pen, o1 = s.pen("alpha_w", "dimension"), self.of("O1")
+        pen.angle_mark(pole, start, end, radius, "α_w")
+        angle_beside(pen, o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
         self.dimension_of_centres()
 
     def pole_letter(self, action: complex) -> None:
@@ -204,22 +188,8 @@ class _GearPicture:
         along = (np.conj(way) * foot).real
         inside = max((self.mm(self.gear.wheels[0].rf) - 1.5) ** 2 - (abs(foot) ** 2 - along**2), 0.0)
         end = self.pole - (along + inside**0.5) * way
-        line(self.stage, "Pw", self.pole, end, "thin", "text")
+        self.stage.line("Pw", self.pole, end, "thin", "text")
         self.canvas.label(end, "P_w", away=way, height=5, gap=0.5, leader=False)
-
-    def angle(self, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
-        """Dimension arc between two rays, its sign outside beside the end at ``start`` where no ray crosses it."""
-        lo, hi = sorted((start % (2 * pi), end % (2 * pi)))
-        if hi - lo > pi:
-            lo, hi = hi, lo + 2 * pi
-        c = self.canvas
-        c.arc(vertex, radius, lo, hi, "thin")
-        if (hi - lo) * radius > 8:
-            for tip, sense in ((lo, -1), (hi, 1)):
-                arrow_head(c, vertex + rect(radius, tip), rect(1, tip + sense * (pi / 2 - 1.75 / radius)))
-        ray = rect(1, start)
-        away = 1j * ray if (np.conj(ray) * rect(1, end)).imag < 0 else -1j * ray
-        c.label(vertex + radius * ray, markup, away=away, gap=2)
 
     def dimension_of_centres(self) -> None:
         """Centre distance at the edge of the picture."""
@@ -240,32 +210,32 @@ class _GearPicture:
         for k in numbers:
             d, t = s.at(str(k)), s.at(f"{k}′")
             if k:
-                line(s, str(k), d - 1.2j * u, d + 1.2j * u, "thin", "point")
+                s.line(str(k), d - 1.2j * u, d + 1.2j * u, "thin", "point")
             if k != parts:
                 play(s, [f"E{k}"])
                 out = (t - centre) / abs(t - centre)
-                line(s, f"{k}′", t - 10 * out, t, "construction")
+                s.line(f"{k}′", t - 10 * out, t, "construction", "axis")
             s.dot(f"E{k}", 0.5, "thin")
             if 0 < k != parts:
                 c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
             if k != parts:
                 c.label(t, f"{k}′", away=centre - t, height=2.5, gap=0.8)
         smooth = self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)
-        curve(stage(c, smooth, 0, self.at), "E", self.at(smooth["E"].value), "construction")
+        stage(c, smooth, None, self.at).curve("E", style="construction")
         c.of = "gear.engagement"
 
     def teeth(self, wheel: Any) -> None:
         c, s = self.canvas, self.tooth[wheel.number]
         shape = self.gear.shape(wheel)
-        curve(s, "E", self.at(shape.outline(step=self.mu.mu)), "main")
+        s.curve("E", self.at(shape.outline(step=self.mu.mu)), "main")
         centre = self.of(f"O{wheel.number}")
         for k in (-1, 0, 1):
             axis = shape.axis_of(k)
-            line(s, "axis", centre + axis * (self.mm(wheel.rf) - 3), centre + axis * (self.mm(wheel.ra) + 5), "centre")
+            s.line("axis", centre + axis * (self.mm(wheel.rf) - 3), centre + axis * (self.mm(wheel.ra) + 5), "centre", "axis")
         k = self.strip_tooth(wheel)
         outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
         half = len(outline) // 2
-        curve(s, "E", outline[half:], "thin")
+        s.pen("E", "hatch").polyline(outline[half:], "thin")
         hatch_between(c, outline[:half], outline[half:][::-1])
         ends = outline[0], outline[half - 1]
         names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
@@ -285,15 +255,15 @@ class _GearPicture:
         for name in "ab":
             travel = (np.conj(u) * self.gear.engagement[name.upper()].value).real
             p = self.of(f"{name}{i}")
-            curve(self.stage, f"{name}{i}", self.at(self.gear.rolled(wheel, flank, travel)), "thin")
+            self.stage.curve(f"{name}{i}", self.at(self.gear.rolled(wheel, flank, travel)), "thin")
             self.spoke(wheel, f"{name}{i}", p, "construction")
             ends.append(phase(p - centre))
         if i == 1:
             ends.reverse()
         first, last = ends
         drawn = float(self.gear.engagement[f"phi{i}"].value)
-        with self.stage.of(f"phi{i}", "dimension"):
-            self.angle(centre, first, last, self.mm(wheel.rf) * 0.66, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
+        pen = self.stage.pen(f"phi{i}", "dimension")
+        angle_beside(pen, centre, first, last, self.mm(wheel.rf) * 0.66, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
 
     def dimensions(self, wheel: Any) -> None:
         """Chordal thickness on an outer tooth, chordal pitch between the axes of the other two."""
@@ -318,17 +288,28 @@ class _GearPicture:
         centre = self.of(f"O{wheel.number}")
         middle = pi / 2 * self.away(wheel)
         half = radians(50)
-        with self.canvas.as_role("symbol"):
-            self.canvas.arc_arrow(centre, 12, middle - sense * half, middle + sense * half)
+        self.canvas.tracing("symbol").arc_arrow(centre, 12, middle - sense * half, middle + sense * half)
         tip = rect(1, middle + sense * half)
         self.canvas.label(centre + 12 * tip, f"ω_{wheel.number}", away=tip, height=5)
 
 
+def angle_beside(canvas: Canvas, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
+    """Dimension arc between two rays, its sign outside beside the end at ``start`` where no ray crosses it."""
+    lo, hi = sorted((start % (2 * pi), end % (2 * pi)))
+    if hi - lo > pi:
+        lo, hi = hi, lo + 2 * pi
+    canvas.arc(vertex, radius, lo, hi, "thin")
+    if (hi - lo) * radius > 8:
+        for tip, sense in ((lo, -1), (hi, 1)):
+            canvas.arrow_head(vertex + rect(radius, tip), rect(1, tip + sense * (pi / 2 - 1.75 / radius)))
+    ray = rect(1, start)
+    away = 1j * ray if (np.conj(ray) * rect(1, end)).imag < 0 else -1j * ray
+    canvas.label(vertex + radius * ray, markup, away=away, gap=2)
+
+
 def mesh(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The teeth at the pole once more, enlarged: circles, clearances, distance of the pitch circles, fillets."""
-    canvas.of = "gear.mesh"
     _Detail(project.gear, canvas, box).draw()
-    canvas.of = ""
 
 
 class _Detail:
@@ -337,8 +318,8 @@ class _Detail:
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
         margin = 18.0
-        mu = standard(1.25 * gear.p, box.width - margin)
-        inner = canvas.title(box, "Зона зацепления", f"М {ratio(mu)}")
+        mu = standard((1.25 * gear.p, box.width - margin))
+        inner = canvas.title(box, "Зона зацепления", ratio(mu))
         place = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
         self.pole = place.centre
         tall = mu.mm(max(w.ra - w.rw + gear.clearance * gear.m for w in gear.wheels)) + 8
@@ -361,10 +342,8 @@ class _Detail:
         s.dot("Pw", 1.0, "main")
         c.label(self.pole, "P_w", away=complex(-gear.hand, 1), height=5, gap=1.5)
         start, end = (pi, pi + gear.alpha_w) if gear.hand < 0 else (-gear.alpha_w, 0.0)
-        with s.of("alpha_w", "dimension"):
-            c.angle_mark(self.pole, start, end, 0.4 * reach, "α_w")
-        with c.as_role("dimension"):
-            self.gaps()
+        s.pen("alpha_w", "dimension").angle_mark(self.pole, start, end, 0.4 * reach, "α_w")
+        self.gaps(c.tracing("dimension"))
 
     def teeth(self, wheel: Any) -> None:
         """Teeth in mesh, and the radius of their fillets."""
@@ -374,14 +353,14 @@ class _Detail:
             return  # a trochoid has no radius to show
         fillet, touch = s.at("C"), s.at("R")
         s.dot("C", 0.5, "thin")
-        with s.of("rho", "dimension"):
-            c.line(fillet, touch, "thin")
-            arrow_head(c, touch, (touch - fillet) / abs(touch - fillet), 2.5)
+        pen = s.pen("rho", "dimension")
+        pen.line(fillet, touch, "thin")
+        pen.arrow_head(touch, (touch - fillet) / abs(touch - fillet), 2.5)
         c.label(fillet, f"ρ_{{f{wheel.number}}} = {fixed(wheel.fillet * 1e3, 2)}", away=fillet - self.pole, gap=1.5)
 
-    def gaps(self) -> None:
+    def gaps(self, c: Canvas) -> None:
         """Radial clearances and the distance between the pitch circles, on the line of centres."""
-        c, gear = self.canvas, self.gear
+        gear = self.gear
         one, two = gear.wheels
         h = gear.hand
         clearance = f"c^{{*}}m = {number(gear.clearance * gear.m * 1e3, 3)}"
@@ -403,24 +382,25 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     room = box.width - 34
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
     if not room / 2 < scale.mm(one.t_pole + two.t_pole) <= room:
-        scale = standard(one.t_pole + two.t_pole, room)
+        scale = standard((one.t_pole + two.t_pole, room))
     canvas.scales["gear-sliding"] = scale
     whole = scale.mm(one.t_pole + two.t_pole)
     plan = gear.sliding
     first = one.t_pole / scale.mu
-    upper = canvas.title(box, "Графики скоростей", f"М {ratio(scale)}")
+    upper = canvas.title(box, "Графики скоростей", ratio(scale))
     left = (box.x0 + box.x1 - whole) / 2
     # rounded: where letters stand must not hang on the last digit
     y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
     highest = float(max(y1.max(), y2.max()))
-    share = np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value)) / scale.mu
+    share = _ways(gear, plan) / scale.mu
     xs = np.round(left + first + share, 9)
     axis = upper.y1 - highest - 8
     s = _along(canvas, gear, plan, complex(left + first, axis), scale)
     _axis_line(s, gear, complex(left, axis), whole, first, scale)
     ordinate = float(y1[np.argmin(np.abs(share))])
-    line(s, "yV1", complex(left, axis), complex(left + whole, axis + y1[-1]), "curve", "curve")
-    line(s, "yV2", complex(left, axis + y2[0]), complex(left + whole, axis), "curve", "curve")
+    speeds = placed(canvas, plan, complex(left + first, axis), (scale.mu, 1.0))
+    speeds.line("yV1", complex(left, axis), complex(left + whole, axis + y1[-1]), "curve", "curve")
+    speeds.line("yV2", complex(left, axis + y2[0]), complex(left + whole, axis), "curve", "curve")
     canvas.label(complex(left + whole, axis + y1[-1]), "V_1", away=-1 + 0.3j, height=5)
     canvas.label(complex(left, axis + y2[0]), "V_2", away=1 + 0.5j, height=5)
 
@@ -432,42 +412,44 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     deepest = zero - (lower.y0 + 2)
     origin = complex(left, zero)
     t = _along(canvas, gear, plan, origin + first, scale)
-    _theta(_along(canvas, gear, gear.smooth_sliding, origin + first, scale), zero, mu, deepest)
-    line(t, "K", origin - 6, origin + whole + 8, "axis")
-    with t.of("theta1", "axis"):
-        canvas.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
-        for theta in range(1, -int(deepest * mu.mu) - 1, -1):
-            if theta:
-                y = zero + theta / mu.mu
-                canvas.line(complex(left - 1.2, y), complex(left + 1.2, y), "axis")
-                canvas.text(complex(left - 2.5, y - 1.25), number(theta), 2.5, "right")
+    _theta(placed(canvas, gear.smooth_sliding, origin + first, (scale.mu, mu.mu)), gear, -deepest * mu.mu)
+    t.line("K", origin - 6, origin + whole + 8, "axis", "axis")
+    pen = t.pen("theta1", "axis")
+    pen.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
+    for theta in (theta for theta in range(1, -int(deepest * mu.mu) - 1, -1) if theta):
+        y = zero + theta / mu.mu
+        pen.line(complex(left - 1.2, y), complex(left + 1.2, y), "axis")
+        pen.text(complex(left - 2.5, y - 1.25), number(theta), 2.5, "right")
     canvas.label(complex(left, zero + top + 6), "θ", away=1 + 1j, height=5)
     for k, x in enumerate(xs):
         values = [plan[f"theta{i}"].value[k] for i in (1, 2)]
         low = min([v for v in values if np.isfinite(v) and v > -deepest * mu.mu] or [0.0])
         # Projection lines leave the title between the graphs free.
-        line(s.position(k), "K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction")
-        line(t.position(k), "K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction")
+        s.position(k).line("K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction", "axis")
+        t.position(k).line("K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction", "axis")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
     canvas.label(complex(left + first, axis + ordinate), f"{number(ordinate)} мм", away=1 - 0.2j, height=3.5)
-    canvas.of = ""
+
+
+def _ways(gear: Any, plan: Plan) -> Any:
+    """Ways of the contact point along the line of action from the pole, m."""
+    return np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value))
 
 
 def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale) -> Stage:
     """A plan with the line of action laid along the abscissa."""
-    turn = -phase(complex(gear.engagement["N1N2"].value))
-    return stage(canvas, plan, 0, PlacedFrame(-1, plan.name, "", pole, (scale.mu, scale.mu), turn))
+    return placed(canvas, plan, pole, scale.mu, -phase(complex(gear.engagement["N1N2"].value)))
 
 
 def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, first: float, scale: Scale) -> None:
     """The line of action as an abscissa with its points."""
     canvas = s.canvas
-    line(s, "K", origin - 6, origin + whole + 8, "axis")
+    s.line("K", origin - 6, origin + whole + 8, "axis", "axis")
     one, two = gear.wheels
     ends = [first + (one.t_low - one.t_pole) / scale.mu, first + (two.t_pole - two.t_low) / scale.mu]
     names = ("A", "B") if gear.driver == 1 else ("B", "A")
     e = _along(canvas, gear, gear.engagement, origin + first, scale)
-    line(e, "B", origin + ends[0], origin + ends[1], "main", "curve")
+    e.line("B", origin + ends[0], origin + ends[1], "main", "curve")
     for name, x in (("N_1", 0.0), ("P_w", first), ("N_2", whole), *zip(names, ends, strict=True)):
         e.dot(name.replace("_", ""), 0.8, "main")
         canvas.label(origin + x, name, away=-1j, height=3.5)
@@ -479,22 +461,18 @@ def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
     return mu, 1 / mu.mu
 
 
-def _theta(s: Stage, zero: float, mu: Scale, deepest: float) -> None:
+def _theta(s: Stage, gear: Any, lowest: float) -> None:
     """Both curves, cut where they leave the place on their way to minus infinity."""
-    x = np.real(s.frame(s.plan["K"].value))
-    for i in (1, 2):
-        y = np.asarray(s.plan[f"theta{i}"].value) / mu.mu
-        inside = y >= -deepest
-        k = int(np.argmax(inside)) if i == 1 else int(len(y) - 1 - np.argmax(inside[::-1]))
-        beyond = k - 1 if i == 1 else k + 1
-        px, py = x[inside], y[inside]
-        if 0 <= beyond < len(y) and np.isfinite(y[beyond]):
-            t = (-deepest - y[k]) / (y[beyond] - y[k])
-            cut = x[k] + t * (x[beyond] - x[k])
-            px, py = (np.append(cut, px), np.append(-deepest, py)) if i == 1 else (np.append(px, cut), np.append(py, -deepest))
-        curve(s, f"theta{i}", px + 1j * (zero + py), "curve")
-        end = 0 if i == 1 else -1
-        s.canvas.label(complex(px[end], zero + 0.6 * py[end]), f"θ_{i}", away=complex(1 if i == 1 else -1, 0), height=5, gap=3)
+    x = _ways(gear, s.plan)
+    for i, onward in ((1, 1), (2, -1)):  # from where each comes up from below
+        way, y = x[::onward], np.asarray(s.plan[f"theta{i}"].value)[::onward]
+        k = int(np.argmax(y >= lowest))
+        points = way[y >= lowest] + 1j * y[y >= lowest]
+        if k and np.isfinite(y[k - 1]):
+            t = (lowest - y[k]) / (y[k - 1] - y[k])
+            points = np.insert(points, 0, way[k] + t * (way[k - 1] - way[k]) + 1j * lowest)
+        s.curve(f"theta{i}", s.frame(points[::onward]))
+        s.canvas.label(complex(s.frame(points[0].real + 0.6j * points[0].imag)), f"θ_{i}", away=onward, height=5, gap=3)
 
 
 def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -583,7 +561,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     one, two = gear.wheels
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
     notes = [
-        f"Принято: масштаб картины зацепления {ratio(scale)};",
+        f"Принято: масштаб картины зацепления {ratio(scale)[2:]};",
         f"отрезки P_{{w}}N_1 и P_{{w}}N_2 разделены на {gear.parts(one, scale)} и {gear.parts(two, scale)} части;",
         *([f"ордината скоростей в полюсе {number(float(gear.sliding['yV1'].value[3]))} мм;"]
           if "gear-sliding" in canvas.scales or gear.profile == "fillet" else []),

@@ -1,4 +1,4 @@
-"""What the views of gears and reducers share: arrow heads, tables, standard scales, names of circles."""
+"""What the views of gears and reducers share: windows, tables, names of circles."""
 
 from __future__ import annotations
 
@@ -8,12 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, fit_standard
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
 from tmm_sheets.drawing.marks import Box, Role
-from tmm_sheets.numbers import number
 from tmm_sheets.sheets.player import Stage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
@@ -21,22 +19,10 @@ CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "
 """Circles of a wheel: attribute, symbol, line type."""
 
 
-def line(s: Stage, step: Step | str, a: complex, b: complex, style: str = "thin", role: Role = "axis") -> None:
-    """Straight stroke that belongs to a step."""
-    with s.of(step, role):
-        s.canvas.line(a, b, style)
-
-
-def curve(s: Stage, step: Step | str, points: Any, style: str) -> None:
-    """Curve of a step through points."""
-    with s.of(step, "curve"):
-        s.canvas.polyline(points, style)
-
-
 def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float) -> None:
     """A small upright distance, its arrows outside, lettering beside it."""
     for tip, way in ((a, 1j), (b, -1j)):
-        arrow_head(canvas, tip, way, 2.5)
+        canvas.arrow_head(tip, way, 2.5)
         canvas.line(tip, tip - 6 * way, "thin")
     canvas.line(a, b, "thin")
     canvas.label((a + b) / 2, text, away=away, gap=space)
@@ -52,18 +38,18 @@ class Window:
         """Straight stroke that belongs to a step."""
         inside = segment_inside(self.box, a, b)
         if inside:
-            line(s, step, *inside, style, role)
+            s.line(step, *inside, style, role)
 
-    def curve(self, s: Stage, step: Step | str, points: Any, style: str) -> None:
+    def curve(self, s: Stage, step: Step | str, points: Any, style: str, role: Role = "curve") -> None:
         """Curve of a step through points."""
         for part in polyline_inside(self.box, np.asarray(points)):
-            curve(s, step, part, style)
+            s.pen(step, role).polyline(part, style)
 
     def edge(self) -> None:
         """The edge of the picture."""
         x0, y0, x1, y1 = self.box
-        with self.canvas.as_role("frame"):
-            self.canvas.polyline((complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)), "thin", closed=True)
+        corners = complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)
+        self.canvas.tracing("frame").polyline(corners, "thin", closed=True)
 
     def circles(self, s: Stage, wheels: Iterable[Any], share: float | None = None, leave: tuple[str, ...] = ()) -> None:
         """What is seen of the circles of some wheels, but for those to ``leave``.
@@ -76,9 +62,8 @@ class Window:
             centre, name = s.at(f"O{wheel.number}"), symbol % wheel.number
             radius = abs(complex(s.frame(getattr(wheel, key))) - complex(s.frame(0)))
             spans = arcs_inside(self.box, centre, radius)
-            with s.of(f"{key}{wheel.number}", "construction"):
-                for start, end in spans:
-                    c.arc(centre, radius, start, end, style)
+            for start, end in spans:
+                s.pen(f"{key}{wheel.number}", "construction").arc(centre, radius, start, end, style)
             if share is None or not spans:
                 continue
             tips = [centre + rect(radius, angle) for span in spans for angle in span]
@@ -90,15 +75,8 @@ class Window:
                 c.label(centre + radius * middle, name, away=-middle)
         ends.sort()
         for (y, name), at in zip(ends, spread([y for y, _ in ends], 6.0), strict=True):
-            with c.as_role("dimension"):
-                c.line(complex(self.box.x1, y), complex(self.box.x1 + 4, at), "thin")
+            c.tracing("dimension").line(complex(self.box.x1, y), complex(self.box.x1 + 4, at), "thin")
             c.text(complex(self.box.x1 + 5, at - 1.75), name, 3.5)
-
-
-def arrow_head(canvas: Canvas, tip: complex, u: complex, size: float = 3.5) -> None:
-    """Arrow head at ``tip`` pointing along the unit direction ``u``."""
-    half = 0.17 * size
-    canvas.fill((tip, tip - size * u + 1j * half * u, tip - size * u - 1j * half * u), "thin")
 
 
 @in_role("hatch")
@@ -151,15 +129,3 @@ def spread(heights: list[float], least: float) -> list[float]:
         if not moved:
             break
     return out
-
-
-def standard(span: float, room: float) -> Scale:
-    """Largest GOST 2.302 scale with which ``span`` metres take at most ``room`` mm."""
-    real, drawn = fit_standard(span * 1e3, room)
-    return Scale("μ_l", real / drawn * 1e-3, "м/мм")
-
-
-def ratio(scale: Scale) -> str:
-    """A GOST 2.302 scale as it is written: 4:1, 1:2,5."""
-    real = scale.mu * 1e3
-    return f"{number(1 / real)}:1" if real <= 1 else f"1:{number(real)}"

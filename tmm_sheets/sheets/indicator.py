@@ -127,5 +127,4 @@ def draw(project: Project, s: Stage) -> None:
         for mark in np.unique(np.round(marks, 6)):
             here = np.flatnonzero(np.abs(marks - mark) < 1e-5)
             y = max(float(one.ordinate(cycle.turned[i])) for i in here) / scale.mu
-            with s.position(int(here[0])).of(name, "construction"):
-                canvas.line(mark, mark + one.side * (GAP + max(y, 0.0)), "thin")
+            s.position(int(here[0])).pen(name, "construction").line(mark, mark + one.side * (GAP + max(y, 0.0)), "thin")

@@ -19,6 +19,7 @@ from tmm_sheets.sheets.frame import Frame, ScaleBook, extent, fit_frame, pick
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.arrangement import View
 
 GRAPH = 48.0
 """Height kept free over the position plans for the force graph, mm."""
@@ -187,24 +188,22 @@ def _ratio(real: float, room: float) -> float:
     return real / room if room > 0 else inf
 
 
+def _views(project: Project, n: int) -> tuple[View, ...]:
+    """Views of sheet ``n`` (from 1)."""
+    from tmm_sheets.sheets.arrangement import arrangement
+
+    return arrangement(project.sheets[n - 1]).fitted(project.parts).views
+
+
 def left_out(project: Project, sheets: Iterable[int]) -> Iterator[str]:
     """What some sheets leave out of the velocity plans, and why, for the command line."""
-    for box, options in _velocity_views(project, sheets):
-        layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), box, options)
+    for view in (view for n in sheets for view in _views(project, n) if view.draw == "kinematics.velocity_plans"):
+        layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
         for i, times in layout.beyond:
             yield (f"position {project.cycle.labels[i]} is next to a dead point: its velocity plan is not drawn, "
                    f"it is {times:.3g} times as large as usual")
         if layout.every > 1:
             yield f"there is no room for {len(project.cycle.drawn)} velocity plans: one in {layout.every} is drawn"
-
-
-def _velocity_views(project: Project, sheets: Iterable[int]) -> Iterator[tuple[Box, dict[str, Any]]]:
-    from tmm_sheets.sheets.arrangement import arrangement
-
-    for n in sheets:
-        for view in arrangement(project.sheets[n - 1]).fitted(project.parts).views:
-            if view.draw == "kinematics.velocity_plans":
-                yield view.box, view.options
 
 
 def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
@@ -221,14 +220,12 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
 
     ``parts`` are the plans asked for: positions, velocities, accelerations.
     """
-    from tmm_sheets.sheets.arrangement import arrangement
-
     found: dict[str, tuple[Scale, int]] = {}
     if len(project.cycle.drawn) > MOST:
         return found  # as many plans fit on no sheet
-    for n, name in enumerate(project.sheets, 1):
+    for n in range(1, len(project.sheets) + 1):
         kept = SimpleNamespace(scales={}, chosen=set())
-        for view in arrangement(name).fitted(project.parts).views:
+        for view in _views(project, n):
             if view.draw == "kinematics.position_plans" and "positions" in parts:
                 positions(project, kept, view.box, view.options)
             elif view.draw == "kinematics.velocity_plans" and "velocities" in parts:

@@ -19,7 +19,7 @@ from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
-from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick
+from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick, together
 from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
@@ -72,8 +72,7 @@ def _paths(project: Project, s: Stage, room: Box) -> None:
     m = pos.mechanism
     for name in [p.name for p in m.points] + [g.inner for g in m.groups if g.inner and not g.guides]:
         if np.ndim(pos.points[name].value):
-            with s.of(pos.points[name], "curve"):
-                s.canvas.polyline(s.frame(np.asarray(pos.points[name].value)), "thin")
+            s.pen(pos.points[name], "curve").polyline(s.frame(np.asarray(pos.points[name].value)), "thin")
     for name in dict.fromkeys(name for g in m.groups if g.inner for name in g.guides):
         if m.guides[name].link == m.frame:
             _guide_line(project.study.positions, s, name, room)
@@ -87,8 +86,7 @@ def _guide_line(pos: Positions, s: Stage, name: str, room: Box) -> None:
     t = ((z - q) * np.conj(u)).real
     inside = segment_inside(room, s.frame(q + u * np.nanmin(t)) - 24.0 * u, s.frame(q + u * np.nanmax(t)) + 24.0 * u)
     if inside is not None:
-        with s.of(pos.guide_directions[name], "axis"):
-            s.canvas.line(*inside, "centre")
+        s.pen(pos.guide_directions[name], "axis").line(*inside, "centre")
 
 
 def _position_numbers(project: Project, s: Stage) -> None:
@@ -124,8 +122,7 @@ def _hinge_numbers(project: Project, s: Stage, name: str, middle: complex) -> No
     for i, _ in project.cycle.drawn:
         here = s.position(i)
         if i != s.k:
-            with here.of(name, "symbol"):
-                symbols.hinge(s.canvas, here.at(name), "thin", 0.7)
+            symbols.hinge(here.pen(name, "symbol"), here.at(name), "thin", 0.7)
             here.letters(name, project.cycle.labels[i], here.at(name) - middle, 2.5, 0.9, leader=False)
 
 
@@ -137,8 +134,7 @@ def _upper_side(u: complex) -> complex:
 
 def _path_mark(s: Stage, name: str, n: complex) -> None:
     """Stroke across a path at a point."""
-    with s.of(name, "point"):
-        s.canvas.line(s.at(name) - 2.0 * n, s.at(name) + 2.0 * n, "axis")
+    s.pen(name, "point").line(s.at(name) - 2.0 * n, s.at(name) + 2.0 * n, "axis")
 
 
 def _own_path(project: Project, s: Stage, name: str, n: complex, u: complex) -> None:
@@ -181,14 +177,9 @@ def _range(labels: list[str]) -> str:
 
 def _shared_path(project: Project, s: Stage, name: str, n: complex) -> None:
     """Marks of one of several sliders on one path: all its numbers on its own side, those of one place together."""
-    places: list[list[int]] = []
-    for i, _ in project.cycle.drawn:
-        same = next((p for p in places if abs(s.position(p[0]).at(name) - s.position(i).at(name)) < 1.0), None)
-        if same is None:
-            places.append([i])
-        else:
-            same.append(i)
-    for place in places:
+    drawn = [i for i, _ in project.cycle.drawn]
+    for same in together([s.position(i).at(name) for i in drawn], 1.0):
+        place = [drawn[n] for n in same]
         here = s.position(place[0])
         _path_mark(here, name, n)
         text = ", ".join(project.cycle.labels[i] for i in place)
@@ -203,8 +194,7 @@ def _point_letters(project: Project, s: Stage) -> None:
     for name, step in project.study.positions.points.items():
         moving, letters = name not in m.fixed, linkage.indexed(name)
         if name in masses and name in own:
-            with s.of(step, "symbol"):
-                symbols.centre_of_mass(s.canvas, s.at(step))
+            symbols.centre_of_mass(s.pen(step, "symbol"), s.at(step))
         text = f"{letters}({project.cycle.labels[project.force_index]})" if moving and not name[1:] else letters
         s.letters(step, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
 
@@ -227,8 +217,8 @@ def _rotations(project: Project, s: Stage) -> None:
     pos, c = study.positions, m.crank
     pivot = s.at(c.pivot)
     radius = max(0.5 * c.length / s.frame.mu[1], 7.0)
-    with s.of(study.velocities.omega[c.link], "symbol"):
-        symbols.rotation_arrow(s.canvas, pivot, radius, linkage.clear_of_crank(s, pos), c.omega, f"ω_{c.link}")
+    away, crank = linkage.clear_of_crank(s, pos), study.velocities.omega[c.link]
+    symbols.rotation_arrow(s.pen(crank, "symbol"), pivot, radius, away, c.omega, f"ω_{c.link}")
     for shape in linkage.shapes(pos):
         link = shape.link
         w, eps = (of[link] for of in (study.velocities.omega, study.accelerations.epsilon))
@@ -244,8 +234,7 @@ def _rotations(project: Project, s: Stage) -> None:
             places = [(middle, 6.0, n), (middle, 6.0, -n)]
         for step, sign, place, least in ((w, "ω", places[0], 0.0), (eps, "ε", places[1], 1e-9 * c.speed**2)):
             if abs(step.at(k)) > least:
-                with s.of(step, "symbol"):
-                    symbols.rotation_arrow(s.canvas, *place, float(step.at(k)), f"{sign}_{link}")
+                symbols.rotation_arrow(s.pen(step, "symbol"), *place, float(step.at(k)), f"{sign}_{link}")
 
 
 def _strokes(project: Project, s: Stage) -> None:
@@ -280,11 +269,11 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     tip = min(right + 14.0, box.x1 - 1.5 - letter(f"{way}, м", 3.5).width)
     load, back = f"loads/{force.name}", a.real > b.real  # the way is counted from where the stroke begins
     graph = canvas.placed("loads", "", complex(a.real, y0), (s.frame.mu[0], scale.mu), pi * back, back)
-    with canvas.traced("axis", load, "", graph):
-        canvas.arrow(complex(left, y0), complex(left, high + 9.0), "axis", 3.5)
-        canvas.arrow(complex(left, y0), complex(tip, y0), "axis", 3.5)
-        canvas.text(complex(left - 2.0, high + 5.0), f"{linkage.indexed(force.name)}, Н", 3.5, "right")
-        canvas.text(complex(tip + 1.5, y0 - 1.2), f"{way}, м", 3.5)
+    pen = canvas.tracing("axis", load, "", graph)
+    pen.arrow(complex(left, y0), complex(left, high + 9.0), "axis", 3.5)
+    pen.arrow(complex(left, y0), complex(tip, y0), "axis", 3.5)
+    pen.text(complex(left - 2.0, high + 5.0), f"{linkage.indexed(force.name)}, Н", 3.5, "right")
+    pen.text(complex(tip + 1.5, y0 - 1.2), f"{way}, м", 3.5)
     # Beside the end of the graph, or above it where there is no room.
     room = box.x1 - letter(str(scale), 3.5).width
     canvas.text(complex(min(right + 3.0, room), high + (0.0 if right + 3.0 <= room else 2.5)), str(scale), 3.5)
@@ -292,8 +281,8 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
     xs = np.real(s.frame(path.value))
     curve = xs[acting] + 1j * (y0 + magnitude[acting] / scale.mu)
-    with canvas.traced("curve", load, "", graph):
-        canvas.polyline([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)], "curve")
+    outline = [complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)]
+    canvas.tracing("curve", load, "", graph).polyline(outline, "curve")
     count = project.variant.cycle.working if project.variant.cycle else None
     lettered: list[float] = []
     for i, label in cycle.drawn:
@@ -303,11 +292,9 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
         if not acts > 0 and i not in (0, count):
             continue
         foot, head = complex(z.real, y0), complex(z.real, y0 + acts / scale.mu)
-        with here.of(strokes.output, "construction"):
-            canvas.line(z, foot if below else head, "thin")
+        here.pen(strokes.output, "construction").line(z, foot if below else head, "thin")
         if below:
-            with canvas.traced("curve", load, here.label, graph):
-                canvas.line(foot, head, "thin")
+            canvas.tracing("curve", load, here.label, graph).line(foot, head, "thin")
         if all(abs(z.real - x) > 4.5 for x in lettered):
             lettered.append(z.real)
             canvas.text(complex(z.real + 0.8, y0 + 1.0), label, 2.5)
@@ -523,10 +510,8 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     m = project.mechanism
     moving, pairs = len(m.links), len(m.pairs)
     inside = canvas.title(box, "Структура механизма")
-    y = inside.y1 - 6.0
-    for line in (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure):
-        canvas.text(complex(box.x0 + 2.0, y), line, 3.5)
-        y -= 7.0
+    lines = (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure)
+    canvas.lines(complex(box.x0 + 2.0, inside.y1 - 6.0), lines, 7.0)
     if not m.groups:
         return
     rows = [["Группа", "Класс", "Порядок", "Вид", "Пары"]]
@@ -534,4 +519,4 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
         outer_i, outer_j = found.outer
         rows.append([g.name, "II", "2", f"{found.kind.number} ({found.form})", f"{outer_i}, {found.inner}, {outer_j}"])
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
-    canvas.table(complex(box.x0, y + 3.5), [w * box.width for w in widths], rows, 7.0, 3.5)
+    canvas.table(complex(box.x0, inside.y1 - 16.5), [w * box.width for w in widths], rows, 7.0, 3.5)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
-from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, pick
+from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, together
 from tmm_sheets.sheets.player import Stage, play, stage
 
 if TYPE_CHECKING:
@@ -50,8 +50,17 @@ class Shown:
 
     @property
     def whole(self) -> bool:
-        """Whether it is there and no part of a reaction that was split."""
-        return abs(self.vector) > 0 and "^" not in self.symbol
+        """Whether it is no part of a reaction that was split."""
+        return "^" not in self.symbol
+
+    @property
+    def along(self) -> complex:
+        """Unit vector of the force."""
+        return self.vector / abs(self.vector)
+
+    def foot(self, about: complex) -> complex:
+        """Foot of the perpendicular from a point on the line of action, in the plan's unit."""
+        return self.at + float(((about - self.at) * np.conj(self.along)).real) * self.along
 
 
 GAP = 4.0
@@ -212,9 +221,8 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     pos = project.study.positions
     shown, couples = _outer_forces(project, g, k)
     drawn = [shape for shape in linkage.shapes(pos) if shape.link in g.links]
-    names = dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n)
-    centres = [str(c) for c in (project.mechanism.links[link].centre for link in g.links) if c and c not in names]
-    points = [pos.points[name] for name in (*names, *dict.fromkeys(centres))]
+    hinges, centres = _scheme_points(project, g, drawn)
+    points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.points[g.kind.about(g)].at(k))
     frame = _loaded_frame(project, canvas, (f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм"), box.inset(3.0, 5.0, 3.0, 19.0),
                           [*(complex(p.at(k)) for p in points), *(force.at for force in shown)], shown, about)
@@ -228,14 +236,20 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
         s.letters(point, linkage.indexed(point.name), 1 - 0.5j if point.name in pos.mechanism.fixed else 0j, gap=2.8)
     _link_numbers(s, pos, drawn)
     for name in centres:
-        with s.of(name, "symbol"):
-            symbols.centre_of_mass(canvas, s.at(name))
+        symbols.centre_of_mass(s.pen(name, "symbol"), s.at(name))
     draw_arms(s, about, shown)
     draw_forces(s, shown)
     _from_moments(project, canvas, box, g, k, frame.scale)
     for c in couples:
         _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
     _link_couples(project, s, drawn)
+
+
+def _scheme_points(project: Project, g: StructuralGroup, drawn: Iterable[linkage.Shape]) -> tuple[list[str], list[str]]:
+    """Hinges and blocks of a group's links, and their centres of mass that are none of these."""
+    hinges = list(dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n))
+    centres = (project.mechanism.links[link].centre for link in g.links)
+    return hinges, [str(c) for c in centres if c and c not in hinges]
 
 
 def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) -> None:
@@ -249,15 +263,14 @@ def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) ->
 def _loaded_frame(project: Project, canvas: Canvas, scale: tuple[str, str, str], place: Box, points: Iterable[complex],
                   shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = ()) -> Frame:
     """Frame of points with forces and their arms about a point, and of ``more``: points with what reaches from them, mm."""
-    rest = [*((foot, 0j) for foot in _feet(about, shown)), *more]
+    rest = [*((force.foot(about), 0j) for force in shown if force.whole), *more]
     z, d = _reach(points, shown)
     return fit_frame(project, canvas, *scale, [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)], place)
 
 
 def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
     """Arrow of a couple."""
-    with s.of(couple.step, "symbol"):
-        symbols.rotation_arrow(s.canvas, at, radius, towards, couple.value, couple.symbol)
+    symbols.rotation_arrow(s.pen(couple.step, "symbol"), at, radius, towards, couple.value, couple.symbol)
 
 
 def _link_numbers(s: Stage, pos: Positions, drawn: Iterable[linkage.Shape]) -> None:
@@ -297,19 +310,15 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
 
 def _arrows(shown: Iterable[Shown]) -> list[tuple[Shown, complex]]:
     """Arrow of each force in mm; forces along one ray from one point get different lengths."""
-    forces = [s for s in shown if abs(s.vector) > 0]
-    largest = max((abs(s.vector) for s in forces), default=1.0)
+    forces = sorted(shown, key=lambda s: abs(s.vector))
     size = max((abs(a.at - b.at) for a in forces for b in forces), default=0.0)
-    taken: list[tuple[complex, complex, float]] = []
-    found = []
-    for s in sorted(forces, key=lambda s: abs(s.vector)):
-        u = s.vector / abs(s.vector)
-        length = SHORT + (LONG - SHORT) * (abs(s.vector) / largest) ** 0.5
-        for at, v, used in taken:
-            if abs(at - s.at) <= 0.01 * size and abs(u - v) < 0.2 and length < used + 9.0:
-                length = used + 9.0
-        taken.append((s.at, u, length))
-        found.append((s, length * u))
+    found: list[tuple[Shown, complex]] = []
+    for s in forces:
+        length = SHORT + (LONG - SHORT) * (abs(s.vector) / abs(forces[-1].vector)) ** 0.5
+        for other, arrow in found:
+            if abs(other.at - s.at) <= 0.01 * size and abs(s.along - other.along) < 0.2 and length < abs(arrow) + 9.0:
+                length = abs(arrow) + 9.0
+        found.append((s, length * s.along))
     return found
 
 
@@ -328,44 +337,30 @@ def _reach(points: Iterable[complex], shown: Iterable[Shown]) -> tuple[list[comp
 def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
     """Arrows with their tails at the points they act at."""
     for force, arrow in _arrows(shown):
-        tail, u = s.frame(force.at), arrow / abs(arrow)
-        with s.of(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else ""):
-            s.canvas.arrow(tail, tail + arrow, "vector")
-            s.canvas.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
+        tail, u = s.frame(force.at), force.along
+        pen = s.pen(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else "")
+        pen.arrow(tail, tail + arrow, "vector")
+        pen.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
 
 
-def _foot(s: Shown, about: complex) -> complex:
-    """Foot of the perpendicular from a point on the line of action of a force, in the plan's unit."""
-    u = s.vector / abs(s.vector)
-    return s.at + float(((about - s.at) * np.conj(u)).real) * u
-
-
-def _feet(about: complex, shown: Iterable[Shown]) -> list[complex]:
-    """Feet of the arms that are drawn about a point, in the plan's unit."""
-    return [_foot(s, about) for s in shown if s.whole]
-
-
-def draw_arms(s: Stage, about: complex, shown: Iterable[Shown], points: Iterable[complex] = ()) -> None:
+def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
-    shown = [force for force in shown if abs(force.vector) > 0]
-    canvas, seen, centre = s.canvas, list[complex](), s.frame(about)
-    busy = [centre, *points, *(s.frame(force.at) for force in shown), *(s.frame(_foot(force, about)) for force in shown)]
+    seen, centre = list[complex](), s.frame(about)
+    busy = [centre, *points, *(s.frame(force.at) for force in shown), *(s.frame(force.foot(about)) for force in shown)]
     for force in sorted(shown, key=lambda force: -abs(force.vector)):  # forces on one line share the arm of the largest
-        u = force.vector / abs(force.vector)
-        tail = s.frame(force.at)
-        foot = tail + ((centre - tail) * np.conj(u)).real * u
+        tail, foot = s.frame(force.at), s.frame(force.foot(about))
         if abs(foot - centre) < 1.5 or not force.whole or any(abs(foot - f) < 0.6 for f in seen):
             continue
         seen.append(foot)
         letters = re.sub("F_|[_{}]", "", force.symbol.replace(BAR, ""))
-        with s.of(force.arm, "construction", f"h{letters}"):
-            if abs(foot - tail) > 0.5:
-                canvas.ray_line(tail, foot, "thin", 2.0)
-            canvas.line(centre, foot, "thin")
-            canvas.dot(foot, 0.35, "thin")
-            places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
-            at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-            canvas.label(at, f"h_{{{letters}}}", 1j * (foot - centre), 2.5, 0.8)
+        pen = s.pen(force.arm, "construction", f"h{letters}")
+        if abs(foot - tail) > 0.5:
+            pen.ray_line(tail, foot, "thin", 2.0)
+        pen.line(centre, foot, "thin")
+        pen.dot(foot, 0.35, "thin")
+        places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
+        at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
+        pen.label(at, f"h_{{{letters}}}", 1j * (foot - centre), 2.5, 0.8)
         busy.append(at)
 
 
@@ -381,7 +376,7 @@ def _polygon(fp: ForcePlan, k: int) -> tuple[dict[str, complex], Box]:
 
 def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
     """Force polygon with numbered vertices, its equation and the values found."""
-    points, real = _polygon(fp, k)
+    points, _ = _polygon(fp, k)
     canvas.of = fp.plan.name
     inside = box.inset(*AROUND)
     size = project.study.forces.force_size(k)
@@ -389,25 +384,24 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     if not sides:
         _fitted(canvas, canvas.title(box, fp.plan.title).centre, "В этом положении сил нет", 3.5, box.width - 4.0)
         return
-    need = max(real.width / inside.width, real.height / inside.height)
-    scale = pick(project, canvas, fp.plan.name, "μ_F", "Н/мм", need)
-    frame = Frame(scale, inside.centre - scale.mm(real.centre))
-    canvas.title(box, fp.plan.title, str(scale), 5.0)
+    frame = fit_frame(project, canvas, fp.plan.name, "μ_F", "Н/мм", list(points.values()), [0j] * len(points), inside)
+    canvas.title(box, fp.plan.title, str(frame.scale))
     flat_crossings.warn(project, canvas, box, fp.plan)
     s = stage(canvas, fp.plan, k, frame)
-    tiny = _draw_sides(s, sides, frame(real.centre))
+    tiny = _draw_sides(s, sides, inside.centre)
     extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
     for seg in extra:
         s.vector(seg.tail, seg.head)
         s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2)
     for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
-        s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - frame(real.centre), 2.5, 0.8)
+        s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
     terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
     _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
-    asked = [(s, t, h) for s, t, h, unknown in sides if unknown] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
-    found = [f"{s.replace(BAR, '')} = {newtons(clean(abs(complex(h.at(k)) - complex(t.at(k))), size))} Н" for s, t, h in asked]
+    asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
+    lengths = [(sign.replace(BAR, ""), abs(complex(s.value(head)) - complex(s.value(tail)))) for sign, tail, head in asked]
+    found = [f"{sign} = {newtons(clean(force, size))} Н" for sign, force in lengths]
     _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
 
 
@@ -474,8 +468,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         s.letters(point, linkage.indexed(point.name), gap=2.8)
     draw_arms(s, pivot, [force for force in shown if force.at != pivot])
     draw_forces(s, shown)
-    with s.of(study.velocities.omega[c.link], "symbol"):
-        symbols.rotation_arrow(canvas, s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
+    symbols.rotation_arrow(s.pen(study.velocities.omega[c.link], "symbol"), s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
         _turning(s, s.at(centre), 24.0, away, Couple(linkage.indexed(project.balancing), 0j, float(moment.at(k)), moment))
@@ -485,8 +478,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:
     """Direction from the crank's pivot into the widest angle between its arms, base, forces and their arms."""
-    acting = [force for force in shown if abs(force.vector) > 0]
-    lines = [force.vector if force.at == pivot else _foot(force, pivot) - pivot for force in acting]
+    lines = [force.vector if force.at == pivot else force.foot(pivot) - pivot for force in shown]
     return linkage.widest_gap([*(z - pivot for z in pins), -1j, *lines], 6)
 
 
@@ -519,8 +511,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.title(box, f"Рычаг Жуковского (положение {project.cycle.labels[k]})", text)
     turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
     for seg in lv.velocities.plan.segments:
-        with turned.of(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}"):
-            canvas.line(turned.at(seg.tail), turned.at(seg.head), "axis")
+        turned.pen(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}").line(turned.at(seg.tail), turned.at(seg.head), "axis")
     s = stage(canvas, lv.plan, k, frame)
     s.dot("p", 0.9)
     s.letters("p", "p", gap=1.2)
@@ -534,14 +525,11 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 def _turned_letters(s: Stage, points: Mapping[str, Step]) -> None:
     """Dots of the turned plan's points and their letters with a prime; those of one place together."""
-    joint: dict[tuple[int, int], list[str]] = {}
-    for name, step in points.items():
-        q = s.at(step)
-        joint.setdefault((round(q.real * 2), round(q.imag * 2)), []).append(name)
-    for names in joint.values():
-        first = points[names[0]]
+    names = list(points)
+    for same in together([s.at(step) for step in points.values()], 0.5):
+        first = points[names[same[0]]]
         s.dot(first)
-        s.letters(first, ", ".join(f"{linkage.indexed(name)}′" for name in names), s.at(first) - s.frame(0j), gap=1.2)
+        s.letters(first, ", ".join(f"{linkage.indexed(names[i])}′" for i in same), s.at(first) - s.frame(0j), gap=1.2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

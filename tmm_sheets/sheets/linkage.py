@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -139,10 +139,9 @@ def outlines(s: Stage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
     return sides + list(shape.arms)
 
 
-def draw(s: Stage, pos: Positions, style: str, only: Iterable[str] | None = None) -> None:
+def draw(s: Stage, pos: Positions, style: str, only: Collection[str] | None = None) -> None:
     """Links of the mechanism at a position: with all symbols in style main, as bare lines otherwise."""
-    wanted = set(pos.mechanism.links if only is None else only)
-    drawn = [shape for shape in shapes(pos) if shape.link in wanted]
+    drawn = [shape for shape in shapes(pos) if only is None or shape.link in only]
     # A dict, not a set: the order of the marks must be the same in every run.
     at = {name: s.at(pos.points[name]) for shape in drawn for name in (*shape.bar, shape.block or "") if name}
     gaps = at if style == "main" else [name for name in at if name in pos.mechanism.fixed]
@@ -158,24 +157,24 @@ def draw(s: Stage, pos: Positions, style: str, only: Iterable[str] | None = None
 def _draw_bar(s: Stage, pos: Positions, shape: Shape, hinges: list[complex], style: str) -> None:
     """A bar interrupted at hinges, in a bare plan from end to end."""
     for line in outlines(s, pos, shape):
-        with s.of(pos.directions[shape.link], "link", f"{line[0]}–{line[-1]}"):
-            points = [s.at(pos.points[name]) for name in line]
-            symbols.bar(s.canvas, points if style == "main" else (points[0], points[-1]), hinges, style)
+        pen = s.pen(pos.directions[shape.link], "link", f"{line[0]}–{line[-1]}")
+        points = [s.at(pos.points[name]) for name in (line if style == "main" else (line[0], line[-1]))]
+        symbols.bar(pen, points, hinges, style)
 
 
 def _draw_block(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
     """A block with its slot, or a ram, and what is fastened to it; small and alone in a bare plan."""
     block = pos.points[str(shape.block)]
-    with s.of(block, "symbol"):
-        if shape.slot is not None:
-            _ram(s, pos, shape, style)
-            half = RAM
-        else:
-            size = block_size(pos, shape, s) if style == "main" else (4.0, 2.4)
-            half = size[0] / 2
-            symbols.block(s.canvas, s.at(block), complex(s.value(pos.directions[shape.link])), style, size)
-            if shape.carried is not None and style == "main":
-                _slot(s, pos, shape, style)
+    pen = s.pen(block, "symbol")
+    if shape.slot is not None:
+        _ram(pen, s, pos, shape, style)
+        half = RAM
+    else:
+        size = block_size(pos, shape, s) if style == "main" else (4.0, 2.4)
+        half = size[0] / 2
+        symbols.block(pen, s.at(block), complex(s.value(pos.directions[shape.link])), style, size)
+        if shape.carried is not None and style == "main":
+            _slot(pen, s, pos, shape, style)
     if style == "main":
         _arms(s, pos, shape, half)
 
@@ -184,12 +183,12 @@ def _draw_pairs(s: Stage, pos: Positions, at: Mapping[str, complex], *, whole: b
     """Hinges and fixed pivots; of single groups only those pivots that are pairs of the mechanism."""
     m = pos.mechanism
     for name, z in at.items():
-        with s.of(pos.points[name], "symbol"):
-            if name in m.fixed:
-                if whole or name == m.crank.pivot or any(name in g.outer for g in m.groups):
-                    symbols.pivot(s.canvas, z, _base_direction(pos, name))
-            elif not any(g.kind.ram(g) and g.inner == name for g in m.groups):
-                symbols.hinge(s.canvas, z)
+        pen = s.pen(pos.points[name], "symbol")
+        if name in m.fixed:
+            if whole or name == m.crank.pivot or any(name in g.outer for g in m.groups):
+                symbols.pivot(pen, z, _base_direction(pos, name))
+        elif not any(g.kind.ram(g) and g.inner == name for g in m.groups):
+            symbols.hinge(pen, z)
 
 
 RAM = 21.0
@@ -209,7 +208,7 @@ def block_size(pos: Positions, shape: Shape, s: Stage) -> tuple[float, float]:
     return symbols.BLOCK
 
 
-def _slot(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
+def _slot(canvas: Canvas, s: Stage, pos: Positions, shape: Shape, style: str) -> None:
     """Walls of the slot in a block, through its whole width."""
     assert shape.carried is not None
     name, direction = shape.carried
@@ -218,7 +217,7 @@ def _slot(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
     z += ((s.at(pos.points[str(shape.block)]) - z) * np.conj(v)).real * v
     half, wall = block_size(pos, shape, s)[1] / 2, symbols.BLOCK[1] / 2 * 1j * v
     for side in (1, -1):
-        s.canvas.line(z + side * wall - half * v, z + side * wall + half * v, style)
+        canvas.line(z + side * wall - half * v, z + side * wall + half * v, style)
 
 
 def _arms(s: Stage, pos: Positions, shape: Shape, half: float) -> None:
@@ -228,8 +227,7 @@ def _arms(s: Stage, pos: Positions, shape: Shape, half: float) -> None:
         way = s.at(pos.points[p.name]) - z
         along = (way * np.conj(u)).real
         if p.link == shape.link and abs(way - along * u) < 1e-6 and abs(along) > half:
-            with s.of(pos.points[p.name], "link", f"{shape.block}–{p.name}"):
-                s.canvas.line(z + np.sign(along) * half * u, z + way, "main")
+            s.pen(pos.points[p.name], "link", f"{shape.block}–{p.name}").line(z + np.sign(along) * half * u, z + way, "main")
 
 
 def _base_direction(pos: Positions, name: str) -> complex:
@@ -239,7 +237,7 @@ def _base_direction(pos: Positions, name: str) -> complex:
     return 1j if len(ys) > 1 and mine == max(ys) and mine > min(ys) and name != pos.mechanism.crank.pivot else -1j
 
 
-def _ram(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
+def _ram(canvas: Canvas, s: Stage, pos: Positions, shape: Shape, style: str) -> None:
     """Guided link of a kind 5 group: a body on the guide with the slot in which the block slides."""
     g = next(g for g in pos.mechanism.groups if shape.link in g.links)
     z, pin = s.at(pos.points[str(shape.block)]), s.at(pos.points[g.outer[0]])
@@ -248,7 +246,7 @@ def _ram(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
     if ((pin - z) * np.conj(v)).real < 0:
         v = -v
     reach = max(((pin - z) * np.conj(v)).real + 9.0, 16.0)
-    half, thick, wall, line = RAM, 5.0, symbols.BLOCK[1] / 2, s.canvas.line
+    half, thick, wall, line = RAM, 5.0, symbols.BLOCK[1] / 2, canvas.line
     for side in (1, -1):
         line(z + side * wall * u + thick * v, z + side * wall * u + reach * v, style)
         line(z + side * wall * u + thick * v, z + side * half * u + thick * v, style)
@@ -256,21 +254,20 @@ def _ram(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
     line(z - half * u - thick * v, z + half * u - thick * v, style)
 
 
-def draw_guides(s: Stage, pos: Positions, only: Iterable[str] | None = None) -> None:
+def draw_guides(s: Stage, pos: Positions, only: Collection[str] | None = None) -> None:
     """Fixed guides of the blocks and rams, hatched on the side away from the link."""
     m = pos.mechanism
-    wanted = set(m.links if only is None else only)
     for g in m.groups:
         ram = g.kind.ram(g)
         for link, name in (*([(ram, g.guides[0])] if ram else []), *g.kind.sliders(g)):
-            if link in wanted and m.guides[name].link == m.frame:
-                with s.of(pos.guide_directions[name], "symbol"):
-                    z, u = s.at(pos.points[str(g.inner)]), complex(s.value(pos.guide_directions[name]))
-                    if link == ram:
-                        _guide(s.canvas, z, u, ((10.0, 19.5), (-19.5, -10.0)), 6.2, "axis")
-                    else:
-                        length, width = block_size(pos, next(shape for shape in shapes(pos) if shape.link == link), s)
-                        _guide(s.canvas, z, u, ((-length / 2 - 6.0, length / 2 + 6.0),), width / 2 + 0.4, "main")
+            if (only is None or link in only) and m.guides[name].link == m.frame:
+                pen = s.pen(pos.guide_directions[name], "symbol")
+                z, u = s.at(pos.points[str(g.inner)]), complex(s.value(pos.guide_directions[name]))
+                if link == ram:
+                    _guide(pen, z, u, ((10.0, 19.5), (-19.5, -10.0)), 6.2, "axis")
+                else:
+                    length, width = block_size(pos, next(shape for shape in shapes(pos) if shape.link == link), s)
+                    _guide(pen, z, u, ((-length / 2 - 6.0, length / 2 + 6.0),), width / 2 + 0.4, "main")
 
 
 def _guide(canvas: Canvas, z: complex, u: complex, stretches: Iterable[tuple[float, float]], gap: float, style: str) -> None:

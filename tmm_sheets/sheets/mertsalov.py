@@ -18,7 +18,6 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
 from tmm_sheets.sheets.player import Stage, stage
@@ -37,11 +36,7 @@ LEGEND = 6.0
 
 
 def _procedure(project: Any) -> Mertsalov:
-    fw = project.flywheel
-    if fw.method != "mertsalov":
-        raise CannotBuild(f'this view belongs to flywheel.method = "mertsalov", not "{fw.method}"',
-                          "take the arrangement flywheel among the project's sheets")
-    return cast("Mertsalov", fw)
+    return cast("Mertsalov", flywheel.by_method(project, "mertsalov", "take the arrangement flywheel among the project's sheets"))
 
 
 def _signs(options: Options) -> tuple[str, str, str, str]:
@@ -84,29 +79,24 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     x = s.angle.mm(fw.samples)
     curve = s.inertia.mm(fw.inertia(fw.samples))
     graphs.check_room(box, g.origin.imag + float(curve.max()) + graphs.HEAD, "mertsalov.inertia")
-    of, terms = (stage(canvas, p, None, g.place()) for p in (fw.inertia_plan, fw.reduced.numbered.plan))
-    with of.of("points", "curve"):
-        canvas.polyline(g(x + 1j * curve))
+    of = stage(canvas, fw.inertia_plan, None, g.place())
+    doubled = s.inertia.mu * fw.reduced.omega1**2  # the terms are doubled energies
+    terms = stage(canvas, fw.reduced.numbered.plan, None, g.place(s.angle.mu, doubled))
+    of.curve("points", g(x + 1j * curve))
     parts = _terms(fw)
     for n, (name, step, part) in enumerate(parts, 1):
-        with terms.of(step, "curve"):
-            canvas.polyline(g(x + 1j * part), "main")
+        terms.curve(step, g(x + 1j * part), "main")
         # A narrow peak is named at its left flank, where there is room.
         k = int(np.argmax(part[: len(part) // 2] > 0.7 * part[: len(part) // 2].max()))
         canvas.label(g(x[k] + 1j * part[k]), name if len(parts) <= NAMED else str(n), -1 if k else 1 - 1j, 3.5)
     if len(parts) > NAMED:
         legend = ";  ".join(f"{n} – {name}" for n, (name, *_) in enumerate(parts, 1))
         canvas.text(complex((box.x0 + box.x1) / 2, box.y1 - 13.0), legend, _height(legend, box.width), "centre")
-    at = s.angle.mm(fw.reduced.phi)
-    points = fw.inertia_plan["points"].value
     flywheel.uprights(of, "points")
-    length = s.angle.mm(fw.reduced.period)
-    with of.of("points", "axis"):
-        graphs.axes(canvas, g, length, 0.0, float(curve.max()), f"{sign}, кг·м^2")
-        graphs.numbers(canvas, g, at, fw.labels, np.ones(len(at)))
+    flywheel.axes(fw, of, "points", g, 0.0, float(curve.max()), f"{sign}, кг·м^2", np.ones(len(fw.labels)))
     k = int(np.argmax(curve))
     canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
-    _tangent(canvas, project, fw, of, points, box)
+    _tangent(fw, of.position(project.force_index), box)
 
 
 def _terms(fw: Mertsalov) -> list[tuple[str, Step, Any]]:
@@ -120,25 +110,22 @@ def _terms(fw: Mertsalov) -> list[tuple[str, Step, Any]]:
     return [(name, step, part) for name, step, part in found if part.max() > 4.0]
 
 
-def _tangent(canvas: Canvas, project: Any, fw: Mertsalov, of: Stage, points: Any, box: Box) -> None:
+def _tangent(fw: Mertsalov, of: Stage, box: Box) -> None:
     """Tangent of the graph of inertia at the position of the force analysis, which gives the acceleration of the crank there."""
-    k = project.force_index
-    plan = fw.position_acceleration
-    psi = float(plan["ψ"].value[k])
-    at, u = complex(of.frame(points[k])), complex(np.cos(psi), np.sin(psi))
+    step = fw.position_acceleration["ψ"]
+    psi = float(of.value(step))
+    at, u = of.at("points"), complex(np.cos(psi), np.sin(psi))
     # As long as its place allows: a steep one ends under the heading and above the numbers of the axis.
     low, high = segment_inside(box.inset(2.0, 2.0, 2.0, graphs.HEAD), at - 26.0 * u, at + 26.0 * u) or (at, at)
-    with canvas.traced("construction", plan["ψ"].path, fw.labels[k]):
-        canvas.line(low, high, "axis")
-    of.position(k).dot("points", 0.7, "main")
+    of.canvas.tracing("construction", step.path, of.label).line(low, high, "axis")
+    of.dot("points", 0.7, "main")
     # The vertex of the angle lies on the tangent, away from the curve's own label.
     vertex = at + 0.8 * ((low if psi > 0 else high) - at)
     side = 1 if psi > 0 else -1
-    with canvas.traced("dimension", plan["ψ"].path, fw.labels[k]):
-        canvas.line(vertex, vertex + side * 20, "thin")
+    of.canvas.tracing("dimension", step.path, of.label).line(vertex, vertex + side * 20, "thin")
     start, end = (0.0, psi) if psi > 0 else (np.pi + psi, np.pi)
     if abs(psi) > 0.02:
-        canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {fixed(degrees(psi), 2)}°")
+        of.canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {fixed(degrees(psi), 2)}°")
 
 
 def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -161,31 +148,23 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "mertsalov.energies")
     canvas.of = fw.total_plan.name
     sums, of, speed = (stage(canvas, p, None, g.place()) for p in (fw.total_plan, plan, fw.speed_plan))
-    with sums.of("points", "curve"):
-        canvas.polyline(g(x + 1j * total))
+    sums.curve("points", g(x + 1j * total))
     canvas.of = plan.name
-    with of.of("points", "curve"):
-        canvas.polyline(g(x + 1j * own))
+    of.curve("points", g(x + 1j * own))
     points, upper = plan["points"].value, fw.total_plan["ΔE"].value
     for p, top, label in zip(points, upper, fw.labels, strict=True):
-        with canvas.traced("construction", plan["T_I"].path, label):
-            canvas.line(g(complex(p.real, min(0.0, p.imag, top))), g(complex(p.real, max(0.0, p.imag, top))), "thin")
-    length = s.angle.mm(fw.reduced.period)
-    with of.of("points", "axis"):
-        graphs.axes(canvas, g, length, low, high, f"{change}, {first}, Дж")
-        graphs.numbers(canvas, g, points.real, fw.labels, np.where(upper > 1e-6, 1.0, -1.0))
+        below, above = (g(complex(p.real, f(0.0, p.imag, top))) for f in (min, max))
+        canvas.tracing("construction", plan["T_I"].path, label).line(below, above, "thin")
+    flywheel.axes(fw, of, "points", g, low, high, f"{change}, {first}, Дж", np.where(upper > 1e-6, 1.0, -1.0))
     for name, end in (("max", "a"), ("min", "b")):
         # The tangent runs on beyond the point where it touches.
-        with canvas.traced("construction", plan[f"M_{name}"].path):
-            canvas.line(of.at(end), g(plan[f"M_{name}"].value + 10), "construction")
+        of.line(f"M_{name}", of.at(end), of.at(f"M_{name}") + 10)
         of.dot(f"M_{name}", 0.7, "main")
         of.letters(end, end, -1 + (1j if end == "a" else -1j), 5)
-    with of.of("ab", "dimension"):
-        canvas.dimension(of.at("b"), of.at("a"), 9.0, f"|ab| = {fixed(fw.ab_mm, 1)}")
-    axis = fw.speed_plan["O"].value
-    with speed.of("O", "axis"):
-        canvas.line(g(axis - 5), g(axis + length + graphs.OVER), "centre")
-        canvas.label(g(axis + length + 2), "ω_{1ср}", 1j, height=5)
+    of.pen("ab", "dimension").dimension(of.at("b"), of.at("a"), 9.0, f"|ab| = {fixed(fw.ab_mm, 1)}")
+    axis, length, pen = speed.at("O"), s.angle.mm(fw.reduced.period), speed.pen("O", "axis")
+    pen.line(axis - 5, axis + length + graphs.OVER, "centre")
+    pen.label(axis + length + 2, "ω_{1ср}", 1j, height=5)
     k = int(np.argmax(total))
     canvas.label(g(x[k] + 1j * total[k]), change, 1 + 1j, height=5)
     k = int(np.argmax(np.abs(np.gradient(own))))
@@ -203,7 +182,7 @@ def _omega_scale(fw: Mertsalov) -> Scale:
 def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """What was found at every position: moment, work, energies, inertia, angular velocity and acceleration of the crank."""
     fw = _procedure(project)
-    varying = "с" if fw.reduced.resisting else "д"
+    varying, _ = flywheel.indices(fw)
     change, second, first, sign = _signs(options)
     columns = [
         (f"M_{varying}^{{пр}}", "Н·м", fw.M_reduced), (f"A_{varying}", "Дж", fw.work), (change, "Дж", fw.delta_E),
@@ -226,7 +205,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw = _procedure(project)
     d, omega, k = fw.data, fw.reduced.omega1, project.force_index
     _, _, _, sign = _signs(options)
-    varying, constant = ("с", "д") if fw.reduced.resisting else ("д", "с")
+    varying, constant = flywheel.indices(fw)
     taken = " (принято)" if d.accepted else ""
     fast, slow = fw.extremes
     highest, lowest = (float(fw.speed_plan[f"[ω_{name}]"].value) for name in ("max", "min"))
@@ -266,7 +245,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     left = canvas.title(box, "Расчёт маховика по методу Мерцалова")
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):
-        canvas.text(complex(box.x0, left.y1 - (i + 1) * step + 0.35 * step), line, _height(line, box.width))
+        canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, _height(line, box.width))
 
 
 def _size(fw: Mertsalov) -> str:

@@ -6,8 +6,7 @@ are drawn here, once for all views, and every mark knows its step. What a view a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -44,14 +43,12 @@ class Stage:
         """The same plan in the same place, at another position."""
         return replace(self, k=k)
 
-    @contextmanager
-    def of(self, step: Step | str, role: Role, name: str = "") -> Iterator[None]:
-        """The marks drawn inside come from that step; see :class:`~tmm_sheets.drawing.marks.Trace`.
+    def pen(self, step: Step | str, role: Role, name: str = "") -> Canvas:
+        """The canvas for marks that come from that step; see :class:`~tmm_sheets.drawing.marks.Trace`.
 
         It may be a step of another plan that is drawn in this frame: a force on a link in its position.
         """
-        with self.canvas.traced(role, self.step(step).path, self.label, self.number, name):
-            yield
+        return self.canvas.tracing(role, self.step(step).path, self.label, self.number, name)
 
     def step(self, step: Step | str) -> Step:
         """Step of the plan by its name."""
@@ -69,19 +66,24 @@ class Stage:
     def vector(self, tail: Step | str, head: Step | str, style: str = "vector") -> None:
         """Arrow between the points of two steps; it is a mark of the second."""
         a, b = self.step(tail), self.step(head)
-        with self.of(b, "vector", f"{a.name}–{b.name}"):
-            self.canvas.arrow(self.at(a), self.at(b), style)
+        self.pen(b, "vector", f"{a.name}–{b.name}").arrow(self.at(a), self.at(b), style)
 
     def letters(self, step: Step | str, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
                 at: complex | None = None, leader: bool = True) -> None:
         """Ask for lettering that belongs to a step, at its point unless told; see :meth:`Canvas.label`."""
-        with self.of(step, "text"):
-            self.canvas.label(self.at(step) if at is None else at, markup, away, height, gap, leader)
+        self.pen(step, "text").label(self.at(step) if at is None else at, markup, away, height, gap, leader)
 
-    def dot(self, step: Step | str, radius: float = 0.6, style: str = "vector") -> None:
-        """Dot at the point of a step."""
-        with self.of(step, "point"):
-            self.canvas.dot(self.at(step), radius, style)
+    def dot(self, step: Step | str, radius: float = 0.6, style: str = "vector", at: complex | None = None) -> None:
+        """Dot at the point of a step, or where it shows its value."""
+        self.pen(step, "point").dot(self.at(step) if at is None else at, radius, style)
+
+    def line(self, step: Step | str, a: complex, b: complex, style: str = "construction", role: Role = "construction") -> None:
+        """Straight stroke that belongs to a step."""
+        self.pen(step, role).line(a, b, style)
+
+    def curve(self, step: Step | str, points: Any = None, style: str = "curve", closed: bool = False) -> None:
+        """Smooth curve through the points of a step, or through others that it goes through, mm."""
+        self.pen(step, "curve").polyline(self.frame(self.step(step).value) if points is None else points, style, closed)
 
 
 def _label(plan: Plan, k: int | None) -> str:
@@ -92,6 +94,12 @@ def stage(canvas: Canvas, plan: Plan, k: int | None, frame: Place) -> Stage:
     """Place a plan on the sheet, at position ``k`` or, with None, one for all positions; its frame is noted on the canvas."""
     number = canvas.placed(plan.name, _label(plan, k), complex(frame.origin), frame.mu, frame.turn, frame.mirror)
     return Stage(canvas, plan, k, frame, number)
+
+
+def placed(canvas: Canvas, plan: Plan, origin: complex, mu: float | tuple[float, float], turn: float = 0.0) -> Stage:
+    """Place a plan of all positions with its zero at ``origin``, by the numbers of its :class:`PlacedFrame`."""
+    number = canvas.placed(plan.name, "", origin, mu, turn)
+    return Stage(canvas, plan, None, canvas.frames[number], number)
 
 
 def helpers(s: Stage, step: Step) -> tuple[Helper, ...]:
@@ -112,13 +120,13 @@ def play(s: Stage, steps: Iterable[Step | str] | None = None, style: str = "cons
     """
     for step in map(s.step, s.plan if steps is None else steps):
         for h in (h for h in helpers(s, step) if only in ("", h.kind)):
-            with s.of(step, "construction", _ends(s, step, h)):
-                if h.kind == "line":
-                    s.canvas.ray_line(s.frame(h.a), s.frame(h.b), style, over)
-                elif h.kind == "circle":
-                    s.canvas.circle(s.frame(h.a), abs(s.frame(h.a + h.radius) - s.frame(h.a)), style)
-                else:
-                    s.canvas.arc_mark(s.frame(h.a), s.frame(h.b), cut, style)
+            pen = s.pen(step, "construction", _ends(s, step, h))
+            if h.kind == "line":
+                pen.ray_line(s.frame(h.a), s.frame(h.b), style, over)
+            elif h.kind == "circle":
+                pen.circle(s.frame(h.a), abs(s.frame(h.a + h.radius) - s.frame(h.a)), style)
+            else:
+                pen.arc_mark(s.frame(h.a), s.frame(h.b), cut, style)
 
 
 def _ends(s: Stage, step: Step, h: Helper) -> str:

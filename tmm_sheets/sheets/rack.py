@@ -13,8 +13,8 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.frame import Frame
-from tmm_sheets.sheets.gear_marks import Window, arrow_head, gap, ratio, standard
+from tmm_sheets.sheets.frame import Frame, ratio, standard
+from tmm_sheets.sheets.gear_marks import Window, gap
 from tmm_sheets.sheets.player import Stage, stage
 
 MARGIN = 16.0
@@ -35,9 +35,7 @@ def generating(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     picture.lines()
     picture.positions()
     picture.rack_and_teeth()
-    with canvas.as_role("dimension"):
-        picture.dimensions()
-    canvas.of = ""
+    picture.dimensions(canvas.tracing("dimension"))
 
 
 def _turned(canvas: Canvas, plan: Plan, wheel: Any, at: Frame) -> Stage:
@@ -57,16 +55,16 @@ class _RackPicture:
         top = max((self.rack.shift + gear.addendum) * m, self.wheel.ra - self.rack.r)
         bottom = self.rack.r - self.wheel.rf + BELOW * m
         inner = box.inset(0, 0, MARGIN, 16 + NOTES)
-        scale = min(standard(PITCHES * pi * m, inner.width), standard(top + bottom, inner.height), key=lambda s: -s.mu)
+        scale = standard((PITCHES * pi * m, inner.width), (top + bottom, inner.height))
         canvas.scales["gear-rack"] = scale
-        inner = canvas.title(box, f"Станочное зацепление колеса {self.wheel.number}", f"М {ratio(scale)}")
+        inner = canvas.title(box, f"Станочное зацепление колеса {self.wheel.number}", ratio(scale))
         # What height is left goes to the wheel, whose centre may come to stand on the picture.
         self.pole = complex((inner.x0 + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)
         low = max(inner.y0, self.pole.imag - min(self.rack.r / scale.mu + 12, 2.2 * bottom / scale.mu))
         self.window = Window(canvas, Box(inner.x0, low, inner.x1 - MARGIN, inner.y1))
         # the plan's origin is the wheel's centre
         self.at = Frame(scale, self.pole - scale.mm(1j * self.rack.r))
-        self.stage = stage(canvas, gear.generating, 0, self.at)
+        self.stage = stage(canvas, gear.generating, None, self.at)
 
     def height(self, y: float) -> float:
         """Ordinate on the sheet at ``y`` m over the reference line of the rack."""
@@ -86,8 +84,7 @@ class _RackPicture:
         c, w, rack, gear, s = self.canvas, self.window.box, self.rack, self.gear, self.stage
         self.window.line(s, "O", complex(self.pole.real, w.y0), complex(self.pole.real, w.y1), "centre")
         if w.contains(s.at("O")):
-            with s.of("O", "symbol"):
-                c.circle(s.at("O"), 2.0, "main")
+            s.pen("O", "symbol").circle(s.at("O"), 2.0, "main")
             c.label(s.at("O"), f"O_{self.wheel.number}", away=1 - 1j, height=5, gap=3)
         reference = self.height(0.0)
         self.window.line(s, "WT", complex(w.x0, self.pole.imag), complex(w.x1, self.pole.imag), "thin")
@@ -99,26 +96,23 @@ class _RackPicture:
             at = complex(w.x0 + 36 + 6 * k, w.y1 - 6 - 6 * k)
             c.text(at + 1.0, text, 3.5)
             end = complex(at.real, y)
-            with c.as_role("text"):
-                c.line(at - 1j, at - 1j + 2 + letter(text, 3.5).width, "thin")
-                c.line(at - 1j, end, "thin")
-                arrow_head(c, end, -1j, 2.5)
+            pen = c.tracing("text")
+            pen.line(at - 1j, at - 1j + 2 + letter(text, 3.5).width, "thin")
+            pen.line(at - 1j, end, "thin")
+            pen.arrow_head(end, -1j, 2.5)
         n = rect(1, -rack.alpha)  # towards the foot of the base circle's tangent, for the flank on the right
         foot = complex(self.at(1j * rack.r + rack.r * np.sin(rack.alpha) * n))
         limit = complex(self.at(1j * rack.r + (rack.addendum - rack.shift) * gear.m / np.sin(rack.alpha) * n))
         reach = 1.15 * max(abs(foot - self.pole), abs(limit - self.pole))
         self.window.line(s, "K", self.pole - reach * n, self.pole + reach * n, "thin")
-        with c.as_role("symbol"):
-            c.dot(self.pole, 1.0)
+        c.tracing("symbol").dot(self.pole, 1.0)
         c.label(self.pole, "P_0", away=-1 - 1j, height=5, gap=1.5)
         for point, name, way in ((foot, "N", n * 1j), (limit, "B_l", n * -1j)):
             if w.contains(point, -2):
-                with c.as_role("symbol"):
-                    c.dot(point, 0.8)
+                c.tracing("symbol").dot(point, 0.8)
                 c.label(point, name, away=way, height=5, gap=1.5)
         radius = min(0.42 * w.width, 60.0)
-        with s.of("flank", "dimension"):
-            c.angle_mark(self.pole, -rack.alpha, 0.0, radius, f"α = {degrees_and_minutes(rack.alpha)}")
+        s.pen("flank", "dimension").angle_mark(self.pole, -rack.alpha, 0.0, radius, f"α = {degrees_and_minutes(rack.alpha)}")
 
     def positions(self) -> None:
         """Positions of the rack's flank relative to the wheel, and the points in which they touch the tooth."""
@@ -148,7 +142,7 @@ class _RackPicture:
         c = self.canvas
         top = self.gear.addendum * self.gear.m
         outline = self.at(self.rack.placed(self.rack.outline(-1, 1, top), 0.0))
-        self.window.curve(self.stage, "M", outline, "axis")
+        self.window.curve(self.stage, "M", outline, "axis", "symbol")
         shape = self.gear.generated(self.wheel)
         teeth = shape.outline(-2, 2, step=0.5 * self.at.scale.mu)
         # The engagement's tooth 0, turned so that a space stands over the centre.
@@ -166,22 +160,22 @@ class _RackPicture:
             point = complex(self.at((flank[k] if shape.side > 0 else np.conj(flank[k])) * right))
             c.label(point, "подрез", away=-1 + 0.5j, height=3.5, gap=8)
 
-    def dimensions(self) -> None:
+    def dimensions(self, c: Canvas) -> None:
         """Shift, addendum, clearance, pitch and tip radius of the rack."""
-        c, w, rack, gear = self.canvas, self.window.box, self.rack, self.gear
+        w, rack, gear = self.window.box, self.rack, self.gear
         m = gear.m
         tip = complex(self.at(rack.placed(rack.tip_centre, 0.0)))
         touch = tip + rect(rack.tip_radius / self.at.scale.mu, -(rack.alpha + pi / 2) / 2)
         c.dot(tip, 0.5, "thin")
         c.line(tip, touch, "thin")
-        arrow_head(c, touch, (touch - tip) / abs(touch - tip), 2.5)
+        c.arrow_head(touch, (touch - tip) / abs(touch - tip), 2.5)
         c.label(tip, f"ρ_f = {fixed(rack.tip_radius * 1e3, 2)}", away=-1 + 0.4j, gap=1.5)
         x = w.x0 + 6.0
         for low in (0.0, -gear.addendum * m):
             a, b = complex(x, self.height(low)), complex(x, self.height(low + gear.addendum * m))
             c.line(a, b, "thin")
-            arrow_head(c, a, -1j, 3.0)
-            arrow_head(c, b, 1j, 3.0)
+            c.arrow_head(a, -1j, 3.0)
+            c.arrow_head(b, 1j, 3.0)
             c.label((a + b) / 2, f"h_a^{{*}}m = {number(gear.addendum * m * 1e3)}", away=1, height=3.5, gap=1.0)
         for level in (-gear.addendum * m, -rack.depth, gear.addendum * m):
             y = self.height(level)
@@ -200,8 +194,8 @@ class _RackPicture:
         a, b = complex(self.pole.real - half, y), complex(self.pole.real + half, y)
         if w.contains(a) and w.contains(b):
             c.line(a, b, "thin")
-            arrow_head(c, a, -1, 3.0)
-            arrow_head(c, b, 1, 3.0)
+            c.arrow_head(a, -1, 3.0)
+            c.arrow_head(b, 1, 3.0)
             for end in (a, b):
                 self.window.line(self.stage, "M", end + 2j, complex(end.real, self.height(0.0)), "thin", "dimension")
             c.put(laid, (a + b) / 2 + complex(4, 1.0))

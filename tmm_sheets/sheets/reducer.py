@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.scale import Scale, fit_standard, handy
+from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box, PlacedFrame
+from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.gear_marks import arrow_head, line, ratio, ruled_table, spread
-from tmm_sheets.sheets.player import Stage, play
-from tmm_sheets.sheets.player import stage as staged
+from tmm_sheets.sheets.frame import ratio, standard
+from tmm_sheets.sheets.gear_marks import ruled_table, spread
+from tmm_sheets.sheets.player import Stage, placed, play
 
 COLUMN = 19.0
 """Distance of two columns of wheels of the axial view, mm."""
@@ -36,7 +35,6 @@ def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     """Axial view, picture of velocities and front view side by side on one main axis, to one scale."""
     canvas.of = "reducer-velocities"
     _Scheme(project.reducer, canvas, box).draw()
-    canvas.of = ""
 
 
 class _Scheme:
@@ -55,12 +53,10 @@ class _Scheme:
         self.side = max(self.reach, one, two)
         self.width = self.columns() * COLUMN + 2 * STUB
         inner = box.inset(0, 0, 0, 18)
-        real, drawn = fit_standard(max(
-            (self.top + self.bottom) * 1e3 * 1.0 / (inner.height - 16),
-            2 * self.side * 1e3 / (inner.width - self.width - NARROWEST - 24)), 1.0)
-        self.mu = Scale("μ_l", real / drawn * 1e-3, "м/мм")
+        beside = inner.width - self.width - NARROWEST - 24
+        self.mu = standard((self.top + self.bottom, inner.height - 16), (2 * self.side, beside))
         canvas.scales["reducer-scheme"] = self.mu
-        self.box = canvas.title(box, "Схема редуктора, картина скоростей и вид с торца", f"М {ratio(self.mu)}")
+        self.box = canvas.title(box, "Схема редуктора, картина скоростей и вид с торца", ratio(self.mu))
         spare = self.box.height - (self.top + self.bottom) / self.mu.mu
         self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
         self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
@@ -298,9 +294,9 @@ class _Scheme:
         zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
         c.text(complex((self.picture.x0 + self.picture.x1) / 2, self.picture.y1 - 3.0), str(mu), 3.5, "centre")
 
-        s = _placed(c, plan, complex(zero, self.axis), mu, self.mu)
+        s = placed(c, plan, complex(zero, self.axis), (mu.mu, self.mu.mu))
         bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
-        line(s, "O", complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis")
+        s.line("O", complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis", "axis")
         self.heights(s, [name for name in ends if name[0].isupper()])
         self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
         self.lines(s)
@@ -319,8 +315,7 @@ class _Scheme:
         for step in (step for step in plan if step.rule.gives == "direction"):
             on = sorted((complex(p.value) for p in (*step.args, *(p for p in points if step in p.args))), key=lambda z: z.imag)
             a, b = complex(s.frame(on[0])), complex(s.frame(on[-1]))
-            with s.of(step, "axis"):
-                self.canvas.ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
+            s.pen(step, "axis").ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
             away = 1j * (b - a) * (-1 if (b - a).real > 0 else 1)
             self.canvas.label(a + 0.62 * (b - a), _link(step.name), away=away, height=5, gap=1.2)
 
@@ -331,15 +326,10 @@ class _Scheme:
             names.setdefault(round(s.at(name).imag, 1), []).append(name)
         for group in names.values():
             end = s.at(group[0])
-            line(s, group[0], complex(self.box.x0 + STUB, end.imag), end, "construction")
+            s.line(group[0], complex(self.box.x0 + STUB, end.imag), end, "construction", "axis")
             s.dot(group[0], 0.7, "main")
             letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
             self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
-
-
-def _placed(canvas: Canvas, plan: Plan, origin: complex, velocity: Scale, height: Scale) -> Stage:
-    """A plan of velocities over heights on the sheet."""
-    return staged(canvas, plan, 0, PlacedFrame(-1, plan.name, "", origin, (velocity.mu, height.mu)))
 
 
 def _link(name: str) -> str:
@@ -365,12 +355,12 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     plan = reducer.speeds(distance * heights.mu)
     zero = (inner.x0 + inner.x1) / 2 - mu.mm(low + high) / 2
     y = inner.y1 - max(14.0, (inner.height - distance) * 0.5)
-    s = _placed(canvas, plan, complex(zero, y), picture, heights)
+    s = placed(canvas, plan, complex(zero, y), (picture.mu, heights.mu))
     origin, pole = s.at("0"), s.at("P")
-    with s.of("0", "axis"):
-        canvas.line(complex(zero + mu.mm(low) - 10, y), complex(zero + mu.mm(high) + 10, y), "axis")
-        arrow_head(canvas, complex(zero + mu.mm(high) + 12, y), 1)
-        canvas.line(origin, pole, "thin")
+    pen = s.pen("0", "axis")
+    pen.line(complex(zero + mu.mm(low) - 10, y), complex(zero + mu.mm(high) + 10, y), "axis")
+    pen.arrow_head(complex(zero + mu.mm(high) + 12, y), 1)
+    pen.line(origin, pole, "thin")
     canvas.label(complex(zero + mu.mm(high) + 12, y), "n, об/мин", away=-1j, height=3.5, gap=1.5)
     for name, size, away, height in (("P", 0.9, -1j, 5.0), ("0", 0.8, -1 + 1j, 3.5)):
         s.dot(name, size, "main")
@@ -385,9 +375,8 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     for (end, link), x in zip(ends, places, strict=True):
         play(s, [link], "main")
         s.dot(link, 0.8, "main")
-        line(s, link, end, complex(x, y + 7), "thin", "text")
+        s.line(link, end, complex(x, y + 7), "thin", "text")
         canvas.text(complex(x, y + 9), f"n_{{{_link(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
-    canvas.of = ""
 
 
 def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

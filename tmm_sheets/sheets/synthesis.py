@@ -13,7 +13,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets.frame import Frame, fit_frame
-from tmm_sheets.sheets.player import stage
+from tmm_sheets.sheets.player import Stage, stage
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -40,8 +40,7 @@ def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     step = min(LINE, inside.height / len(lines))
     widest = max(letter(line, 3.5).width for line in lines)
     height = 3.5 * min(1.0, right.width / widest)
-    for i, line in enumerate(lines):
-        canvas.text(complex(right.x0, inside.y1 - (i + 0.7) * step), line, height)
+    canvas.lines(complex(right.x0, inside.y1 - 0.7 * step), lines, step, height)
 
 
 def _frame(project: Project, canvas: Canvas, box: Box, points: list[complex], around: tuple[complex, ...]) -> Frame:
@@ -59,21 +58,15 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
     canvas.text(complex(box.x0, box.y0 + 1.5), str(frame.scale), 3.5)
     right = stage(canvas, found.plan, 0, frame)
     left = stage(canvas, found.plan, 0, replace(frame, turn=pi, mirror=True))
-    with right.of("A", "construction", "B′–B″"):
-        canvas.circle(frame(a), frame.scale.mm(crank), "thin")
-    with right.of("C", "axis"):
-        canvas.line(frame(c) - 6j, frame(complex(0, max(d.imag, crank))) + 4j, "centre")
+    right.pen("A", "construction", "B′–B″").circle(frame(a), frame.scale.mm(crank), "thin")
+    right.pen("C", "axis").line(frame(c) - 6j, frame(complex(0, max(d.imag, crank))) + 4j, "centre")
     for s, prime in ((right, "′"), (left, "″")):
         for link in ("CD", "AB"):
-            with s.of(link[1], "link", f"{link[0]}–{link[1]}{prime}"):
-                symbols.bar(canvas, map(s.at, link), map(s.at, "ABCD"), "main", 1.0)
+            symbols.bar(s.pen(link[1], "link", f"{link[0]}–{link[1]}{prime}"), map(s.at, link), map(s.at, "ABCD"), "main", 1.0)
         for name, away in (("B", s.at("B") - s.at("A")), ("D", 1j)):
-            with s.of(name, "symbol"):
-                symbols.hinge(canvas, s.at(name), "main", 1.0)
-                canvas.label(s.at(name), name + prime, away, 3.5, 1.4)
-        with s.of("B", "symbol"):  # a right angle
-            u, v = (2.5 * (s.at(end) - s.at("B")) / abs(s.at(end) - s.at("B")) for end in "CA")
-            canvas.polyline((s.at("B") + u, s.at("B") + u + v, s.at("B") + v), "thin")
+            _hinge(s, name, name + prime, away, 1.4)
+        u, v = (2.5 * (s.at(end) - s.at("B")) / abs(s.at(end) - s.at("B")) for end in "CA")  # a right angle
+        s.pen("B", "symbol").polyline((s.at("B") + u, s.at("B") + u + v, s.at("B") + v), "thin")
     symbols.pivot(canvas, frame(c))
     symbols.hinge(canvas, frame(a), "main", 1.0)
     for name in "AC":
@@ -81,6 +74,12 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
     half, radius = float(found.plan["θ"].value) / 2, min(0.45 * frame.scale.mm(found.exact["l_AC"]), 22.0)
     canvas.angle_mark(frame(c), pi / 2 - half, pi / 2 + half, radius, "θ")
     canvas.dimension(left.at("D"), right.at("D"), 5.0, "H")
+
+
+def _hinge(s: Stage, name: str, letters: str, away: complex, gap: float) -> None:
+    """A small hinge at a point with its letters."""
+    symbols.hinge(s.pen(name, "symbol"), s.at(name), "main", 1.0)
+    s.letters(name, letters, away, gap=gap)
 
 
 def _engine(project: Project, canvas: Canvas, box: Box) -> None:
@@ -93,21 +92,15 @@ def _engine(project: Project, canvas: Canvas, box: Box) -> None:
     frame = _frame(project, canvas, box, [*points, *(crank * u for u in (1, -1, 1j, -1j))], (10, -10, 9j, -9j))
     canvas.text(complex(box.x0, box.y1 - 5.0), str(frame.scale), 3.5)
     s = stage(canvas, found.plan, 0, replace(frame, turn=float(np.angle(turn))))
-    with s.of("A", "construction", "B′–B″"):
-        canvas.circle(frame(0j), frame.scale.mm(crank), "thin")
+    s.pen("A", "construction", "B′–B″").circle(frame(0j), frame.scale.mm(crank), "thin")
     axis = turn * 1j
-    with s.of("AC", "axis"):
-        canvas.line(s.at("B″") - 4 * axis, s.at("C′") + 9 * axis, "centre")
+    s.pen("AC", "axis").line(s.at("B″") - 4 * axis, s.at("C′") + 9 * axis, "centre")
     for prime in "′″":
         for link, hinges in ((("A", f"B{prime}"), (*pins, "A")), ((f"B{prime}", f"C{prime}"), pins)):
-            with s.of(link[1], "link", "–".join(link)):
-                symbols.bar(canvas, map(s.at, link), map(s.at, hinges), "main", 1.0)
-        with s.of(f"C{prime}", "symbol"):
-            symbols.block(canvas, s.at(f"C{prime}"), axis, "main", (7.0, 4.2))
+            symbols.bar(s.pen(link[1], "link", "–".join(link)), map(s.at, link), map(s.at, hinges), "main", 1.0)
+        symbols.block(s.pen(f"C{prime}", "symbol"), s.at(f"C{prime}"), axis, "main", (7.0, 4.2))
         for name in (f"B{prime}", f"C{prime}"):
-            with s.of(name, "symbol"):
-                symbols.hinge(canvas, s.at(name), "main", 1.0)
-                canvas.label(s.at(name), name, axis * -1j, 3.5, 2.8)
+            _hinge(s, name, name, axis * -1j, 2.8)
     symbols.pivot(canvas, frame(0j))
     canvas.label(frame(0j), "A", -1 + 1j, 3.5, 2.8)
     canvas.dimension(s.at("C″"), s.at("C′"), 8.0 if turn == -1j else -8.0, "H")
