@@ -561,7 +561,10 @@ class Flywheel(ABC):
 
     @cached_property
     def total_plan(self) -> Plan:
-        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at that of energy, mm; ``A``, ``A_K``, ``E``, J."""
+        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at that of energy, mm; ``A``, ``A_K``, ``E``, J.
+
+        ``δA`` is how much greater the work of the cycle is by the ordinates in the middles than by the area, % of the area.
+        """
         plan = Plan(f"total-work{self.where}", "График суммарной работы", "mm", self.labels)
         line = plan.add("y_1", ON_LINE, self.across, self.driving_plan["K"])
         curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
@@ -574,6 +577,9 @@ class Flywheel(ABC):
                  say="Работа постоянного момента {name} = y_1·μ_A = {0}·{1} Дж/мм = {value} Дж.")
         plan.add("E", FROM_PAPER, energy, self.mu("energy"),
                  say="Изменение кинетической энергии {name} = ΔE·μ_E = {0}·{1} Дж/мм = {value} Дж.")
+        done = plan.add("A_Σ", WORK_AT, plan["A"], len(self.labels) - 1)
+        plan.add("δA", DIFFERENCE, done, self.area_plan["A_Σ"],
+                 say="Работа за цикл отличается от найденной по площади графика на {name} = {value} %.")
         return plan
 
     @cached_property
@@ -671,8 +677,7 @@ class Flywheel(ABC):
     @property
     def work_error(self) -> float:
         """How much greater the work of the cycle is by the ordinates in the middles than by the area, in parts of the area."""
-        area = float(self.work_converged[-1])
-        return float(self.work[-1]) / area - 1 if area else 0.0
+        return float(self.total_plan["δA"].value) / 100 if self.work_converged[-1] else 0.0
 
     @property
     def M_constant(self) -> float:
