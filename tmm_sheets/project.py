@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.gears.reducer import Reducer
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.forces import GearForce
-    from tmm_sheets.methods.linkage.loads import Applied
+    from tmm_sheets.methods.linkage.loads import Loads
     from tmm_sheets.methods.linkage.motion import Motion
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.methods.linkage.synthesis import Synthesis
@@ -29,7 +29,7 @@ LINKAGE = ("positions", "velocities", "accelerations", "forces")
 """Parts of the results that the linkage has."""
 
 
-PLANNED = ("synthesis", "cycle", "driver", "study", "motion", "reduced", "flywheel", "reducer", "gear", "cam")
+PLANNED = ("synthesis", "cycle", "driver", "applied", "study", "motion", "reduced", "flywheel", "reducer", "gear", "cam")
 """Parts of a project that construct something, each with its ``plans``."""
 
 
@@ -123,7 +123,7 @@ class Project:
                           working_sense=c.working_sense)
 
     @cached_property
-    def applied(self) -> tuple[Applied, ...]:
+    def applied(self) -> Loads:
         """Technological forces and moments."""
         from tmm_sheets.task.assembly import applied_of
 

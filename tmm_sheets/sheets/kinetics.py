@@ -417,7 +417,7 @@ def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre:
     for sign, tail, head, _ in sides:
         a, b = s.at(tail), s.at(head)
         if abs(b - a) < SHORTEST:
-            value = newtons(s.plan.length(tail, head).at(s.k))
+            value = newtons(s.value(s.plan.length(tail, head)))
             tiny[tail.name, head.name] = f"{sign} = {value} Н".replace(" ", TOGETHER)
             continue
         s.vector(tail, head)
