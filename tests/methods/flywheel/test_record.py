@@ -80,17 +80,18 @@ def test_arguments_are_steps_and_given_numbers(project):
 
 
 def test_arguments_come_first_and_names_are_unique(project):
-    fw = project.flywheel
-    earlier = (*project.cycle.plans.values(), *project.applied.plans.values(), project.study.positions.plan, project.study.velocities.plan)
+    plans, study = project.flywheel.plans, project.study
+    earlier = (*project.cycle.plans.values(), *project.applied.plans.values(), study.positions.plan, study.velocities.plan)
     before = {id(s) for plan in earlier for s in (*plan.asides.values(), *plan)}
 
     def known(a, plan):
-        """Whether it stands before, or is an aside of the plan, which is made of such only."""
+        """Whether it stands before, or is an aside, which is made of such only."""
         return not isinstance(a, Step) or id(a) in before or (
-            plan.asides.get(a.name) is a and all(known(b, plan) for b in a.args))
+            any(of.asides.get(a.name) is a for name, of in plans.items()
+            if of is plan or name.startswith("abscissae@")) and all(known(b, plan) for b in a.args))
 
     # Reductions stand before the diagrams, whatever of these their angles were chosen by.
-    for plan in fw.plans.values():
+    for plan in plans.values():
         assert {step.plan for step in plan} <= {plan.name}
         for step in plan:
             # What the linkage's plans know beside themselves is theirs.
