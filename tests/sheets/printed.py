@@ -2,9 +2,9 @@
 
 Usage: python -m tests.sheets.printed [PROJECT ...]
 
-Looked at are numbers with a decimal comma or with three digits and more; shorter ones number positions, links and teeth. A number is
-looked for among the steps of its part of the project (linkage, flywheel, gears, cam) alone, in the unit of each. How sharp that is
-tells the share of numbers that are found although they are false: the same ones, a few units of their last digit off.
+Looked at are numbers with a decimal comma or with three digits and more; shorter ones number positions, links and teeth. A number
+is looked for among the steps of its part of the project (linkage, flywheel, gears, cam) alone, in the unit of each. How sharp that
+is tells the share of numbers that are found although they are false: the same ones, a few units of their last digit off.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ from tmm_sheets.sheets.sheet import Composed, every
 OWN = sorted(str(path) for path in (Path(__file__).parent.parent / "projects").glob("*.toml"))
 PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/1:1", "transport/press@05-ЭПС-123", "transport/compressor@09-В-5",
             "lugansk/cam_flat", "lugansk/cam_rocker", *OWN)
-PARTS = {"linkage": ("synthesis", "cycle", "driver", "study", "flywheel", "reduced"), "flywheel": ("cycle", "study", "reduced", "flywheel"),
-         "gears": ("reducer", "gear"), "cams": ("cam",)}
+PARTS = {"linkage": ("synthesis", "cycle", "driver", "applied", "study", "motion", "flywheel"),
+         "flywheel": ("cycle", "study", "flywheel"), "gears": ("reducer", "gear"), "cams": ("cam",)}
 """Parts of a project by the room of its views."""
 MOST = 100
 """Most numbers of a row that a table could show: longer ones are nodes."""
-_NUMBER = re.compile(r"(?<![\w,.])([−+]?)(\d+(?:,\d+)?)(?:·10\^\{?([−\d]+)\}?)?(?![\w,]*\w)")
+_NUMBER = re.compile(r"(?<![\w,.])([−+]?)(\d+(?:,\d+)?)(?![\w,]*\w)")
 _INDEX = re.compile(r"[_^](\{[^{}]*\}|.)")
 
 
@@ -57,7 +57,7 @@ def numbers(sheets: dict[int, Composed]) -> Iterator[Printed]:
         for view in views(sheet):
             for m in view.marks:
                 if isinstance(m, Text):
-                    for sign, digits, power in _NUMBER.findall(_INDEX.sub("", re.sub(r"10\^\{?[−\d]+\}?", "1", m.text))):
+                    for sign, digits in _NUMBER.findall(_INDEX.sub("", re.sub(r"10\^\{?[−\d]+\}?", "1", m.text))):
                         if "," in digits or len(digits) > 2:
                             value = float((sign + digits).replace(",", ".").replace("−", "-"))
                             yield Printed(n, view.draw, m.text, value, len(digits.partition(",")[2]))
@@ -76,7 +76,7 @@ class Values:
         for sheet in sheets.values():
             for f in sheet.frames:
                 by_plan.setdefault(f.plan, set()).update(f.mu)
-        for name, plan in plans.items():
+        for plan in plans.values():
             for step in chain((*plan, *plan.asides.values())):
                 if step.evaluated:
                     own = plans.get(step.plan, plan)
@@ -94,8 +94,11 @@ class Values:
         return bool(i < len(self.values) and self.values[i] <= abs(value) + half)
 
 
-_FACTORS = {"m": (1.0, 1e3), "rad": (1.0, degrees(1.0)), "": (1.0, 100.0), "Pa": (1.0, 1e-6), "mm": (1.0,), "W": (1.0, 1e-3), "N/m": (1.0, 1e-3),
-            "J": (1.0, 1e3, 1e6)}
+_FACTORS = {
+    "m": (1.0, 1e3), "rad": (1.0, degrees(1.0)), "": (1.0, 100.0), "Pa": (1.0, 1e-6), "mm": (1.0,), "W": (1.0, 1e-3),
+    "N/m": (1.0, 1e-3), "J": (1.0, 1e3, 1e6), "kg*m2": (1.0, 1e3, 1e6),
+}
+"""What a value is multiplied by on a sheet: degrees, millimetres, per cent, megapascals; a table says powers of ten with its rows."""
 
 
 def _shown(value, its_unit: str, scales: set[float]):

@@ -446,7 +446,8 @@ class Flywheel(ABC):
         plan.add("x", ABSCISSA, phi, self.mu("angle"))
         if self.inertia_angle is not self.scales.angle:
             mu = named(self.inertia_angle.mu, "scales.mu_phi", "μ_φ", "rad/mm")
-            plan.add("x_J", ABSCISSA, plan.aside("φ1 of a turn", FIRST_TURN, phi, named(self.inertia_turn, "cycle", "2π", "rad")), mu)
+            turn = named(self.inertia_turn, "cycle", "2π", "rad")
+            plan.add("x_J", ABSCISSA, plan.aside("φ1 of a turn", FIRST_TURN, phi, turn), mu)
         return plan
 
     @property
@@ -456,7 +457,7 @@ class Flywheel(ABC):
 
     @cached_property
     def borders_plan(self) -> Plan:
-        """Angles ``φ`` of the borders of the intervals and their abscissae ``x``, mm; ``x_`` with a border's name that one alone."""
+        """Angles ``φ`` of the borders of the intervals and their abscissae ``x``, mm; ``x_`` with a border's name is one alone."""
         plan = Plan(f"abscissae@borders{self.where}", "Абсциссы границ интервалов", "mm", self.borders)
         choice = "positions, jumps and kinks of the moment"
         phi = plan.add("φ", GIVEN_NUMBER, Given(self.edges, "borders of the intervals", "φ_1", "rad", choice=choice))
@@ -561,7 +562,8 @@ class Flywheel(ABC):
     def work_plan(self) -> Plan:
         """Graphical integration of the moment: see :func:`integrate` for the names of its steps; ``A(φ)`` is the smooth curve."""
         plan, of = Plan(f"work{self.where}", "График работы", "mm"), self.intervals_plan
-        ends = integrate(plan, "", [self.borders_plan.asides[f"x_{name}"] for name in self.borders], [of[f"y{name}"] for name in self.intervals], self.pole,
+        across = [self.borders_plan.asides[f"x_{name}"] for name in self.borders]
+        ends = integrate(plan, "", across, [of[f"y{name}"] for name in self.intervals], self.pole,
                          borders=self.borders, intervals=self.intervals, mark=self.mark)
         plan.add("A(φ)", SMOOTH, *ends, *(of[f"{side}{name}"] for side in "+−" for name in self.intervals))
         area = plan.add("∫M", AREA_ORDINATE, self.area_plan["A_Σ"], self.mu("work"))
@@ -664,7 +666,8 @@ class Flywheel(ABC):
         rotor, check = self.rotor_plan, self.motor
         last = (*((rotor,) if rotor.steps else ()), self.first_plan, self.limit_plan, *self.later_plans,
                 *((self.wheel.plan,) if self.wheel else ()), *((check.plan,) if check else ()), self.position_acceleration)
-        before = (*r.crank_plans, self.data_plan, self.across_plan, self.borders_plan, *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
+        before = (*r.crank_plans, self.data_plan, self.across_plan, self.borders_plan,
+                  *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
         return {p.name: p for p in (*before, *shown, *last)}
 
     @property
