@@ -98,7 +98,7 @@ _FACTORS = {
     "m": (1.0, 1e3), "rad": (1.0, degrees(1.0)), "": (1.0, 100.0), "Pa": (1.0, 1e-6), "mm": (1.0,), "W": (1.0, 1e-3),
     "N/m": (1.0, 1e-3), "J": (1.0, 1e3, 1e6), "kg*m2": (1.0, 1e3, 1e6),
 }
-"""What a value is multiplied by on a sheet: degrees, millimetres, per cent, megapascals; a table says powers of ten with its rows."""
+"""What a value is multiplied by on a sheet: degrees, millimetres, per cent, megapascals; a table names powers of ten."""
 
 
 def _shown(value, its_unit: str, scales: set[float]):

@@ -230,7 +230,7 @@ class Reduced:
         if found is None or not np.array_equal(found.phi, phi):
             if found is not None:
                 self._count(found)
-            found = self.kept[where] = Reduction(self, f"@{where}", phi, labels or tuple(map(str, range(np.size(phi)))))
+            found = self.kept[where] = Reduction(self, f"@{where}", phi, labels or ("",) * np.size(phi))
         return found
 
     def _count(self, tried: Reduction) -> None:
