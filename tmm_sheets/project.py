@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.gears.reducer import Reducer
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.forces import GearForce
-    from tmm_sheets.methods.linkage.loads import Applied
+    from tmm_sheets.methods.linkage.loads import Loads
+    from tmm_sheets.methods.linkage.motion import Motion
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.methods.linkage.synthesis import Synthesis
 
@@ -28,7 +29,7 @@ LINKAGE = ("positions", "velocities", "accelerations", "forces")
 """Parts of the results that the linkage has."""
 
 
-PLANNED = ("synthesis", "cycle", "driver", "study", "reduced", "flywheel", "reducer", "gear", "cam")
+PLANNED = ("synthesis", "cycle", "driver", "applied", "study", "motion", "reduced", "flywheel", "reducer", "gear", "cam")
 """Parts of a project that construct something, each with its ``plans``."""
 
 
@@ -122,7 +123,7 @@ class Project:
                           working_sense=c.working_sense)
 
     @cached_property
-    def applied(self) -> tuple[Applied, ...]:
+    def applied(self) -> Loads:
         """Technological forces and moments."""
         from tmm_sheets.task.assembly import applied_of
 
@@ -164,6 +165,13 @@ class Project:
         uneven = crank is not None and crank.angular_acceleration == "flywheel"
         return Study(self.mechanism, self.cycle, turned, labels, self.gravity, lambda: self.applied, self.driver,
                      (lambda: self.flywheel) if uneven else None, purpose)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """Motion of the outputs for the kinematic diagrams."""
+        from tmm_sheets.methods.linkage.motion import Motion
+
+        return Motion(self.study, self.study_at)
 
     @cached_property
     def force_index(self) -> int:

@@ -304,12 +304,8 @@ def _from_helper(m: Mark, h: Helper, frame: PlacedFrame) -> float:
 
 
 def _ordinates(step: Step, k: int) -> list[float]:
-    """What an ordinate of a diagram over the crank angle may be: a quantity, the way or the angle from position 0 on."""
-    value, first = step.at(k), step.at(0)
-    if step.rule.gives == "direction":
-        turned = float(np.angle(value / first))
-        return [abs(turned + 2 * np.pi * n) for n in (-1, 0, 1)]
-    return [abs(value - first)] if step.plan == "positions" else [float(abs(value))]
+    """What an ordinate of a diagram over the crank angle may be."""
+    return [float(abs(step.at(k)))]
 
 
 def main() -> None:

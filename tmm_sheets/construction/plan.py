@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.rules import DISTANCE
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.construction.tally import Tally
 
@@ -89,6 +90,10 @@ class Plan:
         if name not in self.asides:
             self.asides[name] = self._step(name, rule, args, None, symbol)
         return self.asides[name]
+
+    def length(self, tail: Step, head: Step) -> Step:
+        """Length between two points as it is read off the plan, whoever asks first."""
+        return self.aside(f"|{tail.name} {head.name}|", DISTANCE, tail, head)
 
     def adopt(self, step: Step) -> None:
         """Take a step made elsewhere as one that no pencil makes."""

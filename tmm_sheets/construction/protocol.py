@@ -97,7 +97,8 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "Ð
     args, drawn = () if step.rule.compute is take else step.args, step.rule.gives in ("point", "direction")
     shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(args, step.rule.takes, strict=False)]
     exact = _exact_angle(step, k)
-    value = exact or _said(value_at(step, k), step.rule.gives, to_mm, unit, sizes.get(_sort(step), 0.0))
+    of_sort = 100.0 if step.rule.unit == "%" else sizes.get(_sort(step), 0.0)
+    value = exact or _said(value_at(step, k), step.rule.gives, to_mm, unit, of_sort)
 
     def operand(m: re.Match[str]) -> str:
         space, field = m[1] or "", m[2] or m[3]

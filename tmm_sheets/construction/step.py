@@ -7,7 +7,7 @@ The numbers, the drawing, the protocol, the error analysis and the laziness all 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -158,16 +158,21 @@ class Step:
 
     def ancestors(self) -> Iterator[Step]:
         """All steps this one depends on, itself included, arguments before results, each once."""
-        seen: set[int] = set()
-        pending: list[tuple[Step, bool]] = [(self, False)]
-        while pending:
-            step, ready = pending.pop()
-            if ready:
-                yield step
-            elif id(step) not in seen:
-                seen.add(id(step))
-                pending.append((step, True))
-                pending += [(a, False) for a in reversed(step.args) if isinstance(a, Step)]
+        return ordered([self], lambda step: [a for a in step.args if isinstance(a, Step)])
+
+
+def ordered(steps: Iterable[Step], parents: Callable[[Step], list[Step]], seen: set[int] | None = None) -> Iterator[Step]:
+    """Steps with all that they are made of by ``parents``, each once, arguments first; those ``seen`` before are left out."""
+    seen = set() if seen is None else seen
+    pending = [(step, False) for step in reversed([*steps])]
+    while pending:
+        step, ready = pending.pop()
+        if ready:
+            yield step
+        elif id(step) not in seen:
+            seen.add(id(step))
+            pending.append((step, True))
+            pending += [(p, False) for p in reversed(parents(step))]
 
 
 Part = Literal["", "x", "y", "abs", "angle"]

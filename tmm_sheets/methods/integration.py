@@ -40,10 +40,13 @@ def _between(p: Any, q: Any, ordinate: Any) -> Any:
 
 @primitive("smooth curve")
 def smooth_curve(*of: Any) -> Curve:
-    """Smooth curve through n + 1 points, then its slopes at the beginnings of the n intervals, then those at their ends."""
-    n = len(of) // 3
-    x, y = (np.array([part(p) for p in of[:n + 1]], dtype=float) for part in (np.real, np.imag))
-    return Curve(x, y, np.array(of[n + 1:2 * n + 1], dtype=float), np.array(of[2 * n + 1:], dtype=float))
+    """Smooth curve through n + 1 points, then its slopes at the beginnings of the n intervals, then those at their ends.
+
+    The slopes one by one or as rows.
+    """
+    points = np.array([p for p in of if np.iscomplexobj(p)])
+    left, right = np.split(np.hstack([x for x in of if not np.iscomplexobj(x)]).astype(float), 2)
+    return Curve(points.real, points.imag, left, right)
 
 
 @primitive("ordinate of a curve")

@@ -8,7 +8,7 @@ from typing import Any
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.given import FoundNumber
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Step, ordered
 
 
 def parents(step: Step) -> list[Step]:
@@ -17,18 +17,8 @@ def parents(step: Step) -> list[Step]:
 
 
 def chain(steps: Iterable[Step], seen: set[int] | None = None) -> Iterator[Step]:
-    """The steps with all that they are made of, each once, arguments first."""
-    seen = set() if seen is None else seen
-    for last in steps:
-        pending = [(last, False)]
-        while pending:
-            step, ready = pending.pop()
-            if ready:
-                yield step
-            elif id(step) not in seen:
-                seen.add(id(step))
-                pending.append((step, True))
-                pending += [(p, False) for p in reversed(parents(step))]
+    """The steps with all that they are made of, also by numbers that were found, each once, arguments first."""
+    return ordered(steps, parents, seen)
 
 
 class Book:

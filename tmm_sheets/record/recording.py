@@ -149,9 +149,11 @@ class _Telling:
         """What is said of a step, by the labels of the positions.
 
         Of one made of rows that are not over the positions it is said once, without a label; of more positions than any sheet shows
-        only the first is told.
+        and of nodes, which have no labels, only the first is told.
         """
-        labels = self.plan.labels if len(self.plan.labels) <= MOST else self.plan.labels[:1]
+        labels = self.plan.labels
+        if len(labels) > MOST or not any(labels):
+            labels = labels[:1]
         lengths = {np.shape(value_of(a))[0] for a in (*step.args, step) if _is_row(value_of(a))}
         if lengths - {len(self.plan.labels)}:
             labels = ("",)

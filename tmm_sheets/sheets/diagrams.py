@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import floor
@@ -20,13 +21,9 @@ from tmm_sheets.sheets.frame import Frame, pick
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.methods.linkage.study import Study
+    from tmm_sheets.methods.linkage.motion import Output
     from tmm_sheets.project import Project
 
-SAMPLES = 15
-"""Points of a curve between two positions."""
-STRAIGHT = 1e-9
-"""Part of its way by which a point may leave a straight line."""
 _LEFT, _RIGHT = 24.0, 12.0
 """Room beside the angle axis for the sign of the ordinate and for the arrow."""
 
@@ -57,7 +54,7 @@ def _columns(project: Project, options: graphs.Options) -> list[tuple[DiagramQua
     named = options.get("of") or project.diagrams
     links = [name for name in named if name in project.mechanism.links]
     points = [name for name in named if name not in links]
-    return [_of_points(project, points)] * bool(points) + [_of_links(project, links)] * bool(links)
+    return [of(project, some) for of, some in ((_of_points, points), (_of_links, links)) if some]
 
 
 def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
@@ -104,21 +101,20 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     if project.driver is not None:
         raise CannotBuild(*_NO_MOMENT)
     edges = [0.0, *(b for b in project.reduced.breaks if 0 < b < project.cycle.period), project.cycle.period]
-    turned = _samples(project)
+    turned = project.motion.turned
     # At a dead point the load is switched: the curve has two ends there, a hair to both sides.
     pieces = [np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
               for a, b in pairwise(edges)]
     every = np.concatenate(pieces)
-    at_angles, step = project.study_at(every, tuple("" for _ in every)), project.study.forces.balancing
-    values, at = (_balancing_moment(project, study, study.forces.balancing) for study in (at_angles, project.study))
-    assert step is not None
+    step, course = project.study.balance["M"], project.study_at(every, tuple("" for _ in every)).balance["M"]
+    values, at = _row(course, every), _row(step, project.cycle.turned)
     angle = _angle(project, box)
     left = canvas.title(box, "График уравновешивающего момента", str(angle))
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
-    mean = project.flywheel.M_constant if project.variant.flywheel is not None else \
-        float(np.sum(np.diff(every) * (values[1:] + values[:-1])) / 2 / project.cycle.period)
+    mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None else \
+        project.study.mean_driving(course, every)
     moment = DiagramQuantity("graph-M", "M_{ур}", "Н·м", (Curve("", step, every, values, at),))
-    _graph(project, canvas, left, angle, moment, level=("M_д", mean))
+    _graph(project, canvas, left, angle, moment, level=("M_д", float(mean.value)))
 
 
 def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
@@ -126,7 +122,7 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.
     if project.driver is not None:
         raise CannotBuild(*_NO_MOMENT)
     labels, study = project.cycle.labels, project.study
-    by_statics, by_lever = (_balancing_moment(project, study, of) for of in (study.forces.balancing, study.lever.balancing))
+    by_statics, by_lever = (_row(study.balance[name], study.turned) for name in ("M", "M_р"))
     left = canvas.title(box, "Уравновешивающий момент, Н·м")
     half = (len(labels) + 1) // 2
     cells = [[label, *graphs.column([a, b, np.max(np.abs(by_statics))])[:2]]
@@ -143,69 +139,26 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.
 _NO_MOMENT = ("the diagram of the balancing moment needs a crank driven by a moment", 'write kind = "moment" in [balancing]')
 
 
-def _balancing_moment(project: Project, study: Study, step: Step | None) -> Any:
-    assert step is not None
-    return project.mechanism.crank.sense * np.broadcast_to(step.value, np.shape(study.turned))
-
-
-def _samples(project: Project) -> Any:
-    c = project.cycle
-    return np.linspace(0.0, c.period, SAMPLES * len(c.labels) + 1)
-
-
 def _of_points(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]:
-    turned = np.concatenate((_samples(project), project.cycle.turned))
-    study = project.study_at(turned, tuple("" for _ in turned))
-    curves: list[list[Curve]] = [[], [], []]
-    for name in names:
-        steps = [plan.points[name] for plan in (study.positions, study.velocities, study.accelerations)]
-        p, v, a = (np.asarray(step.value) for step in steps)
-        u = _sense(name, p - p[0])
-        for found, sign, step, z in zip(curves, "SVa", steps, (p - p[0], v, a), strict=True):
-            found.append(_curve(project, f"{sign}_{{{name}}}", step, turned, (z * np.conj(u)).real))
-    units = ("м", "м/с", "м/с^2")
-    return tuple(_quantity(f"graph-{s}", s, unit, c) for s, unit, c in zip("SVa", units, curves, strict=True))
-
-
-def _sense(name: str, way: Any) -> complex:
-    """Unit vector of a straight path, in the sense in which the motion begins."""
-    far = complex(way[np.argmax(np.abs(way))])
-    size = abs(far)
-    u = far / size if size else 1 + 0j
-    if np.max(np.abs((way * np.conj(u)).imag)) > STRAIGHT * size:
-        raise CannotBuild(f"point {name} does not move along a straight line: it has no diagram S(φ)",
-                          "name a point of a slider in cycle.diagrams, or the number of a link for its angle")
-    return u * _begins((way * np.conj(u)).real)
-
-
-def _begins(way: Any) -> float:
-    """Sign of the first movement away from position 0."""
-    moved = way[np.abs(way) > 1e-6 * np.max(np.abs(way))]
-    return float(np.sign(moved[0])) if len(moved) else 1.0
+    units = (("graph-S", "S", "м"), ("graph-V", "V", "м/с"), ("graph-a", "a", "м/с^2"))
+    return _quantities(project, [project.motion.point(name) for name in names], units)
 
 
 def _of_links(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]:
-    turned = np.concatenate((_samples(project), project.cycle.turned))
-    study = project.study_at(turned, tuple("" for _ in turned))
-    curves: list[list[Curve]] = [[], [], []]
-    n = len(turned) - len(project.cycle.turned)
-    for name in names:
-        steps = [study.positions.directions[name], study.velocities.omega[name], study.accelerations.epsilon[name]]
-        turn = np.unwrap(np.angle(np.broadcast_to(steps[0].value, turned.shape))[:n])
-        turn = turn - turn[0]
-        turn = np.concatenate((turn, np.interp(project.cycle.turned, turned[:n], turn)))
-        sign = _begins(turn)
-        omega, eps = (np.broadcast_to(step.value, turned.shape) for step in steps[1:])
-        for found, letter_, step, y in zip(curves, "ψωε", steps, (turn, omega, eps), strict=True):
-            found.append(_curve(project, f"{letter_}_{{{name}}}", step, turned, sign * y))
-    units = ("рад", "с^{−1}", "с^{−2}")
-    keys = ("graph-psi", "graph-omega", "graph-epsilon")
-    return tuple(_quantity(key, s, unit, c) for key, s, unit, c in zip(keys, "ψωε", units, curves, strict=True))
+    units = (("graph-psi", "ψ", "рад"), ("graph-omega", "ω", "с^{−1}"), ("graph-epsilon", "ε", "с^{−2}"))
+    return _quantities(project, [project.motion.link(name) for name in names], units)
 
 
-def _curve(project: Project, symbol: str, step: Step, turned: Any, values: Any) -> Curve:
-    n = len(turned) - len(project.cycle.turned)
-    return Curve(symbol, step, turned[:n], values[:n], values[n:])
+def _quantities(project: Project, outputs: list[Output], units: Iterable[tuple[str, str, str]]) -> tuple[DiagramQuantity, ...]:
+    turned = project.motion.turned
+    curves = [[Curve(here.symbol, here, turned, _row(between, turned), _row(here, project.study.turned))
+               for here, between in zip(one.at_positions, one.between, strict=True)] for one in outputs]
+    return tuple(_quantity(*of, list(row)) for of, row in zip(units, zip(*curves, strict=True), strict=True))
+
+
+def _row(step: Step, turned: Any) -> Any:
+    """Values of a step at some angles, of one that is the same at all of them as well."""
+    return np.broadcast_to(step.value, np.shape(turned))
 
 
 def _quantity(key: str, sign: str, unit: str, curves: list[Curve]) -> DiagramQuantity:

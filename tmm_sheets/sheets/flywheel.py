@@ -436,12 +436,13 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw = _with_tangents(project)
     s, d = fw.scales, fw.data
     omega, psi = fw.reduced.omega1, fw.psi
+    slope = {name: float(fw.energy_mass_plan.asides[f"tg ψ_{name}"].value) for name in ("max", "min")}
     below = "" if fw.ab_mm >= 0 else " (a ниже b)"
     length = fixed(fw.ab_mm, 2) if abs(fw.ab_mm) >= 10 else number(fw.ab_mm, 4)
     segment, rotor = "|ab|" if fw.ab_mm >= 0 else "ab", " − J_р·u^2" if fw.J_rotor else ""
     rows = [
         f"ω_1 = {fixed(omega, 3)} с^{{−1}};  δ = {number(d.delta)};  ρ = {number(d.density)} кг/м^3",
-        *(f"tg ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {fixed(float(np.tan(a)), 4)};  ψ_{name} = {fixed(degrees(a), 2)}°"
+        *(f"tg ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {fixed(slope[name], 4)};  ψ_{name} = {fixed(degrees(a), 2)}°"
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
         f"{segment} = {length} мм{below}",
         f"J_м = {segment}·μ_E/(δ·ω_1^2){rotor} = {length}·{number(s.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2)"

@@ -227,7 +227,7 @@ class _GearPicture:
     def teeth(self, wheel: Any) -> None:
         c, s = self.canvas, self.tooth[wheel.number]
         shape = self.gear.shape(wheel)
-        s.curve("E", self.at(shape.outline(step=self.mu.mu)), "main")
+        s.curve(shape.step, self.at(shape.outline(step=self.mu.mu)), "main")
         centre = self.of(f"O{wheel.number}")
         for k in (-1, 0, 1):
             axis = shape.axis_of(k)
@@ -235,7 +235,7 @@ class _GearPicture:
         k = self.strip_tooth(wheel)
         outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
         half = len(outline) // 2
-        s.pen("E", "hatch").polyline(outline[half:], "thin")
+        s.pen(shape.step, "hatch").polyline(outline[half:], "thin")
         hatch_between(c, outline[:half], outline[half:][::-1])
         ends = outline[0], outline[half - 1]
         names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
@@ -348,7 +348,8 @@ class _Detail:
     def teeth(self, wheel: Any) -> None:
         """Teeth in mesh, and the radius of their fillets."""
         c, s = self.canvas, stage(self.canvas, self.gear.tooth(wheel), 0, self.at)
-        self.window.curve(s, "E", self.at(self.gear.shape(wheel).outline(-2, 2, step=0.5 * self.at.scale.mu)), "main")
+        shape = self.gear.shape(wheel)
+        self.window.curve(s, shape.step, self.at(shape.outline(-2, 2, step=0.5 * self.at.scale.mu)), "main")
         if self.gear.profile == "rack":
             return  # a trochoid has no radius to show
         fillet, touch = s.at("C"), s.at("R")

@@ -430,7 +430,7 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     vel, cycle = project.study.velocities, project.cycle
     varying = []
     for seg in vel.plan.segments:
-        value = np.abs(np.broadcast_to(seg.head.value - seg.tail.value, (len(cycle.labels),)))
+        value = np.broadcast_to(vel.plan.length(seg.tail, seg.head).value, (len(cycle.labels),))
         if not np.allclose(value, value[0]):
             varying.append((seg, value))
     lengths = _measured_lengths(project, canvas, varying)
@@ -468,15 +468,18 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
     vel = project.study.velocities
     pos = vel.positions
     mu_v, mu_l = canvas.scales["velocities"], canvas.scales["positions"]
+    pole = vel.plan[str(vel.plan.pole)]
     lengths: list[tuple[str, Any]] = []
     hinges = {name for g in pos.mechanism.groups for name in g.outer}
     for g in pos.mechanism.groups:
         if (j := g.kind.rocker(g)) is not None:
             p, q = g.outer
-            lengths.append((f"|p{linkage.indexed(on_link(p.lower(), j))}|", np.abs(vel.coincident[on_link(p, j)].value) / mu_v.mu))
-            lengths.append((f"{q}{p}", np.abs(pos.points[p].value - pos.points[q].value) / mu_l.mu))
+            coincident = vel.plan.length(pole, vel.coincident[on_link(p, j)])
+            lengths.append((f"|p{linkage.indexed(on_link(p.lower(), j))}|", coincident.value / mu_v.mu))
+            lengths.append((f"{q}{p}", pos.plan.length(pos.points[q], pos.points[p]).value / mu_l.mu))
             carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
-            lengths += [(f"|{q.lower()}{linkage.indexed(x.lower())}|", np.abs(vel.points[x].value) / mu_v.mu) for x in carried]
+            lengths += [(f"|{q.lower()}{linkage.indexed(x.lower())}|", vel.plan.length(pole, vel.points[x]).value / mu_v.mu)
+                        for x in carried]
     return lengths
 
 

@@ -400,8 +400,7 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
     _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
-    lengths = [(sign.replace(BAR, ""), abs(complex(s.value(head)) - complex(s.value(tail)))) for sign, tail, head in asked]
-    found = [f"{sign} = {newtons(clean(force, size))} Н" for sign, force in lengths]
+    found = [f"{sign.replace(BAR, '')} = {newtons(clean(fp.plan.length(tail, head).at(k), size))} Н" for sign, tail, head in asked]
     _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
 
 
@@ -411,7 +410,7 @@ def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre:
     for sign, tail, head, _ in sides:
         a, b = s.at(tail), s.at(head)
         if abs(b - a) < SHORTEST:
-            value = newtons(s.frame.mu[1] * abs(b - a))
+            value = newtons(s.value(s.plan.length(tail, head)))
             tiny[tail.name, head.name] = f"{sign} = {value} Н".replace(" ", TOGETHER)
             continue
         s.vector(tail, head)
@@ -542,7 +541,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     kind = forces.force_size(k) if force else forces.moment_size(k)
     kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing))
     unit = "Н" if force else "Н·м"
-    difference = abs(kinetic - hung) / hung * 100 if hung else 0.0
+    difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
     rows = [["Уравновешивающая сила" if force else "Уравновешивающий момент", "Значение"],
             [f"Силовой расчёт: {sign}, {unit}", fixed(kinetic, 2)],
             [f"Рычаг Жуковского: {sign}, {unit}", fixed(hung, 2)],

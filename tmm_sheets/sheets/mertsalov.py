@@ -72,7 +72,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw = _procedure(project)
     s = fw.scales
     _, second, _, sign = _signs(options)
-    mu_t = Scale("μ_T", s.inertia.mu * fw.reduced.omega1**2 / 2, "Дж/мм")
+    mu_t = Scale("μ_T", float(fw.energy_plan.asides["μ_T"].value), "Дж/мм")
     graphs.heading(canvas, box, options, f"Графики {sign}(φ_1) и {second}(φ_1)", f"{s.inertia}, {mu_t}")
     canvas.of = fw.inertia_plan.name
     g = graphs.Graph(complex(options["axis"], box.y0 + 8.0))
@@ -275,7 +275,7 @@ def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     first = max(letter(line[0], 3.5).width for line in rows) + 3.0
     place = canvas.table(complex(box.x0, left.y1), [first, *[(box.width - first) / 4] * 4], rows, high, 3.5)
     _, _, _, sign = _signs(options)
-    *_, ours, theirs = fw.compared
-    text = (f"n → ∞: разность {fixed(ours.first - theirs.first, 3)} кг·м^2; теория: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = "
+    apart = float(fw.comparison_plan["ΔJ"].value)
+    text = (f"n → ∞: разность {fixed(apart, 3)} кг·м^2; теория: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = "
             f"{fixed(fw.excess, 3)} кг·м^2")
     canvas.text(complex(box.x0, place.y0 - 6.5), text, _height(text, box.width))

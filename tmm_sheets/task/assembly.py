@@ -8,16 +8,19 @@ from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber, GivenPoint
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
+    DIAGRAM,
     OPPOSED,
     PISTON,
     Applied,
     LoadDiagram,
+    Loads,
     OutputMotion,
     Table,
     angle_law,
@@ -124,7 +127,7 @@ def _link(of: Givens, i: int, p: LinkTable) -> Link:
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
-def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Applied, ...]:
+def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> Loads:
     """Technological forces, N, and moments, N m, of a project file.
 
     Raises
@@ -132,14 +135,14 @@ def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> tuple[Ap
     CannotBuild
         when the sense of the working strokes is not told or unknown, or a diagram over the angle has no fixed direction.
     """
-    of = Givens(variant)
-    return (*(_force(of, i, f, mechanism, cycle) for i, f in enumerate(variant.force)),
-            *(_moment(of, i, m, mechanism, cycle) for i, m in enumerate(variant.moment)))
+    of, plan = Givens(variant), Plan("load-diagrams", "Диаграммы нагрузок", "N")
+    return Loads((*(_force(of, plan, i, f, mechanism, cycle) for i, f in enumerate(variant.force)),
+                  *(_moment(of, plan, i, m, mechanism, cycle) for i, m in enumerate(variant.moment))), plan)
 
 
-def _diagrams(of: Givens, load: ForceTable | MomentTable, tables: Sequence[Table | None], rule: Rule | None,
+def _diagrams(of: Givens, plan: Plan, load: ForceTable | MomentTable, tables: Sequence[Table | None], rule: Rule | None,
               numbers: tuple[Any, ...], *path: str | int) -> tuple[LoadDiagram, ...]:
-    """Diagrams of a load with the places of their numbers, as they are given; ``tables`` have them as they act."""
+    """Diagrams of a load as curves, from its numbers as they are given; ``tables`` have them as they act."""
     import numpy as np
 
     angle, cycle = load.over == "angle", of.variant.cycle
@@ -155,18 +158,24 @@ def _diagrams(of: Givens, load: ForceTable | MomentTable, tables: Sequence[Table
         y = (Given(given[1][0], name, symbol, unit, source, "none") if load.value is not None and rule is None
              else Given(np.array(given[1]), name, symbol, unit, source, "curve"))
         x = Given(np.array(given[0]), f"{name} arguments", "φ" if angle else "s/H", "rad" if angle else "", source, "curve")
-        found.append(LoadDiagram(acting, x, y, load.curve == "smooth", turns, rule, numbers))
+        if y.over == "none":
+            found.append(LoadDiagram(acting, y, turns))
+            continue
+        label = f"{load.name}({'φ' if angle else 's'}){'′' * n}"
+        acts = y if rule is None else plan.aside(f"y {label}", rule, y, *numbers)
+        smooth = of.number(float(load.curve == "smooth"), "", "", *path, "curve")
+        found.append(LoadDiagram(acting, plan.add(label, DIAGRAM, x, acts, smooth, turns if angle else 0.0), turns))
     return tuple(found)
 
 
-def _force(of: Givens, i: int, f: ForceTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
+def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
     c = of.variant.cycle
     named = f.sense or (c.working_sense if c is not None else None)
     area = pi * f.bore**2 / 4 if f.bore is not None else 1.0
     tables = tuple(None if d is None else (d[0], [area * (y - f.ambient) for y in d[1]]) for d in f.diagrams())
     numbers = () if f.bore is None else (of.number(f.bore, "D", "m", "force", i, "bore"),
                                          of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
-    diagrams = _diagrams(of, f, tables, PISTON if numbers else None, numbers, "force", i)
+    diagrams = _diagrams(of, plan, f, tables, PISTON if numbers else None, numbers, "force", i)
     if f.over == "angle":
         if not isinstance(f.direction, float) or tables[0] is None:
             raise CannotBuild(f"force {f.name}: a diagram over the angle needs a fixed direction",
@@ -201,7 +210,7 @@ def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
     return unit(guide.direction) * (1 if named[0] == "+" else -1)
 
 
-def _moment(of: Givens, i: int, m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
+def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
     sense = -1 if m.sense == "clockwise" else 1
     tables = m.diagrams()
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
@@ -213,13 +222,13 @@ def _moment(of: Givens, i: int, m: MomentTable, mechanism: Mechanism, cycle: Cyc
         law, jumps = angle_law(table, cycle.period, m.curve == "smooth")
         signed = (GivenNumber(fixed, f"moment[{i}].direction"),)
         return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None,
-                       _diagrams(of, m, (table,), OPPOSED, signed, "moment", i))
+                       _diagrams(of, plan, m, (table,), OPPOSED, signed, "moment", i))
     motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
     against = {"against motion": -1.0, "along motion": 1.0}.get(m.direction)
     laws, signs = _by_run(motion, m.stroke, tables, against)
     signs = [s * (fixed if fixed is not None else sense) for s in signs]
     law, jumps = stroke_law(motion, laws, signs, m.curve == "smooth")
-    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, m, tables, None, (), "moment", i))
+    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, plan, m, tables, None, (), "moment", i))
 
 
 def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[

@@ -233,7 +233,7 @@ def test_every_plan_speaks_and_can_be_built():
         formulas = ["flywheel-inertia", "flywheel-limit", "flywheel-wheel", "crank-acceleration"]
         assert [name for name in plans if "@" not in name and name != "reduction"] == [*diagrams, *formulas]
         for plan in plans.values():
-            assert (plan.unit == "mm") == (plan.name in diagrams or plan.name.startswith(("ordinates@", "slopes@")))
+            assert (plan.unit == "mm") == (plan.name in diagrams or plan.name.startswith(("abscissae@", "ordinates@", "slopes@")))
             assert plan.check() is None
             for k in range(len(plan.labels)):
                 assert all(s.endswith(".") and "nan" not in s for s in sentences(plan, k, lambda mm: mm))

@@ -80,15 +80,23 @@ def test_arguments_are_steps_and_given_numbers(project):
 
 
 def test_arguments_come_first_and_names_are_unique(project):
-    fw = project.flywheel
-    before = {id(s) for of in (project.study.positions, project.study.velocities) for s in of.plan}
+    plans, study = project.flywheel.plans, project.study
+    earlier = (*project.cycle.plans.values(), *project.applied.plans.values(), study.positions.plan, study.velocities.plan)
+    before = {id(s) for plan in earlier for s in (*plan.asides.values(), *plan)}
+
+    def known(a, plan):
+        """Whether it stands before, or is an aside, which is made of such only."""
+        return not isinstance(a, Step) or id(a) in before or (
+            any(of.asides.get(a.name) is a for name, of in plans.items()
+            if of is plan or name.startswith("abscissae@")) and all(known(b, plan) for b in a.args))
+
     # Reductions stand before the diagrams, whatever of these their angles were chosen by.
-    for plan in fw.plans.values():
+    for plan in plans.values():
         assert {step.plan for step in plan} <= {plan.name}
         for step in plan:
             # What the linkage's plans know beside themselves is theirs.
             for a in () if plan.name.startswith(("positions@", "velocities@", "accelerations@")) else step.args:
-                assert not isinstance(a, Step) or id(a) in before, (plan.name, step, a)
+                assert known(a, plan), (plan.name, step, a)
             before.add(id(step))
 
 

@@ -72,12 +72,6 @@ def row(*values: Any) -> Any:
     return np.array([np.real(v) for v in values], dtype=float) if values else np.zeros(0)
 
 
-@primitive("entries")
-def entries(values: Any, at: Any) -> Any:
-    """Those of a row with these numbers, counted from 0, or the one with this number."""
-    return np.asarray(values)[..., np.asarray(at, dtype=int)]
-
-
 def _of_phase(symbol: str) -> tuple[Rule, Rule, Rule]:
     s, ds, dds = KINDS[symbol]
     travel: Kind = s

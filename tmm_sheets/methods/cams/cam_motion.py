@@ -18,14 +18,13 @@ import numpy.typing as npt
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.curve import Curve
-from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, entries, names, row
+from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, names, row
 from tmm_sheets.methods.cams.cam_laws import Law, PositionFunction
-from tmm_sheets.methods.integration import integrate, ordinates
+from tmm_sheets.methods.integration import SMOOTH, integrate, ordinates
 
 Reals = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -66,31 +65,22 @@ POLE_DISTANCE = Rule("pole distance", lambda integral, integrand, across: integr
 LARGEST = Rule("largest ordinate of the law", lambda travel, peak, angle, mu: np.abs(travel) * peak / angle**2 / mu,
                ("number", "number", "angle", "number"), "length",
                "Наибольшая ордината графика аналога ускорения {name} = {value}.", source=SOURCE)
-ABSCISSA = Rule("abscissa of a position", lambda phi, k, mu: entries(phi, k) / mu, ("angle", "number", "number"), "ordinate",
+ABSCISSA = Rule("abscissa of a position", lambda phi, k, mu: rules.take(phi, k) / mu, ("angle", "number", "number"), "ordinate",
                 "Абсцисса положения {name} = φ/μ_φ = {value}.")
-HEIGHT = Rule("ordinate of the law", lambda y, k, mu: entries(y, k) / mu, ("ordinate", "number", "number"), "ordinate",
+HEIGHT = Rule("ordinate of the law", lambda y, k, mu: rules.take(y, k) / mu, ("ordinate", "number", "number"), "ordinate",
               "Ордината закона на графике {name} = {value}.")
 WIDTH = Rule("width of an interval", lambda a, b: b - a, ("ordinate", "ordinate"), "length",
              "Ширина интервала {name} = {1} − {0} = {value}.")
-AREA = Rule("area under a diagram", lambda y, a, b, mu, across: (entries(y, b) - entries(y, a)) / (mu * across), ("number",) * 5,
-            "number",
+AREA = Rule("area under a diagram", lambda y, a, b, mu, across: (rules.take(y, b) - rules.take(y, a)) / (mu * across),
+            ("number",) * 5, "number",
             "Площадь под графиком на этом интервале равна приращению интеграла, делённому на масштабы: {name} = {value} мм².",
             unit="mm2")
 NO_AREA = Rule("no area", lambda: 0.0, (), "number", "На дальнем стоянии площадь под графиком {name} = 0.", unit="mm2")
 
 
-@primitive("curve through points")
-def curve_through(left: Any, right: Any, *points: Any) -> Curve:
-    """Smooth curve through n + 1 points with the slopes at the beginnings and at the ends of the n stretches."""
-    p = np.array(points)
-    return Curve(p.real, p.imag, np.asarray(left), np.asarray(right))
-
-
-SLOPES = Rule("slopes of an integral", lambda y, at, mu, pole: entries(y, at) / mu / pole,
+SLOPES = Rule("slopes of an integral", lambda y, at, mu, pole: rules.take(y, at) / mu / pole,
               ("number", "number", "number", "length"), "number",
               "Наклон интегральной кривой равен ординате подынтегральной, делённой на полюсное расстояние.", unit="1")
-SMOOTH = Rule("smooth curve through chord ends", curve_through, ("number", "number", "point"), "curve",
-              "Концы хорд соединим плавной кривой {name}.")
 ON_PAPER = Rule("point of a diagram", lambda phi, across, y, mu: phi / across + 1j * (y / mu),
                 ("angle", "number", "ordinate", "number"),
                 "point", "Точка плавной кривой {name}.", unit="mm")
@@ -357,7 +347,7 @@ def _division(law: Law) -> Rule:
 
 @cache
 def _division_rule(name: str, divided: Callable[[Any], Any]) -> Rule:
-    return Rule(f"division of the auxiliary circle, {name} law", lambda x, k, sense: sense * divided(entries(x, k)),
+    return Rule(f"division of the auxiliary circle, {name} law", lambda x, k, sense: sense * divided(rules.take(x, k)),
                 ("number", "number", "number"), "angle",
                 "Вспомогательная окружность делится на равные части: угол {name} = {value}.",
                 unit="rad", source=SOURCE)
@@ -384,5 +374,5 @@ def _integral(plan: Plan, areas: Plan, numbers: Plan, exact: ExactMotion, kept: 
     for name, integrand, at in (("left", above, kept[:-1]), ("right", below, kept[1:])):
         places = Given(np.array(at, dtype=float), "cam.parts", choice="номера положений")
         slopes.append(numbers.add(f"{symbol}_{name}", SLOPES, integrand, places, numbers[mu], numbers[pole]))
-    plan.add(symbol, SMOOTH, *slopes, *ends)
+    plan.add(symbol, SMOOTH, *ends, *slopes, say="Концы хорд соединим плавной кривой {name}.")
     return ends

@@ -25,7 +25,7 @@ from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams import cam_inversion, cam_zone
 from tmm_sheets.methods.cams.cam_closure import DISTANCE, SPREAD, Spring, second_disc_of_rocker, second_disc_of_tappet, spring
-from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, entries, in_phase
+from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
 from tmm_sheets.methods.cams.cam_inversion import (
     CONTACT,
     ROCKER_RADIUS,
@@ -153,8 +153,8 @@ def rounded_down(radius: Any) -> Any:
 
 
 def _inscribed(centres: Any, normals: Any, i: Any, j: Any) -> Any:
-    p, n = entries(centres, i), entries(normals, i)
-    d = entries(centres, j) - p
+    p, n = rules.take(centres, i), rules.take(normals, i)
+    d = rules.take(centres, j) - p
     return (d.real**2 + d.imag**2) / (2 * (d.real * n.real + d.imag * n.imag))
 
 
@@ -168,7 +168,7 @@ PART = Rule("part of a radius", lambda share, radius: share * radius, ("number",
 ROUNDED = Rule("rounded roller", rounded_down, ("length",), "length",
                "Округлим радиус ролика в меньшую сторону до 0,5 мм: {name} = {value}.")
 CHOSEN = Rule("given roller", lambda radius: radius, ("length",), "length", "По заданию радиус ролика {name} = {value}.")
-OF_THREE = Rule("point of the sharpest place", entries, ("point", "number"), "point",
+OF_THREE = Rule("point of the sharpest place", rules.take, ("point", "number"), "point",
                 "На самом крутом участке центрового профиля отметим точку {name}.")
 
 

@@ -31,7 +31,6 @@ from tmm_sheets.methods.cams.cam_displacement import (
     SOURCE,
     ExactMotion,
     Phases,
-    entries,
     in_phase,
     names,
 )
@@ -285,7 +284,7 @@ SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordin
            "К ординате S {0} прибавим ординату S'' {1}: ордината {name} = {value}.")
 FIRST = {symbol: tuple(
     Rule(f"ordinates of the limited phases, {('displacement', 'first derivative')[i]}{' of a rocker' if symbol == 'ψ' else ''}",
-         entries, (kind, "number"), kind, "Ордината графика {name} = {value}.", unit="" if symbol == "S" else ("rad", "1")[i])
+         rules.take, (kind, "number"), kind, "Ордината графика {name} = {value}.", unit="" if symbol == "S" else ("rad", "1")[i])
     for i, kind in enumerate(kinds[:2])) for symbol, kinds in KINDS.items()}
 ALONG_ROCKER = Rule("analogue on the rocker", lambda sign, arm, dpsi: sign * arm * dpsi, ("number", "length", "number"), "ordinate",
                     "Отрезок {name} = AB·ψ' = {value}.", source=SOURCE)

@@ -65,6 +65,7 @@ UPPER_ANGLE = Rule(
 LOWER_ANGLE = Rule(
     "angle of the lower tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 - delta / 2)) ** 2),
     ("number",) * 4, "angle", "−".join(_ANGLE), source="000, 5.5")
+SLOPE_OF_ANGLE = Rule("slope of an angle", np.tan, ("angle",), "number", "{name} = {value}.", exact=True)
 UNDER_ANGLE = Rule("direction under an angle", lambda angle: np.cos(angle) + 1j * np.sin(angle), ("angle",), "direction",
                    "Под углом {0} к оси приведённых моментов инерции возьмём направление {name}.")
 PROJECT = Rule(
@@ -107,6 +108,7 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, conta
     plan.add("points", PROJECT, energy, inertia)
     for name, rule, intercept in (("max", UPPER_ANGLE, "a"), ("min", LOWER_ANGLE, "b")):
         angle = plan.add(f"ψ_{name}", rule, mu_j, mu_e, omega, delta)
+        plan.aside(f"tg ψ_{name}", SLOPE_OF_ANGLE, angle, symbol=f"tg ψ_{{{name}}}")
         direction = plan.add(f"t_{name}", UNDER_ANGLE, angle)
         touching = plan.add(f"T_{name}", TOUCH, *contact(name, float(angle.value)))
         plan.add(intercept, LINE_LINE, touching, direction, 0j, 1j,

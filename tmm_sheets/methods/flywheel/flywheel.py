@@ -194,6 +194,15 @@ def _gather(*points: Any) -> Any:
     return np.array([np.imag(p) for p in points])
 
 
+@primitive("within the first turn")
+def _within(phi: Any, turn: Any) -> Any:
+    """Angles of later turns as those of the first; whole turns but the first end it."""
+    later = phi > turn * (1 + 1e-12)
+    return np.where(later, np.mod(phi - 1e-12, turn) + 1e-12, phi)
+
+
+FIRST_TURN = Rule("angle of the first turn", _within, ("angle", "angle"), "angle", "Угол в пределах оборота {name} = {value}.",
+                  unit="rad", exact=True)
 MOMENT_AT = taken("reduced moment at the positions", "N*m", "Приведённый момент сил {name} = {value} Н·м.")
 INERTIA_AT = taken("reduced moment of inertia at the positions", "kg*m2", "Приведённый момент инерции {name} = {value} кг·м².")
 SLOPE_AT = taken("slope of the moment of inertia at the positions", "kg*m2", "Производная {name} = {value} кг·м².")
@@ -215,7 +224,8 @@ FROM_PAPER = Rule("from scale", lambda y, mu: y * mu, ("ordinate", "number"), "n
 TO_SLOPE = Rule("slope on paper", lambda value, mu, pole: value / (mu * pole), ("number",) * 3, "number",
                 "Наклон {name} = M/(μ_M·H) = {value}.")
 ABSCISSA = Rule("abscissa of an angle", lambda phi, mu: phi / mu, ("number", "number"), "number",
-                "Абсцисса угла {name} = {value} мм.", unit="mm")
+                "Абсцисса угла {name} = {value} мм.", unit="mm", exact=True)
+BORDER_AT = replace(taken("abscissa of a border", "mm", "Абсцисса границы интервала {name} = {value} мм."), exact=True)
 PLOT = Rule(
     "plot a point", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
     "На абсциссе {0} отложим ординату {1}: точка графика.",
@@ -429,9 +439,32 @@ class Flywheel(ABC):
         return Given(np.append(np.arange(n), 0), "positions of the closed cycle")
 
     @cached_property
-    def across(self) -> Given:
+    def across_plan(self) -> Plan:
+        """Abscissae of the positions, mm: ``x``; on the graph J(phi), where it has another scale, ``x_J``."""
+        plan = Plan(f"abscissae@positions{self.where}", "Абсциссы положений", "mm", self.labels)
+        phi = self.data_plan["φ1"]
+        plan.add("x", ABSCISSA, phi, self.mu("angle"))
+        if self.inertia_angle is not self.scales.angle:
+            mu = named(self.inertia_angle.mu, "scales.mu_phi", "μ_φ", "rad/mm")
+            turn = named(self.inertia_turn, "cycle", "2π", "rad")
+            plan.add("x_J", ABSCISSA, plan.aside("φ1 of a turn", FIRST_TURN, phi, turn), mu)
+        return plan
+
+    @property
+    def across(self) -> Step:
         """Abscissae of the positions, mm."""
-        return Given(self.scales.angle.mm(self.reduced.phi), "abscissae of the positions", "x", "mm")
+        return self.across_plan["x"]
+
+    @cached_property
+    def borders_plan(self) -> Plan:
+        """Angles ``φ`` of the borders of the intervals and their abscissae ``x``, mm; ``x_`` with a border's name is one alone."""
+        plan = Plan(f"abscissae@borders{self.where}", "Абсциссы границ интервалов", "mm", self.borders)
+        choice = "positions, jumps and kinks of the moment"
+        phi = plan.add("φ", GIVEN_NUMBER, Given(self.edges, "borders of the intervals", "φ_1", "rad", choice=choice))
+        x = plan.add("x", ABSCISSA, phi, self.mu("angle"))
+        for k, name in enumerate(self.borders):
+            plan.aside(f"x_{name}", BORDER_AT, x, k)
+        return plan
 
     @cached_property
     def data_plan(self) -> Plan:
@@ -529,7 +562,8 @@ class Flywheel(ABC):
     def work_plan(self) -> Plan:
         """Graphical integration of the moment: see :func:`integrate` for the names of its steps; ``A(φ)`` is the smooth curve."""
         plan, of = Plan(f"work{self.where}", "График работы", "mm"), self.intervals_plan
-        ends = integrate(plan, "", self.abscissae, [of[f"y{name}"] for name in self.intervals], self.pole,
+        across = [self.borders_plan.asides[f"x_{name}"] for name in self.borders]
+        ends = integrate(plan, "", across, [of[f"y{name}"] for name in self.intervals], self.pole,
                          borders=self.borders, intervals=self.intervals, mark=self.mark)
         plan.add("A(φ)", SMOOTH, *ends, *(of[f"{side}{name}"] for side in "+−" for name in self.intervals))
         area = plan.add("∫M", AREA_ORDINATE, self.area_plan["A_Σ"], self.mu("work"))
@@ -546,7 +580,7 @@ class Flywheel(ABC):
         row = plan.add("A", AREA, moment, Given(q.halves, "half widths of the panels", unit="rad", over="curve"),
                        Given(q.weights, "weights of the quadrature", over="curve"), ends)
         total = plan.add("A_Σ", WORK_AT, row, len(self.labels) - 1)
-        plan.add("M", MEAN_MOMENT, total, self.reduced.period)
+        plan.add("M", MEAN_MOMENT, total, named(self.reduced.period, "cycle", "φ_ц", "rad"))
         return plan
 
     @cached_property
@@ -561,7 +595,10 @@ class Flywheel(ABC):
 
     @cached_property
     def total_plan(self) -> Plan:
-        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at that of energy, mm; ``A``, ``A_K``, ``E``, J."""
+        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at that of energy, mm; ``A``, ``A_K``, ``E``, J.
+
+        ``δA`` is how much greater the work of the cycle is by the ordinates in the middles than by the area, % of the area.
+        """
         plan = Plan(f"total-work{self.where}", "График суммарной работы", "mm", self.labels)
         line = plan.add("y_1", ON_LINE, self.across, self.driving_plan["K"])
         curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
@@ -574,6 +611,9 @@ class Flywheel(ABC):
                  say="Работа постоянного момента {name} = y_1·μ_A = {0}·{1} Дж/мм = {value} Дж.")
         plan.add("E", FROM_PAPER, energy, self.mu("energy"),
                  say="Изменение кинетической энергии {name} = ΔE·μ_E = {0}·{1} Дж/мм = {value} Дж.")
+        done = plan.add("A_Σ", WORK_AT, plan["A"], len(self.labels) - 1)
+        plan.add("δA", DIFFERENCE, done, self.area_plan["A_Σ"],
+                 say="Работа за цикл отличается от найденной по площади графика на {name} = {value} %.")
         return plan
 
     @cached_property
@@ -592,8 +632,7 @@ class Flywheel(ABC):
         plan = Plan(f"reduced-inertia{self.where}", "График приведённого момента инерции", "mm", self.labels)
         inertia = plan.add("J_пр", INERTIA_AT, self.mass(self.reduced.numbered), self.closing)
         ordinate = plan.add("J", LAY_DOWN, plan.add("y_J", TO_PAPER, inertia, self.mu("inertia")))
-        across = Given(self.inertia_angle.mm(_within(self.reduced.phi, self.inertia_turn)), "abscissae of the positions", "x", "mm")
-        plan.add("points", PLOT, across, ordinate)
+        plan.add("points", PLOT, self.across_plan["x_J" if "x_J" in self.across_plan else "x"], ordinate)
         return plan
 
     @cached_property
@@ -627,7 +666,8 @@ class Flywheel(ABC):
         rotor, check = self.rotor_plan, self.motor
         last = (*((rotor,) if rotor.steps else ()), self.first_plan, self.limit_plan, *self.later_plans,
                 *((self.wheel.plan,) if self.wheel else ()), *((check.plan,) if check else ()), self.position_acceleration)
-        before = (*r.crank_plans, self.data_plan, *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
+        before = (*r.crank_plans, self.data_plan, self.across_plan, self.borders_plan,
+                  *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
         return {p.name: p for p in (*before, *shown, *last)}
 
     @property
@@ -671,8 +711,7 @@ class Flywheel(ABC):
     @property
     def work_error(self) -> float:
         """How much greater the work of the cycle is by the ordinates in the middles than by the area, in parts of the area."""
-        area = float(self.work_converged[-1])
-        return float(self.work[-1]) / area - 1 if area else 0.0
+        return float(self.total_plan["δA"].value) / 100 if self.work_converged[-1] else 0.0
 
     @property
     def M_constant(self) -> float:
@@ -934,12 +973,6 @@ ALL_INERTIA = Rule("add moments of inertia", lambda a, b: a + b, ("number", "num
 ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m - omega * omega / 2 * slope) / j,
                     ("number", "number", "number", "number"), "number",
                     "{name} = (M − ω²/2·dJ/dφ)/J = ({0} − {3}²/2·{1})/{2} = {value} рад/с².")
-
-
-def _within(phi: Floats, turn: float) -> Floats:
-    """Angles of later turns as those of the first; whole turns but the first end it."""
-    later = phi > turn * (1 + 1e-12)
-    return np.where(later, np.mod(phi - 1e-12, turn) + 1e-12, phi)
 
 
 def _largest(forces: Mapping[str, Floats]) -> float:

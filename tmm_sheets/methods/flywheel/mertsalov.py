@@ -62,6 +62,10 @@ NON_UNIFORMITY = Rule("non-uniformity of a running", lambda fast, slow: (fast - 
                       "number", "{name} = (ω_max − ω_min)/ω_ср = {value}.", beyond_paper=True)
 EXCESS = Rule("mean of two moments of inertia", lambda a, b: (a + b) / 2, ("number", "number"), "number",
               "По теории метод завышает на {name} = ({0} + {1})/2 = {value} кг·м².", unit="kg*m2", beyond_paper=True)
+ENERGY_SCALE = Rule("scale factor of an energy", lambda mu_j, omega: mu_j * omega**2 / 2, ("number", "number"), "number",
+                    "Масштаб кинетической энергии на графике J {name} = μ_J·ω_1²/2 = {value} Дж/мм.", unit="J/mm", exact=True)
+BETWEEN_LIMITS = Rule("difference of two moments of inertia", lambda a, b: a - b, ("number", "number"), "number",
+                      "В пределе методы расходятся на {name} = {0} − {1} = {value} кг·м².", unit="kg*m2", beyond_paper=True)
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,7 @@ class Mertsalov(Flywheel):
         """
         plan = Plan(f"first-energy{self.where}", "График кинетической энергии звеньев первой группы", "mm", self.labels)
         convert = self.mu("inertia"), self.omega1, self.mu("energy")
+        plan.aside("μ_T", ENERGY_SCALE, *convert[:2])
         second = plan.add("T_II", CONVERT, self.inertia_plan["J"], *convert)
         first = plan.add("T_I", LAY_BELOW, self.total_plan["ΔE"], second)
         plan.add("points", PLOT, self.across, first)
@@ -232,7 +237,7 @@ class Mertsalov(Flywheel):
 
     @cached_property
     def comparison_plan(self) -> Plan:
-        """Exact running with each of these flywheels: ``ω_max``, ``ω_min``, ``δ`` with its number; ``e`` theory's difference."""
+        """Exact running with each of these flywheels: ``ω_max``, ``ω_min``, ``δ`` with its number; ``ΔJ`` limits, ``e`` theory."""
         plan = Plan(f"comparison{self.where}", "Сравнение с точным движением", "")
         for i, c in enumerate(self.compared, 1):
             criterion = f"steady running with {c.first:.6g} kg m2 on the crank whose extremes have the mean omega1"
@@ -240,6 +245,7 @@ class Mertsalov(Flywheel):
             fast, slow = (plan.add(f"ω_{name}{i}", FOUND, Given(value, f"running {i}", unit="rad/s", over="none", choice=criterion),
                                    say=say) for name, value in (("max", c.running.fastest), ("min", c.running.slowest)))
             plan.add(f"δ{i}", NON_UNIFORMITY, fast, slow)
+        plan.add("ΔJ", BETWEEN_LIMITS, self.limit_plan["J_I∞"], self.other.limit_plan["J_I∞"])
         contacts = self.mass(self.at("exact-contacts", np.array([self.limit.phi_max, self.limit.phi_min])))
         plan.add("e", EXCESS, *(plan.add(f"J_{name}", AT_CONTACT, contacts, k) for k, name in enumerate(("max", "min"))))
         return plan

@@ -28,8 +28,6 @@ from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 
 _SOURCE = "000, 5"
 
-GIVEN_FORCE = Rule("given force", lambda f: f, ("force",), "force", "Сила {name} = {value}.", unit="N")
-GIVEN_MOMENT = Rule("given moment", lambda m: m, ("number",), "number", "Момент {name} = {value} Н·м.", unit="N*m")
 POWER = Rule("power of a force", lambda f, v: (f * np.conj(v)).real, ("force", "point"), "number",
              "Мощность силы {0} по плану скоростей, отрезок p{1}: {name} = F·V·cos(F̅, V̅) = {value} Вт.", unit="W", source=_SOURCE)
 MOMENT_POWER = Rule("power of a moment", lambda m, w: m * w, ("number", "number"), "number",
@@ -101,7 +99,7 @@ class Reduction:
         if self._drawn is not None:
             return self._drawn()
         r = self.reduced
-        return velocity_plan(position_plan(r.mechanism, r.cycle.world(self.phi), self.labels, self.where, self.purpose))
+        return velocity_plan(position_plan(r.mechanism, r.cycle.angles(self.phi), self.labels, self.where, self.purpose))
 
     @cached_property
     def accelerations(self) -> Accelerations:
@@ -129,23 +127,15 @@ class Reduction:
         mark = {1: "", 0: "(0)", -1: "(−)"}[side]
         vel, r, plan = self.velocities, self.reduced, self.plan
         powers: list[Any] = []
-        numbers = {"force": 0, "moment": 0}
+        turned = r.cycle.turned_row(self.phi)
         for f in r.forces:
-            kind = "moment" if f.point is None else "force"
-            origin = f"{kind}[{numbers[kind]}]"
-            numbers[kind] += 1
-            letters = f"{f.name[0]}_{{{f.name[1:]}}}"
-            if f.point is None:
-                given = plan.add(f"{f.name}{mark}", GIVEN_MOMENT, Given(f.law(self.phi, side), origin, letters, "N*m"))
-                powers.append(plan.add(f"N_{f.name}{mark}", MOMENT_POWER, given, vel.omega[f.link]))
-            else:
-                given = plan.add(f"{f.name}{mark}", GIVEN_FORCE, Given(f.vector(self.phi, side), origin, letters, "N"))
-                powers.append(plan.add(f"N_{f.name}{mark}", POWER, given, vel.points[f.point]))
-            self.loads[given.name] = given
+            load = self.loads[f"{f.name}{mark}"] = f.record(plan, vel.positions, turned, side, mark)
+            powers.append(plan.add(f"N_{load.name}", MOMENT_POWER, load, vel.omega[f.link]) if f.point is None else
+                          plan.add(f"N_{load.name}", POWER, load, vel.points[f.point]))
         if r.gravity:
-            for i, link in enumerate(r.mechanism.links.values()):
+            for link in r.mechanism.links.values():
                 if link.mass and link.centre is not None:
-                    powers.append(plan.add(f"N_G{link.name}{mark}", WEIGHT_POWER, r.mass(i, link),
+                    powers.append(plan.add(f"N_G{link.name}{mark}", WEIGHT_POWER, link.mass,
                                            named(r.gravity, "forces.gravity", "g", "m/s2"), vel.points[link.centre]))
         nothing = () if powers else (Given(np.zeros(np.shape(self.phi)), "force", unit="W"),)
         return plan.add(f"M{mark}", REDUCED_MOMENT, r.omega, *powers, *nothing)
@@ -155,17 +145,17 @@ class Reduction:
         """Twice the kinetic energy of each link, term by term, kg m2/s2, by names in lettering markup."""
         found: dict[str, Step] = {}
         vel, r = self.velocities, self.reduced
-        for i, link in enumerate(r.mechanism.links.values()):
+        for link in r.mechanism.links.values():
             n = link.name
             if link.pivot_inertia is not None:
-                found[f"J_{{{n}}}·ω_{n}²"] = self.plan.add(f"J{n}ω{n}²", ROTATION, r.turning(i, link), vel.omega[n])
+                found[f"J_{{{n}}}·ω_{n}²"] = self.plan.add(f"J{n}ω{n}²", ROTATION, turning(link), vel.omega[n])
                 continue
             if r.moves(link):
                 assert link.centre is not None
                 found[f"m_{n}·V_{{{link.centre}}}²"] = self.plan.add(
-                    f"m{n}V_{link.centre}²", TRANSLATION, r.mass(i, link), vel.points[link.centre])
+                    f"m{n}V_{link.centre}²", TRANSLATION, link.mass, vel.points[link.centre])
             if link.inertia:
-                found[f"J_{{S{n}}}·ω_{n}²"] = self.plan.add(f"J_S{n}ω{n}²", ROTATION, r.turning(i, link), vel.omega[n])
+                found[f"J_{{S{n}}}·ω_{n}²"] = self.plan.add(f"J_S{n}ω{n}²", ROTATION, turning(link), vel.omega[n])
         return found
 
     @cached_property
@@ -187,13 +177,13 @@ class Reduction:
         """
         vel, acc, r = self.velocities, self.accelerations, self.reduced
         parts: list[Step] = []
-        for i, link in enumerate(r.mechanism.links.values()):
+        for link in r.mechanism.links.values():
             n = link.name
-            if link.inertia if link.pivot_inertia is None else link.pivot_inertia:
-                parts.append(self.slope_plan.add(f"J{n}ω{n}ε{n}", TURNING_SLOPE, r.turning(i, link), vel.omega[n], acc.epsilon[n]))
+            if turning(link):
+                parts.append(self.slope_plan.add(f"J{n}ω{n}ε{n}", TURNING_SLOPE, turning(link), vel.omega[n], acc.epsilon[n]))
             if link.pivot_inertia is None and r.moves(link):
                 assert link.centre is not None
-                parts.append(self.slope_plan.add(f"m{n}a_{link.centre}V_{link.centre}", MOVING_SLOPE, r.mass(i, link),
+                parts.append(self.slope_plan.add(f"m{n}a_{link.centre}V_{link.centre}", MOVING_SLOPE, link.mass,
                                            acc.points[link.centre], vel.points[link.centre]))
         return self._sum(self.slope_plan, "dJ/dφ", INERTIA_SLOPE, parts)
 
@@ -205,6 +195,11 @@ class Reduction:
         elif np.shape(self.phi) and all(self.reduced.even(step) for step in parts):
             parts = [plan.add(f"{step.name}′", EVERYWHERE, step, over) for step in parts]
         return plan.add(name, rule, self.reduced.omega, *parts)
+
+
+def turning(link: Link) -> float:
+    """Moment of inertia of a link that counts for its energy of rotation, kg m2."""
+    return link.inertia if link.pivot_inertia is None else link.pivot_inertia
 
 
 class Reduced:
@@ -235,7 +230,7 @@ class Reduced:
         if found is None or not np.array_equal(found.phi, phi):
             if found is not None:
                 self._count(found)
-            found = self.kept[where] = Reduction(self, f"@{where}", phi, labels or tuple(map(str, range(np.size(phi)))))
+            found = self.kept[where] = Reduction(self, f"@{where}", phi, labels or ("",) * np.size(phi))
         return found
 
     def _count(self, tried: Reduction) -> None:
@@ -299,13 +294,12 @@ class Reduced:
     def crank(self) -> Step:
         """The same as a step: ``J_кр`` of the plan "crank-inertia"."""
         m, plan = self.mechanism, self.crank_plan
-        i = list(m.links).index(m.crank.link)
         crank = m.links[m.crank.link]
         if crank.pivot_inertia is not None or not self.moves(crank):
-            return plan.add("J_кр", GIVEN_NUMBER, self.turning(i, crank))
+            return plan.add("J_кр", GIVEN_NUMBER, turning(crank))
         assert crank.centre is not None
         pos = self._at_start
-        at_start = plan.add("J_1", CRANK_INERTIA, self.turning(i, crank), self.mass(i, crank), pos.points[crank.centre],
+        at_start = plan.add("J_1", CRANK_INERTIA, turning(crank), crank.mass, pos.points[crank.centre],
                             pos.points[m.crank.pivot])
         return plan.add("J_кр", AT_START, at_start, 0)
 
@@ -324,16 +318,6 @@ class Reduced:
         _ = self.crank
         start = vars(self).get("_at_start")
         return (*((start.plan,) if start else ()), self.crank_plan)
-
-    def mass(self, i: int, link: Link) -> float:
-        """Mass of the i-th link, with its place in the project file."""
-        return named(link.mass, f"link[{i}].mass", f"m_{link.name}", "kg")
-
-    def turning(self, i: int, link: Link) -> float:
-        """Moment of inertia of the i-th link that counts for its energy of rotation."""
-        if link.pivot_inertia is not None:
-            return named(link.pivot_inertia, f"link[{i}].pivot_inertia", f"J_{link.name}", "kg*m2")
-        return named(link.inertia, f"link[{i}].inertia", f"J_{{S{link.name}}}", "kg*m2")
 
     def moves(self, link: Link) -> bool:
         """True for a link whose centre of mass has a velocity to be counted."""

@@ -61,6 +61,10 @@ class GearWheel:
         """Step of the geometry with the wheel's number."""
         return self._plan[f"{name}{self.number}"]
 
+    def of_pair(self, name: str) -> Step:
+        """Step of the geometry that both wheels share."""
+        return self._plan[name]
+
 
 class PairGeometry:
     """All values of GOST 16532 of an external spur gear pair; raises :class:`CannotBuild` with all that forbids it."""

@@ -59,17 +59,21 @@ class GearPair(PairGeometry):
     @cached_property
     def _teeth(self) -> tuple[Plan, Plan]:
         one, two = (ge.tooth_plan(self, w, self.engagement) for w in self.wheels)
+        record = gt.record_cut if self.profile == "rack" else gt.record_flank
+        for wheel, plan in zip(self.wheels, (one, two), strict=True):
+            record(wheel, self.hand, self.engagement, plan)
         return one, two
 
     @cached_property
     def _shapes(self) -> tuple[gt.ToothShape, gt.ToothShape]:
-        shape = gt.generated_shape if self.profile == "rack" else gt.tooth_shape
-        one, two = (shape(w, self.hand, self.engagement, self.tooth(w)) for w in self.wheels)
+        one, two = (gt.tooth_shape(w, self.hand, self.engagement, plan, plan["flank"])
+                    for w, plan in zip(self.wheels, self._teeth, strict=True))
         return one, two
 
     def generated(self, wheel: GearWheel) -> gt.ToothShape:
         """Tooth of one wheel as the rack cuts it, in contact at the pole, whatever the pair's own profile."""
-        return gt.generated_shape(wheel, self.hand, self.engagement, self.tooth(wheel))
+        tooth = self.tooth(wheel)
+        return gt.tooth_shape(wheel, self.hand, self.engagement, tooth, gt.record_cut(wheel, self.hand, self.engagement, tooth))
 
     @property
     def pinion(self) -> GearWheel:

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.methods.gears import rack
 from tmm_sheets.methods.gears.gear_engagement import on_normal, unrolled
 from tmm_sheets.methods.gears.gear_geometry import GearWheel
@@ -18,7 +20,7 @@ Points = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class ToothShape:
-    """One tooth of a wheel with its working flank through the pole; see :func:`tooth_shape`."""
+    """One tooth of a wheel with its working flank through the pole, the value of ``step``; see :func:`tooth_shape`."""
 
     centre: complex
     axis: complex
@@ -27,6 +29,7 @@ class ToothShape:
     root: float
     tip: float
     flank: Points
+    step: Step
 
     def other_flank(self) -> Points:
         """The back flank: the working one mirrored in the tooth's axis."""
@@ -64,30 +67,57 @@ class ToothShape:
         return np.asarray(self.centre + radius * self.axis * np.exp(1j * self.side * angles))
 
 
-def tooth_shape(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan, points: int = 32) -> ToothShape:
-    """Shape of the tooth recorded in ``tooth``; the flank runs from the root circle to the tip, ``points`` on the involute."""
-    i = wheel.number
-    centre, foot, pole = (engagement[name].value for name in (f"O{i}", f"N{i}", "Pw"))
+@primitive("flank of a tooth")
+def _flank(o: Any, foot: Any, pole: Any, centre: Any, begin: Any, end: Any, low: Any, tip: Any) -> Points:
+    """Flank from the root circle: a fillet about a centre, then the involute through ``pole``, between two unrolled lengths."""
     # Even steps of t**2 are even steps of the angle along the involute's arc length.
-    lengths = np.sqrt(np.linspace(wheel.t_fillet**2, wheel.t_tip**2, points))
-    involute = unrolled(centre, foot, pole, lengths)
-    fillet = _arc_between(tooth["C"].value, tooth["R"].value, tooth["Q"].value, max(points // 3, 6))
-    if wheel.t_fillet > 0:
-        fillet = fillet[:-1]  # its end is the first point of the involute; a radial piece keeps both ends
-    return ToothShape(
-        centre=complex(centre), axis=complex(tooth["axis"].value), side=side, pitch=wheel.tau, root=wheel.rf, tip=wheel.ra,
-        flank=np.concatenate([fillet, involute]),
-    )
+    involute = unrolled(o, foot, pole, np.sqrt(np.linspace(low**2, tip**2, INVOLUTE)))
+    fillet = _arc_between(centre, begin, end, INVOLUTE // 3)
+    # Its end is the first point of the involute; a radial piece keeps both ends.
+    return np.concatenate([fillet[:-1] if low > 0 else fillet, involute])
 
 
-def generated_shape(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan, points: int = 32) -> ToothShape:
-    """Shape of the tooth as the rack cuts it, about the axis recorded in ``tooth``; ``points`` on the involute."""
-    centre, axis = complex(engagement[f"O{wheel.number}"].value), complex(tooth["axis"].value)
-    flank = rack.flank(wheel.rack, wheel.ra, points)
-    if side < 0:
-        flank = np.conj(flank)
-    return ToothShape(centre=centre, axis=axis, side=side, pitch=wheel.tau, root=wheel.rf, tip=wheel.ra,
-                      flank=centre + axis * flank)
+@primitive("flank cut by a rack")
+def _cut(centre: Any, axis: Any, side: Any, m: Any, alpha: Any, addendum: Any, clearance: Any, teeth: Any, shift: Any,
+         tip: Any) -> Points:
+    """Flank from the root circle to the tip as a rack cuts it, of the tooth about an axis, on the ``side`` of its rolling."""
+    found = rack.flank(rack.Rack(m, alpha, addendum, clearance, int(teeth), shift), tip, INVOLUTE)
+    return np.asarray(centre + axis * (np.conj(found) if side < 0 else found))
+
+
+INVOLUTE = 32
+"""Points on the involute of a flank."""
+FLANK = Rule("flank of a tooth", _flank, (*("point",) * 6, "length", "length"), "curve",
+             "Обведём рабочий профиль зуба: выкружку и эвольвенту до окружности вершин.", exact=True)
+CUT = Rule("flank cut by a rack", _cut, ("point", "direction", "number", "length", "angle", *("number",) * 4, "length"), "curve",
+           "Обведём профиль зуба как огибающую положений рейки.", exact=True)
+
+
+def record_flank(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan) -> Step:
+    """Step ``flank`` of the tooth recorded in ``tooth``: its working flank from the root circle to the tip."""
+    i = wheel.number
+    low: Any = tooth.steps.get("t", 0.0)
+    tip = tooth.add("t_a", rack.TAKEN, wheel.step("rho_a"))
+    return tooth.add("flank", FLANK, engagement[f"O{i}"], engagement[f"N{i}"], engagement["Pw"], tooth["C"], tooth["R"], tooth["Q"],
+                     low, tip)
+
+
+def record_cut(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan) -> Step:
+    """The same as the rack cuts it, of the tooth about the axis recorded in ``tooth``."""
+    of = wheel.of_pair
+    if "flank" in tooth and tooth["flank"].rule is CUT:
+        return tooth["flank"]
+    # Beside a tooth with a fillet it is the picture of the cutting alone.
+    add, name = (tooth.aside, "cut") if "flank" in tooth else (tooth.add, "flank")
+    m, tip = (add(name, rack.TAKEN, step) for name, step in (("m", of("m")), ("r_a", wheel.step("ra"))))
+    return add(name, CUT, engagement[f"O{wheel.number}"], tooth["axis"], float(side), m,
+               of("alpha"), of("ha"), of("c"), wheel.step("z"), wheel.step("x"), tip)
+
+
+def tooth_shape(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan, flank: Step) -> ToothShape:
+    """Shape of the tooth recorded in ``tooth`` with the flank of that step."""
+    return ToothShape(centre=complex(engagement[f"O{wheel.number}"].value), axis=complex(tooth["axis"].value), side=side,
+                      pitch=wheel.tau, root=wheel.rf, tip=wheel.ra, flank=flank.value, step=flank)
 
 
 def _arc_between(centre: complex, begin: complex, end: complex, n: int) -> Points:

@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.methods.linkage.positions import Positions
-from tmm_sheets.methods.linkage.velocities import POLE, SIMILAR, Velocities, plan_name
+from tmm_sheets.methods.linkage.velocities import POLE, SIMILAR, Velocities, plan_name, turning
 
 NORMAL = Rule(
     "normal acceleration", lambda a, w, big_q, big_b: a - w * w * (big_b - big_q),
@@ -48,13 +47,8 @@ RIGID = Rule(
 )
 
 
-def _angular(big_q: Any, big_b: Any, q: Any, b: Any) -> Any:
-    r = big_b - big_q
-    return ar.cross(r, b - q) / np.abs(r) ** 2
-
-
 ANGULAR_ACCELERATION = Rule(
-    "angular acceleration", _angular, ("point", "point", "point", "point"), "number",
+    "angular acceleration", turning, ("point", "point", "point", "point"), "number",
     "Угловое ускорение |{name}| = a^τ / {0}{1}, со знаком {name} = {value} рад/с².", unit="rad/s2",
 )
 

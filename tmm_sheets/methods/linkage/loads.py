@@ -17,10 +17,11 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Kind, Rule, Step, value_of
+from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
@@ -238,19 +239,26 @@ def _refuse(m: Mechanism, message: str, hint: str = "") -> NoReturn:
 
 @dataclass(frozen=True, eq=False)
 class LoadDiagram:
-    """A diagram with the place of its numbers: arguments, and ordinates as they are given and, by a rule, as they act."""
+    """A diagram of a load: its ``table`` as it acts, and its curve as a step, or the given number where it is the same all along.
+
+    One over the angle repeats itself after ``turns``.
+    """
 
     table: Table
-    x: Given
-    y: Given
-    smooth: bool
+    curve: Step | Given
     turns: float = 1.0
-    rule: Rule | None = None
-    numbers: tuple[Any, ...] = ()
 
-    def ordinates(self, plan: Plan, name: str) -> Any:
-        """Ordinates as they act, N or N m."""
-        return self.y if self.rule is None else plan.aside(f"{name} y", self.rule, self.y, *self.numbers)
+
+class Loads(tuple["Applied", ...]):
+    """Technological forces and moments in the order of the project file; ``plans`` has their diagrams."""
+
+    plans: dict[str, Plan]
+
+    def __new__(cls, applied: Iterable[Applied], plan: Plan) -> Loads:
+        """Forces and moments with the plan of their diagrams."""
+        found = super().__new__(cls, applied)
+        found.plans = {plan.name: plan} if plan.steps else {}
+        return found
 
 
 @dataclass(frozen=True)
@@ -270,28 +278,29 @@ class Applied:
     diagrams: tuple[LoadDiagram, ...] = ()
     along: Any = None
 
-    def record(self, plan: Plan, pos: Positions, turned: Any) -> Step:
-        """The force or moment as a step of a plan, ``turned`` the angles from position 0 as a row or a step."""
-        values = self._magnitudes(plan, pos, turned)
-        if self.point is None:
-            return plan.add(self.name, MOMENT, values)
-        return plan.add(self.name, FORCE, values, self.toward if self.along is None else self.along)
+    def record(self, plan: Plan, pos: Positions, turned: Any, side: int = 0, mark: str = "") -> Step:
+        """The force or moment as a step of a plan, ``turned`` the angles from position 0 as a row or a step.
 
-    def _magnitudes(self, plan: Plan, pos: Positions, turned: Any) -> Step:
+        ``side`` as in the law; ``mark`` goes behind the step's name.
+        """
+        values = self._magnitudes(plan, pos, turned, side, mark)
+        if self.point is None:
+            return plan.add(f"{self.name}{mark}", MOMENT, values)
+        return plan.add(f"{self.name}{mark}", FORCE, values, self.toward if self.along is None else self.along)
+
+    def _magnitudes(self, plan: Plan, pos: Positions, turned: Any, side: int, mark: str) -> Step:
         """Signed values, N or N m."""
-        law, name = self.law, f"|{self.name}|"
+        law, name = self.law, f"|{self.name}|{mark}"
         if not isinstance(law, StrokeLaw):
             (d,) = self.diagrams
-            rule = SMOOTH_PERIODIC if d.smooth else PERIODIC
-            return plan.aside(name, rule, d.x, d.ordinates(plan, self.name), turned, d.turns)
-        ahead, signs = law.strokes(value_of(turned))
+            return plan.aside(name, AT_ANGLE, d.curve, turned, d.turns, float(side))
+        ahead, signs = law.strokes(value_of(turned), side)
         sense = Given(ahead, f"sense of {self.name}", choice="which way its diagram is passed")
         terms: list[Any] = []
         for n, (run, sign) in enumerate(signs):
             d = next(d for d in self.diagrams if d.table is law.tables[run])
-            ordinate: Any = d.y if len(d.table[0]) == 1 and d.rule is None else plan.aside(
-                f"{self.name} ({n + 1})", SMOOTH if d.smooth else STRAIGHT, d.x, d.ordinates(plan, f"{self.name} ({n + 1})"),
-                self._way(plan, pos, turned, ahead), sense)
+            ordinate: Any = d.curve if isinstance(d.curve, Given) else plan.aside(
+                f"{self.name}{mark} ({n + 1})", ON_WAY, d.curve, self._way(plan, pos, turned, ahead), sense)
             terms += [Given(sign, f"sign of {self.name}", choice="strokes it acts on, against or along the motion"), ordinate]
         return plan.aside(name, SIGNED_SUM, *terms)
 
@@ -336,73 +345,81 @@ Table = tuple[Sequence[float], Sequence[float]]
 """Arguments and values of a diagram, straight lines between them."""
 
 
-Curve = Callable[[Any, int], Any]
+OfAngle = Callable[[Any, int], Any]
 """Ordinates of a diagram; at a jump ``side`` -1 tells the value before it, otherwise the one after it."""
 
 
-def curve_of(table: Table, smooth: bool = False, period: float | None = None) -> Curve:
-    """Curve through the points of a diagram, constant beyond its ends or periodic; arguments given twice are jumps.
+def curve_of(table: Table, smooth: bool = False, period: float | None = None) -> OfAngle:
+    """Ordinates of the curve through the points of a diagram, see :func:`diagram` and :func:`read`."""
+    curve = _curve(*table, smooth, period)
+
+    def ordinates(t: Any, side: int = 0) -> Any:
+        return read(curve, t, side, period)
+
+    return ordinates
+
+
+@primitive("load diagram")
+def diagram(x: Any, y: Any, smooth: Any, turns: Any) -> Curve:
+    """Curve through the points of a diagram: chords, or smooth (1); one over the angle repeats itself after ``turns``, else 0."""
+    return _curve(x, y, bool(smooth), 2 * np.pi * turns or None)
+
+
+def _curve(x: Any, y: Any, smooth: bool, period: float | None) -> Curve:
+    """The curve with its end where it begins again; arguments given twice are jumps.
 
     Straight lines, or a cubic in every interval: the slope in a point is the weighted harmonic mean of its neighbours', and zero
     where they differ in sign, so the curve rises and falls only where the points do (F. N. Fritsch, J. Butland, SIAM J. Sci.
     Stat. Comput. 5, 1984). At the ends and at jumps the slope is that of the only neighbour.
     """
-    x, y = (np.asarray(v, dtype=float) for v in table)
+    x, y = (np.asarray(v, dtype=float) for v in (x, y))
     if period is not None and x[-1] - x[0] < period - NEAR:
         x, y = np.append(x, x[0] + period), np.append(y, y[0])
     if len(x) < 2:
         x, y = np.repeat(x, 2), np.repeat(y, 2)
-    h, rise = np.diff(x), np.diff(y)
-    left, right = _slopes(x, y, period is not None and y[0] == y[-1])
-    corners = x[:-1][h == 0]
-
-    def curve(t: Any, side: int = 0) -> Any:
-        t = np.asarray(t, dtype=float)
-        if period is not None:
-            t = np.mod(t - x[0], period) + x[0]
-            t = np.where(t - x[0] < NEAR, x[-1], t) if side < 0 else np.where(x[-1] - t < NEAR, x[0], t)
-        for corner in corners:  # what misses a jump by rounding stands on it
-            t = np.where(np.abs(t - corner) < NEAR, corner, t)
-        k = np.clip(np.searchsorted(x, t, side="left" if side < 0 else "right") - 1, 0, len(h) - 1)
-        s = np.clip((t - x[k]) / np.where(h[k] > 0, h[k], 1.0), 0.0, 1.0)
-        if smooth:
-            r = 1 - s
-            found = r * r * (y[k] * (1 + 2 * s) + h[k] * s * left[k]) + s * s * (y[k + 1] * (1 + 2 * r) - h[k] * r * right[k])
-        else:
-            found = y[k] + s * rise[k]
-        after, before = (t >= x[-1], t < x[0]) if side >= 0 else (t > x[-1], t <= x[0])
-        return np.where(after, y[-1], np.where(before, y[0], found))
-
-    return curve
+    if not smooth:
+        return Curve(x, y, np.array([]), np.array([]), "straight")
+    return Curve(x, y, *_slopes(x, y, period is not None and y[0] == y[-1]))
 
 
-def _of_table(smooth: bool) -> Callable[..., Any]:
-    def ordinate(x: Any, y: Any, at: Any, ahead: Any) -> Any:
-        """Ordinates of a diagram at fractions of the way, passed forwards (+1) or backwards (-1): at a jump that tells the side."""
-        curve = curve_of((x, y), smooth)
-        return np.where(np.asarray(ahead) < 0, curve(at, -1), curve(at, 1))
+def read(curve: Curve, t: Any, side: int = 0, period: float | None = None) -> Any:
+    """Ordinates of a diagram, constant beyond its ends or periodic; ``side`` -1 tells the value before a jump, else behind it."""
+    x, y, t = curve.x, curve.y, np.asarray(t, dtype=float)
+    h = np.diff(x)
+    if period is not None:
+        t = np.mod(t - x[0], period) + x[0]
+        t = np.where(t - x[0] < NEAR, x[-1], t) if side < 0 else np.where(x[-1] - t < NEAR, x[0], t)
+    for corner in x[:-1][h == 0]:  # what misses a jump by rounding stands on it
+        t = np.where(np.abs(t - corner) < NEAR, corner, t)
+    k = np.clip(np.searchsorted(x, t, side="left" if side < 0 else "right") - 1, 0, len(h) - 1)
+    s = np.clip((t - x[k]) / np.where(h[k] > 0, h[k], 1.0), 0.0, 1.0)
+    if curve.law == "straight":
+        found = y[k] + s * np.diff(y)[k]
+    else:
+        r = 1 - s
+        found = (r * r * (y[k] * (1 + 2 * s) + h[k] * s * curve.left[k])
+                 + s * s * (y[k + 1] * (1 + 2 * r) - h[k] * r * curve.right[k]))
+    after, before = (t >= x[-1], t < x[0]) if side >= 0 else (t > x[-1], t <= x[0])
+    return np.where(after, y[-1], np.where(before, y[0], found))
 
-    return ordinate
+
+@primitive("ordinate of a diagram")
+def ordinate(curve: Any, at: Any, ahead: Any) -> Any:
+    """Ordinates of a diagram at fractions of the way, passed forwards (+1) or backwards (-1): at a jump that tells the side."""
+    return np.where(np.asarray(ahead) < 0, read(curve, at, -1), read(curve, at, 1))
 
 
-def _of_periodic(smooth: bool) -> Callable[..., Any]:
-    def ordinate(x: Any, y: Any, at: Any, turns: float) -> Any:
-        """Ordinates of a diagram that repeats itself after some turns, at angles turned; at a jump the one after it."""
-        return curve_of((x, y), smooth, 2 * np.pi * turns)(at, 0)
-
-    return ordinate
+@primitive("ordinate of a periodic diagram")
+def periodic_ordinate(curve: Any, at: Any, turns: Any, side: Any) -> Any:
+    """Ordinates of a diagram that repeats itself after some turns, at angles turned; at a jump before it (-1) or behind it."""
+    return read(curve, at, int(side), 2 * np.pi * turns)
 
 
-ordinate = primitive("ordinate of a diagram")(_of_table(False))
-smooth_ordinate = primitive("ordinate of a smooth diagram")(_of_table(True))
-periodic_ordinate = primitive("ordinate of a periodic diagram")(_of_periodic(False))
-smooth_periodic_ordinate = primitive("ordinate of a smooth periodic diagram")(_of_periodic(True))
-_TAKEN: tuple[Kind, ...] = ("number", "number", "number", "number")
-STRAIGHT = Rule("ordinate of a load diagram", ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
-SMOOTH = Rule("ordinate of a smooth load diagram", smooth_ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
-PERIODIC = Rule("ordinate of a load diagram over the angle", periodic_ordinate, _TAKEN, "number", "{name} = {value}.", exact=True)
-SMOOTH_PERIODIC = Rule("ordinate of a smooth load diagram over the angle", smooth_periodic_ordinate, _TAKEN, "number",
-                       "{name} = {value}.", exact=True)
+DIAGRAM = Rule("load diagram", diagram, ("number",) * 4, "curve", "По точкам задания проведём диаграмму нагрузки {name}.",
+               exact=True)
+ON_WAY = Rule("ordinate of a load diagram", ordinate, ("curve", "number", "number"), "number", "{name} = {value}.", exact=True)
+AT_ANGLE = Rule("ordinate of a load diagram over the angle", periodic_ordinate, ("curve", "angle", "number", "number"), "number",
+                "{name} = {value}.", exact=True)
 
 
 def _slopes(x: Any, y: Any, closed: bool) -> tuple[Any, Any]:
@@ -441,7 +458,7 @@ class StrokeLaw:
     always: bool
 
     @cached_property
-    def curves(self) -> list[Curve | None]:
+    def curves(self) -> list[OfAngle | None]:
         """Diagram of each run."""
         return [None if table is None else curve_of(table, self.smooth) for table in self.tables]
 
@@ -484,13 +501,13 @@ class StrokeLaw:
         """Fractions of the way as the diagrams take them: the end of a turn is not the beginning of the next."""
         return np.where(x < NEAR, 1.0, x) if self.motion.endless and ahead < 0 else x
 
-    def strokes(self, turned: Any) -> tuple[Any, list[tuple[int, Any]]]:
+    def strokes(self, turned: Any, side: int = 0) -> tuple[Any, list[tuple[int, Any]]]:
         """Which way the diagrams are passed at each angle, +1 or -1, and for each of them its first run and the sign it has there.
 
         A sign of 0: that diagram does not act there.
         """
-        motion, i = self.motion, self.run(turned)
-        ahead = np.where(i < 0, 1, np.array([run.sense * motion.way for run in motion.runs])[i])
+        motion, i = self.motion, self.run(turned, side)
+        ahead = np.where(i < 0, 1, np.array([(side or 1) * run.sense * motion.way for run in motion.runs])[i])
         signs: list[tuple[int, Any]] = []
         for n, table in enumerate(self.tables):
             if table is not None and not any(self.tables[k] is table for k, _ in signs):

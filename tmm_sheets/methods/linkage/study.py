@@ -9,10 +9,12 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import Load
 from tmm_sheets.mechanism.model import Mechanism
+from tmm_sheets.methods.integration import weighted
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics, external_loads, kinetostatics
@@ -121,17 +123,34 @@ class Study:
 
     @cached_property
     def balance(self) -> Plan:
-        """Comparison of what drives the crank: ``Δ``, per cent, and ``along``, the force's signed size on its line, N."""
+        """Comparison of what drives the crank: ``Δ``, per cent.
+
+        ``along`` is the force's signed size on its line, N; a moment's are ``M`` and ``M_р`` (by the lever), N m, positive in the
+        sense of rotation.
+        """
         by_statics, by_lever, line = self.forces.balancing, self.lever.balancing, self.lever.line
         plan = Plan("balance", "Сравнение уравновешивающих", "N", self.labels, search=self.positions.plan.search)
         if line is not None:
             # The force plan gives a vector along the line of action, the lever its signed size there.
             by_statics = plan.add("along", ALONG_LINE, by_statics, line)
+        else:
+            for name, step in (("M", by_statics), ("M_р", by_lever)):
+                plan.add(name, IN_SENSE, step, self.mechanism.crank.sense)
         plan.add("Δ", DIFFERENCE, by_statics, by_lever)
         return plan
 
 
+    def mean_driving(self, course: Step, turned: Any) -> Step:
+        """Mean moment of the crank over the cycle, N m: step ``M_д``, by trapezia from its values at angles ``turned``, rad."""
+        width = np.diff(turned, prepend=turned[0], append=turned[-1])
+        weights = Given((width[1:] + width[:-1]) / 2 / self.cycle.period, "weights of the trapezia", over="curve")
+        return self.balance.aside("M_д", MEAN, course, weights)
+
+
 ALONG_LINE = Rule("size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",
                   "Проекция силы {0} на линию действия: {value} Н.", unit="N")
+MEAN = Rule("mean moment", weighted, ("number", "number"), "number", "Средний момент за цикл {name} = {value} Н·м.", unit="N*m")
+IN_SENSE = Rule("in the sense of rotation", lambda moment, sense: sense * moment, ("number", "number"), "number",
+                "По направлению вращения начального звена {name} = {value} Н·м.", unit="N*m")
 DIFFERENCE = Rule("difference per cent", lambda a, b: 100 * np.abs(a - b) / np.abs(a), ("number", "number"), "number",
                   "Расхождение {name} = |{0} − {1}|/|{0}|·100 % = {value} %.", unit="%")

@@ -37,13 +37,14 @@ RIGID = Rule(
 )
 
 
-def _angular(big_q: Any, big_b: Any, q: Any, b: Any) -> Any:
+def turning(big_q: Any, big_b: Any, q: Any, b: Any) -> Any:
+    """Angular velocity, or acceleration, of a link from the vectors ``q`` and ``b`` of two of its points."""
     r = big_b - big_q
     return ar.cross(r, b - q) / np.abs(r) ** 2
 
 
 ANGULAR_VELOCITY = Rule(
-    "angular velocity", _angular, ("point", "point", "point", "point"), "number",
+    "angular velocity", turning, ("point", "point", "point", "point"), "number",
     "Угловая скорость |{name}| = |{2}{3}|·μ_V / {0}{1}, со знаком {name} = {value} рад/с.", unit="rad/s",
 )
 OF_CRANK = Rule("angular velocity of the crank", lambda sense, w: sense * w, ("number", "number"), "number", "{name} = {value}.",

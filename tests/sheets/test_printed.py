@@ -1,0 +1,16 @@
+"""Numbers printed on the sheets are values of steps."""
+
+import pytest
+
+from tests.sheets.printed import OWN, PROJECTS, check
+from tmm_sheets.catalogue import read
+from tmm_sheets.project import Project
+
+SHIPPED = [name for name in PROJECTS if name not in OWN]
+
+@pytest.mark.parametrize("name", [*SHIPPED, OWN[-1]])
+def test_every_printed_number_is_that_of_a_step(name):
+    total, lost, false = check(Project(read(name)))
+    assert total > 200
+    assert false < 0.8  # most of the false ones are small numbers with few digits
+    assert lost == []

@@ -1,0 +1,150 @@
+"""Motion of the outputs over the cycle: way, velocity and acceleration along a straight path; angle of a link and its rates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction.given import Given
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import take
+from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.linkage.study import Study
+
+SAMPLES = 15
+"""Points of a curve between two positions."""
+STRAIGHT = 1e-9
+"""Part of its way by which a point may leave a straight line."""
+TURN = 2 * np.pi
+
+BEGINNING = Rule("beginning of the way", take, ("point", "number"), "point", "Путь отсчитаем от точки {name}.", unit="m")
+WAY = Rule("way along a path", lambda p, start, u: ((p - start) * np.conj(u)).real, ("point", "point", "direction"), "number",
+           "Путь от точки {1}: {name} = {value} м.", unit="m")
+VELOCITY, ACCELERATION = (
+    Rule(f"{name} along a path", lambda v, u: (v * np.conj(u)).real, ("point", "direction"), "number",
+         f"Проекция {{0}} на направление пути: {{name}} = {{value}} {said}.", unit=unit)
+    for name, said, unit in (("velocity", "м/с", "m/s"), ("acceleration", "м/с²", "m/s2")))
+FIRST = Rule("first direction of a link", take, ("direction", "number"), "direction", "Угол отсчитаем от направления {name}.")
+ANGLE = Rule("angle turned from the beginning",
+             lambda u, start, turns, sign: sign * (np.arctan2(u.imag, u.real) + TURN * turns - np.arctan2(start.imag, start.real)),
+             ("direction", "direction", "number", "number"), "angle", "Угол поворота звена {name} = {value}.")
+OMEGA, EPSILON = (Rule(f"angular {name} in the first sense", lambda w, sign: sign * w, ("number", "number"), "number",
+                       f"{{name}} = {{value}} {said}.", unit=unit)
+                  for name, said, unit in (("velocity", "с⁻¹", "rad/s"), ("acceleration", "с⁻²", "rad/s2")))
+
+Three = tuple[Step, Step, Step]
+
+
+@dataclass(frozen=True)
+class Output:
+    """Motion of one output: its three quantities at the positions, and between them for their curves."""
+
+    at_positions: Three
+    between: Three
+
+
+class Motion:
+    """Motion of points and links over the cycle; each is recorded when it is asked for.
+
+    Parameters
+    ----------
+    study
+        at the numbered positions.
+    study_at
+        the same at any angles turned from position 0, rad.
+    """
+
+    def __init__(self, study: Study, study_at: Callable[[Any, tuple[str, ...]], Study]) -> None:
+        self.study = study
+        self._study_at = study_at
+        self._known: dict[str, Output] = {}
+        self.plan = Plan("motion", "Кинематические диаграммы", "m", study.labels)
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """The plan of what was asked for."""
+        return {self.plan.name: self.plan} if self.plan.steps else {}
+
+    @cached_property
+    def turned(self) -> Any:
+        """Angles of the curves' points, rad: position 0 and its return are the ends."""
+        return np.linspace(0.0, self.study.cycle.period, SAMPLES * len(self.study.labels) + 1)
+
+    @cached_property
+    def between(self) -> Study:
+        """The linkage at these angles."""
+        return self._study_at(self.turned, tuple("" for _ in self.turned))
+
+    @cached_property
+    def _tried(self) -> Plan:
+        return Plan("motion", self.plan.title, self.plan.unit, self.between.labels, search=self.between.positions.plan.search)
+
+    def point(self, name: str) -> Output:
+        """S, V and a of a point that moves along a straight line, positive in the sense in which the motion begins.
+
+        Raises
+        ------
+        CannotBuild
+            when the path is not straight.
+        """
+        if name not in self._known:
+            p = np.asarray(self.between.positions.points[name].value)
+            u = Given(_path(name, p - p[0]), f"path of {name}", "u", over="none",
+                      choice="from position 0 to the farthest point, in the sense in which the motion begins")
+            self._known[name] = Output(*(_along(plan, study, name, u) for plan, study in self._both()))
+        return self._known[name]
+
+    def link(self, name: str) -> Output:
+        """Angle of a link from position 0 on, its angular velocity and acceleration, positive in the sense it begins with."""
+        if name not in self._known:
+            angle = np.angle(np.broadcast_to(self.between.positions.directions[name].value, self.turned.shape))
+            swept = np.unwrap(angle)
+            sign = Given(_begins(swept - swept[0]), f"sense of link {name}", over="none", choice="sense in which the motion begins")
+            at = self.study.turned
+            here = np.angle(np.broadcast_to(self.study.positions.directions[name].value, at.shape))
+            turns = (np.interp(at, self.turned, swept) - here, swept - angle)
+            self._known[name] = Output(*(_turning(plan, study, name, sign, np.round(k / TURN))
+                                         for (plan, study), k in zip(self._both(), turns, strict=True)))
+        return self._known[name]
+
+    def _both(self) -> tuple[tuple[Plan, Study], tuple[Plan, Study]]:
+        return (self.plan, self.study), (self._tried, self.between)
+
+
+def _along(plan: Plan, study: Study, name: str, u: Given) -> Three:
+    p, v, a = (of.points[name] for of in (study.positions, study.velocities, study.accelerations))
+    start = plan.add(f"{name}₀", BEGINNING, p, 0)
+    return (plan.add(f"S_{name}", WAY, p, start, u, symbol=f"S_{{{name}}}"),
+            plan.add(f"V_{name}", VELOCITY, v, u, symbol=f"V_{{{name}}}"),
+            plan.add(f"a_{name}", ACCELERATION, a, u, symbol=f"a_{{{name}}}"))
+
+
+def _turning(plan: Plan, study: Study, name: str, sign: Given, turns: Any) -> Three:
+    u, omega, epsilon = study.positions.directions[name], study.velocities.omega[name], study.accelerations.epsilon[name]
+    start = plan.add(f"{name}₀", FIRST, u, 0)
+    whole = Given(turns, f"turns of link {name}", choice="whole turns, counted on from position 0")
+    return (plan.add(f"ψ_{name}", ANGLE, u, start, whole, sign, symbol=f"ψ_{{{name}}}"),
+            plan.add(f"ω_{name}", OMEGA, omega, sign, symbol=f"ω_{{{name}}}"),
+            plan.add(f"ε_{name}", EPSILON, epsilon, sign, symbol=f"ε_{{{name}}}"))
+
+
+def _path(name: str, way: Any) -> complex:
+    """Unit vector of a straight path, in the sense in which the motion begins."""
+    far = complex(way[np.argmax(np.abs(way))])
+    size = abs(far)
+    u = far / size if size else 1 + 0j
+    if np.max(np.abs((way * np.conj(u)).imag)) > STRAIGHT * size:
+        raise CannotBuild(f"point {name} does not move along a straight line: it has no diagram S(φ)",
+                          "name a point of a slider in cycle.diagrams, or the number of a link for its angle")
+    return u * _begins((way * np.conj(u)).real)
+
+
+def _begins(way: Any) -> float:
+    """Sign of the first movement away from position 0."""
+    moved = way[np.abs(way) > 1e-6 * np.max(np.abs(way))]
+    return float(np.sign(moved[0])) if len(moved) else 1.0
