@@ -7,7 +7,7 @@ The numbers, the drawing, the protocol, the error analysis and the laziness all 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -156,9 +156,12 @@ class Step:
         """Value at position ``k`` (the value itself when it does not depend on the position)."""
         return value_at(self, k)
 
-    def ancestors(self) -> Iterator[Step]:
-        """All steps this one depends on, itself included, arguments before results, each once."""
-        seen: set[int] = set()
+    def ancestors(self, known: Iterable[int] = ()) -> Iterator[Step]:
+        """All steps this one depends on, itself included, arguments before results, each once.
+
+        Not those whose id() is ``known``, nor what only they depend on.
+        """
+        seen = set(known)
         pending: list[tuple[Step, bool]] = [(self, False)]
         while pending:
             step, ready = pending.pop()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import atan, degrees, hypot, isfinite, radians, tan
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,8 @@ LONG = 10.0
 """Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
 PLOTTED = 0.8
 """Share of an ordinate's tolerance that the number it was plotted from has."""
+CHANCE = 1e-3
+"""How often a file without any mistake may be accused of one."""
 EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
 
@@ -72,6 +75,8 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
         if j.verdict != "green" and wrong:
             worst = max(wrong, key=lambda n: abs(n.deviation) / n.tolerance)
             j.follows = worst.follows or worst
+        if j.verdict == "red" and not j.starts and j.follows is None:
+            j.remark = j.remark or f"one of {len(judged)} numbers may be off so far by chance"
     return judged
 
 
@@ -246,22 +251,32 @@ class _Sheet:
         """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
 
         Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
-        construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do.
+        construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do. A
+        point that nearly rests moves its speed alike to both sides: the search begins also with what its own plan alone tells.
         """
+        found = self._descended(place, np.zeros(2), exact)
         lines, gradient = self.by_place[place]
+        here = np.array([self.judged[i].entry.plan == self.steps[place].plan for i in lines])
+        if not exact or here.all() or not here.any():
+            return found
+        rows, aims = (gradient / self.tolerance[lines, None])[here], (self.left[lines] / self.tolerance[lines])[here]
+        usual = self._usual(place)
+        begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
+        return max(found, self._descended(place, begin, exact), key=lambda m: m.score)
+
+    def _usual(self, place: Place) -> npt.NDArray[np.float64]:
+        """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
+        mu = self.errors.scale(self.steps[place])
+        return np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(self.steps[place], place[1]))), 1e-9))
+
+    def _descended(self, place: Place, x: npt.NDArray[np.float64], exact: bool) -> Mistake:
+        """The best displacement that the search finds when it begins with ``x``."""
+        lines, gradient = self.by_place[place]
+        of, mu, usual = self.steps[place], self.errors.scale(self.steps[place]), self._usual(place)
         rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
-        of, mu = self.steps[place], self.errors.scale(self.steps[place])
-        # Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself.
-        usual = np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
-        x, shares = np.zeros(2), np.zeros(len(lines))
-        weights = np.ones(len(lines))
-        for _ in range(5 if exact else 8):
-            step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
-                                       np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
-            if np.abs(rows @ step).max() < 0.01:
-                break
-            x = x + step
-            if exact:
+        best = Mistake(place, of, x, np.eye(2), 0.0, mu)
+        for _ in range(6 if exact else 9):
+            if exact and x.any():
                 shares = self.shares(place, x) / self.tolerance[lines]
                 near = np.diag([1.0, 1.0]) * (NEAR * mu if mu else NEAR * max(abs(x[0]), 1e-9))
                 beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
@@ -270,10 +285,17 @@ class _Sheet:
             else:
                 shares = rows @ x
             if not (np.all(np.isfinite(shares)) and np.all(np.isfinite(rows))):
-                return Mistake(place, of, x, np.eye(2), 0.0, mu)
+                break
+            score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
+            if score > best.score:
+                best = Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
             weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
-        score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
-        return Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
+            step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
+                                       np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
+            if np.abs(rows @ step).max() < 0.01:
+                break
+            x = x + step
+        return best
 
     def helps(self, mistake: Mistake, i: int) -> bool:
         """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
@@ -303,6 +325,8 @@ def _changed(j: Judged, value: Callable[[Step], Any]) -> float:
         change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
     else:
         change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
+        if len(e.terms) == 1 and not e.signed and e.kind != "angle":
+            change = abs(e.value + change) - e.value
         change += sum(factor * abs(moved(step, k)) ** 2 for factor, step, k, _ in e.squares)
     return float(change) * j.size
 
@@ -317,13 +341,13 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
     sheet = _Sheet(judged, errors)
     open_ = np.array([j.verdict == "red" for j in judged])
-    tried = 0
+    beyond, tried = _beyond_chance(len(judged)), 0
     while open_.any():
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         open_[first] = False
         start.follows = _own_reason(own, start)
-        if start.follows is not None:
+        if start.follows is not None or abs(start.deviation) <= beyond * start.tolerance:
             continue
         start.starts = True
         tried += 1
@@ -340,12 +364,21 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers) -> None:
                 continue  # the mistake did not reach it, or with it nothing could be drawn
             sheet.left[i] -= share
             # What is left need not be better than other numbers: amber is accused of nothing.
-            allowed = (2 if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt), CURVED * float(share))
+            allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt), CURVED * float(share))
             explained = abs(sheet.left[i]) <= allowed
             if explained and abs(share) > SHARE * j.tolerance and not j.starts and abs(sheet.left[i]) < abs(before):
                 open_[i] = False
                 if j.follows is None:
                     j.follows = start
+    for j in judged:
+        if j.verdict == "red" and not j.starts and j.follows is None:
+            j.follows = _own_reason(own, j)
+
+
+def _beyond_chance(count: int) -> float:
+    """Deviation in tolerances that none of so many numbers has by chance; a tolerance is what is kept nineteen times of twenty."""
+    normal = NormalDist()
+    return max(2.0, normal.inv_cdf(1 - CHANCE / (2 * max(count, 1))) / normal.inv_cdf(0.975))
 
 
 def _own_reason(own: OwnNumbers, j: Judged) -> Judged | None:
