@@ -38,8 +38,10 @@ HUBER = 2.0
 """Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
 ALONE = 0.9
 """Share of the number it is looked for that a mistake has to explain, besides most of another one."""
-NEAR = 0.1
-"""Displacement for derivatives where a mistake has led to, mm, or as a share of a number."""
+DRAWN = ("point", "vector", "length", "ordinate")
+"""What is off by millimetres; numbers and forces are off by a share of themselves."""
+NEAR = 0.01
+"""Displacement for derivatives where a mistake has led to, as a share of the usual one."""
 TRIED = 4
 """Steps that are tried by drawing again, of those that explain most by the Jacobian."""
 NEARLY = 0.9
@@ -69,7 +71,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     own = OwnNumbers(judged, errors) if judged else None
     if own is not None:
         _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors, own)
-        _against_own(own, found)
+        _against_own(own, found, _beyond_chance(len(judged)))
     for j in judged:
         wrong = [n for n in computed.get(id(j), ()) if n.verdict != "green"]
         if j.verdict != "green" and wrong:
@@ -266,8 +268,9 @@ class _Sheet:
 
     def _usual(self, place: Place) -> npt.NDArray[np.float64]:
         """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
-        mu = self.errors.scale(self.steps[place])
-        return np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(self.steps[place], place[1]))), 1e-9))
+        of = self.steps[place]
+        mu = self.errors.scale(of) if of.rule.gives in DRAWN else 0.0
+        return np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
 
     def _descended(self, place: Place, x: npt.NDArray[np.float64], exact: bool) -> Mistake:
         """The best displacement that the search finds when it begins with ``x``."""
@@ -278,7 +281,7 @@ class _Sheet:
         for _ in range(6 if exact else 9):
             if exact and x.any():
                 shares = self.shares(place, x) / self.tolerance[lines]
-                near = np.diag([1.0, 1.0]) * (NEAR * mu if mu else NEAR * max(abs(x[0]), 1e-9))
+                near = np.linalg.inv(usual) * NEAR
                 beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
                 rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
                 rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
@@ -392,17 +395,19 @@ def _own_reason(own: OwnNumbers, j: Judged) -> Judged | None:
     return None
 
 
-def _against_own(own: OwnNumbers, found: Measurables) -> None:
-    """Accuse ordinates that a pencil might have made, but not from the student's own numbers: those before them are in order."""
+def _against_own(own: OwnNumbers, found: Measurables, beyond: float) -> None:
+    """Accuse what a pencil might have made, but not from the student's own one number that it was plotted or computed from."""
     for j in own.judged:
-        if j.verdict != "green" or j.entry.kind != "length" or j.entry.scale not in found.on_paper:
+        plotted = j.entry.kind == "length" and j.entry.scale in found.on_paper
+        computed = j.entry.kind == "result" and not j.entry.label and j.entry.id not in found.checks
+        if j.starts or j.follows is not None or not (plotted or computed) or not isfinite(j.tolerance):
             continue
         expected, tolerance = own.expected(j)
-        if abs(j.deviation - expected) <= 2 * hypot(tolerance, CURVED * expected):
+        if abs(j.deviation - expected) <= beyond * hypot(tolerance, CURVED * expected):
             continue
-        # Plotted from one number that was written down: of an ordinate that many lead to, the linear guess is not good enough.
-        of, _, influence = (own.reasons(j) or [(j, 0.0, 0.0)])[0]
-        if influence > PLOTTED * j.tolerance and of.entry.kind == "result" and of.verdict == "green":
+        # Of what many numbers lead to, the linear guess is not good enough.
+        of, part, influence = (own.reasons(j) or [(j, 0.0, 0.0)])[0]
+        if influence > PLOTTED * j.tolerance and of.verdict == "green" and abs(expected - part) < SHARE * j.tolerance:
             j.off_own = j.starts = True
             j.remark = (f"does not follow from your own {of.entry.quantity} = {number(of.line.value, 5)}: "
                         f"that gives {number(j.exact + expected, 4)}")
