@@ -28,6 +28,8 @@ CURVED = 0.05
 """Share of what a mistake explains that may be off: its displacement is not known better."""
 SCALED = 4
 """Lengths of a plan from which a wrong scale factor is recognised."""
+SIMILAR_SCALES = 0.15
+"""Difference of two scale factors, as a share, below which all lengths must tell of it."""
 ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
 USUAL = 10.0
@@ -205,7 +207,9 @@ def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list
         return []
     times = float(np.median([j.line.value / j.exact for j in long]))
     explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
-    if times <= 0 or abs(times - 1) < 0.01 or len(explained) < 0.8 * len(of_plan):
+    # A long side drawn a little wrong makes a plan a little smaller, too, but not all of it.
+    needed = 0.8 * len(of_plan) if abs(times - 1) > SIMILAR_SCALES else len(of_plan)
+    if times <= 0 or abs(times - 1) < 0.01 or len(explained) < needed:
         return []
     first = off[0]
     first.starts, first.scale = True, f"all lengths of this plan are {times:.3g} times the exact ones: another scale factor?"
