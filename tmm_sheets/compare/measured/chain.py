@@ -72,16 +72,25 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
     own = OwnNumbers(judged, errors) if judged else None
     if own is not None:
-        _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors, own)
+        _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors, own, computed)
         _against_own(own, found, _beyond_chance(len(judged)))
     for j in judged:
-        wrong = [n for n in computed.get(id(j), ()) if n.verdict != "green"]
-        if j.verdict != "green" and wrong:
-            worst = max(wrong, key=lambda n: abs(n.deviation) / n.tolerance)
-            j.follows = worst.follows or worst
+        if id(j) in computed and j.verdict != "green":
+            origin = _origin(j, computed)
+            j.follows = origin if origin is not j else None
         if j.verdict == "red" and not j.starts and j.follows is None:
             j.remark = j.remark or f"one of {len(judged)} numbers may be off so far by chance"
     return judged
+
+
+def _origin(j: Judged, computed: Mapping[int, list[Judged]]) -> Judged:
+    """The number in which the error of another one starts: that which it follows from or, of the numbers it was rightly computed
+    from, the worst one; itself where nothing else is known to be wrong.
+    """
+    wrong = [n for n in computed.get(id(j), ()) if n.verdict != "green"]
+    if j.follows is None and wrong:
+        return _origin(max(wrong, key=lambda n: abs(n.deviation) / n.tolerance), computed)
+    return j.follows or j
 
 
 def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
@@ -344,7 +353,7 @@ def _loss(r: Any) -> Any:
     return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
 
 
-def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers) -> None:
+def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers, computed: Mapping[int, list[Judged]]) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
     sheet = _Sheet(judged, errors)
     open_ = np.array([j.verdict == "red" for j in judged])
@@ -353,7 +362,7 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers) -> None:
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         open_[first] = False
-        start.follows = _own_reason(own, start)
+        start.follows = _own_reason(own, start, computed)
         if start.follows is not None or abs(start.deviation) <= beyond * start.tolerance:
             continue
         start.starts = True
@@ -379,7 +388,7 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers) -> None:
                     j.follows = start
     for j in judged:
         if j.verdict == "red" and not j.starts and j.follows is None:
-            j.follows = _own_reason(own, j)
+            j.follows = _own_reason(own, j, computed)
 
 
 def _beyond_chance(count: int) -> float:
@@ -388,14 +397,15 @@ def _beyond_chance(count: int) -> float:
     return max(2.0, normal.inv_cdf(1 - CHANCE / (2 * max(count, 1))) / normal.inv_cdf(0.975))
 
 
-def _own_reason(own: OwnNumbers, j: Judged) -> Judged | None:
+def _own_reason(own: OwnNumbers, j: Judged, computed: Mapping[int, list[Judged]]) -> Judged | None:
     """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
     expected, tolerance = own.expected(j)
     if abs(j.deviation - expected) > 2 * hypot(tolerance, CURVED * expected):
         return None
     for earlier, part, _ in own.reasons(j):
-        if (earlier.starts or earlier.follows is not None) and abs(part) > SHARE * abs(expected):
-            return earlier.follows or earlier
+        origin = _origin(earlier, computed)
+        if (origin.starts or origin is not earlier) and abs(part) > SHARE * abs(expected):
+            return origin
     return None
 
 
