@@ -313,6 +313,11 @@ class _Sheet:
             x = x + step
         return best
 
+    def can_be_wrong(self, place: Place) -> bool:
+        """False for what follows from the project file alone and was not written down: nobody has seen it wrong."""
+        error = self.errors.error(self.steps[place])
+        return place in self.heads or bool(error[min(place[1], len(error) - 1)] > 0)
+
     def helps(self, mistake: Mistake, i: int) -> bool:
         """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
         if np.hypot(*mistake.moved) < 2 * self.errors.pencil * mistake.mu:
@@ -429,7 +434,7 @@ def _against_own(own: OwnNumbers, found: Measurables, beyond: float) -> None:
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:
     """The mistake behind a red number; None when it explains nothing else: a slip in reading or computing this one."""
-    candidates = sorted((sheet.mistake(place) for place in sheet.places[i]), key=lambda m: -m.score)
+    candidates = sorted((sheet.mistake(place) for place in sheet.places[i] if sheet.can_be_wrong(place)), key=lambda m: -m.score)
     candidates = [sheet.mistake(m.place, exact=True) for m in candidates[:TRIED]]
     alone = float(_loss(sheet.left[i] / sheet.tolerance[i]))
     own = sheet.judged[i].entry.head
