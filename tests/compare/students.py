@@ -1,16 +1,21 @@
-"""Students by chance: a project drawn by hand with a pencil's errors and mistakes planted, measured, and compared.
+"""Students by chance: a project drawn by hand with a pencil's errors and one mistake, measured, gone on with, and compared.
 
-Every step is done again by its own rule with what was drawn before it, so that nothing here is linear. Run for statistics:
-python -m tests.compare.students [N]
+Every step is done again by its own rule with what was drawn before it, so that nothing here is linear, and what was computed and
+written down is what is plotted and computed with: the student is consistent with himself on all sheets. Nobody but the mistake may
+be accused. Each student has a number and can be looked at alone:
+
+    python -m tests.compare.students [PROJECT ...] [--students N] [--first I] [--seed S] [--kind KIND] [--two]
 """
 
 from __future__ import annotations
 
-import sys
-from collections import Counter
-from collections.abc import Mapping
+import argparse
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 
@@ -27,18 +32,29 @@ from tmm_sheets.project import Project
 PENCIL, READING = 0.25, 0.5
 SIGMA = 0.5
 """Standard deviation of a careful hand, as a share of what it keeps to nineteen times of twenty."""
-PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "transport/diesel@01-Т-27")
+OWN = Path(__file__).parents[1] / "projects"
+PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "sixbar/6:3", "sixbar/9:1", "transport/diesel@01-Т-27",
+            str(OWN / "feeder.toml"))
+KINEMATIC = ("positions", "velocities", "accelerations")
 
 
 @dataclass(frozen=True)
 class Plant:
-    """A mistake: a step of a plan at a position, drawn off by ``shift`` mm; a number is multiplied by ``times`` instead."""
+    """A mistake: a step of a plan at a position, drawn off by ``shift`` mm, or computed ``times`` as large.
+
+    With ``entry`` it is that number that was read ``shift`` mm or computed ``times`` wrong, and gone on with.
+    """
 
     plan: str
     label: str
     step: str
     shift: complex = 0j
     times: float = 1.0
+    entry: str = ""
+
+    def __str__(self) -> str:
+        by = f"{self.shift:.1f} mm" if self.shift else f"times {self.times:.2f}"
+        return f"{self.entry or '/'.join(filter(None, (self.plan, self.label, self.step)))} {by}"
 
 
 class Hand:
@@ -50,12 +66,12 @@ class Hand:
         self.rng = rng
         self.sigma = sigma
         self.drawn: dict[int, Any] = {}
-        self.misread: dict[str, float] = {}
+        self.wrong = {p.entry: p for p in plants if p.entry}
         self.plants: dict[int, list[tuple[int, Plant, float]]] = {}
         for plan, key in found.plans:
             mu = 1.0 if plan.unit == "mm" else found.scales[key].mu
             for p in plants:
-                if plan.name == p.plan:
+                if plan.name == p.plan and not p.entry:
                     k = plan.labels.index(p.label) if len(plan.labels) > 1 else 0
                     self.plants.setdefault(id(plan[p.step]), []).append((k, p, mu))
 
@@ -104,10 +120,12 @@ class Hand:
                 exact = np.asarray(step.value)
                 value += (np.conj(g) * (at(step, k) - complex(exact[k] if exact.ndim else exact))).real
         # A scatter of 0.2 mm and rounding to half a millimetre are together sigma = 0.25 mm.
-        value += self.rng.normal(0, 0.8 * self.sigma * READING) * e.reading + self.misread.get(e.id, 0.0)
+        value += self.rng.normal(0, 0.8 * self.sigma * READING) * e.reading
+        if e.id in self.wrong:
+            value = value * self.wrong[e.id].times + self.wrong[e.id].shift.real
         if e.kind == "result":
             return float(f"{value:.3g}") if e.calculated else value
-        return float(f"{value:.3g}") if e.kind == "result" else round(2 * value) / 2
+        return round(2 * value) / 2
 
     def computed(self, e: Measurable, written: Mapping[str, float]) -> float:
         """A result from the numbers written down before, where they suffice; else what is read off the drawing."""
@@ -115,12 +133,13 @@ class Hand:
         if check is None or not all(name in written for name in check.needs):
             return self.measured(e)
         times = self.found.scales[check.scale].mu if check.scale else 1.0
-        return float(f"{check.compute(*(written[name] * times for name in check.needs)):.3g}")
+        wrong = self.wrong[e.id].times if e.id in self.wrong else 1.0
+        return float(f"{wrong * check.compute(*(written[name] * times for name in check.needs)):.3g}")
 
     def gone_on_with(self, e: Measurable, value: float) -> None:
-        """A reduced moment that was computed and written down is what is plotted."""
+        """What was computed and written down is what is plotted and computed with."""
         step, k, g = e.terms[0]
-        if step.plan == "reduction":
+        if step.plan == "reduction" or e.id in self.wrong:
             made = np.array(self.value(step), dtype=float)
             made[(k,) if made.ndim else ()] = value / g.real
             self.drawn[id(step)] = made
@@ -150,104 +169,185 @@ def compared(found: Measurables, rng: np.random.Generator, plants: tuple[Plant, 
     return judge(Hand(found, rng, plants, sigma).filled(), found, PENCIL, READING)
 
 
+@cache
 def opened(project: str) -> Measurables:
-    """What can be measured of a shipped project."""
-    return measurables(Project(catalogue.read(project)), lambda what: None)
+    """What can be measured of a project; the error analysis is the same for all its students."""
+    found = measurables(Project(catalogue.read(project)), lambda what: None)
+    errors, kept = found.errors, {}
+
+    def once(factors: Mapping[str, float], pencil: float, reading: float) -> error.Errors:
+        key = (tuple(factors.items()), pencil, reading)
+        return kept[key] if key in kept else kept.setdefault(key, errors(factors, pencil, reading))
+
+    found.errors = once  # type: ignore[method-assign]
+    return found
 
 
-def planted(found: Measurables, rng: np.random.Generator) -> Plant:
+# --- mistakes ---------------------------------------------------------------------------------------------------------------
+
+
+def _one_of(some: list[Measurable], rng: np.random.Generator) -> Measurable | None:
+    return some[rng.integers(len(some))] if some else None
+
+
+def _off(rng: np.random.Generator) -> complex:
+    return complex(rng.uniform(3, 6) * np.exp(2j * np.pi * rng.random()))
+
+
+def point(found: Measurables, rng: np.random.Generator) -> Plant | None:
     """A point of a kinematic plan that lengths are measured to, off by 3 to 6 mm in any direction."""
     heads = [e for e in found.entries.values() if e.kind == "length" and e.head is not None and e.scale not in found.on_paper
-             and e.plan in ("positions", "velocities", "accelerations") and len(e.head.args) > 1]
-    e = heads[rng.integers(len(heads))]
-    assert e.head is not None
-    return Plant(e.plan, e.label, e.head.name, rng.uniform(3, 6) * np.exp(2j * np.pi * rng.random()))
+             and e.plan in KINEMATIC and len(e.head.args) > 1]
+    e = _one_of(heads, rng)
+    return Plant(e.plan, e.label, e.head.name, _off(rng)) if e else None
 
 
-def turning(found: Measurables, rng: np.random.Generator) -> Plant:
+def force(found: Measurables, rng: np.random.Generator) -> Plant | None:
+    """A corner of a force plan or a point of the lever, off by 3 to 6 mm."""
+    e = _one_of([e for e in found.entries.values() if e.kind == "length" and (e.plan.startswith("force-") or e.plan == "lever")
+                 and e.head.rule.gives in ("point", "vector") and len(e.head.args) > 1], rng)
+    return Plant(e.plan, e.label, e.head.name, _off(rng)) if e else None
+
+
+def turning(found: Measurables, rng: np.random.Generator) -> Plant | None:
     """An angular velocity computed wrong by 20 to 50 %, at a position where something was drawn with it."""
     plans = {plan.name: plan for plan, _ in found.plans}
     labels = {e.label for e in found.entries.values() if e.plan == "accelerations"}
     speeds = [e for e in found.entries.values() if e.unit == "рад/с" and e.quantity in plans["velocities"]]
-    fastest = max(e.value for e in speeds)
-    some = [e for e in speeds if e.label in labels and e.quantity != "ω1" and e.value > 0.1 * fastest]
-    e = some[rng.integers(len(some))]
-    return Plant("velocities", e.label, e.quantity, times=rng.uniform(1.2, 1.5))
+    fastest = max((e.value for e in speeds), default=0.0)
+    e = _one_of([e for e in speeds if e.label in labels and e.quantity != "ω1" and e.value > 0.1 * fastest], rng)
+    return Plant("velocities", e.label, e.quantity, times=rng.uniform(1.2, 1.5)) if e else None
 
 
-@dataclass
-class Counts:
-    """What became of mistakes: seen at all, the start named, its step named, starts that have nothing to do with it."""
-
-    seen: int = 0
-    named: int = 0
-    step: int = 0
-    others: int = 0
-
-    def add(self, found: Measurables, judged: list[Judged], plants: tuple[Plant, ...]) -> None:
-        """Count one drawing."""
-        begun = [j for j in judged if j.starts]
-        mine = [[j for j in begun if _touched(j, p, found)] for p in plants]
-        self.seen += all(any(j.verdict == "red" for j in judged if _touched(j, p, found)) for p in plants)
-        self.named += all(mine)
-        self.step += all(any(j.mistake is not None and j.mistake.step.name == p.step for j in of)
-                         for p, of in zip(plants, mine, strict=True))
-        self.others += sum(not any(_touched(j, p, found) for p in plants) for j in begun)
-
-    def row(self, count: int) -> str:
-        """Percentages and the mean number of other starts."""
-        shares = "".join(f"{100 * n / count:8.0f}%" for n in (self.seen, self.named, self.step))
-        return f"{shares}{self.others / count:10.2f}"
+def reading(found: Measurables, rng: np.random.Generator) -> Plant | None:
+    """A length of a kinematic plan read 4 to 8 mm wrong; what is computed from it is wrong with it."""
+    e = _one_of([e for e in found.entries.values() if e.plan in KINEMATIC and e.kind == "length"], rng)
+    return Plant(e.plan, e.label, "", complex(rng.choice([-1, 1]) * rng.uniform(4, 8)), entry=e.id) if e else None
 
 
-def main(count: int) -> None:
-    """Statistics over projects: clean drawings, then one mistake each, then two."""
-    rng = np.random.default_rng(7)
-    for name in PROJECTS:
-        found = opened(name)
-        colours: Counter[str] = Counter()
-        starts = 0
-        for _ in range(count):
-            judged = compared(found, rng)
-            colours.update(j.verdict for j in judged)
-            starts += sum(j.starts for j in judged)
-        total = sum(colours.values())
-        print(f"{name}: {total / count:.0f} numbers, {count} clean drawings: {100 * colours['amber'] / total:.2f} % amber, "
-              f"{100 * colours['red'] / total:.3f} % red, {starts / count:.2f} starts per drawing")
-        print("   mistake                     seen    named     step    others")
-        for title, makers in (("point off by 3 to 6 mm", (planted,)), ("angular velocity wrong", (turning,)),
-                              ("two points", (planted, planted))):
-            counts = Counts()
-            for _ in range(count):
-                plants = tuple(make(found, rng) for make in makers)
-                counts.add(found, compared(found, rng, plants), plants)
-            print(f"   {title:22}{counts.row(count)}")
-        counts = Counts()
-        for _ in range(count):
-            judged, wrong = misread(found, rng)
-            begun = [j for j in judged if j.starts]
-            counts.seen += any(j.entry is wrong and j.verdict == "red" for j in judged)
-            counts.named += any(j.entry is wrong for j in begun)
-            counts.step += any(j.entry is wrong and j.mistake is None for j in begun)
-            counts.others += sum(j.entry is not wrong for j in begun)
-        print(f"   {'number read wrong':22}{counts.row(count)}", flush=True)
+def reduced(found: Measurables, rng: np.random.Generator) -> Plant | None:
+    """A moment, an energy, their sum or the reduced inertia computed wrong by 20 to 50 %, and gone on with."""
+    some = [e for e in found.entries.values() if e.kind == "result" and e.terms and e.terms[0][0].plan == "reduction"]
+    most = {e.quantity: max(abs(o.value) for o in some if o.quantity == e.quantity) for e in some}
+    e = _one_of([e for e in some if abs(e.value) > 0.3 * most[e.quantity]], rng)
+    return Plant(e.plan, e.label, e.quantity, times=rng.uniform(1.2, 1.5), entry=e.id) if e else None
 
 
-def misread(found: Measurables, rng: np.random.Generator) -> tuple[list[Judged], Measurable]:
-    """A good drawing on which one length was read 4 to 8 mm wrong; what is computed from it is wrong with it."""
-    hand = Hand(found, rng)
-    lengths = [e for e in found.entries.values() if e.plan in ("positions", "velocities", "accelerations") and e.kind == "length"]
-    wrong = lengths[rng.integers(len(lengths))]
-    hand.misread[wrong.id] = float(rng.choice([-1, 1]) * rng.uniform(4, 8))
-    return judge(hand.filled(), found, PENCIL, READING), wrong
+def ordinate(found: Measurables, rng: np.random.Generator) -> Plant | None:
+    """A point of a diagram of the flywheel plotted 4 to 8 mm off; the rest is drawn from it."""
+    plans = ("reduced-moment", "work", "driving-moment", "total-work", "reduced-inertia", "first-energy", "energy-mass")
+    e = _one_of([e for e in found.entries.values() if e.plan in plans and e.kind == "length" and e.quantity.startswith("y_")], rng)
+    by = rng.choice([-1, 1]) * rng.uniform(4, 8)
+    return Plant(e.plan, e.label, e.head.name, complex(by * (1j if e.head.rule.gives == "point" else 1))) if e else None
 
 
-def _touched(j: Judged, plant: Plant, found: Measurables) -> bool:
-    """True for a number that depends on the planted step at its position."""
+def wheel(found: Measurables, rng: np.random.Generator) -> Plant | None:
+    """A result of the flywheel computed wrong by 20 to 50 %, and gone on with."""
+    e = _one_of([e for e in found.entries.values() if e.title == "Маховик" and e.kind == "result" and e.terms], rng)
+    return Plant(e.plan, "", e.quantity, times=rng.uniform(1.2, 1.5), entry=e.id) if e else None
+
+
+KINDS: Mapping[str, Callable[[Measurables, np.random.Generator], Plant | None]] = {
+    f.__name__: f for f in (point, turning, reading, reduced, ordinate, force, wheel)}
+
+
+# --- verdicts ---------------------------------------------------------------------------------------------------------------
+
+
+def touched(j: Judged, plant: Plant, found: Measurables) -> bool:
+    """True for a number that the mistake was made in or that depends on the step it was made in, at its position."""
+    if plant.entry:
+        return j.entry.id == plant.entry
     plan = next(plan for plan, _ in found.plans if plan.name == plant.plan)
     step = plan[plant.step]
     return any(s is step and (np.size(step.value) == 1 or plan.labels[k] == plant.label) for s, k, g in j.rows if g)
 
 
+@dataclass
+class Student:
+    """One student: the mistakes, how they were seen, and whom else the verdict accuses."""
+
+    project: str
+    number: int
+    kind: str
+    plants: tuple[Plant, ...]
+    seen: bool
+    named: bool
+    step: bool
+    second: list[Judged]
+
+    def __str__(self) -> str:
+        wrong = "; ".join(map(str, self.plants))
+        said = "" if self.named else "MISSED " if self.seen else "within reach "
+        also = [f"{j.entry.id} ({j.deviation / j.tolerance:+.1f}{'' if j.starts else ' inconsistent'})" for j in self.second]
+        return f"{self.project} #{self.number} {self.kind}: {wrong}: {said}{', '.join(also)}"
+
+
+def student(project: str, number: int, seed: int = 1, kind: str = "", two: bool = False) -> Student | None:
+    """A student by number; None where the project has nothing to make that mistake in."""
+    found = opened(project)
+    rng = np.random.default_rng([seed, crc32(project.rpartition("/")[2].encode()), number])
+    every = list(KINDS)
+    kinds = [kind or every[(number + i * (1 + number // len(every))) % len(every)] for i in range(1 + two)]
+    some = [KINDS[k](found, rng) for k in kinds]
+    if any(p is None for p in some):
+        return None
+    plants = tuple(p for p in some if p is not None)
+    judged = compared(found, rng, plants)
+    begun = [j for j in judged if j.starts]
+    mine = [[j for j in begun if touched(j, p, found)] for p in plants]
+    accused = {id(of[0]) for of in mine if of}
+    return Student(
+        project, number, "+".join(kinds), plants,
+        seen=all(any(j.verdict == "red" for j in judged if touched(j, p, found)) for p in plants),
+        named=all(mine),
+        step=all(any((j.mistake is not None and j.mistake.step.name == p.step) or j.entry.id == p.entry for j in of)
+                 for p, of in zip(plants, mine, strict=True)),
+        second=[j for j in judged if (j.starts or j.inconsistent or j.off_own) and id(j) not in accused
+                and not any(j.entry.id == p.entry for p in plants)])
+
+
+def trial(project: str, count: int, first: int = 0, seed: int = 1, kind: str = "", two: bool = False) -> list[Student]:
+    """So many students of a project, those left out whose kind of mistake it has no place for."""
+    found: list[Student] = []
+    number = first
+    while len(found) < count and number < first + 3 * count:
+        one = student(project, number, seed, kind, two)
+        found += [one] if one else []
+        number += 1
+    return found
+
+
+def row(students: list[Student]) -> str:
+    """What became of them."""
+    seen, named, step = (sum(getattr(s, what) for s in students) for what in ("seen", "named", "step"))
+    second = [len(s.second) for s in students if s.second]
+    return (f"{len(students):4} students: mistake red {seen}, accused {named}, its step named {step}; missed {seen - named}, "
+            f"within a pencil's reach {len(students) - seen}; a second one accused {len(second)} ({sum(second)} numbers)")
+
+
+def main() -> None:
+    """Print every second accusation and every miss, then the counts."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("projects", nargs="*", default=PROJECTS)
+    parser.add_argument("--students", type=int, default=25, help="of each project")
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", choices=KINDS, default="")
+    parser.add_argument("--two", action="store_true", help="two mistakes each")
+    options = parser.parse_args()
+    every: list[Student] = []
+    for project in options.projects:
+        students = trial(project, options.students, options.first, options.seed, options.kind, options.two)
+        for s in students:
+            if s.second or not s.named:
+                print(f"   {s}")
+        print(f"{project}: {row(students)}", flush=True)
+        every += students
+    for kind in dict.fromkeys(s.kind for s in every) if not options.two else ():
+        print(f"{kind}: {row([s for s in every if s.kind == kind])}")
+    print(f"together: {row(every)}")
+
+
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20)
+    main()

@@ -12,7 +12,7 @@ from tests.compare.manual_tables import opened
 from tests.compare.students import PENCIL, READING, Hand, Plant
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine
+from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, read
 from tmm_sheets.compare.measured.measured_lengths import NAME
 
 FEW = ("positions", "velocities", "accelerations", "force-5", "force-2", "lever")
@@ -247,3 +247,33 @@ def test_one_thing_at_a_time(capsys):
     assert run(["compare", "lugansk/cam_flat"]) == 2
     assert run(["compare", "lugansk/cam_flat", "--template", "--measured", "x.csv"]) == 2
     assert "give one of" in capsys.readouterr().err
+
+
+def test_a_number_computed_from_one_read_wrong(shaper):
+    """What is plotted from it follows from it, too; and nobody says the crank turns at another speed."""
+    names = ("velocities/2/pd5", "results/2/V_D5", "results/2/M_F5", "results/2/M_red", "reduced-moment/2/y_M")
+    filled = Hand(shaper, np.random.default_rng(1), sigma=0.0).filled({name: shaper.entries[name] for name in names})
+    changed(filled, velocities__2__pd5=41.0, results__2__V_D5=0.82, results__2__M_F5=-304.5, results__2__M_red=-304.5,
+            **{"reduced-moment__2__y_M": -30.5})
+    of = judged(shaper, filled)
+    begun = starts(of)
+    assert [j.entry.id for j in begun] == ["velocities/2/pd5"]
+    assert all(j.follows is begun[0] for j in of if j is not begun[0])
+    assert begun[0].mistake is None or begun[0].mistake.step.name != "ω1"
+
+
+def test_nothing_written_is_no_tolerance(tmp_path, shaper):
+    """A speed of 0 m/s is as exact as the drawing, not half a metre per second uncertain."""
+    path = tmp_path / "m.csv"
+    path.write_text("id;измерено\nresults/2/V_D;0\n", encoding="utf-8")
+    found = judged(shaper, read(path, "lugansk/shaper", shaper))[0]
+    assert found.tolerance < 0.05
+    assert found.verdict == "red"
+
+
+def test_results_of_a_cam_are_as_exact_as_they_are_drawn(shaper):
+    """0.25 mm at 0.0002 m/mm is 0.05 mm: r_0 is the distance of two points, off by more than half a per cent of 8.9 mm."""
+    entries = [shaper.entries[f"results/{name}"] for name in ("r0", "s0")]
+    lines = [MeasuredLine(e, e.value, 0.0, 1) for e in entries]
+    for j in judged(shaper, Filled(lines)):
+        assert 0.1 < j.tolerance < 0.25

@@ -30,6 +30,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -68,6 +69,11 @@ class _Known:
     covariance: Matrices
     linear: npt.NDArray[np.bool_]
 
+    @cached_property
+    def error(self) -> Floats:
+        """Error in the direction where it is greatest."""
+        return _greatest(self.covariance)
+
 
 class Errors:
     """Errors of everything constructed on some plans, computed when asked for.
@@ -102,12 +108,13 @@ class Errors:
         self._elsewhere: dict[tuple[int, int], int] = {}
         self._single: dict[int, tuple[int, int]] = {}
         self._links: dict[int, dict[int, Any]] = {}
+        self._arguments: dict[int, tuple[Any, ...]] = {}
 
     # --- what is asked for --------------------------------------------------------------------------------------------
     def error(self, step: Step) -> Floats:
         """Error of a step in its own unit, shape (n,) or (1,): of a point in the direction where it is greatest; NaN: not drawn."""
         known = self._of(step)
-        return np.zeros(1) if known is None else _greatest(known.covariance)
+        return np.zeros(1) if known is None else known.error
 
     def in_mm(self, step: Step) -> Floats:
         """Error of a drawn step in millimetres of its plan, shape (n,) or (1,)."""
@@ -214,14 +221,12 @@ class Errors:
         moved = np.array(source.value)
         moved[(k,) if moved.ndim else ()] += shift if moved.dtype.kind == "c" else shift.real
         values: dict[int, Any] = {id(source): moved}
+        self._note_lengths(source)
 
         def value(step: Step) -> Any:
-            for s in step.ancestors():
+            for s in step.ancestors(values) if id(step) not in values else ():
                 self._note_lengths(s)
-            for s in step.ancestors() if id(step) not in values else ():
-                if id(s) in values:
-                    continue
-                args = _on_paper(s)
+                args = self._on_paper(s)
                 # What is exact stays as it was computed: a mistake goes on through what is drawn.
                 if s.rule.exact or all(not isinstance(a, Step) or values[id(a)] is a.value for a in args):
                     values[id(s)] = s.value
@@ -232,6 +237,11 @@ class Errors:
             return values[id(step)]
 
         return value
+
+    def _on_paper(self, step: Step) -> tuple[Any, ...]:
+        if id(step) not in self._arguments:
+            self._arguments[id(step)] = _on_paper(step)
+        return self._arguments[id(step)]
 
     def scale(self, step: Step) -> float:
         """Unit of a step's plan per millimetre of paper; 0 for what is not drawn."""
@@ -317,7 +327,7 @@ class Errors:
             if isinstance(a, Step) and (not _numeric(a.value) or np.size(a.value) > np.size(step.value)):
                 continue  # a whole curve at once: its error is that of the line drawn along it
             if known is not None or i in ends:
-                error = np.zeros(1) if known is None else _greatest(known.covariance)
+                error = np.zeros(1) if known is None else known.error
                 moves.append((i, np.maximum(error, self.pencil * self._mu.get(id(a), mu) if i in ends else 0.0)))
         return moves
 

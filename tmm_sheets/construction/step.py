@@ -156,9 +156,12 @@ class Step:
         """Value at position ``k`` (the value itself when it does not depend on the position)."""
         return value_at(self, k)
 
-    def ancestors(self) -> Iterator[Step]:
-        """All steps this one depends on, itself included, arguments before results, each once."""
-        return ordered([self], lambda step: [a for a in step.args if isinstance(a, Step)])
+    def ancestors(self, known: Iterable[int] = ()) -> Iterator[Step]:
+        """All steps this one depends on, itself included, arguments before results, each once.
+
+        Not those whose id() is ``known``, nor what only they depend on.
+        """
+        return ordered([self], lambda step: [a for a in step.args if isinstance(a, Step)], set(known))
 
 
 def ordered(steps: Iterable[Step], parents: Callable[[Step], list[Step]], seen: set[int] | None = None) -> Iterator[Step]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import atan, degrees, hypot, isfinite, radians, tan
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,8 @@ CURVED = 0.05
 """Share of what a mistake explains that may be off: its displacement is not known better."""
 SCALED = 4
 """Lengths of a plan from which a wrong scale factor is recognised."""
+SIMILAR_SCALES = 0.15
+"""Difference of two scale factors, as a share, below which all lengths must tell of it."""
 ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
 USUAL = 10.0
@@ -37,8 +40,10 @@ HUBER = 2.0
 """Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
 ALONE = 0.9
 """Share of the number it is looked for that a mistake has to explain, besides most of another one."""
-NEAR = 0.1
-"""Displacement for derivatives where a mistake has led to, mm, or as a share of a number."""
+DRAWN = ("point", "vector", "length", "ordinate")
+"""What is off by millimetres; numbers and forces are off by a share of themselves."""
+NEAR = 0.01
+"""Displacement for derivatives where a mistake has led to, as a share of the usual one."""
 TRIED = 4
 """Steps that are tried by drawing again, of those that explain most by the Jacobian."""
 NEARLY = 0.9
@@ -49,6 +54,8 @@ LONG = 10.0
 """Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
 PLOTTED = 0.8
 """Share of an ordinate's tolerance that the number it was plotted from has."""
+CHANCE = 1e-3
+"""How often a file without any mistake may be accused of one."""
 EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
 
@@ -65,14 +72,25 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
     own = OwnNumbers(judged, errors) if judged else None
     if own is not None:
-        _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors, own)
-        _against_own(own, found)
+        _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors, own, computed)
+        _against_own(own, found, _beyond_chance(len(judged)))
     for j in judged:
-        wrong = [n for n in computed.get(id(j), ()) if n.verdict != "green"]
-        if j.verdict != "green" and wrong:
-            worst = max(wrong, key=lambda n: abs(n.deviation) / n.tolerance)
-            j.follows = worst.follows or worst
+        if id(j) in computed and j.verdict != "green":
+            origin = _origin(j, computed)
+            j.follows = origin if origin is not j else None
+        if j.verdict == "red" and not j.starts and j.follows is None:
+            j.remark = j.remark or f"one of {len(judged)} numbers may be off so far by chance"
     return judged
+
+
+def _origin(j: Judged, computed: Mapping[int, list[Judged]]) -> Judged:
+    """The number in which the error of another one starts: that which it follows from or, of the numbers it was rightly computed
+    from, the worst one; itself where nothing else is known to be wrong.
+    """
+    wrong = [n for n in computed.get(id(j), ()) if n.verdict != "green"]
+    if j.follows is None and wrong:
+        return _origin(max(wrong, key=lambda n: abs(n.deviation) / n.tolerance), computed)
+    return j.follows or j
 
 
 def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
@@ -198,7 +216,9 @@ def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list
         return []
     times = float(np.median([j.line.value / j.exact for j in long]))
     explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
-    if times <= 0 or abs(times - 1) < 0.01 or len(explained) < 0.8 * len(of_plan):
+    # A long side drawn a little wrong makes a plan a little smaller, too, but not all of it.
+    needed = 0.8 * len(of_plan) if abs(times - 1) > SIMILAR_SCALES else len(of_plan)
+    if times <= 0 or abs(times - 1) < 0.01 or len(explained) < needed:
         return []
     first = off[0]
     first.starts, first.scale = True, f"all lengths of this plan are {times:.3g} times the exact ones: another scale factor?"
@@ -246,34 +266,57 @@ class _Sheet:
         """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
 
         Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
-        construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do.
+        construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do. A
+        point that nearly rests moves its speed alike to both sides: the search begins also with what its own plan alone tells.
         """
+        found = self._descended(place, np.zeros(2), exact)
         lines, gradient = self.by_place[place]
+        here = np.array([self.judged[i].entry.plan == self.steps[place].plan for i in lines])
+        if not exact or here.all() or not here.any():
+            return found
+        rows, aims = (gradient / self.tolerance[lines, None])[here], (self.left[lines] / self.tolerance[lines])[here]
+        usual = self._usual(place)
+        begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
+        return max(found, self._descended(place, begin, exact), key=lambda m: m.score)
+
+    def _usual(self, place: Place) -> npt.NDArray[np.float64]:
+        """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
+        of = self.steps[place]
+        mu = self.errors.scale(of) if of.rule.gives in DRAWN else 0.0
+        return np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
+
+    def _descended(self, place: Place, x: npt.NDArray[np.float64], exact: bool) -> Mistake:
+        """The best displacement that the search finds when it begins with ``x``."""
+        lines, gradient = self.by_place[place]
+        of, mu, usual = self.steps[place], self.errors.scale(self.steps[place]), self._usual(place)
         rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
-        of, mu = self.steps[place], self.errors.scale(self.steps[place])
-        # Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself.
-        usual = np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
-        x, shares = np.zeros(2), np.zeros(len(lines))
-        weights = np.ones(len(lines))
-        for _ in range(5 if exact else 8):
-            step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
-                                       np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
-            if np.abs(rows @ step).max() < 0.01:
-                break
-            x = x + step
-            if exact:
+        best = Mistake(place, of, x, np.eye(2), 0.0, mu)
+        for _ in range(6 if exact else 9):
+            if exact and x.any():
                 shares = self.shares(place, x) / self.tolerance[lines]
-                near = np.diag([1.0, 1.0]) * (NEAR * mu if mu else NEAR * max(abs(x[0]), 1e-9))
+                near = np.linalg.inv(usual) * NEAR
                 beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
                 rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
                 rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
             else:
                 shares = rows @ x
             if not (np.all(np.isfinite(shares)) and np.all(np.isfinite(rows))):
-                return Mistake(place, of, x, np.eye(2), 0.0, mu)
+                break
+            score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
+            if score > best.score:
+                best = Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
             weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
-        score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
-        return Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
+            step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
+                                       np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
+            if np.abs(rows @ step).max() < 0.01:
+                break
+            x = x + step
+        return best
+
+    def can_be_wrong(self, place: Place) -> bool:
+        """False for what follows from the project file alone and was not written down: nobody has seen it wrong."""
+        error = self.errors.error(self.steps[place])
+        return place in self.heads or bool(error[min(place[1], len(error) - 1)] > 0)
 
     def helps(self, mistake: Mistake, i: int) -> bool:
         """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
@@ -303,6 +346,8 @@ def _changed(j: Judged, value: Callable[[Step], Any]) -> float:
         change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
     else:
         change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
+        if len(e.terms) == 1 and not e.signed and e.kind != "angle":
+            change = abs(e.value + change) - e.value
         change += sum(factor * abs(moved(step, k)) ** 2 for factor, step, k, _ in e.squares)
     return float(change) * j.size
 
@@ -313,17 +358,17 @@ def _loss(r: Any) -> Any:
     return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
 
 
-def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers) -> None:
+def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers, computed: Mapping[int, list[Judged]]) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
     sheet = _Sheet(judged, errors)
     open_ = np.array([j.verdict == "red" for j in judged])
-    tried = 0
+    beyond, tried = _beyond_chance(len(judged)), 0
     while open_.any():
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         open_[first] = False
-        start.follows = _own_reason(own, start)
-        if start.follows is not None:
+        start.follows = _own_reason(own, start, computed)
+        if start.follows is not None or abs(start.deviation) <= beyond * start.tolerance:
             continue
         start.starts = True
         tried += 1
@@ -340,36 +385,48 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers) -> None:
                 continue  # the mistake did not reach it, or with it nothing could be drawn
             sheet.left[i] -= share
             # What is left need not be better than other numbers: amber is accused of nothing.
-            allowed = (2 if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt), CURVED * float(share))
+            allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt), CURVED * float(share))
             explained = abs(sheet.left[i]) <= allowed
             if explained and abs(share) > SHARE * j.tolerance and not j.starts and abs(sheet.left[i]) < abs(before):
                 open_[i] = False
                 if j.follows is None:
                     j.follows = start
+    for j in judged:
+        if j.verdict == "red" and not j.starts and j.follows is None:
+            j.follows = _own_reason(own, j, computed)
 
 
-def _own_reason(own: OwnNumbers, j: Judged) -> Judged | None:
+def _beyond_chance(count: int) -> float:
+    """Deviation in tolerances that none of so many numbers has by chance; a tolerance is what is kept nineteen times of twenty."""
+    normal = NormalDist()
+    return max(2.0, normal.inv_cdf(1 - CHANCE / (2 * max(count, 1))) / normal.inv_cdf(0.975))
+
+
+def _own_reason(own: OwnNumbers, j: Judged, computed: Mapping[int, list[Judged]]) -> Judged | None:
     """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
     expected, tolerance = own.expected(j)
     if abs(j.deviation - expected) > 2 * hypot(tolerance, CURVED * expected):
         return None
     for earlier, part, _ in own.reasons(j):
-        if (earlier.starts or earlier.follows is not None) and abs(part) > SHARE * abs(expected):
-            return earlier.follows or earlier
+        origin = _origin(earlier, computed)
+        if (origin.starts or origin is not earlier) and abs(part) > SHARE * abs(expected):
+            return origin
     return None
 
 
-def _against_own(own: OwnNumbers, found: Measurables) -> None:
-    """Accuse ordinates that a pencil might have made, but not from the student's own numbers: those before them are in order."""
+def _against_own(own: OwnNumbers, found: Measurables, beyond: float) -> None:
+    """Accuse what a pencil might have made, but not from the student's own one number that it was plotted or computed from."""
     for j in own.judged:
-        if j.verdict != "green" or j.entry.kind != "length" or j.entry.scale not in found.on_paper:
+        plotted = j.entry.kind == "length" and j.entry.scale in found.on_paper
+        computed = j.entry.kind == "result" and not j.entry.label and j.entry.id not in found.checks
+        if j.starts or j.follows is not None or not (plotted or computed) or not isfinite(j.tolerance):
             continue
         expected, tolerance = own.expected(j)
-        if abs(j.deviation - expected) <= 2 * hypot(tolerance, CURVED * expected):
+        if abs(j.deviation - expected) <= beyond * hypot(tolerance, CURVED * expected):
             continue
-        # Plotted from one number that was written down: of an ordinate that many lead to, the linear guess is not good enough.
-        of, _, influence = (own.reasons(j) or [(j, 0.0, 0.0)])[0]
-        if influence > PLOTTED * j.tolerance and of.entry.kind == "result" and of.verdict == "green":
+        # Of what many numbers lead to, the linear guess is not good enough.
+        of, part, influence = (own.reasons(j) or [(j, 0.0, 0.0)])[0]
+        if influence > PLOTTED * j.tolerance and of.verdict == "green" and abs(expected - part) < SHARE * j.tolerance:
             j.off_own = j.starts = True
             j.remark = (f"does not follow from your own {of.entry.quantity} = {number(of.line.value, 5)}: "
                         f"that gives {number(j.exact + expected, 4)}")
@@ -377,7 +434,7 @@ def _against_own(own: OwnNumbers, found: Measurables) -> None:
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:
     """The mistake behind a red number; None when it explains nothing else: a slip in reading or computing this one."""
-    candidates = sorted((sheet.mistake(place) for place in sheet.places[i]), key=lambda m: -m.score)
+    candidates = sorted((sheet.mistake(place) for place in sheet.places[i] if sheet.can_be_wrong(place)), key=lambda m: -m.score)
     candidates = [sheet.mistake(m.place, exact=True) for m in candidates[:TRIED]]
     alone = float(_loss(sheet.left[i] / sheet.tolerance[i]))
     own = sheet.judged[i].entry.head

@@ -218,12 +218,15 @@ def _force_plans(project: Project, found: Measurables) -> None:
         found.plans.append((plan, plan.name))
         for entry in _segments(plan, found.scales, k, "–"):
             found.add(entry)
-        for side in plan.segments:
-            name = re.sub(r"[\u0305{}^]", "", side.symbol).replace("F_", "F")
-            found.check(f"{RESULTS}/{label}/{name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float, plan.name)
+        # What the plan gives is taken from its sides; loads and tangential reactions are there before it is drawn.
+        sides = {re.sub(r"[\u0305{}^]", "", side.symbol).replace("F_", "F"): side for side in plan.segments}
         for step in plan:
             if step.rule.gives == "force" and step.name not in given and opposite.get(step.name) not in given:
                 given.add(step.name)
+                if step.name in sides:
+                    side = sides[step.name]
+                    found.check(f"{RESULTS}/{label}/{step.name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float,
+                                plan.name)
                 found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
 
 

@@ -12,6 +12,7 @@ from tmm_sheets.compare.measured.measurable import (
     CALCULATED,
     DEGREES,
     MILLIMETRES,
+    RESULTS,
     Measurable,
     Measurables,
     length,
@@ -125,4 +126,11 @@ def cam(project: Project, found: Measurables) -> None:
             _lengths(plan, found, plan.name)
     for name, step in cam.results().items():
         if name in ("r0", "e", "s0", "l0", "r_roller", "rho_min"):
-            scalar(found, "Кулачок", name, 1000 * float(step.value), MILLIMETRES)
+            # Read off the drawing where it is drawn; in mm, as the manuals write it.
+            mu = found.scales[step.plan].mu if step.plan in found.scales else 0.0
+            # A roller is chosen in whole half millimetres: no small error of what it is chosen by moves it.
+            terms = [] if name == "r_roller" else [(step, 0, 1000 + 0j)]
+            scalar(found, "Кулачок", name, 1000 * float(step.value), MILLIMETRES, terms,
+                   scale=step.plan if mu else "", reading=1000 * mu)
+            if mu:
+                found.check(f"{RESULTS}/{name}", [f"{step.plan}/{step.name}"], lambda x: 1000 * x, step.plan)

@@ -351,7 +351,7 @@ def _number(written: str, unit: str, entry: Measurable, filled: Filled, place: s
         raise ValueError(f"expected a number that a sheet can have, not {written!r}")
     mantissa, _, exponent = match[0].lower().partition("e")
     decimals = len(mantissa.replace(",", ".").partition(".")[2])
-    half = 0.5 * 10.0 ** (int(exponent or 0) - decimals)
+    half = 0.5 * 10.0 ** (int(exponent or 0) - decimals) if value else 0.0  # nothing is nothing, however it is written
     times = _times(own or unit, entry)
     if times != 1.0:
         stated = written if own else f"{written} {unit}"
