@@ -30,8 +30,11 @@ NEVER = datetime(2026, 1, 1, tzinfo=UTC)
 """Date in the headers: a catalogue depends on its texts only."""
 CLICK = "messages"
 """Domain of click's own words."""
-HEADINGS = ("title", "variant")
-"""Keys of [project] whose texts stand on the sheets of shipped projects."""
+READ = {
+    "project": ("title", "variant"), "title_block": ("designation", "institution", "group", "letter"), "link": ("title",),
+    "misprint": ("reason", "certainty"), "row": ("misprint",),
+}  # fmt: skip
+"""Keys of shipped files that a person reads, by table."""
 
 
 def of_program() -> Iterator[tuple[str, str | tuple[str, ...], str | None]]:
@@ -52,18 +55,37 @@ def of_commands() -> Iterator[tuple[str, str, None]]:
 
 
 def of_projects() -> Iterator[tuple[str, str, None]]:
-    """What shipped projects are called on their sheets: in the language of their files."""
-    for path in sorted((ROOT / "variants").rglob("*.toml")):
+    """What shipped projects say on their sheets and of themselves, in the language of their files; not what schemes fill in."""
+    for path in (*sorted((ROOT / "variants").rglob("*.toml")), *sorted((ROOT / "templates" / "schemes").glob("*.toml"))):
+        text = re.sub(r"(?m)^\$\w+\s*$", "", path.read_text("utf-8"))  # rows that are filled in whole, and numbers
+        tree = tomllib.loads(re.sub(r'"[^"\n]*"|\$\w+', lambda found: "0" if found[0][0] == "$" else found[0], text))
+        if isinstance(title := tree.get("title"), str):  # of a family's table
+            yield path.relative_to(ROOT).as_posix(), title, None
+        for table, keys in READ.items():
+            found = tree.get(table, {})
+            for row in found if isinstance(found, list) else [found]:
+                for said in (row.get(key) for key in keys):
+                    if isinstance(said, str) and said and "$" not in said:
+                        yield path.relative_to(ROOT).as_posix(), said, None
+
+
+def of_templates() -> Iterator[tuple[str, str, None]]:
+    """Titles and codes of arrangements, names of views, descriptions of layers and of line types."""
+    templates = ROOT / "templates"
+    for path in sorted((templates / "sheets").glob("*.toml")):
         tree = tomllib.loads(path.read_text("utf-8"))
-        for heading in HEADINGS:
-            if isinstance(text := tree.get("project", {}).get(heading), str) and text:
-                yield path.relative_to(ROOT).as_posix(), text, None
+        yield from ((path.relative_to(ROOT).as_posix(), tree[key], None) for key in ("title", "code") if key in tree)
+    for name in ("layers", "linetypes"):
+        for row in tomllib.loads((templates / f"{name}.toml").read_text("utf-8")).values():
+            yield f"templates/{name}.toml", row["description"], None
+    for name in tomllib.loads((templates / "view_names.toml").read_text("utf-8")).values():
+        yield "templates/view_names.toml", name, None
 
 
 def collected() -> Catalog:
     """Every text there is, without translations."""
     found = Catalog(domain=DOMAIN, project="tmm-sheets", version="", charset="utf-8", creation_date=NEVER, revision_date=NEVER)
-    for file, text, context in (*of_program(), *of_commands(), *of_projects()):
+    for file, text, context in (*of_program(), *of_commands(), *of_projects(), *of_templates()):
         found.add(text, locations=[(file, None)], context=context)
     return found
 
