@@ -66,11 +66,21 @@ def _flushed(status: int) -> int:
 
 def run(arguments: list[str]) -> int:
     """Run the commands with these arguments; messages go to stderr, the exit status comes back."""
-    import click
+    from contextvars import copy_context
 
+    return copy_context().run(_run, arguments)  # the languages it sets are its own
+
+
+def _run(arguments: list[str]) -> int:
     from tmm_sheets import spoken
 
-    spoken.choose(arguments)
+    with spoken.chosen(arguments):
+        return _carried_out(arguments)
+
+
+def _carried_out(arguments: list[str]) -> int:
+    import click
+
     from tmm_sheets.cli import commands
     from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
     from tmm_sheets.words import tell

@@ -315,7 +315,7 @@ def solve(
 @CORRECTED
 @option("--plan", "name", metavar="NAME", help="Only this plan.")
 def protocol(project: str, corrected: bool, name: str | None) -> None:
-    """Say the construction steps of PROJECT as sentences, in Russian, with millimetres of the sheets."""
+    """Say the construction steps of PROJECT as sentences, in the language of its sheets, with their millimetres."""
     from tmm_sheets import protocols
 
     for line in protocols.lines(_open(project, corrected), name):

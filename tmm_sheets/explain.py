@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.marks import Drawing
@@ -39,8 +39,8 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
     """The report as plain text; "condition" is that of the flattest crossing computed: 1/sin of the angle between its lines."""
     from tmm_sheets.construction import condition
 
-    heads = tuple(map(tell, (marked("steps"), marked("evaluated"), marked("skipped"), marked("ms"), marked("condition"))))
-    lines = ["{:30}{:>7}{:>11}{:>9}{:>11}  {}".format(tell("plan"), *heads)]
+    lines = ["{:30}{:>7}{:>11}{:>9}{:>11}  {}".format(
+        tell("plan"), tell("steps"), tell("evaluated"), tell("skipped"), tell("ms"), tell("condition"))]
     for name, plans in project.plans.items():
         lines.append((tell("{part}: not built") if plans is None else tell("{part}: built")).format(part=name))
         for plan in (plans or {}).values():
@@ -51,16 +51,16 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
             told = "" if worst is None else tell("{condition:11.2f} in {step}").format(condition=worst[0], step=worst[1])
             lines.append(f"  {plan.name:28}{len(steps):7}{len(done):11}{len(steps) - len(done):9}{ms:11.3f}{told}")
     lines += _searches(project)
-    lines += ["", f"{tell('sheet'):5}{tell('marks'):>8}"]
+    lines += ["", "{:5}{:>8}".format(tell("sheet"), tell("marks"))]
     for n, drawing in drawings.items():
         kinds = Counter(type(mark).__name__.lower() for mark in drawing.marks)
         lines.append(f"{n:5}{len(drawing.marks):8}   {', '.join(f'{count} {kind}' for kind, count in kinds.most_common())}")
     ours = sorted(m.removeprefix("tmm_sheets.") for m in sys.modules if m.startswith(("tmm_sheets.methods.", "tmm_sheets.sheets.")))
     lines += ["", tell("imported: {modules}").format(modules=", ".join(name for name in HEAVY if name in sys.modules)),
               tell("of our own: {modules}").format(modules=", ".join(ours))]
-    lines += ["", f"{tell('phase'):26}{tell('ms'):>8}"]
+    lines += ["", "{:26}{:>8}".format(tell("phase"), tell("ms"))]
     lines += [f"{name:26}{1000 * seconds:8.1f}" for name, seconds in watch.phases.items()]
-    lines.append(f"{tell('together'):26}{1000 * sum(watch.phases.values()):8.1f}")
+    lines.append("{:26}{:8.1f}".format(tell("together"), 1000 * sum(watch.phases.values())))
     return "\n".join(lines)
 
 

@@ -18,10 +18,11 @@ from tmm_sheets.words import LANGUAGES, marked, tell
 _LANG = marked("Language of sheets and messages.  [default: of sheets the project's, of messages the locale's]")
 
 
-def choose(arguments: Sequence[str]) -> None:
-    """Set the languages by the arguments of the command line, before anything is read from them; the locale's when none is told.
+@contextmanager
+def chosen(arguments: Sequence[str]) -> Iterator[None]:
+    """The languages by the arguments of the command line, before anything is read from them; the locale's when none is told.
 
-    A wrong word is left to the option itself.
+    A wrong word is left to the option itself. Afterwards click speaks as before; :mod:`contextvars` keep the rest.
     """
     asked = ""
     for word, after in zip(arguments, (*arguments[1:], ""), strict=True):
@@ -30,15 +31,25 @@ def choose(arguments: Sequence[str]) -> None:
         asked = after if word == "--lang" else word.removeprefix("--lang=") if word.startswith("--lang=") else asked
     words.set_reader(asked if asked in LANGUAGES else words.of_locale())
     words.ask_paper(asked if asked in LANGUAGES else "")
-    click_speaks(words.reader())
+    with _click_speaks(words.reader()):
+        yield
 
 
-def click_speaks(language: str) -> None:
-    """Let click's own words be of this language: it asks gettext's default domain, and that the environment."""
+@contextmanager
+def _click_speaks(language: str) -> Iterator[None]:
+    """Let click's own words be of this language meanwhile: it asks gettext's default domain, and that the environment."""
     import gettext
 
-    gettext.bindtextdomain("messages", template("locale"))
+    gettext.bindtextdomain(gettext.textdomain(), template("locale"))
+    before = os.environ.get("LANGUAGE")
     os.environ["LANGUAGE"] = language
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["LANGUAGE"]
+        else:
+            os.environ["LANGUAGE"] = before
 
 
 @contextmanager

@@ -136,7 +136,7 @@ def table(records: Iterable[BenchRecord]) -> str:
     for r in records:
         if r.field != field_now:
             field_now = r.field
-            lines += ["", f"{field_now:58}{'':>22}{tell('error'):>10}{tell('time'):>11}{tell('each'):>10}"]
+            lines += ["", "{:80}{:>10}{:>11}{:>10}".format(field_now, tell("error"), tell("time"), tell("each"))]
         named = f"{r.value:g} {r.parameter}"
         error = "-" if r.error is None else f"{r.error:.1e}"
         note = f"  {r.note}" if r.note else ""

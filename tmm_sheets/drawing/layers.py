@@ -27,10 +27,11 @@ class Layer(NamedTuple):
     @property
     def description(self) -> str:
         """What lies on it, in the language of the paper."""
-        row = roles()[self.role]
+        row, line = roles()[self.role], line_type(self.style).description
+        description = row["description"]
         if self.style == row["style"]:
-            return tr(row["description"])
-        return tr("{role}: {line}").format(role=tr(row["description"]), line=tr(line_type(self.style).description))
+            return tr(description)
+        return tr("{role}: {line}").format(role=tr(description), line=tr(line))
 
 
 @cache

@@ -58,7 +58,8 @@ def one(project: str, order: Order, parent: Path) -> Outcome:
     except MemoryError:
         return Outcome(project, tell("not enough memory"), warnings=warnings)
     except OSError as e:
-        return Outcome(project, f"{e.filename or tell('output')}: {reason_of(e)}", warnings=warnings)
+        output = tell("output")
+        return Outcome(project, f"{e.filename or output}: {reason_of(e)}", warnings=warnings)
     except Exception as e:
         if os.environ.get("TMM_SHEETS_TRACEBACK"):
             raise

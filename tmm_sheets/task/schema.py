@@ -306,7 +306,7 @@ class ForceTable(Table):
     """where the action begins, as a fraction of the way"""
     to: Fraction = 1.0
     """where it ends"""
-    accepted: bool = Field(default=False, description=marked('true: our own assumption, marked "принято" on the sheet'))
+    accepted: bool = Field(default=False, description=marked('true: our own assumption, marked so on the sheet'))
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
@@ -348,7 +348,7 @@ class MomentTable(Table):
     curve: Literal["straight", "smooth"] = "straight"
     """as for forces"""
     accepted: bool = False
-    """true: our own assumption, marked "принято" on the sheet"""
+    """true: our own assumption, marked so on the sheet"""
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
@@ -412,7 +412,7 @@ class MotorTable(Table):
     ratio: PositiveNumber | None = None
     """speed of the rotor over that of the crank; left out: with the rated speed"""
     accepted: bool = False
-    """true: our own assumption, marked "принято" on the sheet"""
+    """true: our own assumption, marked so on the sheet"""
 
 
 class FlywheelTable(Table):
@@ -433,7 +433,7 @@ class FlywheelTable(Table):
     weights: bool = False
     """true: the reduced moment counts the weights of the links"""
     accepted: bool = False
-    """true: delta is our own assumption, marked "принято" on the sheet"""
+    """true: delta is our own assumption, marked so on the sheet"""
     motor: MotorTable | None = None
     """table `[flywheel.motor]`; left out: no motor is checked"""
 

@@ -121,7 +121,7 @@ def misprints(rows: Iterable[Mapping[str, Any]], digits: Mapping[str, int], corr
                      "({reason}); {value:g} is used") if corrected else
                 tell("table {table}, {symbol}, column {column}: {printed}{unit} is probably a misprint of {suggested}{unit} "
                      "({reason}); {value:g} is kept; --corrected takes the other one"))
-            value = suggested if corrected else row["values"][column]
+            value, reason = suggested if corrected else row["values"][column], row["misprint"]
             yield said.format(
                 table=row["table"],
                 symbol=row.get("symbol", row["key"]),
@@ -129,7 +129,7 @@ def misprints(rows: Iterable[Mapping[str, Any]], digits: Mapping[str, int], corr
                 printed=row["values"][column],
                 unit=unit,
                 suggested=suggested,
-                reason=tell(row["misprint"]),
+                reason=tell(reason),
                 value=value,
             )
 
