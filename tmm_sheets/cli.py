@@ -11,8 +11,8 @@ import click
 from tmm_sheets import __version__, words
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
-from tmm_sheets.spoken import Group, option
-from tmm_sheets.words import tell, tell_n
+from tmm_sheets.spoken import Group, Option, option
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
@@ -75,7 +75,9 @@ CORRECTED = option("--corrected", is_flag=True, help="With the suggested values 
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="tmm-sheets", message="%(prog)s %(version)s")
+@click.version_option(
+    __version__, prog_name="tmm-sheets", message="%(prog)s %(version)s", cls=Option, help="Show the version and exit."
+)
 def commands() -> None:
     """Sheets of a course project in the theory of mechanisms and machines, drawn by compass and ruler.
 
@@ -223,9 +225,7 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool) -
         click.echo(f"{variant.project.name}: {warning}", err=True)
     unchanged = len(built.paths) - len(built.sizes)
     if unchanged:
-        told = tell_n("{n} of {m} file unchanged (--force makes it again)",
-                      "{n} of {m} files unchanged (--force makes them again)", len(built.paths))
-        told = told.format(n=unchanged, m=len(built.paths))
+        told = tell("{n} of {m} files unchanged (--force makes them again)").format(n=unchanged, m=len(built.paths))
         click.echo(f"{variant.project.name}: {told}", err=True)
     if explain:
         from tmm_sheets import explain as report

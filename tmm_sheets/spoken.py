@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gettext
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -38,8 +39,6 @@ def chosen(arguments: Sequence[str]) -> Iterator[None]:
 @contextmanager
 def _click_speaks(language: str) -> Iterator[None]:
     """Let click's own words be of this language meanwhile: it asks gettext's default domain, and that the environment."""
-    import gettext
-
     gettext.bindtextdomain(gettext.textdomain(), template("locale"))
     before = os.environ.get("LANGUAGE")
     os.environ["LANGUAGE"] = language
@@ -79,6 +78,13 @@ class Command(click.Command):
     def __init__(self, *arguments: Any, **settings: Any) -> None:
         super().__init__(*arguments, **settings)
         self.params.append(Option(["--lang"], type=click.Choice(LANGUAGES), expose_value=False, help=_LANG))
+
+    def get_help_option(self, ctx: click.Context) -> click.Option | None:
+        """The option ``--help``: click keeps it as it was said first."""
+        found = super().get_help_option(ctx)
+        if found is not None:
+            found.help = gettext.gettext("Show this message and exit.")
+        return found
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """The text above the options."""

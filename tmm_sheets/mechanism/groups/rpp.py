@@ -9,6 +9,7 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 class RPPKind(GroupKind):
     """Kind 5: a block hinged to a pin in the slot of a link that slides along a guide."""
 
-    number, form, orders = 5, "ВПП", ("RPP", "PPR")
+    number, form, orders = 5, marked("ВПП"), ("RPP", "PPR")
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         p, (i, j) = g.outer[0], g.links

@@ -16,6 +16,7 @@ from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGEN
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -32,7 +33,7 @@ SINE = Rule("sine between slot and perpendicular to the line of pivots", lambda 
 class RPRKind(GroupKind):
     """Kind 3: a block hinged to a pin, sliding along a rocker that is hinged to a pivot."""
 
-    number, form, orders = 3, "ВПВ", ("RPR",)
+    number, form, orders = 3, marked("ВПВ"), ("RPR",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         (p, q), (i, j) = g.outer, g.links

@@ -15,6 +15,7 @@ from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, fold_and_stre
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -26,7 +27,7 @@ SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side
 class RRPKind(GroupKind):
     """Kind 2: a rod hinged to a slider on a guide."""
 
-    number, form, orders = 2, "ВВП", ("RRP", "PRR")
+    number, form, orders = 2, marked("ВВП"), ("RRP", "PRR")
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         p, c, (i, j) = g.outer[0], str(g.inner), g.links
