@@ -50,7 +50,7 @@ def test_help(arguments, capsys):
 def test_list(capsys):
     assert run(["list"]) == 0
     listed = {line.split(maxsplit=1)[0]: line.split(maxsplit=1)[1] for line in capsys.readouterr().out.splitlines()}
-    assert listed["lugansk/shaper"] == "Строгальный станок, пример 1; sheets: kinematics_forces, flywheel, gear, cam"
+    assert listed["lugansk/shaper"] == "Shaping machine, example 1; sheets: kinematics_forces, flywheel, gear, cam"
 
 
 def test_list_json(capsys):

@@ -188,9 +188,11 @@ def test_what_follows_two_hyphens_is_no_option(capsys):
 
 SLIPS = [("length", 'length = "0.08 m"', 'length = "-0.08 m"'), ("unit", 'length = "0.08 m"', 'length = "80 kg"'),
          ("bare", 'length = "0.08 m"', "length = 80"), ("key", "[crank]\n", "[crank]\nlenght = 1\n"),
-         ("sense", 'sense = "clockwise"', 'sense = "left"'), ("outer", 'outer = ["B"', 'outer = ["K"'), ("toml", "[crank]", "[crank"),
+         ("sense", 'sense = "clockwise"', 'sense = "left"'), ("outer", 'outer = ["B"', 'outer = ["K"'),
+         ("toml", "[crank]", "[crank"),
          ("sheets", '"flywheel", "gear"', '"flywhel", "gear"'), ("kind", "kind = 5", "kind = 4"), ("missing", 'pivot = "A"\n', ""),
-         ("mass", 'mass = "', 'mass = "many '), ("link", 'link = "1"', 'link = "0"'), ("order", 'guide = "x–x"', 'guide = "y–y"')]  # fmt: skip
+         ("mass", 'mass = "', 'mass = "many '), ("link", 'link = "1"', 'link = "0"'),
+         ("order", 'guide = "x–x"', 'guide = "y–y"')]  # fmt: skip
 
 
 @pytest.mark.parametrize(("old", "new"), [slip[1:] for slip in SLIPS], ids=[slip[0] for slip in SLIPS])

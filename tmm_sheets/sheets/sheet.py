@@ -23,7 +23,7 @@ from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import places
 from tmm_sheets.sheets.arrangement import arrangement as arrange
-from tmm_sheets.words import marked, of_file, tr
+from tmm_sheets.words import marked, of_file, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -104,7 +104,7 @@ def every(project: Project, say: Callable[[str], None] = lambda _: None, numbers
     """Draw sheets of a project, all unless told; CannotBuild when none of them can be drawn."""
     @contextmanager
     def told(n: int) -> Iterator[None]:
-        say(f"sheet {n}")
+        say(tell("sheet {n}").format(n=n))
         yield
 
     found = attempt(project, numbers or range(1, len(project.variant.drawable()) + 1), told)
