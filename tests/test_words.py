@@ -259,6 +259,7 @@ def test_an_order_takes_its_languages_along(workers, tmp_path):
     """In processes of their own, which know nothing of the options of the command."""
     order = Order((), ("svg",), language="en", reader="uk")
     done = {o.project: o for o in batch.run(("lugansk/cam_flat", "lugansk/cam_rocker", "no/such"), order, tmp_path, workers)}
+    assert (words.reader(), words.paper()) == ("en", "ru")
     assert "невідомий проєкт" in done["no/such"].problem
     assert 'xml:lang="en"' in (tmp_path / "lugansk-cam_flat" / "sheet1.svg").read_text("utf-8")
     assert 'xml:lang="en"' in (tmp_path / "lugansk-cam_rocker" / "sheet1.svg").read_text("utf-8")

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from contextvars import copy_context
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -47,6 +48,10 @@ class Outcome:
 
 def one(project: str, order: Order, parent: Path) -> Outcome:
     """Build one project into its folder below ``parent``; whatever goes wrong is told, not raised."""
+    return copy_context().run(_one, project, order, parent)  # the languages it sets are its own
+
+
+def _one(project: str, order: Order, parent: Path) -> Outcome:
     warnings: tuple[str, ...] = ()
     words.set_reader(order.reader)
     try:
