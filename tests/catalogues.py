@@ -1,7 +1,8 @@
 """The catalogues of words: collected from the program, brought up to date, compiled; ``make messages``.
 
 ``python -m tests.catalogues --add FILE.json`` puts translations in: {"English text": {"ru": "...", "uk": "..."}}, where the forms
-of a plural are a list, in the order of the catalogue's header, and a text with a context is "context|text".
+of a plural are a list, in the order of the catalogue's header, and a text with a context is "context|text"; one of click is
+"click|text".
 """
 
 import json
@@ -29,9 +30,12 @@ CYRILLIC = re.compile("[\u0400-\u04ff]")
 NEVER = datetime(2026, 1, 1, tzinfo=UTC)
 """Date in the headers: a catalogue depends on its texts only."""
 CLICK = "messages"
-"""Domain of click's own words."""
-HEADINGS = ("title", "variant")
-"""Keys of [project] whose texts stand on the sheets of shipped projects."""
+"""Domain of click's own words: gettext's default one, which click asks. English needs none."""
+READ = {
+    "project": ("title", "variant"), "title_block": ("institution", "group", "letter"), "link": ("title",),
+    "misprint": ("reason", "certainty"), "row": ("misprint",),
+}  # fmt: skip
+"""Keys of shipped files that a person reads, by table."""
 
 
 def of_program() -> Iterator[tuple[str, str | tuple[str, ...], str | None]]:
@@ -52,12 +56,31 @@ def of_commands() -> Iterator[tuple[str, str, None]]:
 
 
 def of_projects() -> Iterator[tuple[str, str, None]]:
-    """What shipped projects are called on their sheets: in the language of their files."""
-    for path in sorted((ROOT / "variants").rglob("*.toml")):
+    """What shipped projects say on their sheets and of themselves, in the language of their files; not what schemes fill in."""
+    for path in (*sorted((ROOT / "variants").rglob("*.toml")), *sorted((ROOT / "templates" / "schemes").glob("*.toml"))):
+        text = re.sub(r"(?m)^\$\w+\s*$", "", path.read_text("utf-8"))  # rows that are filled in whole, and numbers
+        tree = tomllib.loads(re.sub(r'"[^"\n]*"|\$\w+', lambda found: "0" if found[0][0] == "$" else found[0], text))
+        if isinstance(title := tree.get("title"), str):  # of a family's table
+            yield path.relative_to(ROOT).as_posix(), title, None
+        for table, keys in READ.items():
+            found = tree.get(table, {})
+            for row in found if isinstance(found, list) else [found]:
+                for said in (row.get(key) for key in keys):
+                    if isinstance(said, str) and said and "$" not in said:
+                        yield path.relative_to(ROOT).as_posix(), said, None
+
+
+def of_templates() -> Iterator[tuple[str, str, None]]:
+    """Titles and codes of arrangements, names of views, descriptions of layers and of line types."""
+    templates = ROOT / "templates"
+    for path in sorted((templates / "sheets").glob("*.toml")):
         tree = tomllib.loads(path.read_text("utf-8"))
-        for heading in HEADINGS:
-            if isinstance(text := tree.get("project", {}).get(heading), str) and text:
-                yield path.relative_to(ROOT).as_posix(), text, None
+        yield from ((path.relative_to(ROOT).as_posix(), tree[key], None) for key in ("title", "code") if key in tree)
+    for name in ("layers", "linetypes"):
+        for row in tomllib.loads((templates / f"{name}.toml").read_text("utf-8")).values():
+            yield f"templates/{name}.toml", row["description"], None
+    for name in tomllib.loads((templates / "view_names.toml").read_text("utf-8")).values():
+        yield "templates/view_names.toml", name, None
 
 
 def of_title_blocks() -> Iterator[tuple[str, str, str]]:
@@ -73,8 +96,17 @@ def of_title_blocks() -> Iterator[tuple[str, str, str]]:
 def collected() -> Catalog:
     """Every text there is, without translations."""
     found = Catalog(domain=DOMAIN, project="tmm-sheets", version="", charset="utf-8", creation_date=NEVER, revision_date=NEVER)
-    for file, text, context in (*of_program(), *of_commands(), *of_title_blocks(), *of_projects()):
+    for file, text, context in (*of_program(), *of_commands(), *of_title_blocks(), *of_projects(), *of_templates()):
         found.add(text, locations=[(file, None)], context=context)
+    return found
+
+
+def of_click() -> Catalog:
+    """Words of click itself: help, wrong usage."""
+    found = Catalog(domain=CLICK, project="tmm-sheets", version="", charset="utf-8", creation_date=NEVER, revision_date=NEVER)
+    for path in sorted(Path(click.__file__).parent.glob("*.py")):
+        for _, text, _, _ in extract_from_file("python", path, {"_": None, "gettext": None, "ngettext": (1, 2)}):
+            found.add(text)
     return found
 
 
@@ -92,15 +124,20 @@ def read(language: str, domain: str = DOMAIN) -> Catalog:
 
 
 def updated(language: str, template: Catalog) -> Catalog:
-    """Texts of the program with the translations there were; what nobody says any more is gone."""
-    old = read(language)
-    new = Catalog(language, domain=DOMAIN, project="tmm-sheets", version="", fuzzy=False, creation_date=NEVER, revision_date=NEVER,
+    """Texts of the template with the translations there were; what nobody says any more is gone."""
+    old = read(language, str(template.domain))
+    new = Catalog(language, domain=template.domain, project="tmm-sheets", version="", fuzzy=False, creation_date=NEVER,
+                  revision_date=NEVER,
                   header_comment=f"# {language}: words of tmm_sheets; make messages brings it up to date.")
     for message in template:
         if message.id:
             kept = old.get(message.id[0] if message.pluralizable else message.id, message.context)
             new.add(message.id, kept.string if kept is not None else None, sorted({(f, None) for f, _ in message.locations}),
                     context=message.context)
+    if template.domain == CLICK:  # other versions of click say other things
+        for message in old:
+            if message.id and message.string and message.id not in new:
+                new.add(message.id, message.string)
     return new
 
 
@@ -122,6 +159,23 @@ def write(language: str, catalogue: Catalog, domain: str = DOMAIN) -> None:
     path_of(language, "mo", domain).write_bytes(as_mo(catalogue))
 
 
+def problems(catalogue: Catalog) -> list[str]:
+    """Texts whose translations have other fields or an odd number of braces of markup."""
+    found = []
+    for message in catalogue:
+        said = [s for s in (message.string if isinstance(message.string, tuple) else (message.string,)) if s]
+        meant = message.id if isinstance(message.id, tuple) else (message.id,)
+        if message.id and not all(any(_shape(s) == _shape(m) for m in meant) for s in said):
+            found.append(str(message.id))
+    return found
+
+
+def _shape(text: str) -> tuple[set[str], int]:
+    """Fields of a text, and how many braces open that do not close."""
+    fields = re.findall(r"(?<!\{)\{[a-z]\w*(?:![rsa])?(?::[^{}]*)?(?=\})", text)
+    return {field[1:] for field in fields}, text.count("{") - text.count("}")
+
+
 def missing(catalogue: Catalog) -> list[str]:
     """Texts without a translation; in English only those need one that are Russian, from somebody's file."""
     return [str(m.id) for m in catalogue if m.id and not all(m.string if isinstance(m.string, tuple) else (m.string,))
@@ -132,7 +186,8 @@ def add(catalogue: Catalog, table: dict, language: str) -> None:
     for message in catalogue:
         if message.id:
             key = message.id[0] if message.pluralizable else message.id
-            said = table.get(f"{message.context}|{key}" if message.context else key, {}).get(language)
+            context = "click" if catalogue.domain == CLICK else message.context
+            said = table.get(f"{context}|{key}" if context else key, {}).get(language)
             if said:
                 message.string = tuple(said) if isinstance(said, list) else said
 
@@ -141,13 +196,14 @@ def main(arguments: list[str]) -> None:
     table: dict = {}
     for path in arguments[1:] if arguments[:1] == ["--add"] else []:
         table |= json.loads(Path(path).read_text("utf-8"))
-    template = collected()
-    for language in LANGUAGES:
-        catalogue = updated(language, template)
-        add(catalogue, table, language)
-        write(language, catalogue)
-        left = missing(catalogue)
-        print(f"{language}: {len(catalogue)} texts, {len(left)} without a translation", *left[:8], sep="\n  ")
+    for template in (collected(), of_click()):
+        domain = str(template.domain)
+        for language in LANGUAGES if domain == DOMAIN else LANGUAGES[:2]:
+            catalogue = updated(language, template)
+            add(catalogue, table, language)
+            write(language, catalogue, domain)
+            left = missing(catalogue)
+            print(f"{language}: {len(catalogue)} texts of {domain}, {len(left)} without a translation", *left[:8], sep="\n  ")
 
 
 if __name__ == "__main__":

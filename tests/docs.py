@@ -111,7 +111,7 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
         elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
             said.append(given["quantity"].name)
         elif "wording" in given:
-            said.append(without_article(given["wording"]))
+            said.append(without_article(given["wording"].removeprefix("expected ")))
         elif "least" in given:
             said.append(f"whole number, {given['least']} or more")
     return ", ".join(reversed(said[:1] if len(said) == 2 and said[1] == "name in quotes" else said))
@@ -205,10 +205,14 @@ def example(path: str) -> str:
 # --- commands and sheets --------------------------------------------------------------------------------------------
 
 
+EVERYWHERE = "--lang"
+"""The option of every command: it is told once."""
+
+
 def options(command: str) -> str:
-    """Every option of a command, as ``--help`` has it."""
+    """Every option of a command but that of all, as ``--help`` has it."""
     found = cli.commands.commands[command]
-    rows = [helped for p in found.params if isinstance(p, click.Option)
+    rows = [helped for p in found.params if isinstance(p, click.Option) and EVERYWHERE not in p.opts
             if (helped := p.get_help_record(click.Context(found))) is not None]  # fmt: skip
     return table(("option", "does"), *((f"`{names}`", says.replace("|", "\\|")) for names, says in rows))
 

@@ -164,7 +164,12 @@ def test_quick_commands_work(paper, tmp_path, monkeypatch, capsys):
 def test_every_option_is_told_and_none_that_is_not(name):
     (section,) = re.findall(rf"^## {name}\n(.*?)(?=^## |\Z)", TEXTS["docs/commands.md"], re.MULTILINE | re.DOTALL)
     rows = set(re.findall(r"--[a-z]+(?:-[a-z]+)*", "\n".join(re.findall(r"^\| `([^`]*--[^`]*)`", section, re.MULTILINE))))
-    assert rows == {o for p in cli.commands.commands[name].params for o in p.opts if o.startswith("--")}
+    assert rows == {o for p in cli.commands.commands[name].params for o in p.opts if o.startswith("--")} - {docs.EVERYWHERE}
+
+
+def test_the_option_of_all_commands_is_told_once():
+    assert all(docs.EVERYWHERE in p.opts for command in cli.commands.commands.values() for p in command.params[-1:])
+    assert len(re.findall(rf"^## .*\n(?:(?!^## ).*\n)*?.*`{docs.EVERYWHERE}", TEXTS["docs/commands.md"], re.MULTILINE)) == 1
 
 
 def test_no_option_is_named_that_no_command_has():

@@ -55,7 +55,10 @@ def _flushed(status: int) -> int:
     except BrokenPipeError:
         status = BROKEN_PIPE
     except OSError as e:
-        status = _say(f"output cannot be written: {(e.strerror or str(e)).lower()}", BAD_INPUT)
+        from tmm_sheets.errors import reason_of
+        from tmm_sheets.words import tell
+
+        status = _say(tell("output cannot be written: {why}").format(why=reason_of(e)), BAD_INPUT)
     # What is still buffered must not raise again while Python shuts down.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return status
@@ -63,13 +66,24 @@ def _flushed(status: int) -> int:
 
 def run(arguments: list[str]) -> int:
     """Run the commands with these arguments; messages go to stderr, the exit status comes back."""
-    import click
+    from contextvars import copy_context
 
+    return copy_context().run(_run, arguments)  # the languages it sets are its own
+
+
+def _run(arguments: list[str]) -> int:
     from tmm_sheets import spoken
 
-    spoken.choose(arguments)
+    with spoken.chosen(arguments):
+        return _carried_out(arguments)
+
+
+def _carried_out(arguments: list[str]) -> int:
+    import click
+
     from tmm_sheets.cli import commands
-    from tmm_sheets.errors import BadInput, CannotBuild, Stopped
+    from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
+    from tmm_sheets.words import tell
 
     try:
         # Not commands.main(): that ends the program by itself and with other statuses on Ctrl-C and closed pipes.
@@ -90,15 +104,15 @@ def run(arguments: list[str]) -> int:
     except BrokenPipeError:
         return BROKEN_PIPE  # main() quiets the buffer
     except OSError as e:
-        place = f"{e.filename}: " if e.filename else "output cannot be written: "
-        return _say(f"{place}{(e.strerror or str(e)).lower()}", BAD_INPUT)
+        why = reason_of(e)
+        return _say(f"{e.filename}: {why}" if e.filename else tell("output cannot be written: {why}").format(why=why), BAD_INPUT)
     except MemoryError:
-        return _say("not enough memory; ask for fewer positions", CANNOT_BUILD)
+        return _say(tell("not enough memory; ask for fewer positions"), CANNOT_BUILD)
     except Exception as e:
         if os.environ.get("TMM_SHEETS_TRACEBACK"):
             raise
-        hint = "this is a defect of the program; TMM_SHEETS_TRACEBACK=1 shows where it happened"
-        return _say(f"internal error: {type(e).__name__}: {e}\n    {hint}", CANNOT_BUILD)
+        hint = tell("this is a defect of the program; TMM_SHEETS_TRACEBACK=1 shows where it happened")
+        return _say(tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}\n    {hint}"), CANNOT_BUILD)
 
 
 def _say(message: str, status: int) -> int:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import families
+from tmm_sheets.words import either, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
@@ -79,8 +80,8 @@ def locate(project: str) -> Path:
         return path
     near = get_close_matches(project, names, n=3)
     raise BadInput(
-        f'unknown project "{project}": neither a shipped name nor a file',
-        hint=f"did you mean {' or '.join(near)}?" if near else "tmm-sheets list shows the shipped projects",
+        tell('unknown project "{project}": neither a shipped name nor a file').format(project=project),
+        hint=tell("did you mean {near}?").format(near=either(near)) if near else tell("tmm-sheets list shows the shipped projects"),
     )
 
 

@@ -11,7 +11,8 @@ import click
 from tmm_sheets import __version__, words
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
-from tmm_sheets.spoken import Group, option
+from tmm_sheets.spoken import Group, Option, option
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
@@ -39,7 +40,7 @@ def _among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, 
         parts = tuple(dict.fromkeys(part.strip().lower() for part in value.split(",")))
         for part in parts:
             if part not in known:
-                raise click.BadParameter(f"'{part}' is not one of {', '.join(known)}")
+                raise click.BadParameter(tell("'{part}' is not one of {known}").format(part=part, known=', '.join(known)))
         return parts
 
     return split
@@ -53,7 +54,9 @@ def _degrees(context: click.Context, parameter: click.Parameter, value: str | No
     try:
         return tuple(units.parse(f"{part.strip()} deg", units.ANGLE) for part in value.split(","))
     except ValueError:
-        raise click.BadParameter(f"expected angles in degrees with commas between, such as 0,30.5,60, not '{value}'") from None
+        raise click.BadParameter(
+            tell("expected angles in degrees with commas between, such as 0,30.5,60, not '{value}'").format(value=value)
+        ) from None
 
 
 def _plotter(context: click.Context, parameter: click.Parameter, value: str | None) -> Plotter | None:
@@ -72,7 +75,9 @@ CORRECTED = option("--corrected", is_flag=True, help="With the suggested values 
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="tmm-sheets", message="%(prog)s %(version)s")
+@click.version_option(
+    __version__, prog_name="tmm-sheets", message="%(prog)s %(version)s", cls=Option, help="Show the version and exit."
+)
 def commands() -> None:
     """Sheets of a course project in the theory of mechanisms and machines, drawn by compass and ruler.
 
@@ -95,7 +100,12 @@ def list_projects(as_json: bool) -> None:
         return
     width = max((len(e.name) for e in entries), default=0)
     for e in entries:
-        click.echo(f"{e.name:{width}}  {', '.join(filter(None, (e.title, e.variant)))}; sheets: {', '.join(e.sheets)}")
+        called = ", ".join(words.of_file(text, tell) for text in (e.title, e.variant) if text)
+        click.echo(
+            tell("{project}  {title}; sheets: {sheets}").format(
+                project=f"{e.name:{width}}", title=called, sheets=", ".join(e.sheets)
+            )
+        )
 
 
 @commands.command()
@@ -106,7 +116,7 @@ def list_projects(as_json: bool) -> None:
 def show(project: str, corrected: bool, as_file: bool, output: Path | None) -> None:
     """Show inputs with units and source, links, pairs, mobility W, Assur groups, formula of structure."""
     if output is not None and not as_file:
-        raise click.UsageError("-o goes with --file")
+        raise click.UsageError(tell("-o goes with --file"))
     variant = _read(project, corrected)
     if output is not None:
         from tmm_sheets import files
@@ -135,7 +145,7 @@ def check(project: str, corrected: bool) -> None:
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
     if opened.variant.flywheel is not None and opened.flywheel.remark:
         click.echo(f"{opened.variant.project.name}: {opened.flywheel.remark}", err=True)
-    click.echo(f"{opened.variant.project.name}: OK")
+    click.echo(tell("{project}: OK").format(project=opened.variant.project.name))
 
 
 @commands.command()
@@ -168,9 +178,9 @@ def build(
 ) -> None:
     """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
     if not projects and not families and not lists:
-        raise click.UsageError("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")
+        raise click.UsageError(tell("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE."))
     if one_file and "pdf" not in formats:
-        raise click.UsageError("--one-file is for PDF: add pdf to --format")
+        raise click.UsageError(tell("--one-file is for PDF: add pdf to --format"))
     from tmm_sheets import files
     from tmm_sheets.output.building import Order
 
@@ -179,11 +189,11 @@ def build(
     order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader())
     if len(projects) == 1 and not families and not lists:
         if jobs is not None or scheduler is not None:
-            raise click.UsageError("--jobs and --dask are for several projects")
+            raise click.UsageError(tell("--jobs and --dask are for several projects"))
         _build_one(projects[0], order, output, explain)
         return
     if explain:
-        raise click.UsageError("--explain is for one project")
+        raise click.UsageError(tell("--explain is for one project"))
     _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
 
 
@@ -194,7 +204,7 @@ def _listed(file: BinaryIO) -> list[str]:
     try:
         return texts.cleaned(texts.decoded(file.read()).text).splitlines()
     except texts.NotText as e:
-        hint = "a list names a project in each line, in UTF-8"
+        hint = tell("a list names a project in each line, in UTF-8")
         raise BadInput(Problem(str(e), str(getattr(file, "name", "")), e.line, hint=hint)) from None
 
 
@@ -204,7 +214,7 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool) -
     from tmm_sheets.progress import Progress
 
     watch = Stopwatch()
-    with watch.phase("read"):
+    with watch.phase(tell("read")):
         variant = _read(project, order.corrected)
     outlet = order.outlet(_folder(variant, output))
     with Progress() as progress:
@@ -215,7 +225,7 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool) -
         click.echo(f"{variant.project.name}: {warning}", err=True)
     unchanged = len(built.paths) - len(built.sizes)
     if unchanged:
-        told = f"{unchanged} of {len(built.paths)} files unchanged (--force makes them again)"
+        told = tell("{n} of {m} files unchanged (--force makes them again)").format(n=unchanged, m=len(built.paths))
         click.echo(f"{variant.project.name}: {told}", err=True)
     if explain:
         from tmm_sheets import explain as report
@@ -237,7 +247,7 @@ def _build_many(
 
     names = batch.chosen(projects, families, [_listed(file) for file in lists])
     if not names:
-        raise BadInput("no projects to build", hint="the list is empty")
+        raise BadInput(tell("no projects to build"), hint=tell("the list is empty"))
     files.check_folder(parent)
     start = monotonic()
     running = (batch.run(names, order, parent, jobs or batch.processors()) if scheduler is None
@@ -260,7 +270,10 @@ def _build_many(
         if failures:
             click.echo(batch.table(failures, len(names)), err=True)
         left = len(names) - len(done)
-        click.echo(f"stopped, {left} of {len(names)} projects left; the same command goes on from there", err=True)
+        click.echo(
+            tell("stopped, {n} of {total} projects left; the same command goes on from there").format(n=left, total=len(names)),
+            err=True,
+        )
         raise stopped
     if failures:
         raise CannotBuild(batch.table(failures, len(names)))
@@ -280,7 +293,7 @@ def solve(
 ) -> None:
     """Compute the numbers of PROJECT; nothing is drawn."""
     if phi is not None and positions is not None:
-        raise click.UsageError("give either --phi or --positions, not both")
+        raise click.UsageError(tell("give either --phi or --positions, not both"))
     from tmm_sheets import results
 
     opened, refused = _open(project, corrected), dict[str, CannotBuild]()
@@ -302,7 +315,7 @@ def solve(
 @CORRECTED
 @option("--plan", "name", metavar="NAME", help="Only this plan.")
 def protocol(project: str, corrected: bool, name: str | None) -> None:
-    """Say the construction steps of PROJECT as sentences, in Russian, with millimetres of the sheets."""
+    """Say the construction steps of PROJECT as sentences, in the language of its sheets, with their millimetres."""
     from tmm_sheets import protocols
 
     for line in protocols.lines(_open(project, corrected), name):
@@ -350,7 +363,9 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
     try:
         x0, y0, x1, y1 = (float(part) for part in value.split(","))
     except ValueError:
-        raise click.BadParameter(f"expected x0,y0,x1,y1 in mm, such as 0,0,400,276, not '{value}'") from None
+        raise click.BadParameter(
+            tell("expected x0,y0,x1,y1 in mm, such as 0,0,400,276, not '{value}'").format(value=value)
+        ) from None
     return Box(x0, y0, x1, y1)
 
 
@@ -379,14 +394,14 @@ def plot(
 ) -> None:
     """Put the sheets of PROJECT on paper, 1:1, or send a FILE made before (.plt, .pdf)."""
     if machine is not None and tile is not None:
-        raise click.UsageError("--tile cuts a PDF; a plotter takes a sheet in parts with --window")
+        raise click.UsageError(tell("--tile cuts a PDF; a plotter takes a sheet in parts with --window"))
     from tmm_sheets import files
     from tmm_sheets.output import plot as plotting
     from tmm_sheets.progress import Progress
 
     finished = project.lower().endswith(plotting.FILES)
     if finished and any((sheets, tile, bar, window, outline == "off")):
-        raise click.UsageError(f"{project} is finished: it can be sent or shown, not changed")
+        raise click.UsageError(tell("{project} is finished: it can be sent or shown, not changed").format(project=project))
     problem = None
     with Progress() as progress:
         if finished:
@@ -445,7 +460,7 @@ def _previews(jobs: Mapping[Path, Job], machine: Plotter | None, dpi: float, fol
 
     made: dict[Path, bytes] = {}
     for path, job in jobs.items():
-        progress.say(f"preview of {path} ...")
+        progress.say(tell("preview of {path} ...").format(path=path))
         made |= {folder / name: data for name, data in plotting.preview(job, machine or plotter(), dpi).items()}
     return made
 
@@ -458,7 +473,7 @@ def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
 
     for path, job in jobs.items():
         if dry_run:
-            click.echo(f"would send: {shlex.join(plotting.command(job, path, printer))}")
+            click.echo(tell("would send: {command}").format(command=shlex.join(plotting.command(job, path, printer))))
         else:
             click.echo(plotting.send(job, path, printer))
 
@@ -486,9 +501,9 @@ def compare(
 ) -> None:
     """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
     if sum((template, measured is not None, image is not None, dxf is not None)) != 1:
-        raise click.UsageError("give one of --template, --measured FILE, --image FILE and --dxf FILE")
+        raise click.UsageError(tell("give one of --template, --measured FILE, --image FILE and --dxf FILE"))
     if sheet is None and image is not None:
-        raise click.UsageError("--image needs --sheet N: which sheet it shows")
+        raise click.UsageError(tell("--image needs --sheet N: which sheet it shows"))
     from tmm_sheets import files
     from tmm_sheets.progress import Progress
 
@@ -540,7 +555,7 @@ def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, p
     """Measure every method: error against a truth of 30 digits or more, and time."""
     if cost is not None or whole is not None:
         if any((target, folder, quick, summary, peers, cost and whole)):
-            raise click.UsageError("--cost and --whole go alone")
+            raise click.UsageError(tell("--cost and --whole go alone"))
         click.echo(_prices(cost, whole))
         return
     from tmm_sheets import files
@@ -602,11 +617,15 @@ def stress(cases: int, seed: int, single: int | None) -> None:
         worst = report.run_one(seed, single)
     else:
         with Progress() as progress:
-            worst = report.run(cases, seed, lambda case: progress.say(f"case {case} of {cases} ..."))
+            worst = report.run(
+                cases, seed, lambda case: progress.say(tell("case {case} of {cases} ...").format(case=case, cases=cases))
+            )
     click.echo(report.table(worst, seed))
     failed = report.exceeded(worst)
     if failed:
-        raise CannotBuild(f"bound exceeded: {', '.join(failed)}", "the table names a case that shows it")
+        raise CannotBuild(
+            tell("bound exceeded: {invariants}").format(invariants=", ".join(failed)), tell("the table names a case that shows it")
+        )
 
 
 def _folder(variant: Variant, output: Path | None) -> Path:

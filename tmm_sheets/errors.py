@@ -5,6 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from tmm_sheets.words import marked, tell
+
+_CANNOT = {
+    "built": marked("{names} cannot be built: {reason}"),
+    "computed": marked("{names} cannot be computed: {reason}"),
+    "drawn": marked("{names} cannot be drawn: {reason}"),
+    "recorded": marked("{names} cannot be recorded: {reason}"),
+}
+"""What is to be said of things by what cannot be done with them."""
+_OF_SYSTEM = (
+    marked("no such file or directory"), marked("permission denied"), marked("no space left on device"), marked("is a directory"),
+    marked("not a directory"), marked("read-only file system"), marked("file name too long"), marked("input/output error"),
+    marked("disk quota exceeded"), marked("file too large"), marked("bad file descriptor"), marked("too many open files"),
+    marked("operation not permitted"), marked("invalid argument"),
+)  # fmt: skip
+"""What systems usually say, for the catalogues."""
+
+
+def reason_of(e: OSError) -> str:
+    """Why the system refused, in the reader's words where there are any."""
+    return tell((e.strerror or str(e)).lower())
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -51,14 +73,16 @@ class Stopped(KeyboardInterrupt):
 def together(refused: Mapping[str, CannotBuild], what: str, others: bool) -> CannotBuild:
     """One refusal for several things by name, each reason once: "sheet 3 (gear) cannot be drawn: why".
 
-    The names matter only where there are ``others`` that could be built, or reasons that differ.
+    ``what`` is "built", "computed", "drawn" or "recorded". The names matter only where there are ``others`` that could be
+    built, or reasons that differ.
     """
     reasons: dict[str, list[str]] = {}
     for name, reason in refused.items():
         reasons.setdefault(str(reason), []).append(name)
     if not others and len(reasons) == 1:
         return next(iter(refused.values()))
-    return CannotBuild("\n".join(f"{', '.join(names)} cannot be {what}: {reason}" for reason, names in reasons.items()))
+    return CannotBuild("\n".join(tell(_CANNOT[what]).format(names=", ".join(names), reason=reason)
+                                 for reason, names in reasons.items()))
 
 
 class BadInput(Exception):

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from tmm_sheets.words import tell
+
 if TYPE_CHECKING:
     from tmm_sheets.drawing.marks import Drawing
     from tmm_sheets.project import Project
@@ -37,32 +39,34 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
     """The report as plain text; "condition" is that of the flattest crossing computed: 1/sin of the angle between its lines."""
     from tmm_sheets.construction import condition
 
-    lines = ["plan                            steps  evaluated  skipped         ms  condition"]
+    lines = ["{:30}{:>7}{:>11}{:>9}{:>11}  {}".format(
+        tell("plan"), tell("steps"), tell("evaluated"), tell("skipped"), tell("ms"), tell("condition"))]
     for name, plans in project.plans.items():
-        lines.append(f"{name}: {'not ' if plans is None else ''}built")
+        lines.append((tell("{part}: not built") if plans is None else tell("{part}: built")).format(part=name))
         for plan in (plans or {}).values():
             steps = [*plan, *plan.asides.values()]
             done = [step for step in steps if step.evaluated]
             ms = 1000 * sum(step.spent for step in done)
             worst = condition.worst(plan)
-            told = "" if worst is None else f"{worst[0]:11.2f} in {worst[1]}"
+            told = "" if worst is None else tell("{condition:11.2f} in {step}").format(condition=worst[0], step=worst[1])
             lines.append(f"  {plan.name:28}{len(steps):7}{len(done):11}{len(steps) - len(done):9}{ms:11.3f}{told}")
     lines += _searches(project)
-    lines += ["", "sheet   marks"]
+    lines += ["", "{:5}{:>8}".format(tell("sheet"), tell("marks"))]
     for n, drawing in drawings.items():
         kinds = Counter(type(mark).__name__.lower() for mark in drawing.marks)
         lines.append(f"{n:5}{len(drawing.marks):8}   {', '.join(f'{count} {kind}' for kind, count in kinds.most_common())}")
     ours = sorted(m.removeprefix("tmm_sheets.") for m in sys.modules if m.startswith(("tmm_sheets.methods.", "tmm_sheets.sheets.")))
-    lines += ["", f"imported: {', '.join(name for name in HEAVY if name in sys.modules)}", f"of our own: {', '.join(ours)}"]
-    lines += ["", "phase                           ms"]
+    lines += ["", tell("imported: {modules}").format(modules=", ".join(name for name in HEAVY if name in sys.modules)),
+              tell("of our own: {modules}").format(modules=", ".join(ours))]
+    lines += ["", "{:26}{:>8}".format(tell("phase"), tell("ms"))]
     lines += [f"{name:26}{1000 * seconds:8.1f}" for name, seconds in watch.phases.items()]
-    lines.append(f"{'together':26}{1000 * sum(watch.phases.values()):8.1f}")
+    lines.append("{:26}{:8.1f}".format(tell("together"), 1000 * sum(watch.phases.values())))
     return "\n".join(lines)
 
 
 def _searches(project: Project) -> Iterator[str]:
     """A line for each thing that was looked for with plans that nobody draws."""
     if project.searches:
-        yield from ("", "searches                        plans      steps                  ms")
+        yield from ("", "{:30}{:>7}{:>11}{:>20}".format(tell("searches"), tell("plans"), tell("steps"), tell("ms")))
     for search in project.searches:
-        yield f"  {search.purpose:28}{search.plans:7}{search.steps:11}{1000 * search.seconds:20.3f}"
+        yield f"  {tell(search.purpose):28}{search.plans:7}{search.steps:11}{1000 * search.seconds:20.3f}"

@@ -11,7 +11,8 @@ from pathlib import Path
 from threading import Lock
 from time import gmtime, time
 
-from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.errors import BadInput, Problem, reason_of
+from tmm_sheets.words import tell
 
 WRITING = Lock()
 """Held while files are written: whoever ends the process at once waits for it, and nothing half-written stays."""
@@ -59,7 +60,7 @@ def _put(files: Mapping[Path, bytes]) -> None:
         for path, data in files.items():
             current = path
             if path.is_dir():
-                raise IsADirectoryError(0, "expected a file, this is a folder")
+                raise IsADirectoryError(0, tell("expected a file, this is a folder"))
             if path.exists() and not path.is_file():  # a pipe or a device: nothing to rename onto
                 path.write_bytes(data)
                 continue
@@ -120,14 +121,18 @@ def check_folder(folder: Path) -> None:
     """
     nearest = next(p for p in (folder, *folder.absolute().parents) if p.exists())
     if not nearest.is_dir():
-        raise BadInput(Problem("expected a folder, this is a file", str(nearest), hint="choose another with -o"))
+        raise BadInput(Problem(tell("expected a folder, this is a file"), str(nearest), hint=tell("choose another with -o")))
     if not os.access(nearest, os.W_OK | os.X_OK):
         raise BadInput(_unwritable(nearest, PermissionError(0, "permission denied")))
 
 
 def _unwritable(path: Path, e: OSError) -> Problem:
-    why = (e.strerror or str(e)).lower()
-    return Problem(f"cannot be written: {why}", str(path), hint="choose another place with -o, or make room; nothing was written")
+    why = reason_of(e)
+    return Problem(
+        tell("cannot be written: {why}").format(why=why),
+        str(path),
+        hint=tell("choose another place with -o, or make room; nothing was written"),
+    )
 
 
 def source_date() -> int | None:
@@ -146,6 +151,12 @@ def source_date() -> int | None:
     except (ValueError, OverflowError, OSError):
         seconds, year = -1, 0
     if seconds < 0 or year > 9999:
-        raise BadInput(Problem(f"expected whole seconds since 1970, not '{told}'", "environment", field="SOURCE_DATE_EPOCH",
-                               hint="such as 1700000000; or leave it unset"))
+        raise BadInput(
+            Problem(
+                tell("expected whole seconds since 1970, not '{told}'").format(told=told),
+                tell("environment"),
+                field="SOURCE_DATE_EPOCH",
+                hint=tell("such as 1700000000; or leave it unset"),
+            )
+        )
     return seconds

@@ -8,6 +8,8 @@ from time import monotonic
 from types import TracebackType
 from typing import Self
 
+from tmm_sheets.words import tell
+
 PATIENCE = 1.0
 """Seconds of silence before the first message."""
 WIDTH = 30
@@ -70,8 +72,19 @@ class Bar(Progress):
         full = WIDTH * self.done // self.total
         rate = self.done / seconds
         left = round((self.total - self.done) / rate)
-        told = f"[{'#' * full}{'.' * (WIDTH - full)}] {self.done}/{self.total}, {rate:.2g}/s, {_clock(left)} left"
-        return told + (f", {self.failed} failed" if self.failed else "")
+        told = (
+            tell("{bar} {done}/{total}, {rate:.2g}/s, {time} left, {n} failed")
+            if self.failed
+            else tell("{bar} {done}/{total}, {rate:.2g}/s, {time} left")
+        )
+        return told.format(
+            bar=f"[{'#' * full}{'.' * (WIDTH - full)}]",
+            done=self.done,
+            total=self.total,
+            rate=rate,
+            time=_clock(left),
+            n=self.failed,
+        )
 
 
 def _clock(seconds: int) -> str:

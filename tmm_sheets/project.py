@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.task.variant import Variant
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -80,7 +81,10 @@ class Project:
     def _section(self, name: str) -> Any:
         section = getattr(self.variant, name)
         if section is None:
-            raise CannotBuild(f"the project has no [{name}]", f"add the table [{name}] to the project file or leave its sheet out")
+            raise CannotBuild(
+                tell("the project has no [{name}]").format(name=name),
+                tell("add the table [{name}] to the project file or leave its sheet out").format(name=name),
+            )
         return section
 
     @cached_property
@@ -157,7 +161,7 @@ class Project:
         self.check_assembly()
         return self.study_at(self.cycle.turned, self.cycle.labels, "")
 
-    def study_at(self, turned: Any, labels: tuple[str, ...], purpose: str = "curves between the positions") -> Study:
+    def study_at(self, turned: Any, labels: tuple[str, ...], purpose: str = marked("curves between the positions")) -> Study:
         """Kinematics and forces at any crank angles (rad turned from position 0); ``purpose`` is empty for what is told itself."""
         from tmm_sheets.methods.linkage.study import Study
 
@@ -204,9 +208,13 @@ class Project:
             when nothing loads the links, or none of them has a mass.
         """
         if not self.applied:
-            raise CannotBuild("a flywheel needs a technological force or moment", "add [[force]] or [[moment]] to the project file")
+            raise CannotBuild(
+                tell("a flywheel needs a technological force or moment"), tell("add [[force]] or [[moment]] to the project file")
+            )
         if not any(link.mass or link.inertia or link.pivot_inertia for link in self.mechanism.links.values()):
-            raise CannotBuild("a flywheel needs links with masses", "add mass, centre and inertia to [[link]] of the project file")
+            raise CannotBuild(
+                tell("a flywheel needs links with masses"), tell("add mass, centre and inertia to [[link]] of the project file")
+            )
         from tmm_sheets.methods.flywheel.chosen import flywheel
 
         return flywheel(self.reduced, self._section("flywheel"))

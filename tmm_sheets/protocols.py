@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -33,8 +34,14 @@ def lines(project: Project, name: str | None) -> Iterator[str]:
             if problem is not None:
                 raise problem
             near = get_close_matches(name, found, n=1)
-            hint = f'did you mean "{near[0]}"?' if near else f"its plans are {', '.join(found)}"
-            raise BadInput(f'{project.variant.project.name} has no plan "{name}"', hint=hint)
+            hint = (
+                tell('did you mean "{near}"?').format(near=near[0])
+                if near
+                else tell("its plans are {plans}").format(plans=", ".join(found))
+            )
+            raise BadInput(
+                tell('{project} has no plan "{plan}"').format(project=project.variant.project.name, plan=name), hint=hint
+            )
         found = {name: found[name]}
     else:
         # What lies between the numbered positions only smooths the curves, and what has "@" in its name nobody draws.

@@ -17,6 +17,7 @@ from tmm_sheets.construction.step import Part, Step, Told
 from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import clean, plain, size
 from tmm_sheets.project import LINKAGE
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.study import Study
@@ -95,7 +96,10 @@ def _asked(project: Project, parts: Iterable[str] | None) -> tuple[str, ...]:
     asked = there if parts is None else tuple(parts)
     for part in asked:
         if part not in there:
-            raise BadInput(f'{project.variant.project.name} has no part "{part}"', hint=f"it has {', '.join(there)}")
+            raise BadInput(
+                tell('{project} has no part "{part}"').format(project=project.variant.project.name, part=part),
+                hint=tell("it has {parts}").format(parts=", ".join(there)),
+            )
     return asked
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gettext
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,10 +19,11 @@ from tmm_sheets.words import LANGUAGES, marked, tell
 _LANG = marked("Language of sheets and messages.  [default: of sheets the project's, of messages the locale's]")
 
 
-def choose(arguments: Sequence[str]) -> None:
-    """Set the languages by the arguments of the command line, before anything is read from them; the locale's when none is told.
+@contextmanager
+def chosen(arguments: Sequence[str]) -> Iterator[None]:
+    """The languages by the arguments of the command line, before anything is read from them; the locale's when none is told.
 
-    A wrong word is left to the option itself.
+    A wrong word is left to the option itself. Afterwards click speaks as before; :mod:`contextvars` keep the rest.
     """
     asked = ""
     for word, after in zip(arguments, (*arguments[1:], ""), strict=True):
@@ -30,15 +32,23 @@ def choose(arguments: Sequence[str]) -> None:
         asked = after if word == "--lang" else word.removeprefix("--lang=") if word.startswith("--lang=") else asked
     words.set_reader(asked if asked in LANGUAGES else words.of_locale())
     words.ask_paper(asked if asked in LANGUAGES else "")
-    click_speaks(words.reader())
+    with _click_speaks(words.reader()):
+        yield
 
 
-def click_speaks(language: str) -> None:
-    """Let click's own words be of this language: it asks gettext's default domain, and that the environment."""
-    import gettext
-
-    gettext.bindtextdomain("messages", template("locale"))
+@contextmanager
+def _click_speaks(language: str) -> Iterator[None]:
+    """Let click's own words be of this language meanwhile: it asks gettext's default domain, and that the environment."""
+    gettext.bindtextdomain(gettext.textdomain(), template("locale"))
+    before = os.environ.get("LANGUAGE")
     os.environ["LANGUAGE"] = language
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["LANGUAGE"]
+        else:
+            os.environ["LANGUAGE"] = before
 
 
 @contextmanager
@@ -68,6 +78,13 @@ class Command(click.Command):
     def __init__(self, *arguments: Any, **settings: Any) -> None:
         super().__init__(*arguments, **settings)
         self.params.append(Option(["--lang"], type=click.Choice(LANGUAGES), expose_value=False, help=_LANG))
+
+    def get_help_option(self, ctx: click.Context) -> click.Option | None:
+        """The option ``--help``: click keeps it as it was said first."""
+        found = super().get_help_option(ctx)
+        if found is not None:
+            found.help = gettext.gettext("Show this message and exit.")
+        return found
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """The text above the options."""

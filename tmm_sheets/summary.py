@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.numbers import plain
+from tmm_sheets.words import of_file, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
@@ -20,13 +21,13 @@ WIDEST = 40
 def text(variant: Variant) -> str:
     """Inputs, then links, pairs, mobility, groups and formula of structure; only what the project has."""
     heading = variant.project
-    lines = [f"{heading.name}: {', '.join(filter(None, (heading.title, heading.variant)))}",
-             f"sheets: {', '.join(f'{i} {name}' for i, name in enumerate(variant.sheets, 1))}"]  # fmt: skip
-    lines += ["", "Inputs", *_table(list(_inputs(variant)))]
+    lines = [f"{heading.name}: {', '.join(of_file(text, tell) for text in (heading.title, heading.variant) if text)}",
+             tell("sheets: {sheets}").format(sheets=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))]
+    lines += ["", tell("Inputs"), *_table(list(_inputs(variant)))]
     if variant.synthesis is not None:
         from tmm_sheets.project import Project
 
-        lines += ["", "Synthesis", *(f"  {line}" for line in Project(variant).synthesis.derivation)]
+        lines += ["", tell("Synthesis"), *(f"  {line}" for line in Project(variant).synthesis.derivation)]
     if variant.crank is not None:
         from tmm_sheets.task.assembly import mechanism_of
 
@@ -56,22 +57,25 @@ def _leaves(variant: Variant, path: KeyPath, value: Any) -> Iterator[tuple[str, 
 
 
 def _structure(m: Mechanism) -> Iterator[str]:
-    yield "\nLinks"
-    yield from _table([("0", "стойка", ", ".join(m.fixed)), *_links(m)])
-    yield "\nKinematic pairs (class 5)"
-    yield from _table([(p.name, "–".join(p.links), {"rotation": "turning", "translation": "sliding"}[p.motion]) for p in m.pairs])
+    yield "\n" + tell("Links")
+    yield from _table([("0", tell("frame"), ", ".join(m.fixed)), *_links(m)])
+    yield "\n" + tell("Kinematic pairs (class 5)")
+    motions = {"rotation": tell("turning"), "translation": tell("sliding")}
+    yield from _table([(p.name, "–".join(p.links), motions[p.motion]) for p in m.pairs])
     n, p5 = len(m.links), len(m.pairs)
-    yield f"\nMobility W = 3n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {m.mobility}"
-    yield "\nAssur groups, the farthest first"
-    yield from _table([(g.name, "class 2, order 2", f"kind {g.kind.number} ({g.form})") for g in reversed(m.groups)])
-    yield f"\nFormula of structure: {m.structure}"
+    yield "\n" + tell("Mobility W = {formula}").format(formula=f"3n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {m.mobility}")
+    yield "\n" + tell("Assur groups, the farthest first")
+    kind = tell("kind {n} ({form})")
+    grade = tell("class 2, order 2")
+    yield from _table([(g.name, grade, kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
+    yield "\n" + tell("Formula of structure: {formula}").format(formula=m.structure)
 
 
 def _links(m: Mechanism) -> Iterator[tuple[str, str, str]]:
     for name, link in m.links.items():
-        mass = [f"m = {plain(link.mass)} kg in {link.centre}"] if link.mass else []
-        inertia = [f"J = {plain(link.inertia)} kg m2"] if link.inertia else []
-        yield name, link.title, ", ".join([" ".join(m.link_points(name)), *mass, *inertia])
+        mass = [tell("m = {mass} kg in {centre}").format(mass=plain(link.mass), centre=link.centre)] if link.mass else []
+        inertia = [tell("J = {inertia} kg m2").format(inertia=plain(link.inertia))] if link.inertia else []
+        yield name, tell(link.title), ", ".join([" ".join(m.link_points(name)), *mass, *inertia])
 
 
 def _table(rows: list[tuple[str, str, str]]) -> Iterator[str]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import unicodedata
 from typing import NamedTuple
 
+from tmm_sheets.words import tell
+
 WINDOWS, CONSOLE = "cp1251", "cp866"
 """Code pages of a Russian Windows: of its editors, and of its console."""
 _EXPECTED = frozenset([*map(chr, range(0x410, 0x450)), *"ЁёІіЄєЇїҐґЎў°±·§«»„“”‘’–—…№µ√\u00a0"])
@@ -39,15 +41,15 @@ def decoded(data: bytes) -> DecodedText:
         text = data.decode(wide or "utf-8-sig").removeprefix("\ufeff")
     except UnicodeDecodeError as e:
         if wide:
-            raise NotText("UTF-16 text that ends in the middle of a character") from None
+            raise NotText(tell("UTF-16 text that ends in the middle of a character")) from None
         return _of_windows(data, e)
     if "\0" in text:
-        raise NotText("not a text file", text.count("\n", 0, text.index("\0")) + 1)
+        raise NotText(tell("not a text file"), text.count("\n", 0, text.index("\0")) + 1)
     meant = _redirected(text)
     if meant is not None:
-        return DecodedText(meant, "written by PowerShell, which took its letters for those of another code page; "
-                                  "they were put right")
-    return DecodedText(text, "read as UTF-16" if wide else "")
+        return DecodedText(meant, tell(
+            "written by PowerShell, which took its letters for those of another code page; they were put right"))
+    return DecodedText(text, tell("read as UTF-16") if wide else "")
 
 
 def _utf_16(data: bytes) -> str:
@@ -65,15 +67,15 @@ def _of_windows(data: bytes, e: UnicodeDecodeError) -> DecodedText:
     read = data.decode("utf-8-sig", "replace")
     broken = read.count("\ufffd")
     if sum(c > "\x7f" for c in read) > 2 * broken:
-        raise NotText("not UTF-8 text here, though it is elsewhere", line)
+        raise NotText(tell("not UTF-8 text here, though it is elsewhere"), line)
     if any(b < 32 and b not in b"\t\n\f\r" for b in data):
-        raise NotText("not a text file", line)
+        raise NotText(tell("not a text file"), line)
     for page in (WINDOWS, CONSOLE):
         text = data.decode(page, "replace")
         high = [c for c in text if c > "\x7f"]
         if sum(c in _EXPECTED for c in high) > 0.9 * len(high):
-            return DecodedText(text, f"read in code page {page.removeprefix('cp')}, it is not UTF-8")
-    raise NotText("neither UTF-8 nor in the code page 1251", line)
+            return DecodedText(text, tell("read in code page {page}, it is not UTF-8").format(page=page.removeprefix('cp')))
+    raise NotText(tell("neither UTF-8 nor in the code page 1251"), line)
 
 
 def _redirected(text: str) -> str | None:

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import gettext
 import os
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
@@ -132,6 +133,28 @@ def tell(text: str) -> str:
 def tell_n(one: str, many: str, n: int) -> str:
     """The form that goes with ``n``, in a message."""
     return _catalogue(_reader.get()).ngettext(one, many, n)
+
+
+_FILLED = (marked("задание {task}, вариант {variant}"), marked("шифр {cipher}"), marked("ТММ.КП.{number}"))
+"""Texts of shipped schemes that are filled in."""
+
+
+def of_file(text: str, say: Callable[[str], str] = tr) -> str:
+    """A text of a project file: what shipped files say in the language of ``say``, anybody's own as it stands."""
+    for pattern in _FILLED:
+        if match := re.fullmatch(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+)", re.escape(pattern)), text):
+            return say(pattern).format(**match.groupdict())
+    return say(text)
+
+
+def either(said: Sequence[str]) -> str:
+    """Words of a message one of which is meant."""
+    return tell("{several} or {last}").format(several=", ".join(said[:-1]), last=said[-1]) if said[1:] else "".join(said)
+
+
+def both(said: Sequence[str]) -> str:
+    """Words of a message that are meant together."""
+    return tell("{several} and {last}").format(several=", ".join(said[:-1]), last=said[-1]) if said[1:] else "".join(said)
 
 
 def decimal_sign() -> str:

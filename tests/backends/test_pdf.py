@@ -13,6 +13,7 @@ from tmm_sheets.drawing.layers import roles
 from tmm_sheets.drawing.lettering import advance
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Polyline, Text, View
 from tmm_sheets.drawing.styles import line_types
+from tmm_sheets.words import tr
 
 MM = 72 / 25.4
 
@@ -98,7 +99,7 @@ def test_version_language_and_metadata(monkeypatch):
 
 def test_layers_are_the_roles(data, page):
     names = [got.encode("latin-1").decode("utf-16") for got in strings(r"/Name %s /Type /OCG", data.decode("latin-1"))]
-    assert sorted(names) == sorted(row["description"] for row in roles().values())
+    assert sorted(names) == sorted(tr(row["description"]) for row in roles().values())
     order = list(roles())
     opened = re.findall(r"^/OC /L(\d+) BDC$", page, re.M)
     assert page.count("EMC") == len(opened)

@@ -28,6 +28,7 @@ from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.files import put, source_date
 from tmm_sheets.resources import template
+from tmm_sheets.words import paper, tr
 
 MM = 72 / 25.4
 SET_UP = f"{MM:.9f} 0 0 {MM:.9f} 0 0 cm 0 g 0 G 1 J 1 j"  # millimetres, black, round ends and corners
@@ -96,7 +97,8 @@ def _layers(page: Canvas) -> dict[str, str]:
     names = {role: f"L{n}" for n, role in enumerate(roles())}
     references = []
     for role, name in names.items():
-        said = pdfdoc.PDFString(roles()[role]["description"])
+        description = roles()[role]["description"]
+        said = pdfdoc.PDFString(tr(description))
         references.append(page._doc.Reference(pdfdoc.PDFDictionary({"Type": pdfdoc.PDFName("OCG"), "Name": said}), name))
     catalog = page._doc._catalog
     shown = pdfdoc.PDFDictionary({"Order": pdfdoc.PDFArray(references), "ON": pdfdoc.PDFArray(references)})
@@ -193,7 +195,7 @@ def _document(drawing: Drawing, buffer: BytesIO, date: int | None = None) -> Can
     page.setProducer("reportlab")
     page.setViewerPreference("PrintScaling", "None")
     page.setViewerPreference("DisplayDocTitle", "true")
-    page._doc._catalog.Lang = pdfdoc.PDFString("ru")
+    page._doc._catalog.Lang = pdfdoc.PDFString(paper())
     page._doc._catalog.Metadata = pdfdoc.PDFStream(
         pdfdoc.PDFDictionary({"Type": pdfdoc.PDFName("Metadata"), "Subtype": pdfdoc.PDFName("XML")}),
         _metadata(drawing, strftime("%Y-%m-%dT%H:%M:%SZ", gmtime(stamp.t))))
@@ -213,7 +215,7 @@ def _metadata(drawing: Drawing, date: str) -> bytes:
         f"<dc:creator><rdf:Seq><rdf:li>{escaped(drawing.author)}</rdf:li></rdf:Seq></dc:creator>\n"
         f'<dc:description><rdf:Alt><rdf:li xml:lang="x-default">{escaped(drawing.subject)}</rdf:li></rdf:Alt></dc:description>\n'
         f"<dc:subject><rdf:Bag>{words}</rdf:Bag></dc:subject>\n"
-        "<dc:language><rdf:Bag><rdf:li>ru</rdf:li></rdf:Bag></dc:language>\n"
+        f"<dc:language><rdf:Bag><rdf:li>{paper()}</rdf:li></rdf:Bag></dc:language>\n"
         f"<pdf:Keywords>{escaped(drawing.keywords)}</pdf:Keywords><pdf:Producer>reportlab</pdf:Producer>\n"
         f"<xmp:CreatorTool>{CREATOR}</xmp:CreatorTool>"
         f"<xmp:CreateDate>{date}</xmp:CreateDate><xmp:ModifyDate>{date}</xmp:ModifyDate>\n"

@@ -10,6 +10,7 @@ import numpy as np
 from tmm_sheets.drawing.ink import InkStroke
 from tmm_sheets.drawing.pen_paths import STEP
 from tmm_sheets.drawing.plotters import Plotter
+from tmm_sheets.words import tell
 
 _WRAPPER = re.compile(r"@PJL[^\n]*\n|\x1b%-12345X|\x1b%-?\d+[AB]")
 _COMMAND = re.compile(r"([A-Za-z]{2})([-+.,\d\s]*);?\s*")
@@ -46,13 +47,17 @@ def read(data: bytes, plotter: Plotter) -> Plot:
         found = _COMMAND.match(text, at)
         name = found[1].upper() if found else ""
         if found is None or not (name in _SILENT or hasattr(reader, name)):
-            raise ValueError(f"'{text[at : at + 12]}' at character {at} is not a command that can be shown")
+            raise ValueError(
+                tell("'{text}' at character {at} is not a command that can be shown").format(text=text[at : at + 12], at=at)
+            )
         if name not in _SILENT:
             numbers = [float(v) for v in _NUMBER.findall(found[2])]
             try:
                 getattr(reader, name)(numbers)
             except (IndexError, ValueError):
-                raise ValueError(f"'{found[0].strip()[:40]}' at character {at}: a number is missing") from None
+                raise ValueError(
+                    tell("'{text}' at character {at}: a number is missing").format(text=found[0].strip()[:40], at=at)
+                ) from None
         at = found.end()
     reader.lift()
     return reader.plot

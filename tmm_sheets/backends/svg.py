@@ -18,6 +18,7 @@ from tmm_sheets.drawing.lettering import PEN
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.files import put
+from tmm_sheets.words import paper
 
 PIECE = pi / 2  # an arc is written in pieces: the centre of a half turn hangs on the last digit of its ends
 
@@ -49,7 +50,7 @@ def render(drawing: Drawing) -> bytes:
     author = f"<desc>{escaped(drawing.author)}</desc>\n" if drawing.author else ""
     text = (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
-        f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}mm" height="{height}mm" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" xml:lang="{paper()}" width="{width}mm" height="{height}mm" '
         f'viewBox="0 0 {width} {height}">\n'
         f"<title>{escaped(drawing.title)}</title>\n{author}"
         f'<g transform="matrix(1 0 0 -1 0 {height})" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">\n'

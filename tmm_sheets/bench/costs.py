@@ -16,6 +16,7 @@ from typing import Any
 from tmm_sheets.bench.processes import timed
 from tmm_sheets.errors import BadInput
 from tmm_sheets.explain import HEAVY
+from tmm_sheets.words import tell
 
 RUNS = 3
 NUMBERS = ("positions", "forces", "flywheel", "gear", "cam")
@@ -67,7 +68,9 @@ def _child(program: str, arguments: list[str], folder: Path) -> tuple[dict[str, 
     report = folder / "report.json"
     done, _, took = timed(program, [str(report), *arguments])
     if not report.exists():
-        raise BadInput(f"{' '.join(arguments)}: ended without a report", hint=done.stderr.strip()[-300:])
+        raise BadInput(
+            tell("{command}: ended without a report").format(command=" ".join(arguments)), hint=done.stderr.strip()[-300:]
+        )
     found = json.loads(report.read_text())
     report.unlink()
     if found.get("status", 0):
@@ -137,11 +140,26 @@ def table(project: str, say: Callable[[str], None]) -> str:
         say(" ".join(arguments))
         rows.append((measure(arguments, forced=forced), forced))
     whole = rows[0][0].seconds
-    heads = ("command", "processor time", "of the whole", "steps evaluated", "marks", "own modules", "large libraries")
+    heads = (
+        tell("command"),
+        tell("processor time"),
+        tell("of the whole"),
+        tell("steps evaluated"),
+        tell("marks"),
+        tell("own modules"),
+        tell("large libraries"),
+    )
     lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     for c, forced in rows:
-        name = f"`{c.command}`" + ("" if forced else ", again: unchanged")
-        cells = (name, f"{1000 * c.seconds:.0f} ms", f"{100 * c.seconds / whole:.0f} %", f"{c.evaluated} of {c.steps}",
-                 str(c.marks), str(c.modules), ", ".join(c.heavy))
+        name = f"`{c.command}`" if forced else tell("`{command}`, again: unchanged").format(command=c.command)
+        cells = (
+            name,
+            tell("{time:.0f} ms").format(time=1000 * c.seconds),
+            f"{100 * c.seconds / whole:.0f} %",
+            tell("{evaluated} of {steps}").format(evaluated=c.evaluated, steps=c.steps),
+            str(c.marks),
+            str(c.modules),
+            ", ".join(c.heavy),
+        )
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)

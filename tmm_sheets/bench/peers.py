@@ -26,6 +26,7 @@ from tmm_sheets.bench.records import Bench, BenchRecord, told
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Guide, Link, LinkPoint, Mechanism, StructuralGroup
+from tmm_sheets.words import tell
 
 COUNTS = (12, 360, 10_000)
 QUANTITIES = ("positions", "velocities", "accelerations")
@@ -159,11 +160,13 @@ def _rows_of(bench: Bench, program: type[Program], mechanism: str, m: Mechanism,
         for quantity in QUANTITIES:
             what = (f"peers: {mechanism}", f"{quantity}, {name}", "positions")
             if _too_long(bench, what, turn.n):
-                found = BenchRecord(*what, turn.n, None, None, f"left out at {turn.n:g} positions: it would take too long")
+                found = BenchRecord(
+                    *what, turn.n, None, None, tell("left out at {n:g} positions: it would take too long").format(n=turn.n)
+                )
             elif quantity in runs:
                 found = bench.record(what, turn.n, partial(_guarded, runs[quantity]), partial(judge.error, quantity))
             else:
-                found = BenchRecord(*what, turn.n, None, None, reason or "it does not give them")
+                found = BenchRecord(*what, turn.n, None, None, reason or tell("it does not give them"))
             bench.records.append(PeerRecord(**vars(found), mechanism=mechanism, quantity=quantity, program=name))
 
 
@@ -235,8 +238,8 @@ def summary(records: Iterable[BenchRecord]) -> str:
     for (mechanism, quantity, n), by_program in found.items():
         rows.setdefault((mechanism, quantity), []).append(by_program)
         counts[f"{n:,.0f}"] = None
-    lines = [f"us for a position at {' / '.join(counts)} positions; largest relative error", "",
-             f"| mechanism | | {' | '.join(programs)} |", "|---" * (len(programs) + 2) + "|"]
+    lines = [tell("us for a position at {counts} positions; largest relative error").format(counts=' / '.join(counts)), "",
+             tell("| mechanism | | {programs} |").format(programs=' | '.join(programs)), "|---" * (len(programs) + 2) + "|"]
     for (mechanism, quantity), several in rows.items():
         cells = [_summed_up([by_program.get(p) for by_program in several]) for p in programs]
         lines.append(f"| {mechanism} | {quantity} | {' | '.join(cells)} |")

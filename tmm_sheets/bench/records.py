@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from tmm_sheets import __version__
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.words import tell
 
 Found = TypeVar("Found")
 SCHEMA = 1
@@ -91,7 +92,7 @@ class Bench:
             reason = str(e).splitlines()[0] if str(e) else type(e).__name__
             return BenchRecord(*what, value, None, None, reason)
         if off is not None and not isfinite(off):
-            return BenchRecord(*what, value, None, None, "not a number")
+            return BenchRecord(*what, value, None, None, tell("not a number"))
         return BenchRecord(*what, value, off, seconds, note if isinstance(note, str) else note(found))
 
 
@@ -135,7 +136,7 @@ def table(records: Iterable[BenchRecord]) -> str:
     for r in records:
         if r.field != field_now:
             field_now = r.field
-            lines += ["", f"{field_now:58}{'':>22}{'error':>10}{'time':>11}{'each':>10}"]
+            lines += ["", "{:80}{:>10}{:>11}{:>10}".format(field_now, tell("error"), tell("time"), tell("each"))]
         named = f"{r.value:g} {r.parameter}"
         error = "-" if r.error is None else f"{r.error:.1e}"
         note = f"  {r.note}" if r.note else ""
@@ -145,7 +146,7 @@ def table(records: Iterable[BenchRecord]) -> str:
 
 def summary(records: Iterable[BenchRecord]) -> str:
     """The first and the last run of every method, in Markdown."""
-    lines = ["| field | method | from .. to | error | time |", "|---|---|---|---|---|"]
+    lines = [tell("| field | method | from .. to | error | time |"), "|---|---|---|---|---|"]
     methods: dict[tuple[str, str], list[BenchRecord]] = {}
     for r in records:
         methods.setdefault((r.field, r.method), []).append(r)
@@ -161,7 +162,7 @@ def summary(records: Iterable[BenchRecord]) -> str:
 def told(seconds: float | None) -> str:
     """Seconds with three digits in the unit that suits them."""
     if seconds is None:
-        return "failed"
+        return tell("failed")
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"

@@ -7,6 +7,7 @@ from importlib import import_module
 
 from tmm_sheets.bench.records import Bench, BenchRecord
 from tmm_sheets.errors import BadInput
+from tmm_sheets.words import tell
 
 FIELDS = ("linkages", "diagrams", "profiles", "reducers", "emission")
 """Modules that measure, in the order of the table."""
@@ -34,7 +35,7 @@ def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELD
     try:
         import mpmath  # noqa: F401
     except ImportError:
-        raise BadInput("bench needs mpmath: the errors are told against a truth of 30 digits and more",
+        raise BadInput(tell("bench needs mpmath: the errors are told against a truth of 30 digits and more"),
                        hint="pip install 'tmm-sheets[bench]'") from None
     bench = Bench(quick, say)
     for field in fields:

@@ -17,6 +17,7 @@ from typing import Any
 
 from tmm_sheets.bench.processes import timed
 from tmm_sheets.errors import BadInput
+from tmm_sheets.words import tell
 
 ROUNDS = 7
 PLAIN = str(Path(__file__).with_name("plain.py"))
@@ -152,10 +153,10 @@ def _plain(drawing: Any) -> dict[str, Any]:
 
 def table(found: Whole) -> str:
     """The comparison as a Markdown table, that of docs/accuracy.md."""
-    plain = f"the same {found.entities} entities by plain library calls"
-    rows = [(f"`build {found.project}`, cold", found.build), (plain, found.plain),
-            ("`import ezdxf, reportlab` alone", found.imports)]  # fmt: skip
-    lines = ["| process | wall | of the plain one | processor | of the plain one | memory |", "|---|---|---|---|---|---|"]
+    plain = tell("the same {entities} entities by plain library calls").format(entities=found.entities)
+    rows = [(tell("`build {project}`, cold").format(project=found.project), found.build), (plain, found.plain),
+            (tell("`import ezdxf, reportlab` alone"), found.imports)]  # fmt: skip
+    lines = [tell("| process | wall | of the plain one | processor | of the plain one | memory |"), "|---|---|---|---|---|---|"]
     for name, run in rows:
         share = (run.wall / found.plain.wall, run.processor / found.plain.processor)
         lines.append(f"| {name} | {1000 * run.wall:.0f} ms | {share[0]:.2f} | {1000 * run.processor:.0f} ms | {share[1]:.2f} | "

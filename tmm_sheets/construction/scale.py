@@ -8,6 +8,7 @@ from typing import Any
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
+from tmm_sheets.words import tell
 
 HANDY = (1.0, 2.0, 2.5, 4.0, 5.0)
 """Mantissas that are handy for mental arithmetic (manuals 000 and 003 ask for such scales)."""
@@ -43,8 +44,12 @@ class Scale:
 def fit(symbol: str, unit: str, span: float, mm: float) -> Scale:
     """Smallest handy scale factor with which the real ``span`` takes at most ``mm`` millimetres; CannotBuild for none."""
     if not mm > 0:
-        raise CannotBuild(f"there is no room left for the diagram with the scale factor {symbol} beside what it belongs to",
-                          "are all numbers of the project file as you mean them?")
+        raise CannotBuild(
+            tell("there is no room left for the diagram with the scale factor {symbol} beside what it belongs to").format(
+                symbol=symbol
+            ),
+            tell("are all numbers of the project file as you mean them?"),
+        )
     return Scale(symbol, handy(span / mm), unit)
 
 
@@ -56,8 +61,12 @@ def fit_standard(span_mm: float, mm: float) -> tuple[int, int]:
     for real, drawn in reversed(STANDARD):
         if span_mm * drawn <= mm * real * (1 + 1e-9):
             return real, drawn
-    raise CannotBuild(f"{span_mm:.6g} mm do not fit in {mm:.6g} mm of the sheet at any scale of GOST 2.302, 1:1000 or larger",
-                      "are all numbers of the project file in the units you mean?")
+    raise CannotBuild(
+        tell("{length:.6g} mm do not fit in {room:.6g} mm of the sheet at any scale of GOST 2.302, 1:1000 or larger").format(
+            length=span_mm, room=mm
+        ),
+        tell("are all numbers of the project file in the units you mean?"),
+    )
 
 
 def times(ratio: float) -> str:

@@ -17,6 +17,7 @@ from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.lettering import advance, letter
 from tmm_sheets.drawing.marks import Box, Fill, Line, Mark, Points, Text, flat
+from tmm_sheets.words import tell
 
 CELL = 0.5
 """Size of a grid cell, mm."""
@@ -53,7 +54,9 @@ class Crowded:
     at: complex
 
     def __str__(self) -> str:
-        return f'no free place for "{self.text}" at ({self.at.real:.0f}, {self.at.imag:.0f}): it stands over lines'
+        return tell('no free place for "{text}" at ({x:.0f}, {y:.0f}): it stands over lines').format(
+            text=self.text, x=self.at.real, y=self.at.imag
+        )
 
 
 def text_box(mark: Text) -> Points:

@@ -11,18 +11,27 @@ from typing import NamedTuple
 from tmm_sheets.drawing.marks import Mark, Text
 from tmm_sheets.drawing.styles import line_type, line_types
 from tmm_sheets.resources import template
+from tmm_sheets.words import tr
 
 BY_STYLE = {"main": "symbol", "thin": "symbol", "centre": "axis", "hidden": "link", "twodot": "link"}
 """Roles of marks that tell none, by line type; other line types are called after the role."""
 
 
 class Layer(NamedTuple):
-    """A layer: ``name`` is the same in every language, ``description`` says what lies on it, ``style`` is its line type."""
+    """A layer: ``name`` is the same in every language, ``style`` is its line type."""
 
     name: str
-    description: str
     role: str
     style: str
+
+    @property
+    def description(self) -> str:
+        """What lies on it, in the language of the paper."""
+        row, line = roles()[self.role], line_type(self.style).description
+        description = row["description"]
+        if self.style == row["style"]:
+            return tr(description)
+        return tr("{role}: {line}").format(role=tr(description), line=tr(line))
 
 
 @cache
@@ -38,9 +47,8 @@ def layers() -> Mapping[tuple[str, str], Layer]:
     for role, row in roles().items():
         usual = row["style"]
         for style in (usual, *(name for name in line_types() if name != usual)):
-            look = line_type(style)
-            found[role, style] = (Layer(role.upper(), row["description"], role, style) if style == usual else
-                                  Layer(f"{role.upper()}_{look.layer}", f"{row['description']}: {look.description}", role, style))
+            name = role.upper() if style == usual else f"{role.upper()}_{line_type(style).layer}"
+            found[role, style] = Layer(name, role, style)
     return MappingProxyType(found)
 
 

@@ -12,6 +12,7 @@ from typing import Any, Literal
 from tmm_sheets import texts
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.resources import template
+from tmm_sheets.words import tell
 
 DEFAULT = "a1"
 NEAR = 0.05  # mm: a pen so much thinner or thicker than a line still draws it in one pass; its edges are then off by half of that
@@ -76,7 +77,7 @@ def plotter(name: str = DEFAULT) -> Plotter:
     """
     path = template(f"plotters/{name}.toml") if name in names() else Path(name)
     if not path.is_file():
-        raise ValueError(f"no plotter '{name}': neither a file nor one of {', '.join(names())}")
+        raise ValueError(tell("no plotter '{name}': neither a file nor one of {names}").format(name=name, names=', '.join(names())))
     try:
         return _plotter(path.stem, tomllib.loads(texts.cleaned(texts.decoded(path.read_bytes()).text)))
     except ValueError as e:
@@ -85,32 +86,32 @@ def plotter(name: str = DEFAULT) -> Plotter:
 
 def _plotter(name: str, row: dict[str, Any]) -> Plotter:
     if unknown := sorted(set(row) - {"language", "origin", "reach", "speed", "pen"}):
-        raise ValueError(f"{unknown[0]}: unknown key")
+        raise ValueError(tell("{key}: unknown key").format(key=unknown[0]))
     language, origin, pens = row.get("language"), row.get("origin", "corner"), row.get("pen", [])
     if language not in ("hpgl", "hpgl2"):
-        raise ValueError(f'language: expected "hpgl" or "hpgl2", not {language!r}')
+        raise ValueError(tell('language: expected "hpgl" or "hpgl2", not {language!r}').format(language=language))
     if origin not in ("corner", "centre"):
-        raise ValueError(f'origin: expected "corner" or "centre", not {origin!r}')
+        raise ValueError(tell('origin: expected "corner" or "centre", not {origin!r}').format(origin=origin))
     reach = row.get("reach")
     if not (isinstance(reach, list) and len(reach) == 4 and all(_number(v, -LARGEST, LARGEST) for v in reach)
             and reach[0] < reach[2] and reach[1] < reach[3]):  # fmt: skip
-        raise ValueError(f"reach: expected [x0, y0, x1, y1] in mm, not {reach}")
+        raise ValueError(tell("reach: expected [x0, y0, x1, y1] in mm, not {reach}").format(reach=reach))
     speed = row.get("speed", 0)
     if not _number(speed, 0, 1000):
-        raise ValueError(f"speed: expected cm/s, not {speed!r}")
+        raise ValueError(tell("speed: expected cm/s, not {speed!r}").format(speed=speed))
     if not isinstance(pens, list) or bool(pens) != (language == "hpgl"):
-        raise ValueError('pen: "hpgl" needs at least one [[pen]], "hpgl2" takes none')
+        raise ValueError(tell('pen: "hpgl" needs at least one [[pen]], "hpgl2" takes none'))
     return Plotter(name, language, origin, Box(*map(float, reach)), float(speed), tuple(_pen(i, p) for i, p in enumerate(pens, 1)))
 
 
 def _pen(i: int, row: Any) -> Pen:
     if not isinstance(row, dict) or set(row) != {"number", "width"}:
-        raise ValueError(f"pen[{i}]: expected number and width")
+        raise ValueError(tell("pen[{i}]: expected number and width").format(i=i))
     number, width = row["number"], row["width"]
     if not isinstance(number, int) or isinstance(number, bool) or not 1 <= number <= 8:
-        raise ValueError(f"pen[{i}].number: expected 1 to 8, not {number!r}")
+        raise ValueError(tell("pen[{i}].number: expected 1 to 8, not {number!r}").format(i=i, number=number))
     if not _number(width, 0.05, 5):
-        raise ValueError(f"pen[{i}].width: expected 0.05 to 5 mm, not {width!r}")
+        raise ValueError(tell("pen[{i}].width: expected 0.05 to 5 mm, not {width!r}").format(i=i, width=width))
     return Pen(number, float(width))
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import plain
 from tmm_sheets.drawing.marks import Box, Drawing, Mark, Polyline, bounds
-from tmm_sheets.words import tr
+from tmm_sheets.words import tell, tr
 
 PAPERS = {"a4": (210.0, 297.0), "a3": (297.0, 420.0)}
 """Width and height of pages, mm."""
@@ -46,7 +46,11 @@ def tiles(drawing: Drawing, paper: str = "a4", overlap: float = OVERLAP, bar: bo
     area = Box(MARGIN, MARGIN, width - MARGIN, height - MARGIN)
     across, down = area.width - overlap, area.height - overlap
     if not 0 <= overlap <= 0.5 * (area.width):
-        raise ValueError(f"expected an overlap from 0 to {0.5 * (area.width):g} mm for {paper.upper()} pages, not {overlap:g}")
+        raise ValueError(
+            tell("expected an overlap from 0 to {most:g} mm for {paper} pages, not {overlap:g}").format(
+                most=0.5 * (area.width), paper=paper.upper(), overlap=overlap
+            )
+        )
     columns = max(ceil((drawing.width - overlap) / across - 1e-9), 1)
     rows = max(ceil((drawing.height - overlap) / down - 1e-9), 1)
     out = []

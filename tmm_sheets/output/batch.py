@@ -15,14 +15,16 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from contextvars import copy_context
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
 from tmm_sheets import catalogue, files, texts, words
-from tmm_sheets.errors import BadInput, CannotBuild, Stopped
+from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
 from tmm_sheets.output.building import Order, build, folder_name
+from tmm_sheets.words import tell
 
 LARGEST_CHUNK = 25
 """Most projects of one task for a worker: a second or so of waiting for its result, and next to nothing for handing it over."""
@@ -46,6 +48,10 @@ class Outcome:
 
 def one(project: str, order: Order, parent: Path) -> Outcome:
     """Build one project into its folder below ``parent``; whatever goes wrong is told, not raised."""
+    return copy_context().run(_one, project, order, parent)  # the languages it sets are its own
+
+
+def _one(project: str, order: Order, parent: Path) -> Outcome:
     warnings: tuple[str, ...] = ()
     words.set_reader(order.reader)
     try:
@@ -55,13 +61,14 @@ def one(project: str, order: Order, parent: Path) -> Outcome:
     except (BadInput, CannotBuild) as e:
         return Outcome(project, str(e), warnings=warnings)
     except MemoryError:
-        return Outcome(project, "not enough memory", warnings=warnings)
+        return Outcome(project, tell("not enough memory"), warnings=warnings)
     except OSError as e:
-        return Outcome(project, f"{e.filename or 'output'}: {(e.strerror or str(e)).lower()}", warnings=warnings)
+        output = tell("output")
+        return Outcome(project, f"{e.filename or output}: {reason_of(e)}", warnings=warnings)
     except Exception as e:
         if os.environ.get("TMM_SHEETS_TRACEBACK"):
             raise
-        return Outcome(project, f"internal error: {type(e).__name__}: {e}", warnings=warnings)
+        return Outcome(project, tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}"), warnings=warnings)
     made = len(built.sizes)
     problem = "" if built.refused is None else str(built.refused)
     return Outcome(project, problem, made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings)
@@ -133,8 +140,8 @@ def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> It
     chunks = _chunks(projects, max(1, min(LARGEST_CHUNK, len(projects) // (workers * CHUNKS_EACH))))
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
     context = multiprocessing.get_context(method)
-    told, tell = context.Pipe(duplex=False)
-    with told, tell, _signals(lambda: tell.send_bytes(b".")) as signals:
+    told, end = context.Pipe(duplex=False)
+    with told, end, _signals(lambda: end.send_bytes(b".")) as signals:
         with ProcessPoolExecutor(workers, context, initializer=_start, initargs=(told,)) as pool:
             tasks = {pool.submit(_until_the_end, chunk, order, parent): chunk for chunk in chunks}
             for task in as_completed(tasks):
@@ -142,7 +149,7 @@ def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> It
                     yield from task.result()
                 except BrokenProcessPool:
                     if not signals:  # they went to all processes then
-                        why = "its process was killed, perhaps for want of memory: repeat the command with fewer --jobs"
+                        why = tell("its process was killed, perhaps for want of memory: repeat the command with fewer --jobs")
                         yield from (Outcome(project, why) for project in tasks[task])
         if signals:
             raise Stopped(signals[0])
@@ -183,12 +190,12 @@ def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: st
         from distributed import Client
         from distributed import as_completed as finished
     except ImportError:
-        raise BadInput("--dask needs dask.distributed", hint="pip install 'tmm-sheets[cluster]'") from None
+        raise BadInput(tell("--dask needs dask.distributed"), hint="pip install 'tmm-sheets[cluster]'") from None
     try:
         client = Client(address, timeout=20)
     except (OSError, ValueError) as e:
-        hint = "give the scheduler's address, such as tcp://127.0.0.1:8786"
-        raise BadInput(f"no dask scheduler answers at {address}: {e}", hint=hint) from None
+        hint = tell("give the scheduler's address, such as tcp://127.0.0.1:8786")
+        raise BadInput(tell("no dask scheduler answers at {address}: {why}").format(address=address, why=e), hint=hint) from None
     with client:
         each = len(projects) // (max(len(client.scheduler_info()["workers"]), 1) * 4)
         chunks = _chunks(projects, max(SMALLEST_DASK_CHUNK, min(LARGEST_DASK_CHUNK, each)))
@@ -197,7 +204,9 @@ def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: st
             try:
                 yield from task.result()
             except Exception as e:  # whatever a worker or the way to it died of
-                yield from (Outcome(project, f"its worker was lost: {type(e).__name__}") for project in tasks[task])
+                yield from (
+                    Outcome(project, tell("its worker was lost: {error}").format(error=type(e).__name__)) for project in tasks[task]
+                )
 
 
 def chosen(projects: Sequence[str], families: Sequence[str], lists: Sequence[Iterable[str]]) -> tuple[str, ...]:
@@ -215,7 +224,10 @@ def chosen(projects: Sequence[str], families: Sequence[str], lists: Sequence[Ite
             found = [name for name in shipped if family == "all" or name == family or name.startswith(f"{family}/")]
             if not found:
                 known = dict.fromkeys(name.partition("/")[0] for name in shipped)
-                raise BadInput(f'no family "{family}"', hint=f"shipped are {', '.join(known)}; all takes every project")
+                raise BadInput(
+                    tell('no family "{family}"').format(family=family),
+                    hint=tell("shipped are {known}; all takes every project").format(known=", ".join(known)),
+                )
             names += found
     for lines in lists:
         names += (line.strip() for line in lines if line.strip() and not line.lstrip().startswith("#"))
@@ -235,8 +247,12 @@ def _refuse_common_folders(names: Iterable[str]) -> None:
                 continue  # its own message comes when it is built
         folder = folder_name(inside)
         if folder in taken:
-            raise BadInput(f'{taken[folder]} and {name} would both go into the folder "{folder}"',
-                           hint="give them different names in [project]")
+            raise BadInput(
+                tell('{one} and {other} would both go into the folder "{folder}"').format(
+                    one=taken[folder], other=name, folder=folder
+                ),
+                hint=tell("give them different names in [project]"),
+            )
         taken[folder] = name
 
 
@@ -246,18 +262,21 @@ def summary(done: Sequence[Outcome], parent: Path, seconds: float) -> str:
     new = [o for o in built if o.made]
     count, size = sum(o.made for o in done), sum(o.size for o in done)
     some = sum(1 for o in done if o.problem and o.made + o.unchanged)
-    parts = [f"{len(new)} built" if new else "", f"{len(built) - len(new)} unchanged" if len(built) > len(new) else "",
-             f"{some} in part" if some else "", f"{len(done) - len(built) - some} failed" if len(done) > len(built) + some else ""]
-    return (f"{parent}: {', '.join(filter(None, parts))}; {count} files, {size / 1e6:.1f} MB of sheets "
-            f"in {seconds:.1f} s, {len(done) / seconds:.2g} projects/s")
+    counted = ((tell("{n} built"), len(new)), (tell("{n} unchanged"), len(built) - len(new)), (tell("{n} in part"), some),
+               (tell("{n} failed"), len(done) - len(built) - some))
+    return tell("{folder}: {parts}; {count} files, {size:.1f} MB of sheets in {seconds:.1f} s, {rate:.2g} projects/s").format(
+        folder=parent, parts=", ".join(text.format(n=n) for text, n in counted if n), count=count, size=size / 1e6, seconds=seconds,
+        rate=len(done) / seconds)
 
 
 def table(failures: Sequence[Outcome], total: int) -> str:
     """The failures of a batch of ``total`` projects, a line each with its first reason; for each sheet where others are built."""
     width = max(len(f.project) for f in failures)
     some = sum(1 for f in failures if f.made + f.unchanged)
-    lines = [f"not built: {len(failures)} of {total}" + (f", {some} of them in part" if some else "")]
+    heading = tell("not built: {n} of {total}, {some} of them in part") if some else tell("not built: {n} of {total}")
+    lines = [heading.format(n=len(failures), total=total, some=some)]
+    sheet = tell("sheet {n}").partition("{n}")[0]
     for f in sorted(failures, key=lambda f: f.project):
         first, *more = f.problem.splitlines()
-        lines += [f"  {f.project:{width}}  {why}" for why in (first, *(line for line in more if line.startswith("sheet ")))]
+        lines += [f"  {f.project:{width}}  {why}" for why in (first, *(line for line in more if line.startswith(sheet)))]
     return "\n".join(lines)

@@ -20,6 +20,7 @@ from typing import Any
 
 from tmm_sheets import __version__, files
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.words import tell
 
 RECORD = ".tmm-sheets.json"
 SCHEMA = 1
@@ -123,7 +124,7 @@ class Archive:
         """
         files.check_folder(self.place.parent)
         if self.place.exists() and not zipfile.is_zipfile(self.place):
-            raise BadInput(Problem("expected a zip file", str(self.place), hint="choose another place with -o"))
+            raise BadInput(Problem(tell("expected a zip file"), str(self.place), hint=tell("choose another place with -o")))
 
     def sweep(self, names: Iterable[str]) -> None:
         """Remove what killed builds left of the archive."""

@@ -25,6 +25,7 @@ from tmm_sheets.output.build_store import (
     program,
     record_of,
 )
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.marks import Drawing
@@ -144,7 +145,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     if made or whole_passed:
         # A file without one of its sheets is not current.
         made_from = {target.name: work.made_from[target] if failed.isdisjoint(target.sheets) else "" for target in done}
-        with watch.phase("write files"):
+        with watch.phase(tell("write files")):
             keep(outlet, work.record, made, made_from, work.inputs if whole_passed else None, beside)
     paths = tuple(outlet.path(target.name) for target in done)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
@@ -175,7 +176,7 @@ def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wa
     inputs = fingerprint(program(), words.paper(), variant.text)
     due, names, stand_in = list[Target](), list[Target](), dict[str, str]()
     made_from: dict[Target, str] = {}
-    with watch.phase("compare with what is there"):
+    with watch.phase(tell("compare with what is there")):
         record = record_of(outlet)
         for target in wanted:
             of = fingerprint(inputs, repr(sorted(order.settings.get(target.form, {}).items())), repr(target.sheets))
@@ -203,7 +204,11 @@ def _settled(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Ou
             work.made_from[target._replace(name=name)] = work.made_from[target]
             target = target._replace(name=name)
         elif name is not None:
-            kept.append(f"{name} was changed by hand and stays; the new one is {target.name} (--force overwrites it)")
+            kept.append(
+                tell("{name} was changed by hand and stays; the new one is {new} (--force overwrites it)").format(
+                    name=name, new=target.name
+                )
+            )
         settled.append(target)
     return settled, kept
 
@@ -215,13 +220,13 @@ def _rendered(drawings: Mapping[int, Drawing], due: Sequence[Target], order: Ord
     beside: dict[str, bytes] = {}
     for form in dict.fromkeys(target.form for target in due):
         settings = order.settings.get(form, {})
-        with watch.phase(f"import of the {form} writer"):
+        with watch.phase(tell("import of the {form} writer").format(form=form)):
             writer = import_module(BACKENDS[form])
         together = form == "pdf" and order.one_file
         for target in (t for t in due if t.form == form):
-            which = "all sheets" if together else f"sheet {target.sheets[0]}"
-            say(f"{which} as {form}")
-            with watch.phase(f"{form} of {which}"):
+            which = tell("all sheets") if together else tell("sheet {n}").format(n=target.sheets[0])
+            say(tell("{which} as {form}").format(which=which, form=form))
+            with watch.phase(tell("{form} of {which}").format(form=form, which=which)):
                 sheets = [drawings[n] for n in target.sheets if n in drawings]
                 made[target.name] = writer.render_all(sheets, **settings) if together else writer.render(sheets[0], **settings)
         if hasattr(writer, "companions"):
@@ -231,7 +236,11 @@ def _rendered(drawings: Mapping[int, Drawing], due: Sequence[Target], order: Ord
 
 def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]:
     """What is not as a sheet should be, sheet by sheet, then the plans that no sheet shows."""
-    told = [f"sheet {n}: {what}" for n, composed in drawn.items() for what in (*composed.leaving, *composed.crowded)]
+    told = [
+        tell("sheet {n}: {what}").format(n=n, what=what)
+        for n, composed in drawn.items()
+        for what in (*composed.leaving, *composed.crowded)
+    ]
     if drawn and opened.variant.crank is not None:
         from tmm_sheets.sheets import kinematic_frames
 
@@ -244,8 +253,8 @@ def _watching(watch: Stopwatch, say: Callable[[str], None]) -> Callable[[int], A
 
     @contextmanager
     def watched(n: int) -> Iterator[None]:
-        say(f"sheet {n}")
-        with watch.phase(f"sheet {n}"):
+        say(tell("sheet {n}").format(n=n))
+        with watch.phase(tell("sheet {n}").format(n=n)):
             yield
 
     return watched
@@ -268,16 +277,20 @@ def _drawn(opened: Project, asked: list[int], around: Callable[[int], AbstractCo
 def _with_stale(problem: CannotBuild, names: list[str], outlet: Outlet) -> CannotBuild:
     """Also say which files of sheets that cannot be drawn now are left from an earlier build."""
     left = [name for name in names if outlet.read(name) is not None]
-    return CannotBuild(str(problem), f"{', '.join(left)}: left as they were made before, from other inputs") if left else problem
+    return (
+        CannotBuild(str(problem), tell("{files}: left as they were made before, from other inputs").format(files=", ".join(left)))
+        if left
+        else problem
+    )
 
 
 def _refuse_idle_scales(variant: Variant, drawn: Mapping[int, Composed]) -> None:
     """A scale factor for a plan that no sheet has is a slip of the pen."""
     used = {name for composed in drawn.values() for name in composed.scales}
-    hint = f"plans with a scale factor are {', '.join(sorted(used))}"
+    hint = tell("plans with a scale factor are {plans}").format(plans=', '.join(sorted(used)))
     idle = [name for name in variant.scales if name not in used]
     if idle:
-        raise BadInput(variant.problem("no sheet draws a plan of this name", "scales", name, hint=hint) for name in idle)
+        raise BadInput(variant.problem(tell("no sheet draws a plan of this name"), "scales", name, hint=hint) for name in idle)
 
 
 def chosen(variant: Variant, sheets: tuple[int, ...]) -> list[int]:
@@ -291,6 +304,7 @@ def chosen(variant: Variant, sheets: tuple[int, ...]) -> list[int]:
     count = len(variant.drawable())
     for n in sheets:
         if not 1 <= n <= count:
-            raise BadInput(f"no sheet {n}: {variant.project.name} has sheets 1 to {count}",
+            refusal = tell("no sheet {n}: {project} has sheets 1 to {count}")
+            raise BadInput(refusal.format(n=n, project=variant.project.name, count=count),
                            hint=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))  # fmt: skip
     return sorted(set(sheets)) or list(range(1, count + 1))

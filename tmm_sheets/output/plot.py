@@ -13,7 +13,8 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
-from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild, reason_of
+from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.marks import Drawing
@@ -67,8 +68,9 @@ def job(drawing: Drawing, name: str, look: PlotLook) -> Job:
     window = look.window
     sheet = Box(0.0, 0.0, drawing.width, drawing.height)
     if window is not None and not (sheet.x0 <= window.x0 < window.x1 <= sheet.x1 and sheet.y0 <= window.y0 < window.y1 <= sheet.y1):
-        raise BadInput(f"the window {_corners(window)} is not a part of the sheet, which is {_corners(sheet)} mm",
-                       hint="x0,y0,x1,y1 from the lower left corner of the paper, x0 < x1 and y0 < y1")  # fmt: skip
+        refusal = tell("the window {window} is not a part of the sheet, which is {sheet} mm")
+        raise BadInput(refusal.format(window=_corners(window), sheet=_corners(sheet)),
+                       hint=tell("x0,y0,x1,y1 from the lower left corner of the paper, x0 < x1 and y0 < y1"))  # fmt: skip
     drawing = drawing if look.outline else without_outline(drawing)
     drawing = with_bar(drawing) if look.bar else drawing
     name += f"-x{window.x0:g}y{window.y0:g}" if window else ""
@@ -81,25 +83,32 @@ def _plotted(drawing: Drawing, name: str, plotter: Plotter, window: Box | None) 
 
     reach = plotter.reach
     if window is not None and (window.width > reach.width + 1e-6 or window.height > reach.height + 1e-6):
-        raise BadInput(f"a window of {window.width:g} x {window.height:g} mm is more than plotter {plotter.name} reaches: "
-                       f"{reach.width:g} x {reach.height:g} mm")  # fmt: skip
+        raise BadInput(
+            tell("a window of {width:g} x {height:g} mm is more than plotter {plotter} reaches: {most_x:g} x {most_y:g} mm").format(
+                width=window.width, height=window.height, plotter=plotter.name, most_x=reach.width, most_y=reach.height
+            )
+        )
     made = plan(drawing, plotter, window)
     return Job(f"{name}-{plotter.name}.plt", hpgl.encode(made, drawing.title), ("-o", "raw"), tuple(_notes(made, drawing)))
 
 
 def _notes(made: PenPlan, drawing: Drawing) -> Iterator[str]:
-    name = "pen {} of {:g} mm: {}" if made.plotter.pens else "{1:g} mm: {2}"
-    pens = ", ".join(name.format(layer.pen.number, layer.pen.width, len(layer.paths)) for layer in made.layers)
-    yield f"{made.strokes} strokes of the drawing, {made.paths} paths ({pens})"
-    drawn = f"{made.drawn / 1000:.1f} m drawn, {made.doubled / 1000:.1f} m of doubles left out"
-    yield f"{drawn}; pen-up travel {made.travel_before / 1000:.1f} m in the drawing's order, {made.travel / 1000:.1f} m as plotted"
+    name = tell("pen {pen} of {width:g} mm: {n}") if made.plotter.pens else tell("{width:g} mm: {n}")
+    pens = ", ".join(name.format(pen=layer.pen.number, width=layer.pen.width, n=len(layer.paths)) for layer in made.layers)
+    yield tell("{strokes} strokes of the drawing, {paths} paths ({pens})").format(strokes=made.strokes, paths=made.paths, pens=pens)
+    yield tell("{drawn:.1f} m drawn, {doubled:.1f} m of doubles left out; "
+               "pen-up travel {before:.1f} m in the drawing's order, {after:.1f} m as plotted").format(
+        drawn=made.drawn / 1000, doubled=made.doubled / 1000, before=made.travel_before / 1000, after=made.travel / 1000)
     if made.plotter.speed:
-        yield f"at least {(made.drawn + made.travel) / (10 * made.plotter.speed) / 60:.0f} min at {made.plotter.speed:g} cm/s"
+        minutes = (made.drawn + made.travel) / (10 * made.plotter.speed) / 60
+        yield tell("at least {minutes:.0f} min at {speed:g} cm/s").format(minutes=minutes, speed=made.plotter.speed)
     if made.lost > 0.5:
-        yield f"{made.lost / 1000:.1f} m of lines are beyond the reach of plotter {made.plotter.name} and left out"
+        yield tell("{lost:.1f} m of lines are beyond the reach of plotter {plotter} and left out").format(
+            lost=made.lost / 1000, plotter=made.plotter.name)
         reach = made.plotter.reach
         if reach.width < drawing.width - OVERLAP or reach.height < drawing.height - OVERLAP:
-            yield "in passes: " + " ".join(f"--window {_corners(w)}" for w in passes(made.plotter, drawing.width, drawing.height))
+            windows = " ".join(f"--window {_corners(w)}" for w in passes(made.plotter, drawing.width, drawing.height))
+            yield tell("in passes: {windows}").format(windows=windows)
 
 
 def passes(plotter: Plotter, width: float, height: float) -> list[Box]:
@@ -123,24 +132,27 @@ def _printed(drawing: Drawing, name: str, look: PlotLook) -> Job:
         try:
             made = tiles(shown, look.tile, look.overlap, look.bar)
         except ValueError as e:
-            raise BadInput(str(e), hint="choose another --overlap") from None
+            raise BadInput(str(e), hint=tell("choose another --overlap")) from None
         corner = complex(part.x0, part.y0)
         pages = [pdf.Page(_moved(t.part, corner, part), t.shift - corner, t.page) for t in made]
         last = made[-1]
-        note = f"{len(made)} pages {look.tile.upper()}: {last.row} rows of {last.column}, overlap {look.overlap:g} mm"
+        note = tell_n("{n} page {paper}: rows: {rows}, in each: {columns}, overlap {overlap:g} mm",
+                      "{n} pages {paper}: {rows} rows of {columns}, overlap {overlap:g} mm", len(made))
+        note = note.format(n=len(made), paper=look.tile.upper(), rows=last.row, columns=last.column, overlap=look.overlap)
         return Job(f"{name}-{look.tile}.pdf", pdf.render_pages(drawing, pages),
-                   (*UNSCALED, "-o", f"media={look.tile.upper()}"), (note, PRINT))  # fmt: skip
+                   (*UNSCALED, "-o", f"media={look.tile.upper()}"), (note, tell(PRINT)))  # fmt: skip
     if look.window is not None:
         own = Drawing(part.width, part.height, drawing.title, (), drawing.author)
         data = pdf.render_pages(drawing, [pdf.Page(part, -complex(part.x0, part.y0), own)])
     else:
         data = pdf.render(drawing)
     size = f"{part.width:g}x{part.height:g}mm"
-    return Job(f"{name}-print.pdf", data, (*UNSCALED, "-o", f"media=Custom.{size}"), (f"1 page {size}", PRINT))
+    return Job(f"{name}-print.pdf", data, (*UNSCALED, "-o", f"media=Custom.{size}"),
+               (tell("1 page {size}").format(size=size), tell(PRINT)))
 
 
 UNSCALED = ("-o", "print-scaling=none")
-PRINT = "print at 100 % (actual size), in black; 5 mm at the edge are beyond the reach of many printers"
+PRINT = marked("print at 100 % (actual size), in black; 5 mm at the edge are beyond the reach of many printers")
 
 
 def _moved(box: Box, by: complex, within: Box) -> Box:
@@ -164,8 +176,13 @@ def ready(path: Path) -> Job:
     try:
         data = path.read_bytes()
     except OSError as e:
-        raise BadInput(f"{path}: {(e.strerror or str(e)).lower()}") from None
-    return Job(path.name, data, ("-o", "raw") if path.suffix.lower() in PLOT_FILES else UNSCALED, (f"{len(data)} bytes",))
+        raise BadInput(f"{path}: {reason_of(e)}") from None
+    return Job(
+        path.name,
+        data,
+        ("-o", "raw") if path.suffix.lower() in PLOT_FILES else UNSCALED,
+        (tell_n("{n} byte", "{n} bytes", len(data)).format(n=len(data)),),
+    )
 
 
 def preview(plot: Job, plotter: Plotter, dpi: float) -> dict[str, bytes]:
@@ -206,8 +223,8 @@ def _pages(data: bytes, dpi: float) -> Iterator[tuple[str, bytes]]:
             command = ["gs", "-q", "-dNOPAUSE", "-dBATCH", "-dSAFER", "-sDEVICE=pnggray", f"-r{dpi:g}", "-dGraphicsAlphaBits=4",
                        f"-sOutputFile={root}-%02d.png", str(file)]  # fmt: skip
         else:
-            raise CannotBuild("no program here shows a PDF (pdftoppm, gs)", hint="open the file in a viewer")
-        _run(command, "the PDF cannot be shown")
+            raise CannotBuild(tell("no program here shows a PDF (pdftoppm, gs)"), hint=tell("open the file in a viewer"))
+        _run(command, tell("the PDF cannot be shown"))
         pictures = sorted(Path(folder).glob("page*.png"))
         for i, picture in enumerate(pictures, 1):
             yield f"-{i:02d}" if len(pictures) > 1 else "", picture.read_bytes()
@@ -227,9 +244,9 @@ def send(plot: Job, path: Path, printer: str) -> str:
         when there is no CUPS here, no such printer, or it refuses.
     """
     if shutil.which("lp") is None:
-        raise CannotBuild("nothing was sent: there is no CUPS here (program lp)",
-                          hint=f"the file is {path}; take it to a printer, or install cups-client")  # fmt: skip
-    return _run(command(plot, path, printer), f"{path}: printer {printer} did not take it")
+        raise CannotBuild(tell("nothing was sent: there is no CUPS here (program lp)"),
+                          tell("the file is {path}; take it to a printer, or install cups-client").format(path=path))  # fmt: skip
+    return _run(command(plot, path, printer), tell("{path}: printer {printer} did not take it").format(path=path, printer=printer))
 
 
 def _run(arguments: list[str], trouble: str) -> str:
@@ -240,6 +257,9 @@ def _run(arguments: list[str], trouble: str) -> str:
         raise CannotBuild(f"{trouble}: {e}") from None
     if done.returncode:
         said = done.stderr.strip().splitlines()
-        raise CannotBuild(f"{trouble}: {said[-1] if said else f'{arguments[0]} ended with status {done.returncode}'}",
-                          hint="lpstat -p shows the printers there are" if arguments[0] == "lp" else "")  # fmt: skip
+        why = (
+            said[-1] if said else tell("{program} ended with status {status}").format(program=arguments[0], status=done.returncode)
+        )
+        raise CannotBuild(f"{trouble}: {why}",
+                          hint=tell("lpstat -p shows the printers there are") if arguments[0] == "lp" else "")  # fmt: skip
     return done.stdout.strip()

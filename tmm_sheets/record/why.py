@@ -17,6 +17,7 @@ from tmm_sheets.numbers import plain
 from tmm_sheets.record.book import Book, chain
 from tmm_sheets.record.recording import book_of, unit
 from tmm_sheets.record.results_map import leaves
+from tmm_sheets.words import either, marked, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -42,7 +43,7 @@ def lines(project: Project, result: str) -> Iterator[str]:
         raise _unknown(project, result, found)
     told = found[result]
     if not isinstance(told, Told):
-        raise BadInput(f"{result} has no step behind it: it is a number of the program")
+        raise BadInput(tell("{result} has no step behind it: it is a number of the program").format(result=result))
     _ = told.value
     book = book_of(project)
     at = told.at[0] if told.at else _position(project)
@@ -59,11 +60,15 @@ def lines(project: Project, result: str) -> Iterator[str]:
 def _unknown(project: Project, result: str, known: Any) -> BadInput:
     name, names = project.variant.project.name, list(known)
     if not names:
-        return BadInput(f'{name} has no part "{result.partition(".")[0]}"', hint=f"it has {', '.join(project.parts)}")
+        return BadInput(
+            tell('{project} has no part "{part}"').format(project=name, part=result.partition(".")[0]),
+            hint=tell("it has {parts}").format(parts=", ".join(project.parts)),
+        )
     last = result.rpartition(".")[2]
     near = get_close_matches(result, names, n=3, cutoff=0.5) or [n for n in names if n.rpartition(".")[2] == last][:3]
-    hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(names[:12])}{' ...' if len(names) > 12 else ''}"
-    return BadInput(f'{name} has no result "{result}"', hint=hint)
+    hint = tell("did you mean {near}?").format(near=either(near)) if near else tell("there are {names}").format(
+        names=", ".join(names[:12]) + (" ..." if len(names) > 12 else ""))
+    return BadInput(tell('{project} has no result "{result}"').format(project=name, result=result), hint=hint)
 
 
 def _position(project: Project) -> str:
@@ -83,11 +88,18 @@ def _given(arg: GivenNumber | GivenPoint | Given, at: str, book: Book, step: Ste
     k = _index(step, at, book)
     value: Any = arg.value if isinstance(arg, Given) else arg
     if isinstance(arg, Given) and (arg.over == "curve" or np.ndim(value) > 1 or (np.ndim(value) == 1 and k >= len(value))):
-        shown = f"{np.shape(value)[-1] if np.ndim(value) else 1} numbers"
+        n = int(np.shape(value)[-1]) if np.ndim(value) else 1
+        shown = tell_n("{n} number", "{n} numbers", n).format(n=n)
     else:
         shown = _number(value_at(arg, k), arg.unit)
     choice = arg.choice if isinstance(arg, Given) else ""
-    origin = f"chosen: {choice}" if choice else f"given: {arg.source}" if arg.source else "given"
+    origin = (
+        tell("chosen: {choice}").format(choice=choice)
+        if choice
+        else tell("given: {source}").format(source=arg.source)
+        if arg.source
+        else tell("given")
+    )
     return f"{arg.name}  {arg.symbol or '-'} = {shown}  {origin}"
 
 
@@ -106,8 +118,14 @@ def _from(step: Step, k: int, plan: Any) -> str:
 
 
 def _of_part(told: Told) -> str:
-    words = {"x": ", projection on x", "y": ", projection on y", "abs": ", magnitude", "angle": ", angle", "": ""}
-    return words[told.part]
+    words = {
+        "x": marked(", projection on x"),
+        "y": marked(", projection on y"),
+        "abs": marked(", magnitude"),
+        "angle": marked(", angle"),
+        "": "",
+    }
+    return tell(words[told.part])
 
 
 def _shown(told: Told, at: str, book: Book) -> str:
@@ -118,17 +136,18 @@ def _shown(told: Told, at: str, book: Book) -> str:
         labels = told.at or (plan.labels if plan is not None else ())
         if len(labels) == len(value):
             k = labels.index(at) if at in labels else 0
-            return f"{_number(value[k], told_unit)}, position {labels[k]}"
+            return tell("{value}, position {label}").format(value=_number(value[k], told_unit), label=labels[k])
     return _number(value, told_unit)
 
 
 def _number(value: Any, of_unit: str) -> str:
     if not isinstance(value, str) and np.ndim(value):
-        return f"{np.shape(value)[0]} numbers"
+        n = int(np.shape(value)[0])
+        return tell_n("{n} number", "{n} numbers", n).format(n=n)
     if isinstance(value, complex | np.complexfloating):
         text = f"({plain(float(value.real))}, {plain(float(value.imag))})"
     elif isinstance(value, int | float | np.number):
         text = plain(float(value))
     else:
-        text = "curve" if not isinstance(value, str) else value
+        text = tell("curve") if not isinstance(value, str) else value
     return f"{text} {of_unit}".rstrip()

@@ -23,6 +23,7 @@ from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import places
 from tmm_sheets.sheets.arrangement import arrangement as arrange
+from tmm_sheets.words import marked, of_file, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -35,7 +36,7 @@ INSIDE = Box(20.0, 5.0, WIDTH - 5.0, HEIGHT - 5.0)
 TITLE_BLOCK = Box(INSIDE.x1 - 185.0, INSIDE.y0, INSIDE.x1, INSIDE.y0 + 55.0)
 """Place of the title block (GOST 2.104, form 1)."""
 
-KEYWORDS = ("ТММ", "теория механизмов и машин", "курсовой проект")
+KEYWORDS = (marked("TMM"), marked("theory of mechanisms and machines"), marked("course project"))
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ def every(project: Project, say: Callable[[str], None] = lambda _: None, numbers
     """Draw sheets of a project, all unless told; CannotBuild when none of them can be drawn."""
     @contextmanager
     def told(n: int) -> Iterator[None]:
-        say(f"sheet {n}")
+        say(tell("sheet {n}").format(n=n))
         yield
 
     found = attempt(project, numbers or range(1, len(project.variant.drawable()) + 1), told)
@@ -131,15 +132,15 @@ def composed(project: Project, n: int) -> Composed:
     canvas.of = "title block"
     canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", "title block")
     fields = {
-        "designation": f"{block.designation} {plan.code}".strip(),
-        "title": plan.title,
-        "project": project.variant.project.title,
-        "letter": block.letter,
+        "designation": f"{of_file(block.designation)} {tr(plan.code)}".strip(),
+        "title": tr(plan.title),
+        "project": of_file(project.variant.project.title),
+        "letter": of_file(block.letter),
         "developed": block.student,
         "checked": block.checker,
         "supervisor": block.supervisor,
-        "institution": block.institution,
-        "group": block.group,
+        "institution": of_file(block.institution),
+        "group": of_file(block.group),
     }
     with canvas.as_role("frame"):
         draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(sheets))
@@ -153,10 +154,10 @@ def composed(project: Project, n: int) -> Composed:
         from tmm_sheets.drawing import notes
 
         crowded += notes.place(canvas, INSIDE)
-    title = f"{project.variant.project.title}. {plan.title}"
+    title = f"{fields['project']}. {fields['title']}"
     drawing = Drawing(
         WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets",
-        subject=" ".join(filter(None, (fields["designation"], fields["group"]))), keywords=", ".join(KEYWORDS),
+        subject=" ".join(filter(None, (fields["designation"], fields["group"]))), keywords=", ".join(map(tr, KEYWORDS)),
         views=_views(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
     left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
@@ -197,4 +198,4 @@ def _views(canvas: Canvas) -> tuple[View, ...]:
 
 def _said(part: Part) -> str:
     """Name of a view: the letters of its title."""
-    return "".join(run.text for run in letter(part.title, 5.0).runs) if part.title else _names().get(part.draw, part.draw)
+    return "".join(run.text for run in letter(part.title, 5.0).runs) if part.title else tr(_names().get(part.draw, part.draw))

@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tmm_sheets.stress.cases import BOUNDS, CHUNK, Worst, memory, run_case
+from tmm_sheets.words import tell
 
 MEMORY = "memory of a million positions, MB"
 NUMBERS = (1, 2, 3, 4)
 """Columns of the table that hold numbers."""
 
 
-def run(cases: int, seed: int, tell: Callable[[int], None] = lambda case: None, *, million: bool = True) -> dict[str, Worst]:
-    """Run cases 0 .. ``cases``-1 of a seed; ``tell`` hears the number of each before it is run.
+def run(cases: int, seed: int, say: Callable[[int], None] = lambda case: None, *, million: bool = True) -> dict[str, Worst]:
+    """Run cases 0 .. ``cases``-1 of a seed; ``say`` hears the number of each before it is run.
 
     Returns the worst of every invariant that some case tells of; ``million`` adds the memory of very many positions.
     """
     worst: dict[str, Worst] = {}
     for case in range(cases):
-        tell(case)
+        say(case)
         scene, values = run_case(seed, case)
         for name, value in values:
             worst.setdefault(name, Worst()).take(value, case, scene)
@@ -44,15 +45,15 @@ def exceeded(worst: dict[str, Worst]) -> list[str]:
 
 def table(worst: dict[str, Worst], seed: int) -> str:
     """The table: invariant, cases that tell of it, worst value, bound, the case it is from, what the value is a share of."""
-    rows = [("invariant", "cases", "worst", "bound", "case", "scene", "share")]
+    rows = [(tell("invariant"), tell("cases"), tell("worst"), tell("bound"), tell("case"), tell("scene"), tell("share"))]
     for name, w in worst.items():
         bound, share = BOUNDS[name]
         number = "-" if name == MEMORY else str(w.case)
-        mark = "" if w.value <= bound else "EXCEEDED: "
-        rows.append((name, str(w.cases), f"{w.value:.1e}", f"{bound:.0e}", number, w.scene, mark + share))
+        of = share if w.value <= bound else tell("EXCEEDED: {share}").format(share=share)
+        rows.append((name, str(w.cases), f"{w.value:.1e}", f"{bound:.0e}", number, w.scene, of))
     widths = [max(len(row[i]) for row in rows) for i in range(6)]
     lines = []
     for row in rows:
         cells = (f"{cell:{'>' if i in NUMBERS else '<'}{w}}" for i, (cell, w) in enumerate(zip(row, widths, strict=False)))
         lines.append("  ".join([*cells, row[6]]))
-    return "\n".join([*lines, f"one case again: tmm-sheets stress --seed {seed} --case N"])
+    return "\n".join([*lines, tell("one case again: {command}").format(command=f"tmm-sheets stress --seed {seed} --case N")])

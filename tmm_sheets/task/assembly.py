@@ -31,6 +31,7 @@ from tmm_sheets.methods.linkage.loads import (
 from tmm_sheets.task import synthesis_refs
 from tmm_sheets.task.schema import ForceTable, GroupTable, LinkTable, MomentTable
 from tmm_sheets.task.variant import Variant
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.synthesis import Synthesis
@@ -53,7 +54,7 @@ def mechanism_of(variant: Variant, synthesis: Synthesis | None = None) -> Mechan
     """
     c = variant.crank
     if c is None:
-        raise CannotBuild("the project has no mechanism", "add [crank], [points] and [[group]] to the project file")
+        raise CannotBuild(tell("the project has no mechanism"), tell("add [crank], [points] and [[group]] to the project file"))
     of = Givens(variant, synthesis)
     # The acceleration from the flywheel needs the mechanism first: the study of the forces puts it in.
     acceleration = c.angular_acceleration if isinstance(c.angular_acceleration, float) else 0.0
@@ -178,12 +179,14 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
     diagrams = _diagrams(of, plan, f, tables, PISTON if numbers else None, numbers, "force", i)
     if f.over == "angle":
         if not isinstance(f.direction, float) or tables[0] is None:
-            raise CannotBuild(f"force {f.name}: a diagram over the angle needs a fixed direction",
-                              'for example direction = "-90 deg"')
+            raise CannotBuild(tell("force {name}: a diagram over the angle needs a fixed direction").format(name=f.name),
+                              tell('for example direction = "-90 deg"'))
         law, jumps = angle_law(tables[0], cycle.period, f.curve == "smooth")
         return Applied(f.name, f.link, f.point, unit(f.direction), law, jumps, None, diagrams, _along(of, i, unit(f.direction)))
     if named is None:
-        raise CannotBuild(f"force {f.name}: which way are its working strokes?", 'add for example sense = "+x"')
+        raise CannotBuild(
+            tell("force {name}: which way are its working strokes?").format(name=f.name), tell('add for example sense = "+x"')
+        )
     told = ("force", i, "sense") if f.sense is not None else ("cycle", "working_sense")
     sense = GivenPoint(SENSES[named] if named in SENSES else _along_guide(mechanism, named, f.name), place(told), "", "",
                        of.variant.source(*told))
@@ -206,7 +209,10 @@ def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
     guide = mechanism.guides.get(named[1:])
     if named[:1] not in "+-" or guide is None or guide.link != mechanism.frame:
         known = ", ".join((*SENSES, *(f"+{g.name}" for g in mechanism.guides.values() if g.link == mechanism.frame)))
-        raise CannotBuild(f'force {force}: unknown sense "{named}"', f"known here are {known}")
+        raise CannotBuild(
+            tell('force {force}: unknown sense "{named}"').format(force=force, named=named),
+            tell("known here are {known}").format(known=known),
+        )
     return unit(guide.direction) * (1 if named[0] == "+" else -1)
 
 
@@ -216,8 +222,8 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
     if m.over == "angle":
         if fixed is None or tables[0] is None:
-            raise CannotBuild(f"moment {m.name}: a diagram over the angle needs a fixed direction",
-                              'for example direction = "clockwise"')
+            raise CannotBuild(tell("moment {name}: a diagram over the angle needs a fixed direction").format(name=m.name),
+                              tell('for example direction = "clockwise"'))
         table = (tables[0][0], [fixed * y for y in tables[0][1]])
         law, jumps = angle_law(table, cycle.period, m.curve == "smooth")
         signed = (GivenNumber(fixed, f"moment[{i}].direction"),)

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tmm_sheets.task.toml_lines import KeyPath
+from tmm_sheets.words import tell
 
 Found = tuple[KeyPath, str, str]
 """Key path, message, hint."""
@@ -41,18 +42,34 @@ def _of_follower(cam: dict[str, Any], follower: str) -> Iterator[Found]:
     must, may = FOLLOWER_KEYS[follower]
     for key in must:
         if key not in cam:
-            yield ("cam", key), f'missing; follower = "{follower}" needs it, for example {key} = {EXAMPLES[key]}', ""
+            yield (
+                ("cam", key),
+                tell('missing; follower = "{follower}" needs it, for example {key} = {example}').format(
+                    follower=follower, key=key, example=EXAMPLES[key]
+                ),
+                "",
+            )
     others = {key for keys in FOLLOWER_KEYS.values() for key in (*keys[0], *keys[1])} - {*must, *may}
     for key in cam:
         if key in others:
-            yield ("cam", key), f'follower = "{follower}" has no such key', f"its own keys are {', '.join((*must, *may))}"
+            yield (
+                ("cam", key),
+                tell('follower = "{follower}" has no such key').format(follower=follower),
+                tell("its own keys are {keys}").format(keys=", ".join((*must, *may))),
+            )
     if follower == "flat" and cam.get("closure") == "geometric":
-        yield ("cam", "closure"), 'expected "force": the second disc of a geometric closure needs a roller', ""
+        yield ("cam", "closure"), tell('expected "force": the second disc of a geometric closure needs a roller'), ""
 
 
 def _of_laws(cam: dict[str, Any]) -> Iterator[Found]:
     for law, table in (("law", "table"), ("fall_law", "fall_table")):
         if cam.get(law) == "table" and table not in cam:
-            yield ("cam", table), f'missing; {law} = "table" needs it, for example {table} = {EXAMPLES[table]}', ""
+            yield (
+                ("cam", table),
+                tell('missing; {law} = "table" needs it, for example {table} = {example}').format(
+                    law=law, table=table, example=EXAMPLES[table]
+                ),
+                "",
+            )
         if table in cam and cam.get(law) != "table":
-            yield ("cam", table), f'is read with {law} = "table" only', ""
+            yield ("cam", table), tell('is read with {law} = "table" only').format(law=law), ""

@@ -9,13 +9,14 @@ from typing import Any
 
 from tmm_sheets.task.toml_lines import KeyPath
 from tmm_sheets.texts import cleaned
+from tmm_sheets.words import marked, tell
 
 Found = tuple[KeyPath, str, str]
 """Key path, message, hint."""
 
 _USUAL = re.compile(r"[ -~А-яЁё°–—№«»]*")
 _NOT_DRAWN = {("project", "name"), ("project", "variant")}
-_HINT = "it has those of Russian and other Cyrillic alphabets, Latin ones with all accents of Europe, and Greek"
+_HINT = marked("it has those of Russian and other Cyrillic alphabets, Latin ones with all accents of Europe, and Greek")
 
 
 def freed(value: Any) -> Any:
@@ -35,7 +36,7 @@ def check_letters(data: dict[str, Any]) -> Iterator[Found]:
 
             lacks = lacking(text)
             if lacks:
-                yield path, f"the drawing font has no {', '.join(map(_told, lacks))}", _HINT
+                yield path, tell("the drawing font has no {letters}").format(letters=', '.join(map(_told, lacks))), tell(_HINT)
 
 
 def _told(char: str) -> str:

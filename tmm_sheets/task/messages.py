@@ -10,7 +10,9 @@ from pydantic_core import ErrorDetails
 
 from tmm_sheets.task.schema import Table
 from tmm_sheets.task.toml_lines import KeyPath
+from tmm_sheets.task.units import Refused
 from tmm_sheets.task.values import nearest
+from tmm_sheets.words import either, marked, tell
 
 
 def said(error: ErrorDetails, whole: type[Table]) -> tuple[KeyPath, str, str]:
@@ -19,34 +21,59 @@ def said(error: ErrorDetails, whole: type[Table]) -> tuple[KeyPath, str, str]:
     given = error["input"]
     kind = error["type"]
     if kind == "missing":
-        return path, f"missing; expected {_description(whole, path)}", ""
+        return path, tell("missing; expected {what}").format(what=_description(whole, path)), ""
     if kind == "extra_forbidden":
         near, known = nearest(str(path[-1]), _keys(whole, path[:-1]))
-        return path, "unknown key", near or f"known here are {known}"
+        return path, tell("unknown key"), near or tell("known here are {known}").format(known=known)
     if kind == "value_error":
-        message = str(error["ctx"]["error"])
-        if isinstance(given, dict) or " not " in message:
-            return path, message, ""
-        return path, f"{message}, not {_quoted(given)}", ""
+        refusal = error["ctx"]["error"]
+        if isinstance(given, dict) or isinstance(refusal, Refused):
+            return path, str(refusal), ""
+        return path, tell("{expected}, not {given}").format(expected=refusal, given=_quoted(given)), ""
     if kind == "literal_error":
         near, _ = nearest(str(given), [w.strip("'") for w in re.split(r", | or ", error["ctx"]["expected"])])
-        return path, f"expected {error['ctx']['expected'].replace(chr(39), chr(34))}, not {_quoted(given)}", near
+        words = [f'"{w[1:-1]}"' if w[:1] == "'" else w for w in re.split(r", | or ", error["ctx"]["expected"])]
+        return path, tell("expected {what}, not {given}").format(what=either(words), given=_quoted(given)), near
     if kind in ("tuple_type", "too_short", "too_long"):
-        return path, f"expected {_description(whole, path)}", ""
+        return path, tell("expected {what}").format(what=_description(whole, path)), ""
     if kind in ("model_type", "model_attributes_type", "dict_type"):
-        return path, f"expected a table, not {_quoted(given)}", f"write it as [{path[0]}] with a line for each key"
+        return path, tell("expected a table, not {given}").format(given=_quoted(given)), tell(
+            "write it as [{table}] with a line for each key").format(table=path[0])
     if kind == "string_type":
-        return path, f"expected a text in quotes, not {_quoted(given)}", ""
-    return path, f"{error['msg']}, not {_quoted(given)}", ""
+        return path, tell("expected a text in quotes, not {given}").format(given=_quoted(given)), ""
+    if kind in ("bool_type", "bool_parsing"):
+        return path, tell("expected true or false, not {given}").format(given=_quoted(given)), ""
+    return path, f"{error['msg']}: {_quoted(given)}", ""
+
+
+_OF_PARSER = tuple((re.compile(re.escape(text).replace(r"\{what\}", "(?P<what>.*)")), text) for text in (
+    marked("invalid statement"), marked("expected newline or end of document after a statement"), marked("expected {what}"),
+    marked("found invalid character {what}"), marked("cannot declare {what} twice"), marked("cannot overwrite a value"),
+    marked("expected ']' at the end of a table declaration"), marked("expected ']]' at the end of an array declaration"),
+    marked("cannot mutate immutable namespace {what}"), marked("cannot redefine namespace {what}"),
+    marked("expected '=' after a key in a key/value pair"), marked("invalid initial character for a key part"),
+    marked("unclosed array"), marked("unclosed inline table"), marked("duplicate inline table key {what}"),
+    marked("unescaped '\\' in a string"), marked("invalid hex value"), marked("escaped character is not a unicode scalar value"),
+    marked("unterminated string"), marked("illegal character {what}"), marked("invalid date or datetime"), marked("invalid value"),
+))  # fmt: skip
+"""What Python's reader of TOML says."""
+
+
+def of_parser(message: str) -> str:
+    """A message of Python's reader of TOML in the reader's words; itself where it is a new one."""
+    for pattern, text in sorted(_OF_PARSER, key=lambda row: "{what}" in row[1]):
+        if match := pattern.fullmatch(message):
+            return tell(text).format(**match.groupdict())
+    return message
 
 
 def _quoted(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, dict):
-        return "a table"
+        return tell("a table")
     if isinstance(value, list):
-        return "a list"
+        return tell("a list")
     return f'"{value}"' if isinstance(value, str) else str(value)
 
 
@@ -82,5 +109,5 @@ def _description(whole: type[Table], path: KeyPath) -> str:
         model, key = _fields(whole, path[:length])
         found = next((f.description for n, f in model.model_fields.items() if (f.alias or n) == key), None)
         if found:
-            return found
-    return "a value"
+            return tell(found)
+    return tell("a value")

@@ -13,6 +13,7 @@ from typing import Any
 
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.task.toml_lines import KeyPath
+from tmm_sheets.words import marked, tell, tell_n
 
 Found = tuple[KeyPath, str, str]
 """Key path, message, hint."""
@@ -33,11 +34,16 @@ FRAME = "0"
 
 _LETTERS = "A-Za-zА-Яа-яЁёЄєІіЇїҐґΑ-Ωα-ω"
 SPELLINGS = {
-    "point": (re.compile(f"[{_LETTERS}][{_LETTERS}0-9]*"), 'a letter, then letters and digits, for example "B" or "S3"'),
-    "force": (re.compile(f"[{_LETTERS}][{_LETTERS}0-9]*′*"), 'a letter, then letters and digits, for example "F5"'),
-    "link": (re.compile(f"[{_LETTERS}0-9]+"), 'digits or letters, for example "3"'),
-    "position": (re.compile(f"[{_LETTERS}0-9]+[′″]*"), 'digits or letters, for example "1′"'),
-    "guide": (re.compile(f"[{_LETTERS}0-9 .,()/–-]+"), 'letters and digits, for example "x–x"'),
+    "point": (re.compile(f"[{_LETTERS}][{_LETTERS}0-9]*"), marked(
+        '"{name}" is no name of a point: expected a letter, then letters and digits, for example "B" or "S3"')),
+    "force": (re.compile(f"[{_LETTERS}][{_LETTERS}0-9]*′*"), marked(
+        '"{name}" is no name of a force: expected a letter, then letters and digits, for example "F5"')),
+    "link": (re.compile(f"[{_LETTERS}0-9]+"), marked(
+        '"{name}" is no name of a link: expected digits or letters, for example "3"')),
+    "position": (re.compile(f"[{_LETTERS}0-9]+[′″]*"), marked(
+        '"{name}" is no name of a position: expected digits or letters, for example "1′"')),
+    "guide": (re.compile(f"[{_LETTERS}0-9 .,()/–-]+"), marked(
+        '"{name}" is no name of a guide: expected letters and digits, for example "x–x"')),
 }
 """How names are spelt that stand on sheets with their ends as indices, and what to say of others."""
 
@@ -66,13 +72,13 @@ def _words(value: Any) -> list[str]:
 def _keys_of_kind(path: KeyPath, group: dict[str, Any], kind: int) -> Iterator[Found]:
     """Keys that a group of this kind lacks or has too many."""
     must, may = GROUP_KEYS.get(kind, ((), tuple(group)))
-    known = f"kind {kind} has links, {', '.join(must + may)}"
+    known = tell("kind {kind} has links, {names}").format(kind=kind, names=', '.join(must + may))
     for key in must:
         if key not in group:
-            yield path, f'a group of kind {kind} needs "{key}"', known
+            yield path, tell('a group of kind {kind} needs "{key}"').format(kind=kind, key=key), known
     for key in group:
         if key not in ("kind", "links", *must, *may) and any(key in m + n for m, n in GROUP_KEYS.values()):
-            yield (*path, key), f"a group of kind {kind} has none", known
+            yield (*path, key), tell("a group of kind {kind} has none").format(kind=kind), known
 
 
 class _Names:
@@ -101,39 +107,43 @@ class _Names:
     @staticmethod
     def spelt(path: KeyPath, name: Any, what: str) -> Iterator[Found]:
         """Names that the lettering cannot set, or that would run into others."""
-        pattern, expected = SPELLINGS[what]
+        pattern, refusal = SPELLINGS[what]
         if isinstance(name, str) and name.strip() and not pattern.fullmatch(name):
-            yield path, f'"{name}" is no name of a {what}: expected {expected}', ""
+            yield path, tell(refusal).format(name=name), ""
 
     def define(self, path: KeyPath, name: Any, *links: str) -> Iterator[Found]:
         if not isinstance(name, str):
             return
         yield from self.spelt(path, name, "point")
         if name in self.points:
-            yield path, f'the point "{name}" is there already', "give it another name"
+            yield path, tell('the point "{name}" is there already').format(name=name), tell("give it another name")
         self.points.add(name)
         for link in links:
             self.on[link].add(name)
 
-    def known(self, path: KeyPath, name: Any, among: set[str], what: str) -> Iterator[Found]:
+    def known(self, path: KeyPath, name: Any, among: set[str], refusal: str, **where: str) -> Iterator[Found]:
         if not isinstance(name, str) or name in among:
             return
         near = get_close_matches(name, sorted(among), n=1)
-        listed = ", ".join(sorted(among)) or "none"
-        yield path, f'unknown {what} "{name}"', f'did you mean "{near[0]}"?' if near else f"known here are {listed}"
+        yield (path, tell(refusal).format(name=name, **where), tell('did you mean "{near}"?').format(near=near[0]) if near else
+               tell("known here are {known}").format(known=", ".join(sorted(among))) if among else tell("known here are none"))
 
     def crank(self) -> Iterator[Found]:
         crank = _table(self.data, "crank")
         if not crank:
             if "group" in self.data:
-                yield ("group",), "groups need a [crank] they are attached to", ""
+                yield ("group",), tell("groups need a [crank] they are attached to"), ""
             return
         link = str(crank.get("link", "1"))
         yield from self.spelt(("crank", "link"), link, "link")
         if link == FRAME:
-            yield ("crank", "link"), f'"{FRAME}" is the frame', "give each moving link its own number, beginning with 1"
+            yield (
+                ("crank", "link"),
+                tell('"{frame}" is the frame').format(frame=FRAME),
+                tell("give each moving link its own number, beginning with 1"),
+            )
         self.on.setdefault(link, set())
-        yield from self.known(("crank", "pivot"), crank.get("pivot"), self.on[FRAME], "fixed point")
+        yield from self.known(("crank", "pivot"), crank.get("pivot"), self.on[FRAME], marked('unknown fixed point "{name}"'))
         if isinstance(crank.get("pivot"), str):
             self.on[link].add(crank["pivot"])
         yield from self.define(("crank", "pin"), crank.get("pin"), link)
@@ -145,15 +155,21 @@ class _Names:
             if isinstance(name, str):
                 yield from self.spelt((*path, "name"), name, "guide")
                 if name in self.guides:
-                    yield (*path, "name"), f'the guide "{name}" is there already', "give it another name"
+                    yield (
+                        (*path, "name"),
+                        tell('the guide "{name}" is there already').format(name=name),
+                        tell("give it another name"),
+                    )
                 self.guides[name] = guide
             if "link" in guide:
                 if not isinstance(guide.get("through"), str) or "towards" not in guide:
-                    yield path, 'a guide on a moving link needs "through" and "towards", two points of the link', ""
+                    yield path, tell('a guide on a moving link needs "through" and "towards", two points of the link'), ""
             else:
                 if "towards" in guide:
-                    yield (*path, "towards"), "a fixed guide has none", 'give its "direction" as an angle'
-                yield from self.known((*path, "through"), guide.get("through"), self.on[FRAME], "fixed point")
+                    yield (*path, "towards"), tell("a fixed guide has none"), tell('give its "direction" as an angle')
+                yield from self.known(
+                    (*path, "through"), guide.get("through"), self.on[FRAME], marked('unknown fixed point "{name}"')
+                )
 
     def group(self, path: KeyPath, group: dict[str, Any]) -> Iterator[Found]:
         given = group.get("kind")
@@ -162,9 +178,15 @@ class _Names:
         outer, links = _words(group.get("outer")), _words(group.get("links"))
         if kind and isinstance(group.get("outer"), list) and len(group["outer"]) != OUTER_POINTS[kind]:
             count = OUTER_POINTS[kind]
-            yield (*path, "outer"), f"expected {count} point{'s' * (count > 1)} for a group of kind {kind}", ""
+            yield (
+                (*path, "outer"),
+                tell_n(
+                    "expected {n} point for a group of kind {kind}", "expected {n} points for a group of kind {kind}", count
+                ).format(n=count, kind=kind),
+                "",
+            )
         for i, name in enumerate(outer):
-            yield from self.known((*path, "outer", i), name, self.points, "point")
+            yield from self.known((*path, "outer", i), name, self.points, marked('unknown point "{name}"'))
         yield from self.guide_use((*path, "guide"), group.get("guide"))
         for i, name in enumerate(_words(group.get("guides"))):
             yield from self.guide_use((*path, "guides", i), name)
@@ -179,19 +201,27 @@ class _Names:
         for i, link in enumerate(links):
             yield from self.spelt((*path, "links", i), link, "link")
             if link in self.on or link in links[:i]:
-                yield (*path, "links", i), f'the link "{link}" is there already', "give each link its own number"
+                yield (
+                    (*path, "links", i),
+                    tell('the link "{link}" is there already').format(link=link),
+                    tell("give each link its own number"),
+                )
 
     def guide_use(self, path: KeyPath, name: Any) -> Iterator[Found]:
-        yield from self.known(path, name, set(self.guides), "guide")
+        yield from self.known(path, name, set(self.guides), marked('unknown guide "{name}"'))
         guide = self.guides.get(name, {}) if isinstance(name, str) else {}
         if "link" in guide:
             link = str(guide["link"])
             if link not in self.on:
-                yield path, f'the guide "{name}" is on link "{link}", which is not attached yet', "change the order"
+                yield (
+                    path,
+                    tell('the guide "{name}" is on link "{link}", which is not attached yet').format(name=name, link=link),
+                    tell("change the order"),
+                )
                 return
             for key, known in (("through", self.on[link]), ("towards", self.on[link] | self.aims.get(link, set()))):
                 if isinstance(guide.get(key), str):
-                    yield from self.known(path, guide[key], known, f"point of link {link}")
+                    yield from self.known(path, guide[key], known, marked('unknown point of link {link} "{name}"'), link=link)
 
     def join(self, kind: int, links: list[str], outer: list[str]) -> None:
         for i, link in enumerate(links):
@@ -222,7 +252,7 @@ class _Names:
                     self.waiting.remove(item)
                     progress = True
                     if start == towards:
-                        yield (*path, "towards"), 'expected another point than "from"', ""
+                        yield (*path, "towards"), tell('expected another point than "from"'), ""
                     yield from self.define((*path, "name"), point.get("name"), link)
 
     def left_over(self) -> Iterator[Found]:
@@ -230,11 +260,15 @@ class _Names:
             link = point.get("link")
             if not isinstance(link, str):
                 continue
-            yield from self.known((*path, "link"), link, set(self.on), "link")
+            yield from self.known((*path, "link"), link, set(self.on), marked('unknown link "{name}"'))
             here = self.on.get(link, self.points)
-            yield from self.known((*path, "from"), point.get("from"), here, f"point of link {link}")
+            yield from self.known(
+                (*path, "from"), point.get("from"), here, marked('unknown point of link {link} "{name}"'), link=link
+            )
             aims = here | self.aims.get(link, set())
-            yield from self.known((*path, "towards"), point.get("towards"), aims, f"point of link {link}")
+            yield from self.known(
+                (*path, "towards"), point.get("towards"), aims, marked('unknown point of link {link} "{name}"'), link=link
+            )
             name = point.get("name")
             if isinstance(name, str):
                 self.points.add(name)
@@ -245,12 +279,17 @@ class _Names:
         seen: set[str] = set()
         for path, link in _tables(self.data, "link"):
             name = link.get("name")
-            yield from self.known((*path, "name"), name, moving, "link")
+            yield from self.known((*path, "name"), name, moving, marked('unknown link "{name}"'))
             if isinstance(name, str):
                 if name in seen:
-                    yield (*path, "name"), f'the link "{name}" is described twice', ""
+                    yield (*path, "name"), tell('the link "{name}" is described twice').format(name=name), ""
                 seen.add(name)
-                yield from self.known((*path, "centre"), link.get("centre"), self.on.get(name, self.points), "point of the link")
+                yield from self.known(
+                    (*path, "centre"),
+                    link.get("centre"),
+                    self.on.get(name, self.points),
+                    marked('unknown point of the link "{name}"'),
+                )
 
     def uses(self) -> Iterator[Found]:
         moving = set(self.on) - {FRAME}
@@ -258,19 +297,25 @@ class _Names:
         taken = self.taken_by_loads()
         for path, force in [*_tables(self.data, "force"), *_tables(self.data, "moment")]:
             link = force.get("link")
-            yield from self.known((*path, "link"), link, moving, "link")
+            yield from self.known((*path, "link"), link, moving, marked('unknown link "{name}"'))
             if path[0] == "force" and isinstance(link, str) and link in self.on:
-                yield from self.known((*path, "point"), force.get("point"), self.on[link], f"point of link {link}")
+                yield from self.known(
+                    (*path, "point"), force.get("point"), self.on[link], marked('unknown point of link {link} "{name}"'), link=link
+                )
             yield from self.symbol((*path, "name"), force.get("name"), taken)
         yield from self.symbol(("balancing", "name"), _table(self.data, "balancing").get("name"), taken)
         wandering = self.points - self.on[FRAME]
         for path, name, among, what in (
-            (("cycle", "output"), cycle.get("output"), wandering, "point"),
-            *((("cycle", "diagrams", i), name, wandering | moving, "point or link")
+            (("cycle", "output"), cycle.get("output"), wandering, marked('unknown point "{name}"')),
+            *((("cycle", "diagrams", i), name, wandering | moving, marked('unknown point or link "{name}"'))
               for i, name in enumerate(_words(cycle.get("diagrams")))),
         ):  # fmt: skip
             if isinstance(name, str) and name in self.on[FRAME] - moving:
-                yield path, f"{name} is a fixed point: it has no motion", f"points that move are {', '.join(sorted(wandering))}"
+                yield (
+                    path,
+                    tell("{name} is a fixed point: it has no motion").format(name=name),
+                    tell("points that move are {names}").format(names=", ".join(sorted(wandering))),
+                )
             else:
                 yield from self.known(path, name, among, what)
         for label in _table(cycle, "extra"):
@@ -282,17 +327,22 @@ class _Names:
         yield from self.spelt(path, name, "force")
         if isinstance(name, str):
             if name in taken:
-                yield path, f'"{name}" is {taken[name]}', "give it another name"
-            taken[name] = "there already"
+                yield path, taken[name], tell("give it another name")
+            taken[name] = tell('"{name}" is there already').format(name=name)
 
     def taken_by_loads(self) -> dict[str, str]:
-        """Signs of weights, inertia loads and reactions, and what they stand for."""
+        """Signs of weights, inertia loads and reactions, and what is to be said when another load has one."""
         links = sorted(self.on)
-        taken = {f"F{pair_index(j, k)}": f"the force on link {j} from link {k}" for j in links for k in links if j != k}
+        taken = {}
+        for name, j, k in ((f"F{pair_index(j, k)}", j, k) for j in links for k in links if j != k):
+            taken[name] = tell('"{name}" is the force on link {link} from link {other}').format(name=name, link=j, other=k)
         for table in (table for _, table in _tables(self.data, "link") if isinstance(table.get("name"), str)):
             link = table["name"]
+            loads = []
             if table.get("mass"):
-                taken |= {f"G{link}": f"the weight of link {link}", f"Fи{link}": f"the force of inertia of link {link}"}
+                loads += [(f"G{link}", marked('"{name}" is the weight of link {link}')),
+                          (f"Fи{link}", marked('"{name}" is the force of inertia of link {link}'))]
             if table.get("inertia"):
-                taken[f"Mи{link}"] = f"the moment of inertia forces of link {link}"
+                loads.append((f"Mи{link}", marked('"{name}" is the moment of inertia forces of link {link}')))
+            taken |= {name: tell(said).format(name=name, link=link) for name, said in loads}
         return taken

@@ -46,6 +46,7 @@ from tmm_sheets.task.values import (
     si,
     whole,
 )
+from tmm_sheets.words import both, marked, tell
 
 
 class Table(BaseModel):
@@ -60,14 +61,14 @@ class Table(BaseModel):
 class HeadingTable(Table):
     """``[project]``: what the project is called and which sheets it has."""
 
-    name: Name = Field(description='name of the project, "family/name"')
-    title: str = Field(description="title as it stands on the sheets")
+    name: Name = Field(description=marked('name of the project, "family/name"'))
+    title: str = Field(description=marked("title as it stands on the sheets"))
     language: Literal["ru", "uk", "en"] | None = None
     """language of the sheets; `ru` unless told here or by `--lang`"""
     variant: str = ""
     """the variant of the task, as it stands in `show` and in the results"""
     sheets: tuple[SheetName, ...] | None = Field(
-        default=None, min_length=1, description='the sheets in order, for example ["gear", "cam"]'
+        default=None, min_length=1, description=marked('the sheets in order, for example ["gear", "cam"]')
     )
 
 
@@ -97,13 +98,13 @@ class TitleBlockTable(Table):
 class CrankTable(Table):
     """``[crank]``: the initial link."""
 
-    link: Name = Field(description='number of the link, for example "1"')
-    pivot: Name = Field(description='fixed point it turns about, for example "A"')
-    pin: Name = Field(description='point at its end, for example "B"')
-    length: Length = Field(description='length with its unit, for example "0.08 m"')
-    speed: Speed = Field(description='speed of rotation, for example "72 rpm" or "7.54 rad/s"')
+    link: Name = Field(description=marked('number of the link, for example "1"'))
+    pivot: Name = Field(description=marked('fixed point it turns about, for example "A"'))
+    pin: Name = Field(description=marked('point at its end, for example "B"'))
+    length: Length = Field(description=marked('length with its unit, for example "0.08 m"'))
+    speed: Speed = Field(description=marked('speed of rotation, for example "72 rpm" or "7.54 rad/s"'))
     """without sign, `sense` has it"""
-    sense: Sense = Field(description='"clockwise" or "counter-clockwise"')
+    sense: Sense = Field(description=marked('"clockwise" or "counter-clockwise"'))
     """of the crank"""
     angular_acceleration: CrankAcceleration = 0.0
     """positive in the sense of rotation; `"flywheel"`: that of the uneven running with the flywheel found, whose inertia the
@@ -117,9 +118,9 @@ class GuideTable(Table):
     In SI ``through`` is a point's name or coordinates in m, ``direction`` in rad.
     """
 
-    name: Name = Field(description="name of the guide")
+    name: Name = Field(description=marked("name of the guide"))
     through: GuidePoint = Field(
-        description='a point of the guide: ["0 m", "0.33 m"] or the name of a point'
+        description=marked('a point of the guide: ["0 m", "0.33 m"] or the name of a point')
     )
     """with `link` a point of that link"""
     direction: Angle = 0.0
@@ -136,8 +137,8 @@ class GroupTable(Table):
     Which keys a kind has: :data:`tmm_sheets.task.names.GROUP_KEYS`.
     """
 
-    kind: Literal[1, 2, 3, 4, 5] = Field(description="kind of the group, 1 (RRR) to 5 (RPP)")
-    links: tuple[Name, Name] = Field(description='the two links, for example ["2", "3"]')
+    kind: Literal[1, 2, 3, 4, 5] = Field(description=marked("kind of the group, 1 (RRR) to 5 (RPP)"))
+    links: tuple[Name, Name] = Field(description=marked('the two links, for example ["2", "3"]'))
     outer: tuple[Name, ...] = ()
     """points of the outer turning pairs"""
     inner: Name | None = None
@@ -163,12 +164,12 @@ class GroupTable(Table):
 class PointTable(Table):
     """``[[point]]``: a further point of a link: a hinge of a later group, a centre of mass, a point whose path is wanted."""
 
-    name: Name = Field(description="name of the point")
-    link: Name = Field(description="the link it belongs to")
-    from_: Name = Field(alias="from", description="a point of the link the distance is measured from")
-    towards: Name = Field(description="a point that gives the direction")
+    name: Name = Field(description=marked("name of the point"))
+    link: Name = Field(description=marked("the link it belongs to"))
+    from_: Name = Field(alias="from", description=marked("a point of the link the distance is measured from"))
+    towards: Name = Field(description=marked("a point that gives the direction"))
     """another point of the link; on a slider also its guide"""
-    distance: Coordinate = Field(description='distance with its unit; negative: away from "towards"')
+    distance: Coordinate = Field(description=marked('distance with its unit; negative: away from "towards"'))
     angle: Angle = 0.0
     """turns it from that line: the link may be a plate"""
 
@@ -176,7 +177,7 @@ class PointTable(Table):
 class LinkTable(Table):
     """``[[link]]``: mass and moment of inertia of a link; links that are not listed have none."""
 
-    name: Name = Field(description="number of the link")
+    name: Name = Field(description=marked("number of the link"))
     title: str = ""
     """what the link is: crank, coupler, rocker"""
     mass: Mass = 0.0
@@ -191,7 +192,7 @@ class LinkTable(Table):
     @model_validator(mode="after")
     def _mass_has_centre(self) -> Self:
         if self.mass > 0 and self.centre is None:
-            raise ValueError('expected "centre", the point where the mass is; write for example centre = "S3"')
+            raise ValueError(tell('expected "centre", the point where the mass is; write for example centre = "S3"'))
         return self
 
 
@@ -199,7 +200,7 @@ class CycleTable(Table):
     """``[cycle]``: the numbered positions of the mechanism, from a dead position or from a crank angle."""
 
     start: Start = Field(
-        description='"dead" or the crank angle of position 0, for example "90 deg"'
+        description=marked('"dead" or the crank angle of position 0, for example "90 deg"')
     )
     """`"dead"`: where the working stroke of `output` begins"""
     output: Name | None = None
@@ -214,7 +215,7 @@ class CycleTable(Table):
     """parts of the idle stroke"""
     division: Literal["nominal", "exact"] = "exact"
     """`nominal`: the strokes take the crank angles of K instead of those of the lengths"""
-    coefficient: Annotated[float, si(units.NUMBER), in_range("K of 1 or more", lambda x: x >= 1)] | None = None
+    coefficient: Annotated[float, si(units.NUMBER), in_range(marked("expected K of 1 or more"), lambda x: x >= 1)] | None = None
     """K, for `division = "nominal"`"""
     force_position: Name | None = None
     """label of the position of the force analysis, drawn thick; left out: position 0"""
@@ -231,22 +232,24 @@ class CycleTable(Table):
     def _start_has_its_keys(self) -> Self:
         if self.start != "dead":
             if self.positions is None:
-                raise ValueError("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12")
+                raise ValueError(
+                    tell("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12")
+                )
             return self
         absent = [k for k in ("output", "working_sense", "working", "idle") if getattr(self, k) is None]
         if absent:
-            raise ValueError(f'start = "dead" needs {", ".join(absent)} as well')
+            raise ValueError(tell('start = "dead" needs {absent} as well').format(absent=", ".join(absent)))
         if self.division == "nominal" and self.coefficient is None:
-            raise ValueError('division = "nominal" needs the coefficient K, for example coefficient = 1.5')
+            raise ValueError(tell('division = "nominal" needs the coefficient K, for example coefficient = 1.5'))
         return self
 
     @model_validator(mode="after")
     def _whole_turn(self) -> Self:
         count = self.positions if self.positions is not None else (self.working or 0) + (self.idle or 0)
         if count < 4:
-            raise ValueError("expected 4 positions or more: positions, or working and idle together")
+            raise ValueError(tell("expected 4 positions or more: positions, or working and idle together"))
         if self.positions is not None and (self.working or self.idle):
-            raise ValueError("expected either positions or working and idle, not both")
+            raise ValueError(tell("expected either positions or working and idle, not both"))
         return self
 
 
@@ -257,6 +260,13 @@ class ForcesTable(Table):
     """free fall; 0 for a mechanism in a horizontal plane"""
 
 
+def _one_diagram(given: list[str]) -> str:
+    """What to say when a load has another number of diagrams than one."""
+    if given:
+        return tell("expected one of value, table and tables, not {given}").format(given=both(given))
+    return tell("expected one of value, table and tables, not none")
+
+
 class ForceTable(Table):
     """``[[force]]``: a technological force at a point of a link: one of ``value``, ``table`` and ``tables``.
 
@@ -265,11 +275,11 @@ class ForceTable(Table):
     SI: N, with ``bore`` Pa; arguments are fractions of the way of ``point`` or, with ``over`` = "angle", rad.
     """
 
-    name: Name = Field(description='symbol of the force, for example "F5"')
-    link: Name = Field(description="the link it acts on")
-    point: Name = Field(description="the point it acts at")
+    name: Name = Field(description=marked('symbol of the force, for example "F5"'))
+    link: Name = Field(description=marked("the link it acts on"))
+    point: Name = Field(description=marked("the point it acts at"))
     direction: ForceDirection = Field(
-        description='"against motion", "along motion" or an angle'
+        description=marked('"against motion", "along motion" or an angle')
     )
     """the first two follow the motion of the point; an angle is a fixed direction of the world frame"""
     stroke: Literal["working", "idle", "both"] = "both"
@@ -296,15 +306,15 @@ class ForceTable(Table):
     """where the action begins, as a fraction of the way"""
     to: Fraction = 1.0
     """where it ends"""
-    accepted: bool = Field(default=False, description='true: our own assumption, marked "принято" on the sheet')
+    accepted: bool = Field(default=False, description=marked('true: our own assumption, marked so on the sheet'))
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
         given = [k for k in ("value", "table", "tables") if getattr(self, k) is not None]
         if len(given) != 1:
-            raise ValueError(f"expected one of value, table and tables, not {' and '.join(given) or 'none'}")
+            raise ValueError(_one_diagram(given))
         if not self.from_ < self.to:
-            raise ValueError(f'expected "from" before "to", not {self.from_} and {self.to}')
+            raise ValueError(tell('expected "from" before "to", not {start} and {end}').format(start=self.from_, end=self.to))
         self.diagrams()
         return self
 
@@ -316,15 +326,15 @@ class ForceTable(Table):
 class MomentTable(Table):
     """``[[moment]]``: a technological moment on a link: one of ``value``, ``table`` and ``tables``."""
 
-    name: Name = Field(description='symbol of the moment, for example "M5"')
-    link: Name = Field(description="the link it acts on")
+    name: Name = Field(description=marked('symbol of the moment, for example "M5"'))
+    link: Name = Field(description=marked("the link it acts on"))
     direction: Literal["against motion", "along motion", "clockwise", "counter-clockwise"] = Field(
-        description='"against motion", "along motion", "clockwise" or "counter-clockwise"'
+        description=marked('"against motion", "along motion", "clockwise" or "counter-clockwise"')
     )
     """the first two follow the motion of the link"""
     stroke: Literal["working", "idle", "both"] = "both"
     """the strokes it acts on"""
-    sense: Sense = Field(default="counter-clockwise", description="sense of rotation of the link on the working stroke")
+    sense: Sense = Field(default="counter-clockwise", description=marked("sense of rotation of the link on the working stroke"))
     value: Torque | None = None
     """a constant moment"""
     over: Literal["stroke", "angle"] = "stroke"
@@ -338,13 +348,13 @@ class MomentTable(Table):
     curve: Literal["straight", "smooth"] = "straight"
     """as for forces"""
     accepted: bool = False
-    """true: our own assumption, marked "принято" on the sheet"""
+    """true: our own assumption, marked so on the sheet"""
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
         given = [k for k in ("value", "table", "tables") if getattr(self, k) is not None]
         if len(given) != 1:
-            raise ValueError(f"expected one of value, table and tables, not {' and '.join(given) or 'none'}")
+            raise ValueError(_one_diagram(given))
         self.diagrams()
         return self
 
@@ -364,9 +374,9 @@ def _diagrams(load: ForceTable | MomentTable, quantity: units.Quantity) -> tuple
 class BalancingTable(Table):
     """``[balancing]``: what drives the crank: a pure moment, or the force of a gear pair on the crank shaft."""
 
-    kind: Literal["moment", "gear force"] = Field(description='"moment" or "gear force"')
+    kind: Literal["moment", "gear force"] = Field(description=marked('"moment" or "gear force"'))
     """what drives the crank"""
-    name: Name = Field(description='symbol, for example "F1"')
+    name: Name = Field(description=marked('symbol, for example "F1"'))
     teeth: Teeth | None = None
     """of the wheel on the crank shaft"""
     module: Length | None = None
@@ -381,45 +391,49 @@ class BalancingTable(Table):
         keys = ("teeth", "module", "pressure_angle", "mate")
         absent = [k for k in keys if getattr(self, k) is None]
         if self.kind == "gear force" and absent:
-            raise ValueError(f'kind = "gear force" needs {", ".join(absent)} as well')
+            raise ValueError(tell('kind = "gear force" needs {absent} as well').format(absent=", ".join(absent)))
         if self.kind == "moment" and len(absent) < len(keys):
-            raise ValueError(f'kind = "moment" has no {", ".join(k for k in keys if k not in absent)}')
+            raise ValueError(tell('kind = "moment" has no {names}').format(names=", ".join(k for k in keys if k not in absent)))
         return self
 
 
 class MotorTable(Table):
     """``[flywheel.motor]``: the motor to be checked and the gear train between it and the crank."""
 
-    name: Name = Field(description='type of the motor, for example "4А160М6"')
-    power: Annotated[float, si(units.POWER), positive("power")] = Field(description='power, for example "15 kW"')
-    synchronous: Speed = Field(description='synchronous speed, for example "1000 rpm"')
-    rated: Speed = Field(description='speed under the full load, for example "975 rpm"')
-    efficiency: InnerFraction = Field(description="efficiency of the gear train, for example 0.85")
+    name: Name = Field(description=marked('type of the motor, for example "4А160М6"'))
+    power: Annotated[float, si(units.POWER), positive(marked("expected a power greater than zero"))] = Field(
+        description=marked('power, for example "15 kW"')
+    )
+    synchronous: Speed = Field(description=marked('synchronous speed, for example "1000 rpm"'))
+    rated: Speed = Field(description=marked('speed under the full load, for example "975 rpm"'))
+    efficiency: InnerFraction = Field(description=marked("efficiency of the gear train, for example 0.85"))
     rotor_inertia: Inertia = 0.0
     """of the rotor about its axis"""
     ratio: PositiveNumber | None = None
     """speed of the rotor over that of the crank; left out: with the rated speed"""
     accepted: bool = False
-    """true: our own assumption, marked "принято" on the sheet"""
+    """true: our own assumption, marked so on the sheet"""
 
 
 class FlywheelTable(Table):
     """``[flywheel]``: how even the rotation must be, and what the flywheel is made of."""
 
-    method: Literal["wittenbauer", "mertsalov"] = Field(description='"wittenbauer" or "mertsalov"')
+    method: Literal["wittenbauer", "mertsalov"] = Field(description=marked('"wittenbauer" or "mertsalov"'))
     """energy-mass curve, or the energy of the crank's group"""
-    delta: InnerFraction = Field(description="permitted coefficient of non-uniformity, for example 0.025")
+    delta: InnerFraction = Field(description=marked("permitted coefficient of non-uniformity, for example 0.025"))
     form: Literal["rim", "disc"] = "rim"
     """a rim with spokes, or a disc"""
-    density: Density = Field(description='density, for example "7300 kg/m3"')
-    width_ratio: InnerFraction = Field(description="B/D, for example 0.2")
-    thickness_ratio: InnerFraction = Field(description="H/D of a rim, for example 0.12")
-    rim_share: Annotated[float, si(units.NUMBER), in_range("a number above 0, 1 at most", lambda x: 0 < x <= 1)] = 1.0
+    density: Density = Field(description=marked('density, for example "7300 kg/m3"'))
+    width_ratio: InnerFraction = Field(description=marked("B/D, for example 0.2"))
+    thickness_ratio: InnerFraction = Field(description=marked("H/D of a rim, for example 0.12"))
+    rim_share: Annotated[
+        float, si(units.NUMBER), in_range(marked("expected a number above 0, 1 at most"), lambda x: 0 < x <= 1)
+    ] = 1.0
     """part of the moment of inertia that the rim has"""
     weights: bool = False
     """true: the reduced moment counts the weights of the links"""
     accepted: bool = False
-    """true: delta is our own assumption, marked "принято" on the sheet"""
+    """true: delta is our own assumption, marked so on the sheet"""
     motor: MotorTable | None = None
     """table `[flywheel.motor]`; left out: no motor is checked"""
 
@@ -427,15 +441,15 @@ class FlywheelTable(Table):
 class GearTable(Table):
     """``[gear]``: a pair of external involute spur gears."""
 
-    teeth: Annotated[tuple[Teeth, Teeth], or_word("reducer")] = Field(description="tooth numbers, for example [14, 28]")
+    teeth: Annotated[tuple[Teeth, Teeth], or_word("reducer")] = Field(description=marked("tooth numbers, for example [14, 28]"))
     """`"reducer"`: the simple stage of `[reducer]` with its module, addendum and clearance"""
-    module: Length | None = Field(default=None, description='module, for example "3.5 mm"')
+    module: Length | None = Field(default=None, description=marked('module, for example "3.5 mm"'))
     """needed unless `teeth = "reducer"`"""
     shift: Annotated[tuple[Number, Number], or_word("rule")] = Field(
-        default=(0.0, 0.0), description="shifts, for example [0.2, 0]"
+        default=(0.0, 0.0), description=marked("shifts, for example [0.2, 0]")
     )
     """in modules; `"rule"`: the least shifts without undercut"""
-    pressure_angle: AcuteAngle = Field(description='profile angle of the rack, for example "20 deg"')
+    pressure_angle: AcuteAngle = Field(description=marked('profile angle of the rack, for example "20 deg"'))
     addendum: PositiveNumber | None = None
     """coefficient ha*; left out: 1"""
     clearance: PositiveNumber | None = None
@@ -452,11 +466,11 @@ class GearTable(Table):
         teeth: Any = self.teeth
         if teeth != "reducer":
             if self.module is None:
-                raise ValueError('expected "module" too, for example module = "3.5 mm"')
+                raise ValueError(tell('expected "module" too, for example module = "3.5 mm"'))
         else:
             given = [k for k in ("module", "addendum", "clearance") if getattr(self, k) is not None]
             if given:
-                raise ValueError(f'teeth = "reducer" takes {", ".join(given)} from [reducer]')
+                raise ValueError(tell('teeth = "reducer" takes {given} from [reducer]').format(given=", ".join(given)))
         return self
 
 
@@ -467,17 +481,19 @@ class SynthesisTable(Table):
     ``"quick return"`` finds l_AB and l_CD, ``"engine"`` H, l_AB and l_BC; with ``centre_ratio`` also l_CS or l_BS.
     """
 
-    kind: Literal["quick return", "engine"] = Field(description='"quick return" or "engine"')
+    kind: Literal["quick return", "engine"] = Field(description=marked('"quick return" or "engine"'))
     """crank and rocker, or crank and slider"""
-    coefficient: Annotated[float, si(units.NUMBER), in_range("K greater than 1", lambda x: x > 1)] | None = None
+    coefficient: Annotated[float, si(units.NUMBER), in_range(marked("expected K greater than 1"), lambda x: x > 1)] | None = None
     """quick return: coefficient of travel time K, the ratio of the mean velocities"""
     stroke: Length | None = None
     """quick return: of the rocker's end, across the line of the pivots"""
     centre_distance: Length | None = None
     """quick return: between the pivots of crank and rocker"""
-    mean_velocity: Annotated[float, si(units.VELOCITY), positive("velocity")] | None = None
+    mean_velocity: Annotated[float, si(units.VELOCITY), positive(marked("expected a velocity greater than zero"))] | None = None
     """engine: of the piston"""
-    rod_ratio: Annotated[float, si(units.NUMBER), in_range("a ratio greater than 1", lambda x: x > 1)] | None = None
+    rod_ratio: Annotated[float, si(units.NUMBER), in_range(marked("expected a ratio greater than 1"), lambda x: x > 1)] | None = (
+        None
+    )
     """engine: l_BC/l_AB"""
     centre_ratio: PositiveNumber | None = None
     """place of the centre of mass on rocker or rod, as a share of its length"""
@@ -490,9 +506,13 @@ class SynthesisTable(Table):
         for kind, keys in own.items():
             absent = [k for k in keys if getattr(self, k) is None]
             if kind == self.kind and absent:
-                raise ValueError(f'kind = "{kind}" needs {", ".join(absent)} as well')
+                raise ValueError(tell('kind = "{kind}" needs {absent} as well').format(kind=kind, absent=", ".join(absent)))
             if kind != self.kind and len(absent) < len(keys):
-                raise ValueError(f'kind = "{self.kind}" has no {", ".join(k for k in keys if k not in absent)}')
+                raise ValueError(
+                    tell('kind = "{kind}" has no {names}').format(
+                        kind=self.kind, names=", ".join(k for k in keys if k not in absent)
+                    )
+                )
         return self
 
 
@@ -505,26 +525,26 @@ class ReducerTable(Table):
     """
 
     scheme: Literal["single row", "external-internal", "two external", "two internal"] = Field(
-        description='"single row", "external-internal", "two external" or "two internal"'
+        description=marked('"single row", "external-internal", "two external" or "two internal"')
     )
     """`single row`: sun, satellites, ring; `external-internal`: sun, blocks of two satellites, ring;
     `two external`, `two internal`: the carrier drives, blocks between two suns or two rings
     """
-    simple: Literal["before", "after"] = Field(description='the simple stage stands "before" or "after" the planetary one')
+    simple: Literal["before", "after"] = Field(description=marked('the simple stage stands "before" or "after" the planetary one'))
     stages: Literal[1, 2] = 1
     """2: two equal single rows"""
     driver: Literal["sun", "ring", "carrier"] | None = None
     """of a single row: the other central wheel is fixed; left out: the sun"""
     ratio: PositiveNumber | None = None
     """ratio of the whole reducer, this or `output_speed`"""
-    input_speed: Speed = Field(description='speed of the input, for example "1250 rpm"')
-    output_speed: Speed | None = Field(default=None, description='speed of the output, for example "300 rpm"')
+    input_speed: Speed = Field(description=marked('speed of the input, for example "1250 rpm"'))
+    output_speed: Speed | None = Field(default=None, description=marked('speed of the output, for example "300 rpm"'))
     """this or `ratio`"""
-    teeth: dict[Name, Teeth] = Field(description="tooth numbers that are given, for example { z5 = 12 }")
+    teeth: dict[Name, Teeth] = Field(description=marked("tooth numbers that are given, for example { z5 = 12 }"))
     """the pinion of the simple stage must be there, any other may"""
-    module: Length = Field(description='module of the planetary stage, for example "5 mm"')
-    simple_module: Length = Field(description='module of the simple stage, for example "10 mm"')
-    satellites: Annotated[int, whole(2)] = Field(description="number of satellites, for example 3")
+    module: Length = Field(description=marked('module of the planetary stage, for example "5 mm"'))
+    simple_module: Length = Field(description=marked('module of the simple stage, for example "10 mm"'))
+    satellites: Annotated[int, whole(2)] = Field(description=marked("number of satellites, for example 3"))
     addendum: PositiveNumber = 1.0
     """coefficient ha*"""
     clearance: PositiveNumber = 0.25
@@ -545,18 +565,21 @@ class ReducerTable(Table):
     @model_validator(mode="after")
     def _ratio_is_known(self) -> Self:
         if (self.ratio is None) == (self.output_speed is None):
-            raise ValueError("expected either ratio or output_speed")
+            raise ValueError(tell("expected either ratio or output_speed"))
         if self.stages == 2 and self.scheme != "single row":
-            raise ValueError('stages = 2 goes with scheme = "single row" only')
+            raise ValueError(tell('stages = 2 goes with scheme = "single row" only'))
         if self.simple_ratio is not None and not self.simple_ratio[0] <= self.simple_ratio[1]:
-            raise ValueError("expected a simple_ratio that rises, for example [1.5, 4]")
+            raise ValueError(tell("expected a simple_ratio that rises, for example [1.5, 4]"))
         return self
 
     @model_validator(mode="after")
     def _driver_fits(self) -> Self:
         can = {"single row": ("sun", "ring"), "external-internal": ("sun",)}.get(self.scheme, ("carrier",))
         if self.driver is not None and self.driver not in can:
-            raise ValueError(f'scheme = "{self.scheme}" is driven by the {" or the ".join(can)}')
+            said = {"sun": marked('scheme = "{scheme}" is driven by the sun'),
+                    "carrier": marked('scheme = "{scheme}" is driven by the carrier'),
+                    "ring": marked('scheme = "{scheme}" is driven by the sun or the ring')}  # fmt: skip
+            raise ValueError(tell(said[can[-1]]).format(scheme=self.scheme))
         return self
 
 
@@ -567,10 +590,10 @@ class CamTable(Table):
     """
 
     follower: Literal["translating roller", "oscillating roller", "flat"] = Field(
-        description='"translating roller", "oscillating roller" or "flat"'
+        description=marked('"translating roller", "oscillating roller" or "flat"')
     )
     """what the cam moves: a tappet with a roller, a rocker with a roller, a tappet with a flat face"""
-    law: CamLaw = Field(description='law of the acceleration, for example "sine"')
+    law: CamLaw = Field(description=marked('law of the acceleration, for example "sine"'))
     """of both phases"""
     fall_law: CamLaw | None = None
     """left out: the fall mirrors the rise"""
@@ -580,21 +603,23 @@ class CamTable(Table):
     """
     fall_table: CamDiagram | None = None
     """the same for `fall_law = "table"`"""
-    rise: PhaseAngle = Field(description='phase angle of the rise, for example "100 deg"')
+    rise: PhaseAngle = Field(description=marked('phase angle of the rise, for example "100 deg"'))
     upper_dwell: PhaseAngle = 0.0
     """phase angle of the upper dwell"""
-    fall: PhaseAngle = Field(description='phase angle of the fall, for example "70 deg"')
+    fall: PhaseAngle = Field(description=marked('phase angle of the fall, for example "70 deg"'))
     parts: EvenParts = 8
     """equal parts of each phase"""
-    stroke: Length | None = Field(default=None, description='stroke of the follower, for example "10 mm"')
+    stroke: Length | None = Field(default=None, description=marked('stroke of the follower, for example "10 mm"'))
     eccentricity: Coordinate | None = None
     """left out: the most favourable one; positive to the side to which the S′ of the rise are laid off"""
-    arm: Length | None = Field(default=None, description='length of the rocker, for example "90 mm"')
-    swing: AcuteAngle | None = Field(default=None, description='angle through which the rocker swings, for example "30 deg"')
-    rotation: Literal["same", "opposite"] = Field(
-        default="same", description='"same": cam and rocker turn the same way in the rise; "opposite"'
+    arm: Length | None = Field(default=None, description=marked('length of the rocker, for example "90 mm"'))
+    swing: AcuteAngle | None = Field(
+        default=None, description=marked('angle through which the rocker swings, for example "30 deg"')
     )
-    pressure_angle: AcuteAngle | None = Field(default=None, description='permitted pressure angle, for example "30 deg"')
+    rotation: Literal["same", "opposite"] = Field(
+        default="same", description=marked('"same": cam and rocker turn the same way in the rise; "opposite"')
+    )
+    pressure_angle: AcuteAngle | None = Field(default=None, description=marked('permitted pressure angle, for example "30 deg"'))
     limit: Literal["rise", "both"] = "both"
     """the phases whose pressure angle is limited; `rise` goes with force closure"""
     centre: Literal["vertex", "least"] = "vertex"
@@ -609,13 +634,17 @@ class CamTable(Table):
     """the largest roller as a share of the least radius of curvature ρ_min; left out: 0.7…0.8"""
     closure: Literal["force", "geometric"] = "force"
     """`force`: a spring, chosen when `speed` and the follower's mass or inertia are there; `geometric`: a second disc"""
-    speed: Speed | None = Field(default=None, description='speed of the cam, for example "300 rpm"')
+    speed: Speed | None = Field(default=None, description=marked('speed of the cam, for example "300 rpm"'))
     """for the spring"""
-    follower_mass: Annotated[float, si(units.MASS), positive("mass")] | None = None
+    follower_mass: Annotated[float, si(units.MASS), positive(marked("expected a mass greater than zero"))] | None = None
     """of a translating or flat follower, for the spring"""
-    follower_inertia: Annotated[float, si(units.INERTIA), positive("moment of inertia")] | None = None
+    follower_inertia: (
+        Annotated[float, si(units.INERTIA), positive(marked("expected a moment of inertia greater than zero"))] | None
+    ) = None
     """of a rocker about its pivot, for the spring"""
-    spring_factor: Annotated[float, si(units.NUMBER), in_range("a number from 1 to 5", lambda x: 1 <= x <= 5)] = 1.75
+    spring_factor: Annotated[float, si(units.NUMBER), in_range(marked("expected a number from 1 to 5"), lambda x: 1 <= x <= 5)] = (
+        1.75
+    )
     """largest force of the spring over the largest force of inertia"""
     preload: InnerFraction = 0.3
     """force of the spring in the lowest position as a share of the largest"""
@@ -623,11 +652,11 @@ class CamTable(Table):
     @model_validator(mode="after")
     def _phases_fit(self) -> Self:
         if self.rise <= 0 or self.fall <= 0:
-            raise ValueError("expected a rise and a fall greater than 0 deg")
+            raise ValueError(tell("expected a rise and a fall greater than 0 deg"))
         if min(self.rise, self.fall) < units.parse("0.1 deg", units.ANGLE):
-            raise ValueError("expected a rise and a fall of 0.1 deg or more")
+            raise ValueError(tell("expected a rise and a fall of 0.1 deg or more"))
         if self.rise + self.upper_dwell + self.fall > units.parse("360.000001 deg", units.ANGLE):
-            raise ValueError("expected rise, upper_dwell and fall of 360 deg together or less")
+            raise ValueError(tell("expected rise, upper_dwell and fall of 360 deg together or less"))
         return self
 
     def diagram(self, table: str) -> tuple[list[float], list[float]]:

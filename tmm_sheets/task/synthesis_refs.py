@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from tmm_sheets.task.toml_lines import KeyPath
+from tmm_sheets.words import tell
 
 Found = tuple[KeyPath, str, str]
 """Key path, message, hint."""
@@ -41,11 +42,20 @@ def filled(data: dict[str, Any], lengths: Mapping[str, float] | None) -> tuple[d
         name = match["name"] or PLACES.get((path[0], path[-1]), "")
         length = 1.0  # any will do where something is wrong already
         if "synthesis" not in data:
-            problems.append((path, "there is no [synthesis] to take the length from", "add the table [synthesis] with conditions"))
+            problems.append(
+                (path, tell("there is no [synthesis] to take the length from"), tell("add the table [synthesis] with conditions"))
+            )
         elif lengths is not None and name not in lengths:
             known = ", ".join(lengths)
-            problems.append((path, f'unknown result "{name}"' if name else "which length of the synthesis?",
-                             f'its lengths are {known}; write for example "synthesis {next(iter(lengths))}"'))
+            problems.append(
+                (
+                    path,
+                    tell('unknown result "{name}"').format(name=name) if name else tell("which length of the synthesis?"),
+                    tell('its lengths are {known}; write for example "synthesis {name}"').format(
+                        known=known, name=next(iter(lengths))
+                    ),
+                )
+            )
         elif lengths is not None:
             length = share(match) * lengths[name]
         _put(result, path, f"{length:.15g} m")

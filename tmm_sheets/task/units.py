@@ -14,8 +14,16 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
+from tmm_sheets.words import marked, tell
+
+_NOT_THAT = marked("{expected}, not {given}; write for example {example}")
+_NOT_FINITE = marked("{expected}, not {given}; the number must be finite")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
 _LONGEST = 60  # characters; an exact fraction of a longer text would only burn time
+
+
+class Refused(ValueError):
+    """A value that is refused, in words that name the value itself."""
 
 
 @dataclass(frozen=True)
@@ -36,20 +44,21 @@ class Factor:
 
 @dataclass(frozen=True)
 class Quantity:
-    """A kind of quantity: its name in messages, an example, and the units it may be written in."""
+    """A kind of quantity: its name in messages, their beginning, an example, and the units it may be written in."""
 
     name: str
+    expected: str
     example: str
     units: MappingProxyType[str, Factor]
 
 
-def _quantity(name: str, example: str, units: dict[str, str | tuple[str, str]]) -> Quantity:
+def _quantity(name: str, expected: str, example: str, units: dict[str, str | tuple[str, str]]) -> Quantity:
     table = {}
     for names, factor in units.items():
         rational, pi = (factor, False) if isinstance(factor, str) else (factor[0], True)
         for unit in names.split(" | "):
             table[_plain(unit)] = Factor(Fraction(rational), pi)
-    return Quantity(name, example, MappingProxyType(table))
+    return Quantity(name, expected, example, MappingProxyType(table))
 
 
 def _plain(unit: str) -> str:
@@ -58,11 +67,12 @@ def _plain(unit: str) -> str:
     return re.sub(r"[\s*·⋅×^]+", "", unit)
 
 
-NUMBER = _quantity("number", "0.025", {"": "1", "%": "1/100"})
-LENGTH = _quantity("length", "0.26 m", {"m | м": "1", "mm | мм": "1/1000", "cm | см": "1/100"})
-ANGLE = _quantity("angle", "30 deg", {"deg | ° | град": ("1/180", "pi"), "rad | рад": "1"})
+NUMBER = _quantity(marked("number"), marked("expected a number"), "0.025", {"": "1", "%": "1/100"})
+LENGTH = _quantity(marked("length"), marked("expected a length"), "0.26 m", {"m | м": "1", "mm | мм": "1/1000", "cm | см": "1/100"})
+ANGLE = _quantity(marked("angle"), marked("expected an angle"), "30 deg", {"deg | ° | град": ("1/180", "pi"), "rad | рад": "1"})
 ANGULAR_VELOCITY = _quantity(
-    "speed of rotation",
+    marked("speed of rotation"),
+    marked("expected a speed of rotation"),
     "72 rpm",
     {
         "rad/s | рад/с": "1",
@@ -71,17 +81,34 @@ ANGULAR_VELOCITY = _quantity(
         "rpm | rev/min | 1/min | min-1 | об/мин | 1/мин | мин-1": ("2/60", "pi"),
     },
 )
-VELOCITY = _quantity("velocity", "8.64 m/s", {"m/s | м/с": "1"})
-ANGULAR_ACCELERATION = _quantity("angular acceleration", "1.7 rad/s2", {"rad/s2 | рад/с2": "1"})
-ACCELERATION = _quantity("acceleration", "9.81 m/s2", {"m/s2 | м/с2": "1"})
-MASS = _quantity("mass", "5.66 kg", {"kg | кг": "1", "g | г": "1/1000", "t | т": "1000"})
-INERTIA = _quantity("moment of inertia", "0.15 kg m2", {"kg m2 | кг м2": "1", "g m2 | г м2": "1/1000"})
-FORCE = _quantity("force", "2800 N", {"N | Н": "1", "kN | кН": "1000"})
-MOMENT = _quantity("moment", "612 N m", {"N m | Nm | Н м": "1", "kN m | кН м": "1000", "N mm | Н мм": "1/1000"})
-POWER = _quantity("power", "15 kW", {"W | Вт": "1", "kW | кВт": "1000"})
-PRESSURE = _quantity("pressure", "6 MPa", {"Pa | Па": "1", "kPa | кПа": "1000", "MPa | МПа | N/mm2": "1000000"})
-DENSITY = _quantity("density", "7300 kg/m3", {"kg/m3 | кг/м3": "1", "g/cm3 | г/см3": "1000"})
-STIFFNESS = _quantity("spring rate", "12 N/mm", {"N/m | Н/м": "1", "N/mm | Н/мм": "1000"})
+VELOCITY = _quantity(marked("velocity"), marked("expected a velocity"), "8.64 m/s", {"m/s | м/с": "1"})
+ANGULAR_ACCELERATION = _quantity(
+    marked("angular acceleration"), marked("expected an angular acceleration"), "1.7 rad/s2", {"rad/s2 | рад/с2": "1"}
+)
+ACCELERATION = _quantity(marked("acceleration"), marked("expected an acceleration"), "9.81 m/s2", {"m/s2 | м/с2": "1"})
+MASS = _quantity(marked("mass"), marked("expected a mass"), "5.66 kg", {"kg | кг": "1", "g | г": "1/1000", "t | т": "1000"})
+INERTIA = _quantity(
+    marked("moment of inertia"),
+    marked("expected a moment of inertia"),
+    "0.15 kg m2",
+    {"kg m2 | кг м2": "1", "g m2 | г м2": "1/1000"},
+)
+FORCE = _quantity(marked("force"), marked("expected a force"), "2800 N", {"N | Н": "1", "kN | кН": "1000"})
+MOMENT = _quantity(
+    marked("moment"),
+    marked("expected a moment"),
+    "612 N m",
+    {"N m | Nm | Н м": "1", "kN m | кН м": "1000", "N mm | Н мм": "1/1000"},
+)
+POWER = _quantity(marked("power"), marked("expected a power"), "15 kW", {"W | Вт": "1", "kW | кВт": "1000"})
+PRESSURE = _quantity(
+    marked("pressure"),
+    marked("expected a pressure"),
+    "6 MPa",
+    {"Pa | Па": "1", "kPa | кПа": "1000", "MPa | МПа | N/mm2": "1000000"},
+)
+DENSITY = _quantity(marked("density"), marked("expected a density"), "7300 kg/m3", {"kg/m3 | кг/м3": "1", "g/cm3 | г/см3": "1000"})
+STIFFNESS = _quantity(marked("spring rate"), marked("expected a spring rate"), "12 N/mm", {"N/m | Н/м": "1", "N/mm | Н/мм": "1000"})
 QUANTITIES = (
     NUMBER, LENGTH, ANGLE, ANGULAR_VELOCITY, ANGULAR_ACCELERATION, ACCELERATION, MASS, INERTIA, FORCE, MOMENT, PRESSURE,
     DENSITY, STIFFNESS, POWER, VELOCITY,
@@ -100,44 +127,49 @@ def parse(value: Any, quantity: Quantity) -> float:
 
     Raises
     ------
-    ValueError
+    Refused
         what was expected and what to write instead; also for NaN and infinity.
     """
-    expected = f"expected a {quantity.name}" if quantity.name[0] not in "aeiou" else f"expected an {quantity.name}"
+    expected = tell(quantity.expected)
+    example = _quoted(quantity)
     if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise ValueError(f"{expected}, not {_shown(value)}; write for example {_quoted(quantity)}")
+        raise Refused(tell(_NOT_THAT).format(expected=expected, given=_shown(value), example=example))
     if not isinstance(value, str):
         if not math.isfinite(value):
-            raise ValueError(f"{expected}, not {value}; the number must be finite")
+            raise Refused(tell(_NOT_FINITE).format(expected=expected, given=value))
         if quantity is not NUMBER:
-            raise ValueError(f"{expected} with its unit, not the bare number {value}; write for example "
-                             f"{_quoted(quantity)}")  # fmt: skip
+            raise Refused(tell("{expected} with its unit, not the bare number {given}; write for example {example}").format(
+                expected=expected, given=value, example=example))
         return float(value)
     text = value.strip().replace("−", "-")
     match = _NUMBER.match(text)
     if match is None or len(text) > _LONGEST:
-        raise ValueError(f"{expected}, not {value!r}; write for example {_quoted(quantity)}")
+        raise Refused(tell(_NOT_THAT).format(expected=expected, given=repr(value), example=example))
     unit = _plain(text[match.end() :])
     factor = quantity.units.get(unit)
     if factor is None:
-        raise ValueError(f"{expected}, not {value!r}; {_about_unit(unit, text[match.end() :].strip(), quantity)}")
+        about = _about_unit(unit, text[match.end() :].strip(), quantity)
+        raise Refused(tell("{expected}, not {given}; {about_unit}").format(expected=expected, given=repr(value), about_unit=about))
     result = factor.si(match.group().replace(",", "."))
     if not math.isfinite(result):
-        raise ValueError(f"{expected}, not {value!r}; the number must be finite")
+        raise Refused(tell(_NOT_FINITE).format(expected=expected, given=repr(value)))
     return result
 
 
 def _about_unit(plain: str, written: str, quantity: Quantity) -> str:
     if not plain:
-        return f"the unit is missing, write for example {_quoted(quantity)}"
+        return tell("the unit is missing, write for example {example}").format(example=_quoted(quantity))
     if quantity is NUMBER:
-        return "a pure number has no unit"
+        return tell("a pure number has no unit")
     others = [q.name for q in QUANTITIES if plain in q.units]
     if others:
-        return f"{written!r} is a unit of {others[0]}; write for example {_quoted(quantity)}"
+        return tell("{unit} is a unit of {other}; write for example {example}").format(
+            unit=repr(written), other=tell(others[0]), example=_quoted(quantity))
     near = get_close_matches(plain, list(quantity.units), n=1)
+    if near:
+        return tell("unknown unit {unit}, did you mean {near}?").format(unit=repr(written), near=repr(near[0]))
     known = ", ".join(u for u in quantity.units if u.isascii())
-    return f"unknown unit {written!r}" + (f", did you mean {near[0]!r}?" if near else f", known are {known}")
+    return tell("unknown unit {unit}, known are {known}").format(unit=repr(written), known=known)
 
 
 def _quoted(quantity: Quantity) -> str:
@@ -145,5 +177,5 @@ def _quoted(quantity: Quantity) -> str:
 
 
 def _shown(value: Any) -> str:
-    names = {bool: "true or false", list: "a list", dict: "a table"}
-    return names.get(type(value), repr(value))
+    names = {bool: marked("true or false"), list: marked("a list"), dict: marked("a table")}
+    return tell(names[type(value)]) if type(value) in names else repr(value)

@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BeforeValidator, WrapValidator
 
 from tmm_sheets import resources
 from tmm_sheets.task import units
+from tmm_sheets.words import marked, tell
 
 LEAST, GREATEST = 1e-12, 1e12
 """Sizes of numbers in SI that any machine may have, zero besides: powers and products of what lies beyond are no numbers."""
@@ -21,12 +22,13 @@ def parsed(value: Any, quantity: units.Quantity) -> float:
 
     Raises
     ------
-    ValueError
+    Refused
         when it is no such number, or of no size that a machine has.
     """
     found = units.parse(value, quantity)
     if found and not LEAST <= abs(found) <= GREATEST:
-        raise ValueError(f"expected a {quantity.name} of {LEAST:g} to {GREATEST:g} in SI units, not {value!r}; is the unit right?")
+        raise units.Refused(tell("{expected} of {least:g} to {greatest:g} in SI units, not {given!r}; is the unit right?").format(
+            expected=tell(quantity.expected), least=LEAST, greatest=GREATEST, given=value))
     return found
 
 
@@ -41,11 +43,11 @@ def si_or(word: str, quantity: units.Quantity) -> BeforeValidator:
 
 
 def in_range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
-    """Refuses values for which ``holds`` is false; ``wording`` says what was expected."""
+    """Refuses values for which ``holds`` is false; ``wording`` says what was expected, a text of the catalogues."""
 
     def check(value: float) -> float:
         if not holds(value):
-            raise ValueError(f"expected {wording}")
+            raise ValueError(tell(wording))
         return value
 
     return AfterValidator(check)
@@ -60,9 +62,9 @@ def whole(least: int, most: int = MOST) -> BeforeValidator:
 
     def check(value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
-            raise ValueError(f"expected a whole number, {least} or more")
+            raise ValueError(tell("expected a whole number, {least} or more").format(least=least))
         if value > most:
-            raise ValueError(f"expected a whole number of {most} or less")
+            raise ValueError(tell("expected a whole number of {most} or less").format(most=most))
         return value
 
     return BeforeValidator(check)
@@ -71,40 +73,42 @@ def whole(least: int, most: int = MOST) -> BeforeValidator:
 def _even_parts(parts: int) -> int:
     """Even, 12 at most."""
     if parts % 2 or parts > 12:
-        raise ValueError("expected an even number of parts, 12 at most")
+        raise ValueError(tell("expected an even number of parts, 12 at most"))
     return parts
 
 
-def positive(of: str) -> AfterValidator:
+def positive(wording: str) -> AfterValidator:
     """Refuses zero and less."""
-    return in_range(f"a {of} greater than zero", lambda x: x > 0)
+    return in_range(wording, lambda x: x > 0)
 
 
-def not_negative(of: str) -> AfterValidator:
+def not_negative(wording: str) -> AfterValidator:
     """Refuses less than zero."""
-    return in_range(f"a {of} of zero or more", lambda x: x >= 0)
+    return in_range(wording, lambda x: x >= 0)
 
 
-_ACUTE = in_range("an angle between 0 and 90 deg, both excluded", lambda x: 0 < x < units.parse("90 deg", units.ANGLE))
-_PHASE = in_range("an angle from 0 to 360 deg", lambda x: 0 <= x <= units.parse("360 deg", units.ANGLE))
-_FRACTION = in_range("a number from 0 to 1", lambda x: 0 <= x <= 1)
-_INNER_FRACTION = in_range("a number between 0 and 1, both excluded", lambda x: 0 < x < 1)
+_ACUTE = in_range(
+    marked("expected an angle between 0 and 90 deg, both excluded"), lambda x: 0 < x < units.parse("90 deg", units.ANGLE)
+)
+_PHASE = in_range(marked("expected an angle from 0 to 360 deg"), lambda x: 0 <= x <= units.parse("360 deg", units.ANGLE))
+_FRACTION = in_range(marked("expected a number from 0 to 1"), lambda x: 0 <= x <= 1)
+_INNER_FRACTION = in_range(marked("expected a number between 0 and 1, both excluded"), lambda x: 0 < x < 1)
 
 Coordinate = Annotated[float, si(units.LENGTH)]
-Length = Annotated[float, si(units.LENGTH), positive("length")]
+Length = Annotated[float, si(units.LENGTH), positive(marked("expected a length greater than zero"))]
 Angle = Annotated[float, si(units.ANGLE)]
 AcuteAngle = Annotated[float, si(units.ANGLE), _ACUTE]
 PhaseAngle = Annotated[float, si(units.ANGLE), _PHASE]
-Speed = Annotated[float, si(units.ANGULAR_VELOCITY), positive("speed of rotation")]
+Speed = Annotated[float, si(units.ANGULAR_VELOCITY), positive(marked("expected a speed of rotation greater than zero"))]
 CrankAcceleration = Annotated[float | Literal["flywheel"], si_or("flywheel", units.ANGULAR_ACCELERATION)]
 Start = Annotated[str | float, si_or("dead", units.ANGLE)]
-Gravity = Annotated[float, si(units.ACCELERATION), not_negative("gravity")]
-Mass = Annotated[float, si(units.MASS), not_negative("mass")]
-Inertia = Annotated[float, si(units.INERTIA), not_negative("moment of inertia")]
-Newtons = Annotated[float, si(units.FORCE), not_negative("force")]
-Density = Annotated[float, si(units.DENSITY), positive("density")]
+Gravity = Annotated[float, si(units.ACCELERATION), not_negative(marked("expected a gravity of zero or more"))]
+Mass = Annotated[float, si(units.MASS), not_negative(marked("expected a mass of zero or more"))]
+Inertia = Annotated[float, si(units.INERTIA), not_negative(marked("expected a moment of inertia of zero or more"))]
+Newtons = Annotated[float, si(units.FORCE), not_negative(marked("expected a force of zero or more"))]
+Density = Annotated[float, si(units.DENSITY), positive(marked("expected a density greater than zero"))]
 Number = Annotated[float, si(units.NUMBER)]
-PositiveNumber = Annotated[float, si(units.NUMBER), positive("number")]
+PositiveNumber = Annotated[float, si(units.NUMBER), positive(marked("expected a number greater than zero"))]
 Fraction = Annotated[float, si(units.NUMBER), _FRACTION]
 InnerFraction = Annotated[float, si(units.NUMBER), _INNER_FRACTION]
 Teeth = Annotated[int, whole(4)]
@@ -118,7 +122,7 @@ Sense = Literal["clockwise", "counter-clockwise"]
 def _name(value: Any) -> str:
     """Name in quotes."""
     if not isinstance(value, str) or not value.strip():
-        raise ValueError('expected a name in quotes, for example "B"')
+        raise ValueError(tell('expected a name in quotes, for example "B"'))
     return value
 
 
@@ -129,7 +133,7 @@ def _direction(value: Any) -> float | str:
     try:
         return parsed(value, units.ANGLE)
     except ValueError:
-        raise ValueError('expected "against motion", "along motion" or an angle, for example "30 deg"') from None
+        raise ValueError(tell('expected "against motion", "along motion" or an angle, for example "30 deg"')) from None
 
 
 def _through(value: Any) -> str | tuple[float, float]:
@@ -138,7 +142,7 @@ def _through(value: Any) -> str | tuple[float, float]:
         return value
     if isinstance(value, list) and len(value) == 2:
         return parsed(value[0], units.LENGTH), parsed(value[1], units.LENGTH)
-    raise ValueError('expected the name of a point or two coordinates, for example ["0 m", "0.33 m"]')
+    raise ValueError(tell('expected the name of a point or two coordinates, for example ["0 m", "0.33 m"]'))
 
 
 Name = Annotated[str, BeforeValidator(_name)]
@@ -152,12 +156,12 @@ def _diagram(value: Any) -> tuple[tuple[str | float, str | float], ...]:
     They stay as written: their units follow from the table they stand in and are read there.
     """
     if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
-        raise ValueError('expected a list of pairs, for example [[0, "0 N"], [0.6, "0 N"], [1, "1000 kN"]]')
+        raise ValueError(tell('expected a list of pairs, for example [[0, "0 N"], [0.6, "0 N"], [1, "1000 kN"]]'))
     return tuple((p[0], p[1]) for p in value)
 
 
 Diagram = Annotated[tuple[tuple[Any, Any], ...], BeforeValidator(_diagram)]
-Torque = Annotated[float, si(units.MOMENT), not_negative("moment")]
+Torque = Annotated[float, si(units.MOMENT), not_negative(marked("expected a moment of zero or more"))]
 Pressure = Annotated[float, si(units.PRESSURE)]
 
 
@@ -172,7 +176,7 @@ def diagram(pairs: Sequence[tuple[Any, Any]], argument: units.Quantity, value: u
     x = [parsed(p[0], argument) for p in pairs]
     y = [parsed(p[1], value) for p in pairs]
     if any(b < a for a, b in pairwise(x)):
-        raise ValueError("expected arguments that rise from pair to pair")
+        raise ValueError(tell("expected arguments that rise from pair to pair"))
     return x, y
 
 
@@ -180,8 +184,11 @@ def _shares(pairs: Sequence[tuple[Any, Any]]) -> Sequence[tuple[Any, Any]]:
     """Shares of the phase from 0 to 1."""
     x, _ = diagram(pairs, units.NUMBER, units.NUMBER)
     if len(x) < 2 or x[0] != 0 or x[-1] != 1:
-        reach = f"from {x[0]:g} to {x[-1]:g}" if x else "an empty table"
-        raise ValueError(f"expected shares of the phase from 0 to 1, not {reach}")
+        raise units.Refused(
+            tell("expected shares of the phase from 0 to 1, not from {first:g} to {last:g}").format(first=x[0], last=x[-1])
+            if x
+            else tell("expected shares of the phase from 0 to 1, not an empty table")
+        )
     return pairs
 
 
@@ -193,7 +200,8 @@ def _arrangement(name: str) -> str:
     known = sorted(p.stem for p in resources.template("sheets").glob("*.toml"))
     if name not in known:
         near, listed = nearest(name, known)
-        raise ValueError(f'unknown sheet, not in templates/sheets: "{name}"; {near or f"known are {listed}"}')
+        hint = near or tell("known are {known}").format(known=listed)
+        raise units.Refused(tell('unknown sheet, not in templates/sheets: "{name}"; {hint}').format(name=name, hint=hint))
     return name
 
 
@@ -208,4 +216,4 @@ def or_word(word: str) -> WrapValidator:
 def nearest(word: str, known: list[str]) -> tuple[str, str]:
     """A hint at the word that was meant, empty when none is near; all words that are known."""
     near = get_close_matches(word, known, n=1)
-    return (f'did you mean "{near[0]}"?' if near else "", ", ".join(known))
+    return (tell('did you mean "{near}"?').format(near=near[0]) if near else "", ", ".join(known))

@@ -15,11 +15,11 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr, ValidationError
 
 from tmm_sheets import texts
-from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.task import synthesis_refs, units
 from tmm_sheets.task.cam_keys import check_cam
 from tmm_sheets.task.letters import check_letters, freed
-from tmm_sheets.task.messages import said
+from tmm_sheets.task.messages import of_parser, said
 from tmm_sheets.task.names import check_names
 from tmm_sheets.task.schema import (
     BalancingTable,
@@ -43,18 +43,19 @@ from tmm_sheets.task.schema import (
 )
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber
+from tmm_sheets.words import marked, tell
 
 
 class Variant(Table):
     """A whole project file. Sections that are absent are None or empty: what depends on them is left out."""
 
-    schema_: Literal[1] = Field(alias="schema", description="version of the file format: schema = 1")
-    project: HeadingTable = Field(description="table [project] with name, title and sheets")
+    schema_: Literal[1] = Field(alias="schema", description=marked("version of the file format: schema = 1"))
+    project: HeadingTable = Field(description=marked("table [project] with name, title and sheets"))
     title_block: TitleBlockTable = TitleBlockTable()
     synthesis: SynthesisTable | None = None
     crank: CrankTable | None = None
     points: dict[Name, tuple[Coordinate, Coordinate]] = Field(
-        default={}, description='coordinates x and y with their units, for example C = ["0 m", "-0.26 m"]'
+        default={}, description=marked('coordinates x and y with their units, for example C = ["0 m", "-0.26 m"]')
     )
     """the fixed points in the world frame: x right, y up, origin in the crank pivot"""
     guide: tuple[GuideTable, ...] = ()
@@ -115,8 +116,8 @@ class Variant(Table):
             when there are none.
         """
         if not self.sheets:
-            raise CannotBuild(str(self.problem("the file has nothing of what these sheets show", "project", "sheets",
-                                               hint="leave sheets out: then the file's tables tell which there are")))
+            raise CannotBuild(str(self.problem(tell("the file has nothing of what these sheets show"), "project", "sheets",
+                                               hint=tell("leave sheets out: then the file's tables tell which there are"))))
         return self.sheets
 
     @property
@@ -172,15 +173,15 @@ def read(path: Path | str) -> Variant:
     try:
         data = Path(path).read_bytes()
     except FileNotFoundError:
-        raise BadInput(Problem("no such file", file, hint="tmm-sheets list shows the shipped projects")) from None
+        raise BadInput(Problem(tell("no such file"), file, hint=tell("tmm-sheets list shows the shipped projects"))) from None
     except IsADirectoryError:
-        raise BadInput(Problem("expected a project file, this is a folder", file)) from None
+        raise BadInput(Problem(tell("expected a project file, this is a folder"), file)) from None
     except OSError as e:
-        raise BadInput(Problem(f"cannot be read: {e.strerror}", file)) from None
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file)) from None
     try:
         text, note = texts.decoded(data)
     except texts.NotText as e:
-        raise BadInput(Problem(str(e), file, e.line, hint="save the file in the encoding UTF-8")) from None
+        raise BadInput(Problem(str(e), file, e.line, hint=tell("save the file in the encoding UTF-8"))) from None
     return parse(texts.cleaned(text), file, (note,) if note else ())
 
 
@@ -197,7 +198,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
     except tomllib.TOMLDecodeError as e:
         raise BadInput(_syntax(str(e), text, file)) from None
     except RecursionError:
-        raise BadInput(Problem("lists or tables are nested too deeply", file)) from None
+        raise BadInput(Problem(tell("lists or tables are nested too deeply"), file)) from None
     lines = scan(text)
     data, found = _with_synthesis(_with_cycle(freed(data)), file)
     problems = [_problem(file, lines, *one) for one in found]
@@ -208,8 +209,8 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
         problems += [_problem(file, lines, *said(error, Variant)) for error in e.errors()]
     problems += [_problem(file, lines, *found) for check in (check_names, check_cam, check_letters) for found in check(data)]
     if variant is not None and variant.project.sheets is None and not variant.sheets:
-        problems.append(_problem(file, lines, ("project",), "there is nothing to draw",
-                                 "add [crank] and [[group]] for a mechanism, [gear], [reducer] or [cam]"))
+        problems.append(_problem(file, lines, ("project",), tell("there is nothing to draw"),
+                                 tell("add [crank] and [[group]] for a mechanism, [gear], [reducer] or [cam]")))
     if problems or variant is None:
         raise BadInput(sorted(dict.fromkeys(problems), key=lambda p: (p.line or 0, p.field)))
     variant._file = file
@@ -253,9 +254,12 @@ def _syntax(message: str, text: str, file: str) -> Problem:
     message = re.sub(r" \(at .*\)", "", message)
     lines = text.splitlines()
     written = lines[line - 1].strip() if 0 < line <= len(lines) else ""
-    column = f", column {match[2]}" if match else ""
-    hint = f"the line is: {written}" if written else "the file ends too early: a quote or a bracket is not closed"
-    return Problem(f"not valid TOML{column}: {message[:1].lower()}{message[1:]}", file, line, hint=hint)
+    hint = (tell("the line is: {line}").format(line=written) if written else
+            tell("the file ends too early: a quote or a bracket is not closed"))
+    why = of_parser(message[:1].lower() + message[1:])
+    said = (tell("not valid TOML, column {column}: {why}").format(column=match[2], why=why) if match else
+            tell("not valid TOML: {why}").format(why=why))
+    return Problem(said, file, line, hint=hint)
 
 
 def _problem(file: str, lines: TomlLines, path: KeyPath, message: str, hint: str = "") -> Problem:

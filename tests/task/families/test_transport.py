@@ -498,7 +498,7 @@ def test_sheet_1_has_room_for_every_label(machine, code):
 def test_sheets_of_one_cipher():
     p = Project(catalogue.read("transport/crusher@12-СДМ-1908"))
     assert len(p.sheets) == 3
-    assert [arrangement(name).code for name in p.sheets] == ["Д1", "Д2", "Д3"]
+    assert [arrangement(name).code for name in p.sheets] == ["D1", "D2", "D3"]
 
 
 WHAT = {"diesel": ((2, 2), "1"), "press": ((1, 2), "2"), "compressor": ((2, 2), "1"), "crusher": ((1, 1), "11")}

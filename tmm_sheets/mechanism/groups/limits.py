@@ -11,6 +11,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.mechanism.groups.contexts import PositionPlan
+from tmm_sheets.words import tell
 
 SWEEP = 720
 """Crank angles of the fine sweep; between them the narrowest places are searched for."""
@@ -36,12 +37,12 @@ class AssemblyLimit:
 
 def mm(length: float) -> str:
     """A length, m, in words."""
-    return f"{length * 1000:.4g} mm"
+    return tell("{length:.4g} mm").format(length=length * 1000)
 
 
 def lacking(length: float) -> str:
     """A lack, m, in words."""
-    return mm(length) if length >= 1e-6 else "less than 0.001 mm"
+    return mm(length) if length >= 1e-6 else tell("less than 0.001 mm")
 
 
 def more(length: float) -> str:
@@ -56,9 +57,9 @@ def less(length: float) -> str:
 
 def _rounded(length: float, to: Callable[[float], int]) -> str:
     if length <= 0:
-        return "0 mm"
+        return mm(0.0)
     unit = 10.0 ** (floor(log10(length * 1000)) - 3)
-    return f"{to(length * 1000 / unit) * unit:.6g} mm"
+    return tell("{length:.6g} mm").format(length=to(length * 1000 / unit) * unit)
 
 
 def span(pos: PositionPlan[Any, Any], p: str, q: str) -> Any:

@@ -9,6 +9,7 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 class PRPKind(GroupKind):
     """Kind 4: two blocks on two guides, joined by a hinge."""
 
-    number, form, orders = 4, "ПВП", ("PRP",)
+    number, form, orders = 4, marked("ПВП"), ("PRP",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         c, (i, j) = str(g.inner), g.links
@@ -75,8 +76,8 @@ class PRPKind(GroupKind):
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
         a, b = g.guides
         return [AssemblyLimit(1.0, lambda pos: sine(pos.guide_directions[a].value, pos.guide_directions[b].value) - TOUCH,
-                              lambda lack: f"the guides {a} and {b} are parallel there",
-                              lambda pos: "turn one of the guides so that they cross at every position", measured=False)]
+                              lambda lack: tell("the guides {a} and {b} are parallel there").format(a=a, b=b),
+                              lambda pos: tell("turn one of the guides so that they cross at every position"), measured=False)]
 
     def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
         a, b = (pos.guide_directions[name].value for name in g.guides)

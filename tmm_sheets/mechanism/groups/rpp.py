@@ -9,6 +9,7 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 class RPPKind(GroupKind):
     """Kind 5: a block hinged to a pin in the slot of a link that slides along a guide."""
 
-    number, form, orders = 5, "ВПП", ("RPP", "PPR")
+    number, form, orders = 5, marked("ВПП"), ("RPP", "PPR")
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         p, (i, j) = g.outer[0], g.links
@@ -127,8 +128,9 @@ class RPPKind(GroupKind):
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
         i, j = g.links
         return [AssemblyLimit(1.0, lambda pos: sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
-                              lambda lack: f"the slot of link {j} is parallel to its guide {g.guides[0]}",
-                              lambda pos: 'try slot = "90 deg"', measured=False)]
+                              lambda lack: tell("the slot of link {link} is parallel to its guide {guide}").format(
+                                  link=j, guide=g.guides[0]),
+                              lambda pos: tell('try slot = "90 deg"'), measured=False)]
 
     def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
         return 1 / sine(pos.guide_directions[g.guides[0]].value, pos.directions[g.links[0]].value)

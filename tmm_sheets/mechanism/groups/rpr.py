@@ -16,6 +16,7 @@ from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGEN
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -32,7 +33,7 @@ SINE = Rule("sine between slot and perpendicular to the line of pivots", lambda 
 class RPRKind(GroupKind):
     """Kind 3: a block hinged to a pin, sliding along a rocker that is hinged to a pivot."""
 
-    number, form, orders = 3, "ВПВ", ("RPR",)
+    number, form, orders = 3, marked("ВПВ"), ("RPR",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         (p, q), (i, j) = g.outer, g.links
@@ -129,12 +130,19 @@ class RPRKind(GroupKind):
         p, q = g.outer
         offset = abs(g.offset)
         if not offset:
-            return [AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - TOUCH * m.crank.length,
-                                  lambda lack: f"{p} passes through {q}, so that the guide {q}{p} has no direction",
-                                  lambda pos: f"move {q} off the path of {p}", measured=False)]
+            return [
+                AssemblyLimit(
+                    m.crank.length,
+                    lambda pos: span(pos, p, q) - TOUCH * m.crank.length,
+                    lambda lack: tell("{p} passes through {q}, so that the guide {q}{p} has no direction").format(p=p, q=q),
+                    lambda pos: tell("move {q} off the path of {p}").format(p=p, q=q),
+                    measured=False,
+                )
+            ]
         return [AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - offset - TOUCH * m.crank.length,
-                              lambda lack: f"{p} comes {lacking(lack)} too near to {q} for the offset of {mm(offset)}",
-                              lambda pos: f"try an offset below {less(extremes(span(pos, p, q))[0])}")]
+                              lambda lack: tell("{p} comes {lack} too near to {q} for the offset of {offset}").format(
+                                  p=p, q=q, lack=lacking(lack), offset=mm(offset)),
+                              lambda pos: tell("try an offset below {most}").format(most=less(extremes(span(pos, p, q))[0])))]
 
     def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
         r = pos.points[g.outer[0]].value - pos.points[g.outer[1]].value
@@ -169,9 +177,22 @@ class RPRKind(GroupKind):
         if c.pin not in g.outer or q not in m.fixed or (lack := _inside(m, q)) < 0:
             return
         raise CannotBuild(
-            f"pivot {q} of rocker {g.links[1]} lies {mm(lack)} inside the crank circle: "
-            f"{c.pivot}{q} = {mm(c.length - lack)}, {c.pivot}{c.pin} = {mm(c.length)}; the rocker has no dead positions",
-            f"make {c.pivot}{q} longer than the crank, or give the crank angle of position 0 instead of start = \"dead\"")
+            tell(
+                "pivot {q} of rocker {link} lies {lack} inside the crank circle: {centres} = {distance}, {crank} = {length}; "
+                "the rocker has no dead positions"
+            ).format(
+                q=q,
+                link=g.links[1],
+                lack=mm(lack),
+                centres=f"{c.pivot}{q}",
+                distance=mm(c.length - lack),
+                crank=f"{c.pivot}{c.pin}",
+                length=mm(c.length),
+            ),
+            tell('make {centres} longer than the crank, or give the crank angle of position 0 instead of start = "dead"').format(
+                centres=f"{c.pivot}{q}"
+            ),
+        )
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), (p, q) = g.links, g.outer

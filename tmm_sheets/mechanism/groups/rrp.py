@@ -15,6 +15,7 @@ from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, fold_and_stre
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -26,7 +27,7 @@ SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side
 class RRPKind(GroupKind):
     """Kind 2: a rod hinged to a slider on a guide."""
 
-    number, form, orders = 2, "ВВП", ("RRP", "PRR")
+    number, form, orders = 2, marked("ВВП"), ("RRP", "PRR")
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         p, c, (i, j) = g.outer[0], str(g.inner), g.links
@@ -95,8 +96,10 @@ class RRPKind(GroupKind):
             return np.abs(ar.cross(pos.guide_directions[guide].value, pos.guide_points[guide].value - pos.points[p].value))
 
         return [AssemblyLimit(m.crank.length, lambda pos: length - away(pos),
-                              lambda lack: f"rod {rod} = {mm(length)} is {lacking(lack)} too short to reach the guide {guide}",
-                              lambda pos: f"try {rod} >= {more(extremes(away(pos))[1])}")]
+                              lambda lack: tell(
+                                  "rod {rod} = {length} is {lack} too short to reach the guide {guide}").format(
+                                      rod=rod, length=mm(length), lack=lacking(lack), guide=guide),
+                              lambda pos: tell("try {rod} >= {least}").format(rod=rod, least=more(extremes(away(pos))[1])))]
 
     def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
         rod = pos.points[str(g.inner)].value - pos.points[g.outer[0]].value

@@ -14,6 +14,7 @@ from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, HALF_OF_ARCS, fol
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, sine, span
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, turning
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -25,7 +26,7 @@ SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 
 class RRRKind(GroupKind):
     """Kind 1: two rods joined by a hinge, hinged to what is before them."""
 
-    number, form, orders = 1, "ВВВ", ("RRR",)
+    number, form, orders = 1, marked("ВВВ"), ("RRR",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         (p, q), c, (i, j) = g.outer, str(g.inner), g.links
@@ -91,14 +92,16 @@ class RRRKind(GroupKind):
             for name, other in ((first, l2), (second, l1)):
                 least, most = max(high - other, other - low), other + low
                 if most > least * 1.001:
-                    return f"try {name} from {more(least)} to {less(most)}"
-            return f"try {first} = {second} = {more(high / 2)} or longer"
+                    return tell("try {rod} from {least} to {most}").format(rod=name, least=more(least), most=less(most))
+            return tell("try {first} = {second} = {least} or longer").format(first=first, second=second, least=more(high / 2))
 
         return [
             AssemblyLimit(m.crank.length, lambda pos: l1 + l2 - span(pos, p, q),
-                          lambda lack: f"{first} = {mm(l1)} and {second} = {mm(l2)} together are {lacking(lack)} too short", hint),
+                          lambda lack: tell("{first} = {l1} and {second} = {l2} together are {lack} too short").format(
+                              first=first, second=second, l1=mm(l1), l2=mm(l2), lack=lacking(lack)), hint),
             AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - (a - b),
-                          lambda lack: f"{long} = {mm(a)} is {lacking(lack)} too long beside {short} = {mm(b)}", hint),
+                          lambda lack: tell("{long} = {a} is {lack} too long beside {short} = {b}").format(
+                              long=long, short=short, a=mm(a), b=mm(b), lack=lacking(lack)), hint),
         ]
 
     def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:

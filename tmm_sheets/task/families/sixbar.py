@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
@@ -35,9 +36,12 @@ class Misprint:
 
     def warning(self, corrected: bool) -> str:
         """One line about it."""
-        used = "the suggested value is used" if corrected else f"the printed value is used, --corrected takes {self.suggested}"
-        return (f"{self.symbol} = {self.printed} {self.unit} is a suspected misprint ({self.certainty}), suggested "
-                f"{self.suggested} {self.unit}: {self.reason}; {used}")
+        said = (tell("{symbol} = {printed} {unit} is a suspected misprint ({certainty}), suggested {suggested} {unit}: {reason}; "
+                     "the suggested value is used") if corrected else
+                tell("{symbol} = {printed} {unit} is a suspected misprint ({certainty}), suggested {suggested} {unit}: {reason}; "
+                     "the printed value is used, --corrected takes {suggested}"))
+        return said.format(symbol=self.symbol, printed=self.printed, unit=self.unit, certainty=tell(self.certainty),
+                           suggested=self.suggested, reason=tell(self.reason))
 
 
 def names() -> tuple[str, ...]:
@@ -63,11 +67,15 @@ def read(name: str, corrected: bool = False) -> Variant:
 def _parts(name: str) -> tuple[int, int]:
     match = re.fullmatch(r"sixbar/(\d{1,2}):(\d)", name)
     if match is None:
-        raise BadInput(f'there is no project "{name}"', hint="write sixbar/task:variant, for example sixbar/3:2")
+        raise BadInput(tell('there is no project "{name}"').format(name=name),
+                       hint=tell("write sixbar/task:variant, for example sixbar/3:2"))
     task, number = int(match[1]), int(match[2])
-    for what, value, known in (("task", task, TASKS), ("variant", number, VARIANTS)):
+    for value, known, refusal, hint in (
+        (task, TASKS, tell("{name}: there is no task {n}"), tell("tasks are {first} to {last}")),
+        (number, VARIANTS, tell("{name}: there is no variant {n}"), tell("variants are {first} to {last}")),
+    ):  # fmt: skip
         if value not in known:
-            raise BadInput(f"{name}: there is no {what} {value}", hint=f"{what}s are {known[0]} to {known[-1]}")
+            raise BadInput(refusal.format(name=name, n=value), hint=hint.format(first=known[0], last=known[-1]))
     return task, number
 
 

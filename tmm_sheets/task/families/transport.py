@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import resources
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
@@ -60,8 +61,8 @@ def cipher(text: str) -> Cipher:
     rule = _data("cipher")
     found = re.fullmatch(r"\s*([0-9]{1,4})\s*[-–—]\s*([^\W\d_]{1,6})\s*[-–—]\s*([0-9]{1,12})\s*", text)
     if found is None:
-        raise BadInput(f'not a cipher: "{text}"',
-                       hint="expected year of admission, specialty and number, for example 01-Т-27 (letters of either alphabet)")
+        raise BadInput(tell('not a cipher: "{text}"').format(text=text), hint=tell(
+            "expected year of admission, specialty and number, for example 01-Т-27 (letters of either alphabet)"))
     year, letters, number = found.groups()
     name = letters.upper().translate(LOOK_ALIKE)
     speciality = LATIN.get(name, name)
@@ -115,10 +116,22 @@ def misprints(rows: Iterable[Mapping[str, Any]], digits: Mapping[str, int], corr
         suggested = row.get("suggested", {}).get(str(column))
         if suggested is not None:
             unit = f" {row['unit']}" if "unit" in row else ""
-            used = "is used" if corrected else "is kept; --corrected takes the other one"
-            value = suggested if corrected else row["values"][column]
-            yield (f"table {row['table']}, {row.get('symbol', row['key'])}, column {column}: {row['values'][column]}{unit} is "
-                   f"probably a misprint of {suggested}{unit} ({row['misprint']}); {value:g} {used}")
+            said = (
+                tell("table {table}, {symbol}, column {column}: {printed}{unit} is probably a misprint of {suggested}{unit} "
+                     "({reason}); {value:g} is used") if corrected else
+                tell("table {table}, {symbol}, column {column}: {printed}{unit} is probably a misprint of {suggested}{unit} "
+                     "({reason}); {value:g} is kept; --corrected takes the other one"))
+            value, reason = suggested if corrected else row["values"][column], row["misprint"]
+            yield said.format(
+                table=row["table"],
+                symbol=row.get("symbol", row["key"]),
+                column=column,
+                printed=row["values"][column],
+                unit=unit,
+                suggested=suggested,
+                reason=tell(reason),
+                value=value,
+            )
 
 
 # --- reading --------------------------------------------------------------------------------------------------------
@@ -157,17 +170,20 @@ def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ..
     machine, at, code = name.removeprefix("transport/").partition("@")
     if machine not in MACHINES:
         near = get_close_matches(machine, MACHINES, n=1)
-        raise BadInput(f'unknown machine "{machine}" of manual 003',
-                       hint=f"did you mean transport/{near[0]}?" if near else f"known are {', '.join(MACHINES)}")
+        raise BadInput(tell('unknown machine "{machine}" of manual 003').format(machine=machine),
+                       hint=tell("did you mean {near}?").format(near=f"transport/{near[0]}") if near else
+                       tell("known are {known}").format(known=", ".join(MACHINES)))
     example = _data("cipher")["examples"][machine]
     if not at:
-        raise BadInput(f"transport/{machine} needs a cipher", hint=f"write for example transport/{machine}@{example}")
+        raise BadInput(tell("transport/{machine} needs a cipher").format(machine=machine),
+                       hint=tell("write for example {name}").format(name=f"transport/{machine}@{example}"))
     student = cipher(code)
     data = _data(machine)
     values = chosen(data["row"], student.digits, corrected)
     notes = []
     if student.speciality != data["speciality"]:
-        notes.append(f"the ciphers of specialty {data['speciality']} have this machine, not those of {student.speciality}")
+        notes.append(tell("the ciphers of specialty {own} have this machine, not those of {given}").format(
+            own=data["speciality"], given=student.speciality))
     notes += misprints(data["row"], student.digits, corrected)
     values |= DERIVED[machine](values)
     refuse(machine, values)
@@ -228,13 +244,15 @@ def _cylinders(values: Mapping[str, Value]) -> dict[str, Value]:
 def _of_diesel(values: Mapping[str, Value]) -> dict[str, Value]:
     ab, ad, bd = (values[key].number for key in ("l_AB", "l_AD", "l_BD"))
     if ad + bd <= ab:
-        raise CannotBuild(
-            f"triangle ABD of the main rod is impossible: l_AD + l_BD <= l_AB, {_mm(ad)} + {_mm(bd)} <= {_mm(ab)} "
-            f"({_mm(ab - ad - bd)} too short); it fails at every position, the first is 12")
+        raise CannotBuild(tell(
+            "triangle ABD of the main rod is impossible: l_AD + l_BD <= l_AB, {ad} + {bd} <= {ab} "
+            "({lack} too short); it fails at every position, the first is 12").format(
+                ad=_mm(ad), bd=_mm(bd), ab=_mm(ab), lack=_mm(ab - ad - bd)))
     if abs(bd - ad) >= ab:
-        raise CannotBuild(
-            f"triangle ABD of the main rod is impossible: |l_BD - l_AD| >= l_AB, |{_mm(bd)} - {_mm(ad)}| >= {_mm(ab)} "
-            f"({_mm(abs(bd - ad) - ab)} too long); it fails at every position, the first is 12")
+        raise CannotBuild(tell(
+            "triangle ABD of the main rod is impossible: |l_BD - l_AD| >= l_AB, |{bd} - {ad}| >= {ab} "
+            "({excess} too long); it fails at every position, the first is 12").format(
+                ad=_mm(ad), bd=_mm(bd), ab=_mm(ab), excess=_mm(abs(bd - ad) - ab)))
     alpha = degrees(acos((ab * ab + ad * ad - bd * bd) / (2 * ab * ad)))
     rule = f"angle BAD by the law of cosines from l_AB = {ab:g}, l_AD = {ad:g}, l_BD = {bd:g}; {values['l_BD'].source}"
     return _cylinders(values) | _masses(values, 1.0, 2, 3, 4, 5) | _derived(alpha=(alpha, rule)) | _loads("diesel")
@@ -259,7 +277,7 @@ DERIVED: dict[str, Callable[[Mapping[str, Value]], dict[str, Value]]] = {
 
 
 def _mm(length: float) -> str:
-    return f"{1000 * length:.4g} mm"
+    return tell("{length:.4g} mm").format(length=1000 * length)
 
 
 # --- conditions of assembly -----------------------------------------------------------------------------------------
@@ -324,16 +342,16 @@ def _turn_of_diesel(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
     d = a + (b - a) / n["l_AB"] * n["l_AD"] * _axis(-n["alpha"])
     c, short5 = _slider(d, n["l_DC"], _axis(90 - n["theta"] / 2))
     return TurnOfMachine({"A": a, "B": b, "D": d, "C": c}, (
-        Condition("max|y_A| > l_AB (slider 3: A lies farther from the axis of cylinder 6 than AB reaches)", short3),
-        Condition("max|y_D| > l_DC (slider 5: D lies farther from the axis of cylinder 7 than DC reaches)", short5)))
+        Condition(marked("max|y_A| > l_AB (slider 3: A lies farther from the axis of cylinder 6 than AB reaches)"), short3),
+        Condition(marked("max|y_D| > l_DC (slider 5: D lies farther from the axis of cylinder 7 than DC reaches)"), short5)))
 
 
 def _turn_of_compressor(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
     b, short3 = _slider(a, n["l_AB"], _axis(90 - n["theta"] / 2))
     c, short5 = _slider(a, n["l_AC"], _axis(90 + n["theta"] / 2))
     return TurnOfMachine({"A": a, "B": b, "C": c}, (
-        Condition("max|y_A| > l_AB (slider 3: A lies farther from the axis of cylinder 6 than AB reaches)", short3),
-        Condition("max|y_A| > l_AC (slider 5: A lies farther from the axis of cylinder 7 than AC reaches)", short5)))
+        Condition(marked("max|y_A| > l_AB (slider 3: A lies farther from the axis of cylinder 6 than AB reaches)"), short3),
+        Condition(marked("max|y_A| > l_AC (slider 5: A lies farther from the axis of cylinder 7 than AC reaches)"), short5)))
 
 
 def _turn_of_press(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
@@ -342,7 +360,7 @@ def _turn_of_press(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
     c, short = _slider(b - d.real, n["l_BC"], -1j)
     return TurnOfMachine({"A": a, "B": b, "C": c + d.real}, (
         *_four_bar(n, d, lacks),
-        Condition("max|x_B - x_D| > l_BC (slider 5: B lies farther from the guide than BC reaches)", short)))
+        Condition(marked("max|x_B - x_D| > l_BC (slider 5: B lies farther from the guide than BC reaches)"), short)))
 
 
 def _turn_of_crusher(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
@@ -351,8 +369,8 @@ def _turn_of_crusher(a: Any, n: Mapping[str, float]) -> TurnOfMachine:
     c, far, near = _hinge(b, n["l_BC"], e, n["l_EC"], 1)
     return TurnOfMachine({"A": a, "B": b, "C": c}, (
         *_four_bar(n, d, lacks),
-        Condition("|BE| > l_BC + l_EC (group 4-5: B lies farther from E than BC and EC reach)", far),
-        Condition("|BE| < |l_EC - l_BC| (group 4-5: B lies nearer to E than BC and EC can come)", near)))
+        Condition(marked("|BE| > l_BC + l_EC (group 4-5: B lies farther from E than BC and EC reach)"), far),
+        Condition(marked("|BE| < |l_EC - l_BC| (group 4-5: B lies nearer to E than BC and EC can come)"), near)))
 
 
 def _four_bar(n: Mapping[str, float], d: complex, lacks: Iterable[Any]) -> tuple[Condition, Condition]:
@@ -360,10 +378,18 @@ def _four_bar(n: Mapping[str, float], d: complex, lacks: Iterable[Any]) -> tuple
     far, near = lacks
     lack = far + (near - far) * (near > far)
     rod, crank, frame, rocker = n["l_AB"], n["l_OA"], abs(d), n["l_BD"]
-    return (Condition("l_AB + l_OA >= |OD| + l_BD (four-bar O-A-B-D locks: crank and rod outstretched are too long)", lack,
-                      rod + crank - frame - rocker),
-            Condition("l_AB - l_OA <= ||OD| - l_BD| (four-bar O-A-B-D locks: crank folded over the rod leaves too little)", lack,
-                      abs(frame - rocker) - rod + crank))
+    return (
+        Condition(
+            marked("l_AB + l_OA >= |OD| + l_BD (four-bar O-A-B-D locks: crank and rod outstretched are too long)"),
+            lack,
+            rod + crank - frame - rocker,
+        ),
+        Condition(
+            marked("l_AB - l_OA <= ||OD| - l_BD| (four-bar O-A-B-D locks: crank folded over the rod leaves too little)"),
+            lack,
+            abs(frame - rocker) - rod + crank,
+        ),
+    )
 
 
 ASSEMBLED: dict[str, Callable[[Any, Mapping[str, float]], TurnOfMachine]] = {
@@ -387,11 +413,12 @@ def refuse(machine: str, values: Mapping[str, Value]) -> None:
     step = SWEEP // POSITIONS
     numbered = [k for k in range(POSITIONS) if lack[k * step] > 0]
     worst = int(lack.argmax())
-    where = (f"first at position {numbered[0] or POSITIONS}" if numbered else
-             f"{360 * worst / SWEEP:g} deg after position 12, between the numbered positions")
     amount = float(lack[worst]) if condition.worst is None else condition.worst
-    raise CannotBuild(f"{condition.said}: by {_mm(amount)}, {where}",
-                      "the lengths that this cipher chooses make no mechanism: ask for another column of the table")
+    refusal = (tell("{condition}: by {amount}, first at position {position}") if numbered else
+               tell("{condition}: by {amount}, {angle:g} deg after position 12, between the numbered positions"))
+    raise CannotBuild(refusal.format(condition=tell(condition.said), amount=_mm(amount), angle=360 * worst / SWEEP,
+                                     position=(numbered[0] or POSITIONS) if numbered else ""),
+                      tell("the lengths that this cipher chooses make no mechanism: ask for another column of the table"))
 
 
 def _numbers(values: Mapping[str, Value]) -> dict[str, float]:
@@ -423,10 +450,12 @@ def _signs(machine: str, values: Mapping[str, Value], pistons: Mapping[str, tupl
             dead = abs(speed[i]) < 1e-3 * np.abs(speed).max()
             driving = excess(float(share[i]), bool(speed[i] > 0)) * speed[i] > 0
             if not dead and driving != (k in listed[link]):
-                differ.append(f"{k} ({'driving' if driving else 'resisting'})")
+                differ.append((tell("{k} (driving)") if driving else tell("{k} (resisting)")).format(k=k))
         if differ:
-            yield (f"piston {link}: the force has the sign of the piston's velocity; the manual's list has the other one at "
-                   f"position{'s' * (len(differ) > 1)} {', '.join(differ)}")
+            yield tell_n("piston {link}: the force has the sign of the piston's velocity; the manual's list has the other one at "
+                         "position {positions}",
+                         "piston {link}: the force has the sign of the piston's velocity; the manual's list has the other one at "
+                         "positions {positions}", len(differ)).format(link=link, positions=", ".join(differ))
 
 
 def _diesel_notes(values: Mapping[str, Value]) -> Iterator[str]:
@@ -453,8 +482,8 @@ def _compressor_notes(values: Mapping[str, Value]) -> Iterator[str]:
 def _press_notes(values: Mapping[str, Value]) -> Iterator[str]:
     b = turn("press", _numbers(values)).points["B"]
     if (b.real + values["X"].number).max() > 0:
-        yield ("the toggle crosses the straight line: the slider has two lowest positions in one turn; "
-               "its working stroke ends at the first of them")
+        yield tell("the toggle crosses the straight line: the slider has two lowest positions in one turn; "
+                   "its working stroke ends at the first of them")
 
 
 def _crusher_notes(values: Mapping[str, Value]) -> Iterator[str]:
