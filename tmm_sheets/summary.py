@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.numbers import plain
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
@@ -63,7 +64,7 @@ def _structure(m: Mechanism) -> Iterator[str]:
     n, p5 = len(m.links), len(m.pairs)
     yield f"\nMobility W = 3n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {m.mobility}"
     yield "\nAssur groups, the farthest first"
-    yield from _table([(g.name, "class 2, order 2", f"kind {g.kind.number} ({g.form})") for g in reversed(m.groups)])
+    yield from _table([(g.name, "class 2, order 2", f"kind {g.kind.number} ({tell(g.kind.form)})") for g in reversed(m.groups)])
     yield f"\nFormula of structure: {m.structure}"
 
 

@@ -9,6 +9,7 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 class PRPKind(GroupKind):
     """Kind 4: two blocks on two guides, joined by a hinge."""
 
-    number, form, orders = 4, "ПВП", ("PRP",)
+    number, form, orders = 4, marked("PRP"), ("PRP",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         c, (i, j) = str(g.inner), g.links

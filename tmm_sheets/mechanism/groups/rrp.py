@@ -15,18 +15,19 @@ from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, fold_and_stre
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
-            "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.", unit="1")
+            marked("Sine of the angle between the coupler and the perpendicular to the guide {name} = {value}."), unit="1")
 
 
 class RRPKind(GroupKind):
     """Kind 2: a rod hinged to a slider on a guide."""
 
-    number, form, orders = 2, "ВВП", ("RRP", "PRR")
+    number, form, orders = 2, marked("RRP"), ("RRP", "PRR")
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         p, c, (i, j) = g.outer[0], str(g.inner), g.links

@@ -14,18 +14,19 @@ from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, HALF_OF_ARCS, fol
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, sine, span
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, turning
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
-            "Синус угла между звеньями {name} = {value}.", unit="1")
+            marked("Sine of the angle between the links {name} = {value}."), unit="1")
 
 
 class RRRKind(GroupKind):
     """Kind 1: two rods joined by a hinge, hinged to what is before them."""
 
-    number, form, orders = 1, "ВВВ", ("RRR",)
+    number, form, orders = 1, marked("RRR"), ("RRR",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         (p, q), c, (i, j) = g.outer, str(g.inner), g.links

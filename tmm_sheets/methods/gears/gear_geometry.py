@@ -17,6 +17,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_formulas import FILLET, GearData, geometry_plan
 from tmm_sheets.methods.gears.rack import Rack
 from tmm_sheets.numbers import fixed
+from tmm_sheets.words import tr
 
 LEAST_TIP = 0.2
 """Least tooth thickness at the tip circle in modules (GOST 16532, appendix)."""
@@ -137,10 +138,12 @@ def warnings_of(pair: PairGeometry) -> tuple[str, ...]:
     """What a teacher would ask about, although it can be built (Russian, for the sheet)."""
     out = []
     if pair.eps_alpha < LOW_CONTACT_RATIO:
-        out.append("коэффициент перекрытия меньше 1,1")
+        out.append(tr("the contact ratio is less than 1.1"))
     for w in pair.wheels:
         if pair.profile == "rack" and w.rack.undercut:
-            out.append(f"зуб колеса {w.number} подрезан: смещение меньше {fixed(w.rack.least_shift)}")
+            out.append(tr("the tooth of wheel {wheel} is undercut: the shift is less than {least}").format(
+                wheel=w.number, least=fixed(w.rack.least_shift)))
         if pair.profile == "fillet" and w.step("rho_f").value < FILLET * pair.step("m").value:
-            out.append(f"радиус выкружки колеса {w.number} уменьшен: во впадине нет места для 0,38m")
+            out.append(tr("the fillet of wheel {wheel} is smaller: there is no room for 0.38m in the tooth "
+                          "space").format(wheel=w.number))
     return tuple(out)

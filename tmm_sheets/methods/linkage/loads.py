@@ -28,6 +28,7 @@ from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.velocities import velocity_plan
+from tmm_sheets.words import marked
 
 STROKES = "strokes of forces"
 NEAR = 1e-12
@@ -49,7 +50,7 @@ class Path:
 
 WAY = Rule("fraction of a straight way",
            lambda p, sense, low, way: np.minimum(np.maximum(((p * np.conjugate(sense)).real - low) / way, 0.0), 1.0),
-           ("point", "direction", "length", "length"), "number", "Доля пройденного пути {name} = {value}.", exact=True)
+           ("point", "direction", "length", "length"), "number", marked("Part of the way travelled {name} = {value}."), exact=True)
 
 
 @primitive("fraction of a swing")
@@ -60,7 +61,7 @@ def _swung(u: Any, sense: float, low: float, swing: float) -> Any:
 
 
 SWING = Rule("fraction of a swing", _swung, ("direction", "number", "angle", "angle"), "number",
-             "Доля угла качания {name} = {value}.", exact=True)
+             marked("Part of the angle of swing {name} = {value}."), exact=True)
 
 
 @dataclass(frozen=True)
@@ -316,8 +317,9 @@ class Applied:
         return np.abs(self.law(turned, side))
 
 
-FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"), "force", "Сила {name} = {value}.", unit="N")
-MOMENT = Rule("given moment", lambda value: value, ("number",), "number", "Момент {name} = {value} Н·м.", unit="N*m")
+FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"), "force", marked("Force {name} = {value}."),
+             unit="N")
+MOMENT = Rule("given moment", lambda value: value, ("number",), "number", marked("Moment {name} = {value} N·m."), unit="N*m")
 
 
 def _signed_sum(*terms: Any) -> Any:
