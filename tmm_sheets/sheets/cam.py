@@ -184,10 +184,10 @@ def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
         if p.angle > 0:
             a, b = (base + float(m.scales.phi.mm(v)) for v in (p.start, p.end))
             wide = abs(b - a)
-            full = f"{p.symbol} = {number(degrees(p.angle))}°"
-            canvas.dimension(a, b, -8.0, full if wide > 28.0 else p.symbol if wide > 9.0 else "")
+            full = f"{p.letters} = {number(degrees(p.angle))}°"
+            canvas.dimension(a, b, -8.0, full if wide > 28.0 else p.letters if wide > 9.0 else "")
             if wide <= 9.0:
-                canvas.label((a + b) / 2 - 8j, p.symbol, -1j, 3.5, 1.5, leader=False)
+                canvas.label((a + b) / 2 - 8j, p.letters, -1j, 3.5, 1.5, leader=False)
 
 
 def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:

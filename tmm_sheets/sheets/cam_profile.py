@@ -397,7 +397,7 @@ def _phase_angles(s: Stage, picture: _ProfilePicture) -> None:
     for p in cam.law.phases:
         ends = sorted(start + cam.right * v for v in (p.start, p.end))
         mark_line(s, cam.inversion.ends, origin, origin + rect(reach, start + cam.right * p.start), "thin")
-        canvas.angle_mark(origin, ends[0], ends[1], radius, p.symbol)
+        canvas.angle_mark(origin, ends[0], ends[1], radius, p.letters)
     turn = 0.5 * radius
     with of(s, "O", "symbol"):
         canvas.arc_arrow(origin, turn, start + cam.right * 0.3, start - cam.right * 1.3, "axis")

@@ -23,6 +23,7 @@ from tmm_sheets.compare.measured.measurable import (
 )
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.linkage import accelerations
@@ -30,7 +31,7 @@ from tmm_sheets.methods.linkage.forces import MOMENTS
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.plan import Plan, Segment
     from tmm_sheets.project import Project
 
 
@@ -87,6 +88,12 @@ def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = ""
             yield length(plan, scales, k, start, step, f"{start.name}{step.name}")
 
 
+def _name(vector: Segment) -> str:
+    """Name of a vector of motion in every language: its symbol, with the index that Coriolis' acceleration has in Russian."""
+    name = re.sub(r"[\u0305{}]", "", vector.symbol)
+    return f"{name.partition('^')[0]}^к" if vector.head.rule is accelerations.CORIOLIS else name
+
+
 def _motion_results(project: Project, found: Measurables, of_velocities: list[int]) -> None:
     """Velocities and angular velocities at the positions with a velocity plan, accelerations at that of the force analysis."""
     study, force = project.study, project.force_index
@@ -102,7 +109,7 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
         mu = found.scales[key].mu
         for k in positions:
             label = study.labels[k]
-            vectors = [(re.sub(r"[\u0305{}]", "", s.symbol), s.tail, s.head) for s in of.plan.segments]
+            vectors = [(_name(s), s.tail, s.head) for s in of.plan.segments]
             vectors += [(f"{letter}_{name}", of.pole, step) for name, step in of.points.items() if step is not of.pole]
             for name, tail, head in vectors:
                 drawn = length(of.plan, found.scales, k, tail, head, name)
@@ -219,7 +226,8 @@ def _force_plans(project: Project, found: Measurables) -> None:
         for entry in _segments(plan, found.scales, k, "–"):
             found.add(entry)
         for side in plan.segments:
-            name = re.sub(r"[\u0305{}^]", "", side.symbol).replace("F_", "F")
+            laid = symbol(side.head.args[1].name) if side.head.rule is rules.SHIFT else side.symbol
+            name = re.sub(r"[\u0305{}^]", "", laid).replace("F_", "F")
             found.check(f"{RESULTS}/{label}/{name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float, plan.name)
         for step in plan:
             if step.rule.gives == "force" and step.name not in given and opposite.get(step.name) not in given:

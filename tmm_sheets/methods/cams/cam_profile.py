@@ -34,9 +34,10 @@ from tmm_sheets.methods.cams.cam_inversion import (
     rocker_curvature,
     tappet_curvature,
 )
-from tmm_sheets.methods.cams.cam_laws import LAWS, Law, Phase, PositionFunction, table_law
+from tmm_sheets.methods.cams.cam_laws import LAWS, PHASES, Law, Phase, PositionFunction, table_law
 from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
 from tmm_sheets.methods.cams.cam_zone import Plate, Zone, found_share
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import CamTable
@@ -50,7 +51,7 @@ SHARE_OF_R0 = (0.3, 0.4)
 """r_p <= (0.3 .. 0.4) r0 (manual 000, 7.3)."""
 SHARE_OF_RHO = (0.7, 0.8)
 """r_p <= (0.7 .. 0.8) rho_min (manual 000, 7.3); manual 003 takes 0.5."""
-ASKED = "углы поворота кулачка, о которых спрашивают"
+ASKED = marked("cam angles asked for")
 """What tells cam angles that are not those of the program."""
 DENSE = 128
 """Least number of parts of each phase in curves and in tables of results; the numbered positions are among them."""
@@ -80,12 +81,13 @@ def _circle_centre(p: Any, q: Any, r: Any) -> Any:
 
 THREE_POINT_CENTRE = Rule(
     "centre of a circle through three points", _circle_centre, ("point", "point", "point"), "point",
-    "Через середины хорд {0}{1} и {1}{2} проведём перпендикуляры до пересечения в центре кривизны {name}.",
+    marked("Through the middles of the chords {0}{1} and {1}{2} draw perpendiculars; they meet at the centre of curvature {name}."),
     lambda a, v: (Helper("line", (a[0] + a[1]) / 2, v), Helper("line", (a[1] + a[2]) / 2, v)),
 )
 
 
-GIVEN = {"rise": ("φ_у", "rad"), "upper_dwell": ("φ_дс", "rad"), "fall": ("φ_с", "rad"), "stroke": ("S_{max}", "m"),
+GIVEN = {"rise": (PHASES["φ_у"], "rad"), "upper_dwell": (PHASES["φ_дс"], "rad"), "fall": (PHASES["φ_с"], "rad"),
+         "stroke": ("S_{max}", "m"),
          "swing": ("ψ_{max}", "rad"), "arm": ("AB", "m"), "eccentricity": ("e", "m"), "pressure_angle": ("[α]", "rad"),
          "base_radius": ("r_0", "m"), "roller": ("r_p", "m"), "curvature_share": ("", "1"), "speed": ("ω", "rad/s"),
          "follower_mass": ("m", "kg"), "follower_inertia": ("J", "kg*m2"), "spring_factor": ("", "1"), "preload": ("", "1")}
@@ -95,7 +97,8 @@ GIVEN = {"rise": ("φ_у", "rad"), "upper_dwell": ("φ_дс", "rad"), "fall": ("
 def given(data: CamTable, key: str) -> GivenNumber | None:
     """A number of the project file that knows its place there; None where it is left out."""
     value = getattr(data, key)
-    return None if value is None else GivenNumber(value, f"cam.{key}", *GIVEN[key])
+    symbol, unit = GIVEN[key]
+    return None if value is None else GivenNumber(value, f"cam.{key}", tr(symbol), unit)
 
 
 @dataclass(frozen=True)
@@ -160,16 +163,17 @@ def _inscribed(centres: Any, normals: Any, i: Any, j: Any) -> Any:
 
 INSCRIBED = Rule("circle that touches the centre profile from inside", _inscribed, ("point", "direction", "number", "number"),
                  "length",
-                 "Окружность, касающаяся центрового профиля изнутри и проходящая через другую его точку: {name} = {value}.")
+                 marked("Circle that touches the pitch curve from inside and passes through another point of it: {name} = "
+                        "{value}."))
 LEAST = Rule("least length", lambda *of: reduce(np.minimum, of), ("length",) * 5, "length",
-             "Наименьшее из этих значений: {name} = {value}.")
+             marked("The least of these values: {name} = {value}."))
 PART = Rule("part of a radius", lambda share, radius: share * radius, ("number", "length"), "length",
-            "Предел радиуса ролика {0}·{1} = {value}.", source="000, 7.3")
+            marked("Limit of the radius of the roller {0}·{1} = {value}."), source="000, 7.3")
 ROUNDED = Rule("rounded roller", rounded_down, ("length",), "length",
-               "Округлим радиус ролика в меньшую сторону до 0,5 мм: {name} = {value}.")
-CHOSEN = Rule("given roller", lambda radius: radius, ("length",), "length", "По заданию радиус ролика {name} = {value}.")
+               marked("Round the radius of the roller down to 0.5 mm: {name} = {value}."))
+CHOSEN = Rule("given roller", lambda radius: radius, ("length",), "length", marked("Given radius of the roller {name} = {value}."))
 OF_THREE = Rule("point of the sharpest place", entries, ("point", "number"), "point",
-                "На самом крутом участке центрового профиля отметим точку {name}.")
+                marked("At the sharpest place of the pitch curve mark point {name}."))
 
 
 # --- the cam --------------------------------------------------------------------------------------------------------
@@ -236,7 +240,7 @@ class Cam:
     @cached_property
     def inversion(self) -> Inversion:
         """Inversion in the numbered positions: the plan of the protocol."""
-        return self._invert(Plan("cam-profile", "Профиль кулачка", "m", self.law.labels), self.motion.ordinates)
+        return self._invert(Plan("cam-profile", tr("Cam profile"), "m", self.law.labels), self.motion.ordinates)
 
     @cached_property
     def dense(self) -> Inversion:
@@ -250,11 +254,12 @@ class Cam:
 
     def at(self, phi: Reals) -> Inversion:
         """The same inversion at any cam angles, rad."""
-        return self._bare(phi, choice=ASKED)
+        return self._bare(phi, choice=tr(ASKED))
 
-    def _bare(self, phi: Reals, name: str = "between", choice: str = "фазы делятся на равные части") -> Inversion:
-        at = self.exact.at(f"cam-law-{name}", "Закон движения в промежуточных положениях", phi, choice)
-        plan = Plan(f"cam-profile-{name}", "Профиль кулачка в промежуточных положениях", "m", at.plan.labels)
+    def _bare(self, phi: Reals, name: str = "between",
+              choice: str = marked("the phases are divided into equal parts")) -> Inversion:
+        at = self.exact.at(f"cam-law-{name}", tr("Law of motion between the positions"), phi, choice)
+        plan = Plan(f"cam-profile-{name}", tr("Cam profile between the positions"), "m", at.plan.labels)
         return self._invert(plan, at)
 
     def _invert(self, plan: Plan, at: Displacement) -> Inversion:
@@ -340,7 +345,7 @@ class RollerCam(Cam):
         """Plan of what keeps the rollers of two discs apart: that with which both discs have the same smallest radius."""
         if self.data.closure != "geometric":
             return None
-        plan = Plan("cam-discs", "Два диска", "m")
+        plan = Plan("cam-discs", tr("Two discs"), "m")
         self._keep_apart(plan)
         return plan
 
@@ -362,7 +367,7 @@ class RollerCam(Cam):
     @cached_property
     def curvature(self) -> Plan:
         """Exact radii of curvature of the sharpest places."""
-        plan = Plan("cam-curvature", "Наименьший радиус кривизны центрового профиля", "m")
+        plan = Plan("cam-curvature", tr("Least radius of curvature of the pitch curve"), "m")
         radii = [found.radius for found in self._sharpest_places(plan)]
         plan.add("ρ_min", LEAST, *radii, symbol="ρ_{min}")
         return plan
@@ -399,7 +404,8 @@ class RollerCam(Cam):
                     best = (1 / float(bend(at)), p, at, a, b)
         _, p, at, a, b = best
         tag = "ρ2" if second else "ρ"
-        share = found_share(plan, self.exact.phases, p, at, tag, "кривизна выпуклой части центрового профиля наибольшая")
+        share = found_share(plan, self.exact.phases, p, at, tag,
+                            tr("the curvature of the convex part of the pitch curve is greatest"))
         moving = in_phase(plan, self.law, self.exact.phases, p, share, tag)
         radius = plan.add(f"{tag}_min", rule, *moving, *of) if second else plan.add("ρ_1", rule, *moving, *of)
         return Sharpest(p, at, radius, float(p.phi(a)), float(p.phi(b)), self.law.parts)
@@ -412,7 +418,7 @@ class RollerCam(Cam):
     @cached_property
     def near(self) -> Inversion:
         """The inversion in three points of the sharpest place."""
-        return self._bare(self.sharpest.three, "curvature-between", "три точки самого крутого участка центрового профиля")
+        return self._bare(self.sharpest.three, "curvature-between", tr("three points of the sharpest place of the pitch curve"))
 
     # --- roller
 
@@ -422,7 +428,7 @@ class RollerCam(Cam):
 
         Where another part of the profile is in the way, it limits the roller as a radius of curvature does.
         """
-        plan = Plan("cam-roller", "Выбор радиуса ролика", "m")
+        plan = Plan("cam-roller", tr("Choice of the radius of the roller"), "m")
         rho = self.curvature["ρ_min"]
         share = self.given("curvature_share")
         of_rho = SHARE_OF_RHO if share is None else (share, share)
@@ -460,10 +466,10 @@ class RollerCam(Cam):
                 found = float(radius[i, j]), course.plan[centres], course.plan[normals], 2 * int(i), 2 * int(j)
         if found is None:
             return []
-        choice = "пара точек центрового профиля с наименьшей вписанной окружностью"
+        choice = tr("the pair of points of the pitch curve with the least inscribed circle")
         of, normals, *pair = found[1:]
         places = (Given(float(k), "cam-profile-between", choice=choice, over="none") for k in pair)
-        return [plan.add("r_вп", INSCRIBED, of, normals, *places)]
+        return [plan.add("r_вп", INSCRIBED, of, normals, *places, symbol=tr("r_in"))]
 
     @property
     def roller_rules(self) -> tuple[RollerRule, RollerRule]:
@@ -519,7 +525,7 @@ class RollerCam(Cam):
 
     def at(self, phi: Reals) -> Inversion:
         """The same inversion at any cam angles, rad."""
-        return self._contact(self._bare(phi, choice=ASKED))
+        return self._contact(self._bare(phi, choice=tr(ASKED)))
 
     def _contact(self, inv: Inversion) -> Inversion:
         _ = self.roller

@@ -90,15 +90,15 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
     by_step = {id(step): vel.points[name] for name, step in pos.points.items()}
     terms: list[Step] = []
 
-    def hang(sign: str, at: Step, force: Step) -> None:
+    def hang(sign: str, at: Step, force: Step, name: str = "") -> None:
         if at is pole:
             return  # a force at a point at rest has no arm
-        arm = plan.add(f"h {sign}", rules.ARM, pole, at, force)
+        arm = plan.add(f"h {name or sign}", rules.ARM, pole, at, force, symbol=f"h {sign}" if name else "")
         result.hung.append(Hung(sign, at, force, arm))
         terms.extend((at, force))
 
     for load in loads:
-        hang(load.symbol, turned(by_step[id(load.at)]), load.vector)
+        hang(load.symbol, turned(by_step[id(load.at)]), load.vector, symbol(load.vector.name) if load.role == "inertia" else "")
     for link, of_link in couples.items():
         turning = _turning(vel, link)
         if turning is None:
@@ -106,10 +106,13 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
         big_x, big_y, x, y = _long_reference(vel, turning)
         for couple in of_link:
             sign = couple.name.removeprefix("M")
-            f = plan.add(f"FМ{sign}", COUPLE_FORCE, couple, pos.points[big_x], pos.points[big_y])
-            hang(f"F̅_{{М{sign}}}", turned(y), f)
+            index = (couple.symbol or couple.name).removeprefix("M")
+            letters, vector = tr("FM{index}").format(index=index), tr("F̅_{{M{index}}}").format(index=index)
+            f = plan.add(f"FМ{sign}", COUPLE_FORCE, couple, pos.points[big_x], pos.points[big_y], symbol=letters)
+            hang(vector, turned(y), f, f"F̅_{{М{sign}}}")
             if x is not vel.pole:
-                hang(f"F̅_{{М{sign}}}′", turned(x), plan.add(f"FМ{sign}′", OPPOSITE_FORCE, f))
+                second = plan.add(f"FМ{sign}′", OPPOSITE_FORCE, f, symbol=f"{letters}′")
+                hang(f"{vector}′", turned(x), second, f"F̅_{{М{sign}}}′")
     if driver is None:
         # A pure moment is balanced by a force across the crank at its pin: M = F l.
         b = turned(vel.points[c.pin])
@@ -117,7 +120,7 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
         force = plan.add("Fур", BALANCE, pole, b, across, *terms, symbol=tr("Fb"))
         result.balancing = plan.add("Mур", MOMENT_OF, force, c.length, symbol=tr("Mb"))
         result.contact = b
-        hang(tr("F̅_{Mb}"), b, plan.add("Fур на рычаге", VECTOR_OF, force, across, symbol=tr("Fb on the lever")))
+        hang(tr("F̅_{Mb}"), b, plan.add("Fур на рычаге", VECTOR_OF, force, across, symbol=tr("Fb on the lever")), "F̅_{Мур}")
         return result
     at = contact_point(pos, driver)
     f_step = plan.add(plan.free("f"), SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
