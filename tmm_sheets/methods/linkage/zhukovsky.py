@@ -111,8 +111,9 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
             f = plan.add(f"FМ{sign}", COUPLE_FORCE, couple, pos.points[big_x], pos.points[big_y], symbol=letters)
             hang(vector, turned(y), f, f"F̅_{{М{sign}}}")
             if x is not vel.pole:
+                at = turned(x)
                 second = plan.add(f"FМ{sign}′", OPPOSITE_FORCE, f, symbol=f"{letters}′")
-                hang(f"{vector}′", turned(x), second, f"F̅_{{М{sign}}}′")
+                hang(f"{vector}′", at, second, f"F̅_{{М{sign}}}′")
     if driver is None:
         # A pure moment is balanced by a force across the crank at its pin: M = F l.
         b = turned(vel.points[c.pin])
