@@ -64,7 +64,7 @@ UNDER = Rule("direction of an angle", ar.unit, ("angle",), "direction", marked("
 
 LAY_OFF = Rule(
     "lay off under an angle", ar.polar, ("point", "length", "angle"), "point",
-    marked("About {0} with the radius {1} draw a circle and mark point {name} on it under the angle {2}."),
+    marked("About {0} with the radius {1} draw a circle and mark point {name} on it at the angle {2}."),
     lambda a, v: (Helper("circle", a[0], radius=a[1]), Helper("line", a[0], v)),
 )
 RAY = Rule("ray", ar.ray, ("point", "point"), "direction", marked("Draw the line {0}{1}."),
@@ -114,4 +114,4 @@ DIFFERENCE = Rule("measure a vector", _difference, ("point", "point"), "vector",
 ARM = Rule("measure an arm", ar.arm, ("point", "point", "force"), "length",
            marked("Measure the arm of the force {2} about {0}: {value}."), lambda a, v: arm(*a))
 TURNED_BY = Rule("turn a direction", lambda u, angle: u * ar.unit(angle), ("direction", "angle"), "direction",
-                 marked("Under the angle {1} to {0} draw the direction {name}."))
+                 marked("At the angle {1} to {0} draw the direction {name}."))

@@ -71,7 +71,7 @@ def running(row: Any, halves: Any, weights: Any, ends: Any) -> Any:
 
 
 SMOOTH = Rule("smooth curve through the ends of chords", smooth_curve, (), "curve",
-              marked("Through the ends of the chords draw the smooth curve {name} by the French curve; its tangents at the "
+              marked("Through the ends of the chords draw the smooth curve {name} with a French curve; its tangents at the "
                      "borders of the intervals are parallel to the rays to the ordinates of the integrand."))
 ON_CURVE = Rule("ordinate of a curve", ordinate_of, ("curve", "length"), "ordinate",
                 marked("At the abscissa {1} measure the ordinate of the curve {name} = {value}."))

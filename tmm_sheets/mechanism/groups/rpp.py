@@ -32,7 +32,7 @@ class RPPKind(GroupKind):
         guide = g.guides[0]
         u = pos.guide_directions[guide]
         slot = pos.plan.add(f"n{g.links[1]}–n{g.links[1]}", rules.TURNED_BY, u, g.slot,
-                            say=tr("Slot of link {link}: take the direction {{name}} under the angle {{1}} to "
+                            say=tr("Slot of link {link}: take the direction {{name}} at the angle {{1}} to "
                                    "{{0}}.").format(link=g.links[1]))
         pos.points[g.inner] = pos.plan.add(g.inner, rules.LINE_LINE, pos.points[g.outer[0]], slot, pos.guide_points[guide], u,
                                            say=tr("Through {0} parallel to {1} draw a line; it meets {3} at point {name}."))

@@ -265,7 +265,7 @@ ROCKER_CURVE = Rule("curve of the analogues of a rocker", lambda psi, dpsi, pivo
     "point",
     marked("Join the ends of the segments AB·ψ' laid off on the lines of the rocker by the smooth curve {name}."), source=SOURCE)
 TOUCH = Rule("tangent under an angle", lambda s, ds, right: right * ds + 1j * s, ("ordinate", "ordinate", "number"), "point",
-             marked("Under the permitted pressure angle to the axis S draw the tangent to the curve S(S'); point of contact "
+             marked("At the permitted pressure angle to the axis S draw the tangent to the curve S(S'); point of contact "
                     "{name}."))
 INCLINED = Rule("direction under the permitted angle", lambda alpha, side: side * np.sin(alpha) + 1j * np.cos(alpha),
                 ("angle", "number"),
@@ -275,7 +275,7 @@ OUTERMOST = Rule("outermost ray", ROCKER_CURVE.compute, ROCKER_CURVE.takes, "poi
 OUTERMOST_DIRECTION = Rule("direction of the outermost ray",
                            lambda psi, turn, alpha, side: _ray_direction(_up(psi, turn), alpha, side),
                            ("inclination", "number", "angle", "number"), "direction",
-                           marked("Draw the outermost ray {name} under the permitted pressure angle to the velocity of B."))
+                           marked("Draw the outermost ray {name} at the permitted pressure angle to the velocity of B."))
 LOWER = Rule("lower of two points", _lower, ("point", "point"), "point",
              marked("Of the points {0} and {1} the lower one is {name}: take the centre of rotation of the cam there."))
 SIGNED = Rule("abscissa", lambda p, right: right * np.real(p), ("point", "number"), "ordinate",
@@ -311,7 +311,7 @@ def rounded_up(radius: Any) -> Any:
 
 
 ROUNDED = Rule("rounded radius", rounded_up, ("length",), "length", marked("Round to a whole millimetre: {name} = {value}."))
-CHOSEN = Rule("given radius", lambda radius: radius, ("length",), "length", marked("Given: {name} = {value} by the task."))
+CHOSEN = Rule("given radius", lambda radius: radius, ("length",), "length", marked("Given by the task: {name} = {value}."))
 RESERVE = Rule("reserve", lambda radius, least: radius - least, ("length", "length"), "length",
                marked("Margin {name} = {0} − {1} = {value}."))
 RESERVED = Rule("add a reserve", lambda least, reserve: least + reserve, ("length", "length"), "length",
@@ -455,9 +455,9 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any
         share = found_share(touch, exact.phases, phase, x, name,
                             tr("{ds} − S·tan[α] is greatest").format(ds="S'" if side > 0 else "−S'"))
         at = in_phase(touch, law, exact.phases, phase, share, name, (0, 1))
-        say = (tr("Join the points D by the smooth curve S(S'). Under the angle {angle}° to the axis S draw the tangent to the "
+        say = (tr("Join the points D by the smooth curve S(S'). At the angle {angle}° to the axis S draw the tangent to the "
                   "curve S(S'); point of contact {{name}}.") if side > 0 else
-               tr("Under the angle {angle}° to the axis S draw the tangent to the curve S(S'); point of contact {{name}}."))
+               tr("At the angle {angle}° to the axis S draw the tangent to the curve S(S'); point of contact {{name}}."))
         touching.append(plan.add(name, TOUCH, *at, right, say=say.format(angle=fixed(degrees(alpha), 1))))
     borders = [plan.add(f"t_{k}", INCLINED, alpha, right * side) for k, side in ((1, 1.0), (2, -1.0))]
     if e is not None or centre == "least":

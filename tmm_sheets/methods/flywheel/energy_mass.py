@@ -68,7 +68,7 @@ LOWER_ANGLE = Rule(
     ("number",) * 4, "angle", marked("Compute the slope angle of the tangent {name} = arctan[μ_J/(2μ_E)·ω1²(1 − δ/2)²] = {value}."),
     source="000, 5.5")
 UNDER_ANGLE = Rule("direction under an angle", lambda angle: np.cos(angle) + 1j * np.sin(angle), ("angle",), "direction",
-                   marked("Under the angle {0} to the axis of the reduced moments of inertia take the direction {name}."))
+                   marked("At the angle {0} to the axis of the reduced moments of inertia take the direction {name}."))
 PROJECT = Rule(
     "project from two graphs", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
     marked("From the graph ΔE(φ1) draw the horizontal with the ordinate {0}, from the graph J(φ1) the vertical with the abscissa "

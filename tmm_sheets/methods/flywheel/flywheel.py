@@ -273,10 +273,10 @@ RATIO = Rule("ratio of angular velocities", lambda rotor, crank: rotor / crank, 
 ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("number", "number"), "number",
              marked("Moment of inertia of the rotor reduced to the input link: {name} = {0}·{1}² = {value} kg·m²."), unit="kg*m2")
 RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maximum(-wheel, 0.0), ("number", "number"), "number",
-               marked("In the finished machine {name} = {value} kg·m² turns, the input link included."), unit="kg*m2")
+               marked("All that turns in the finished machine, the input link included: {name} = {value} kg·m²."), unit="kg*m2")
 TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
 DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"),
-                  "number", marked("The construction differs from the limit by {name} = {value} %."), beyond_paper=True, unit="%")
+                  "number", marked("The construction against the limit: {name} = {value} %."), beyond_paper=True, unit="%")
 
 
 @dataclass(frozen=True, eq=False)
@@ -721,8 +721,8 @@ class Flywheel(ABC):
         plan = Plan(f"flywheel-inertia{self.where}", tr("Moment of inertia of the flywheel"), "")
         first = self._first(plan)
         flywheel = self._bare(plan, "J_м", first, BARE, BARE_OF_ROTOR, tr("J_f"))
-        none = tr("The moment of inertia of the flywheel is not greater than zero, no flywheel is needed: {name} = {value} kg·m² "
-                  "turns, the input link included.")
+        none = tr("The moment of inertia of the flywheel is not greater than zero, no flywheel is needed; all that turns, the "
+                  "input link included: {name} = {value} kg·m².")
         plan.add("J_вр", RUNNING, first, flywheel, say=None if float(flywheel.value) > 0 else none, symbol=tr("J_rot"))
         return plan
 

@@ -185,7 +185,7 @@ ROLLING_LINE = Rule("rolling line", lambda u: -1j * u, ("direction",), "directio
 REFERENCE = Rule("shifted reference line", ar.along, ("point", "direction", "ordinate"), "point",
                  marked("From the pitch line lay off the shift {2}: point {name} of the reference line of the rack."))
 FLANK = Rule("flank of the rack", _turned_down, ("direction", "angle"), "direction",
-             marked("Under the profile angle {1} to the axis of the rack tooth draw its flank."))
+             marked("At the profile angle {1} to the axis of the rack tooth draw its flank."))
 TOUCH = Rule(
     "perpendicular on the flank", lambda p, q, u: ar.foot(p, q, u), ("point", "point", "direction"), "point",
     marked("From {0} drop the perpendicular to the flank of the rack tooth through {1}: point of contact {name}."),

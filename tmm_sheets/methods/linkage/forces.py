@@ -289,7 +289,7 @@ def _line_of_action(sense: Any, mate: Any, angle: Any) -> Any:
 
 
 LINE_OF_ACTION = Rule("line of action", _line_of_action, ("number", "angle", "angle"), "direction",
-                      marked("Under the working pressure angle {2} to the perpendicular to the line of centres draw the line of "
+                      marked("At the working pressure angle {2} to the perpendicular to the line of centres draw the line of "
                              "action of the force {name}."))
 
 

@@ -30,7 +30,7 @@ SWING = Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",
              marked("Angle between the extreme positions of the rocker {name} = 180°·(K − 1)/(K + 1) = {value}."))
 HALF = Rule("half", lambda x: x / 2, ("angle",), "angle", marked("Half the angle: {name} = {value}."))
 UNDER = Rule("direction under an angle", lambda u, angle: u * (np.cos(angle) - 1j * np.sin(angle)), ("direction", "angle"),
-             "direction", marked("Under the angle {1} to {0} draw the direction {name}."))
+             "direction", marked("At the angle {1} to {0} draw the direction {name}."))
 PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", marked("Time of a turn {name} = 2π/ω = {value} s."))
 STROKE = Rule("stroke of the piston", lambda v, t: v * t / 2, ("number", "number"), "length",
               marked("Stroke of the piston {name} = V·T/2 = {value}."))
