@@ -64,7 +64,7 @@ def _structure(m: Mechanism) -> Iterator[str]:
     n, p5 = len(m.links), len(m.pairs)
     yield f"\nMobility W = 3n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {m.mobility}"
     yield "\nAssur groups, the farthest first"
-    yield from _table([(g.name, "class 2, order 2", f"kind {g.kind.number} ({tell(g.kind.form)})") for g in reversed(m.groups)])
+    yield from _table([(g.name, "class 2, order 2", f"kind {g.kind.number} ({tell(g.form)})") for g in reversed(m.groups)])
     yield f"\nFormula of structure: {m.structure}"
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 from tmm_sheets.construction.tally import Tally
-from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -205,7 +204,7 @@ class StructuralGroup:
     @property
     def form(self) -> str:
         """Its pairs in Russian letters, outer, inner, outer: В turning, П sliding."""
-        return tr(self.kind.form)
+        return self.kind.form
 
 
 @dataclass(frozen=True)

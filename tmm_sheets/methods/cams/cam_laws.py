@@ -19,7 +19,7 @@ import numpy.typing as npt
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked, tell, tr
 
 Reals = npt.NDArray[np.float64]
 Function = Callable[..., Any]
@@ -249,17 +249,18 @@ def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title
     nodes = tuple(Given(np.asarray(row, dtype=float), f"{key}[*][{i}]", over="curve") for i, row in enumerate((x, y)))
     p = _pieces(*(tuple(given.value) for given in nodes))
     if not p.area > 0:
-        raise CannotBuild(f"{key}: the diagram of the acceleration is zero everywhere")
+        raise CannotBuild(tell("{key}: the diagram of the acceleration is zero everywhere").format(key=key))
     if abs(p.unequal) > READING * p.area:
         share = 0.5 + p.unequal / p.area / 4
         raise CannotBuild(
-            f"{key}: the areas above and below the axis are {share:.2f} and {1 - share:.2f} of the whole, "
-            "the follower would not come to rest", "make both areas equal: what speeds up must slow down again")
+            tell("{key}: the areas above and below the axis are {above:.2f} and {below:.2f} of the whole, the follower would not "
+                 "come to rest").format(key=key, above=share, below=1 - share),
+            tell("make both areas equal: what speeds up must slow down again"))
     shares = np.union1d(np.linspace(0, 1, 4001), p.starts)
     velocity = p.at(p.ds, shares)
     if velocity.min() < -1e-9 * velocity.max():
-        raise CannotBuild(f"{key}: the follower turns back inside the phase, at the share {shares[velocity.argmin()]:.3f}",
-                          "speeding up comes first, slowing down after it")
+        raise CannotBuild(tell("{key}: the follower turns back inside the phase, at the share {share:.3f}").format(
+            key=key, share=shares[velocity.argmin()]), tell("speeding up comes first, slowing down after it"))
     values = np.concatenate((p.at(p.dds, shares), p.at(p.dds, np.append(p.starts[1:], 1.0) - 1e-12)))
     return Law(name, title, (lambda x, a, b: diagram(x, a, b, 0.0), lambda x, a, b: diagram(x, a, b, 1.0),
                              lambda x, a, b: diagram(x, a, b, 2.0)),

@@ -37,7 +37,7 @@ from tmm_sheets.methods.cams.cam_inversion import (
 from tmm_sheets.methods.cams.cam_laws import LAWS, PHASES, Law, Phase, PositionFunction, table_law
 from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
 from tmm_sheets.methods.cams.cam_zone import Plate, Zone, found_share
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import CamTable
@@ -496,10 +496,10 @@ class RollerCam(Cam):
         radius = float(self.choice["r_p"].value)
         if self.data.roller is not None and not radius < self.largest_roller:
             raise CannotBuild(
-                f"cam: a roller of radius {radius * 1e3:g} mm makes a profile with a cusp or a loop: "
-                f"the centre profile allows less than {self.largest_roller * 1e3:.4g} mm",
-                f"take a roller of at most {rounded_down(min(r.limits[1] for r in self.roller_rules)) * 1e3:g} mm "
-                "or leave cam.roller out")
+                tell("cam: a roller of radius {radius:g} mm makes a profile with a cusp or a loop: the centre profile allows less "
+                     "than {most:.4g} mm").format(radius=radius * 1e3, most=self.largest_roller * 1e3),
+                tell("take a roller of at most {radius:g} mm or leave cam.roller out").format(
+                    radius=rounded_down(min(r.limits[1] for r in self.roller_rules)) * 1e3))
         return radius
 
     # --- profile
@@ -668,16 +668,18 @@ def cam(data: CamTable) -> Cam:
         when the numbers allow no cam: at once for angles and lengths, for the axis and the roller when they are asked for.
     """
     if data.follower not in FOLLOWERS:
-        raise CannotBuild(f"cam.follower: expected one of {', '.join(FOLLOWERS)}, not {data.follower!r}")
+        raise CannotBuild(tell("cam.follower: expected one of {known}, not {given!r}").format(known=", ".join(FOLLOWERS),
+                                                                                           given=data.follower))
     follower, angular = FOLLOWERS[data.follower]
     _check_phases(data)
     _check_displacement(data, angular)
     if follower is not FlatCam and not 1e-6 < (data.pressure_angle or 0.0) < pi / 2 - 1e-6:
-        raise CannotBuild("cam.pressure_angle: expected a permitted pressure angle greater than 0 and less than 90 deg, "
-                          f"not {degrees(data.pressure_angle or 0.0):g} deg", "usual values are 30 deg for translating followers")
+        raise CannotBuild(tell("cam.pressure_angle: expected a permitted pressure angle greater than 0 and less than 90 deg, not "
+                               "{angle:g} deg").format(angle=degrees(data.pressure_angle or 0.0)),
+                          tell("usual values are 30 deg for translating followers"))
     if data.roller is not None and not data.roller > 0:
-        raise CannotBuild(f"cam.roller: expected a radius greater than 0 mm, not {data.roller * 1e3:g} mm",
-                          "leave it out to have it taken by both rules")
+        raise CannotBuild(tell("cam.roller: expected a radius greater than 0 mm, not {radius:g} mm").format(radius=data.roller * 1e3),
+                          tell("leave it out to have it taken by both rules"))
     key, symbol = ("swing", "ψ") if angular else ("stroke", "S")
     fall_law = None if data.fall_law is None else _law(data, data.fall_law, "fall_table")
     rise, dwell, fall, stroke = (given(data, name) or 0.0 for name in ("rise", "upper_dwell", "fall", key))
@@ -690,29 +692,32 @@ def _check_phases(data: CamTable) -> None:
     turn = data.rise + data.upper_dwell + data.fall
     for name, value in (("rise", data.rise), ("fall", data.fall)):
         if not value > 0:
-            raise CannotBuild(f"cam.{name}: expected a phase angle greater than 0 deg, not {degrees(value):g} deg")
+            raise CannotBuild(tell("cam.{key}: expected a phase angle greater than 0 deg, not {angle:g} deg").format(
+                key=name, angle=degrees(value)))
     if not data.upper_dwell >= 0:
-        raise CannotBuild(f"cam.upper_dwell: expected a phase angle of 0 deg or more, not {degrees(data.upper_dwell):g} deg")
+        raise CannotBuild(tell("cam.upper_dwell: expected a phase angle of 0 deg or more, not {angle:g} deg").format(
+            angle=degrees(data.upper_dwell)))
     if not turn <= 2 * pi * (1 + 1e-9):
-        raise CannotBuild(f"cam: rise, upper_dwell and fall make {degrees(turn):g} deg together, more than a turn of the cam",
-                          "shorten a phase: what is left of 360 deg is the lower dwell")
+        raise CannotBuild(tell("cam: rise, upper_dwell and fall make {angle:g} deg together, more than a turn of the cam").format(
+            angle=degrees(turn)), tell("shorten a phase: what is left of 360 deg is the lower dwell"))
 
 
 def _check_displacement(data: CamTable, angular: bool) -> None:
     """The stroke, or of a rocker arm and swing."""
     for name, length in (("arm", data.arm),) if angular else (("stroke", data.stroke),):
         if length is None or not (length > 0 and isfinite(length)):
-            raise CannotBuild(f"cam.{name}: expected a length greater than 0 mm, not {(length or 0.0) * 1e3:g} mm")
+            raise CannotBuild(tell("cam.{key}: expected a length greater than 0 mm, not {length:g} mm").format(
+                key=name, length=(length or 0.0) * 1e3))
     if angular and not 0 < (data.swing or 0.0) < pi / 2:
-        raise CannotBuild("cam.swing: expected an angle greater than 0 and less than 90 deg, "
-                          f"not {degrees(data.swing or 0.0):g} deg")
+        raise CannotBuild(tell("cam.swing: expected an angle greater than 0 and less than 90 deg, not {angle:g} deg").format(
+            angle=degrees(data.swing or 0.0)))
 
 
 def _law(data: CamTable, name: str, table: str) -> Law:
     if name == "table":
         return table_law(*data.diagram(table), key=f"cam.{table}")
     if name not in LAWS:
-        raise CannotBuild(f"cam.law: expected one of {', '.join(LAWS)} or table, not {name!r}")
+        raise CannotBuild(tell("cam.law: expected one of {known} or table, not {given!r}").format(known=", ".join(LAWS), given=name))
     return LAWS[name]
 
 

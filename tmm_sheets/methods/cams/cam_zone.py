@@ -37,7 +37,7 @@ from tmm_sheets.methods.cams.cam_displacement import (
 )
 from tmm_sheets.methods.cams.cam_laws import Phase, PositionFunction
 from tmm_sheets.numbers import fixed
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked, tell, tr
 
 Reals = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -522,8 +522,10 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
     found = cones.corner(centre)
     if found is None:
         raise CannotBuild(
-            f"cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {degrees(alpha):g} deg on "
-            + ("the rise" if limit == "rise" else "the rise and the fall"), _wider(cones))
+            (tell("cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {angle:g} deg on the rise")
+             if limit == "rise" else
+             tell("cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {angle:g} deg on the rise "
+                  "and the fall")).format(angle=degrees(alpha)), _wider(cones))
     touch = Plan("cam-zone-touch", tr("Points where the outermost rays of the zone begin"), "m")
     z = Zone(plan, {p.name: p for p in (rows, touch, plan)}, exact, cones, axis, points, (), (), start)
     touching, borders, apex = _rocker_axis(plan, z, found[1], touch)
@@ -565,8 +567,8 @@ def _wider(cones: Cones) -> str:
         there = Cones(cones.phases, middle * pi / 180, cones.right, cones.pivot, cones.turn).corner("vertex") is not None
         low, high = (low, middle) if there else (middle, high)
     if high < 90:
-        return f"it can be had from {high} deg on; or take longer phases, a smaller swing"
-    return "take longer phases or a smaller swing"
+        return tell("it can be had from {angle} deg on; or take longer phases, a smaller swing").format(angle=high)
+    return tell("take longer phases or a smaller swing")
 
 
 # --- flat follower ----------------------------------------------------------------------------------------------------
@@ -667,8 +669,9 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     r_min, chosen = -float(lowest.value), float(radius.value)
     if not chosen > r_min:
         raise CannotBuild(
-            f"cam.base_radius: with {chosen * 1e3:g} mm the profile has a cusp at {degrees(phase.phi(x)):.1f} deg: a flat follower "
-            f"needs more than {r_min * 1e3:.4g} mm here", f"take {ceil(1100 * r_min)} mm or leave cam.base_radius out")
+            tell("cam.base_radius: with {radius:g} mm the profile has a cusp at {angle:.1f} deg: a flat follower needs more than "
+                 "{least:.4g} mm here").format(radius=chosen * 1e3, angle=degrees(phase.phi(x)), least=r_min * 1e3),
+            tell("take {radius} mm or leave cam.base_radius out").format(radius=ceil(1100 * r_min)))
     base = plan.add("r_0", RESERVED, least, plan.add("Δr", RESERVE, radius, least))
     plan.add("ρ_min", SHARPEST, base, lowest)
     shares = np.linspace(0, 1, 2001)

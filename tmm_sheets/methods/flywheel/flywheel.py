@@ -38,7 +38,7 @@ from tmm_sheets.methods.integration import (
     differentiate,
     integrate,
 )
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import FlywheelTable
@@ -391,7 +391,8 @@ class Flywheel(ABC):
         mu_phi = handy(reduced.period / space.angle)
         largest = _largest(reduced.forces_at(self.samples))
         if not mass.max() > 0:
-            raise CannotBuild("a flywheel needs links with masses", "add mass, centre and inertia to [[link]] of the project file")
+            raise CannotBuild(tell("a flywheel needs links with masses"),
+                              tell("add mass, centre and inertia to [[link]] of the project file"))
         spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), float(mass.max()))
         mu_m, mu_a, mu_e, mu_j = _stacked(spans, mu_phi, space) if space.stack else _alone(spans, mu_phi, space)
         return FlywheelScales(
@@ -803,11 +804,13 @@ class Flywheel(ABC):
         if self.needed and self.J_flywheel_converged > 0:
             return ""
         if self.needed == (self.J_flywheel_converged > 0):
-            return (f"no flywheel is needed: {there:.4g} kg m2 turn with the crank, {self.J_first:.4g} are enough "
-                    f"({self.J_first_converged:.4g} in the limit of many positions)")
-        one, other = ("needs a", "none is needed") if self.needed else ("needs no", "one is needed")
-        return (f"the drawn construction {one} flywheel ({self.J_flywheel:.4g} kg m2), in the limit of many positions {other} "
-                f"({self.J_flywheel_converged:.4g} kg m2): the difference is the construction's error")
+            return tell("no flywheel is needed: {there:.4g} kg m2 turn with the crank, {enough:.4g} are enough ({limit:.4g} in the "
+                        "limit of many positions)").format(there=there, enough=self.J_first, limit=self.J_first_converged)
+        said = (tell("the drawn construction needs a flywheel ({drawn:.4g} kg m2), in the limit of many positions none is needed "
+                     "({limit:.4g} kg m2): the difference is the construction's error") if self.needed else
+                tell("the drawn construction needs no flywheel ({drawn:.4g} kg m2), in the limit of many positions one is needed "
+                     "({limit:.4g} kg m2): the difference is the construction's error"))
+        return said.format(drawn=self.J_flywheel, limit=self.J_flywheel_converged)
 
     @property
     @abstractmethod
@@ -954,7 +957,8 @@ def _within(phi: Floats, turn: float) -> Floats:
 def _largest(forces: Mapping[str, Floats]) -> float:
     largest = max((float(np.max(values)) for values in forces.values()), default=0.0)
     if not largest > 0:
-        raise CannotBuild("a flywheel needs a technological force or moment", "add [[force]] or [[moment]] to the project file")
+        raise CannotBuild(tell("a flywheel needs a technological force or moment"),
+                          tell("add [[force]] or [[moment]] to the project file"))
     return largest
 
 

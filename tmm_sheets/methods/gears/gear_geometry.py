@@ -78,7 +78,7 @@ class PairGeometry:
         found = list(impossible(self.geometry)) or list(problems_of(self))
         if found:
             hints = dict.fromkeys(hint for _, hint in found)
-            raise CannotBuild("gear: " + "; ".join(text for text, _ in found), "; ".join(hints))
+            raise CannotBuild(f"gear: {'; '.join(text for text, _ in found)}", "; ".join(hints))
 
     @cached_property
     def wheels(self) -> tuple[GearWheel, GearWheel]:

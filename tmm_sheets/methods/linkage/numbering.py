@@ -23,7 +23,7 @@ from tmm_sheets.methods.linkage.dead_positions import check_dead_positions, dead
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.velocities import velocity_plan
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked, tell, tr
 
 DEAD_POINTS = "dead points"
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
@@ -107,7 +107,8 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
     named = {(zero if i == 0 else str(i if i % positions else i + late)): (2 * np.pi / positions * i, i, 0.0) for i in range(count)}
     for label, angle in (extra or {}).items():
         if label in named:
-            raise CannotBuild(f"there is a position {label} already", "give the further position another name")
+            raise CannotBuild(tell("there is a position {label} already").format(label=label),
+                              tell("give the further position another name"))
         further = float(np.mod(angle, 2 * np.pi * turns))
         named[label] = (further, 0, further)
     order = sorted(named, key=lambda label: named[label][0])
@@ -147,8 +148,8 @@ def _strokes(m: Mechanism, output: str, dead: DeadPoints, begin: float) -> Strok
     out = np.asarray(position_plan(m, np.array([first, first + m.crank.sense * width]), purpose=DEAD_POINTS).points[output].value)
     path = complex(out[1] - out[0])
     if not abs(path) > 0:
-        raise CannotBuild(f"point {output} has no stroke: it is in one place in both dead positions",
-                          'name another output, or give the crank angle of position 0 instead: start = "90 deg"')
+        raise CannotBuild(tell("point {output} has no stroke: it is in one place in both dead positions").format(output=output),
+                          tell('name another output, or give the crank angle of position 0 instead: start = "90 deg"'))
     return Strokes(output, begin, begin + width, path / abs(path), abs(path), complex(out[0]), tuple(r.later(begin) for r in runs))
 
 
@@ -167,12 +168,13 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     runs = runs_of(along)
     if len(runs) < 2:
         check_turn(m)  # names the group that does not assemble, and by how much
-        raise CannotBuild(f"point {output} has no dead positions: it never turns back",
-                          'give the crank angle of position 0 instead: start = "90 deg"')
+        raise CannotBuild(tell("point {output} has no dead positions: it never turns back").format(output=output),
+                          tell('give the crank angle of position 0 instead: start = "90 deg"'))
     turned = np.array([r.begin for r in runs])
     ways = (np.asarray(position_plan(m, sense * turned, purpose=DEAD_POINTS).points[output].value) * np.conj(axis)).real
     if not np.ptp(ways) > 1e-9 * m.crank.length:
-        raise CannotBuild(f"point {output} has no working stroke: it does not move that way", "give another working_sense")
+        raise CannotBuild(tell("point {output} has no working stroke: it does not move that way").format(output=output),
+                          tell("give another working_sense"))
     runs = in_strokes(runs, ways)
     begin, end = working_stroke(runs)
     ordered = over_cycle(runs, 2 * np.pi, begin)

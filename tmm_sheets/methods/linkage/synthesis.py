@@ -21,7 +21,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import SynthesisTable
@@ -97,9 +97,11 @@ class Synthesis:
         for name, exact in self.exact.items():
             found[name] = float(self.plan[f"{name}′"].value) if f"{name}′" in self.plan else exact
             if not 0 < exact < inf:
-                raise CannotBuild(f"synthesis: no length {name} follows from these conditions", "check the conditions")
+                raise CannotBuild(tell("synthesis: no length {length} follows from these conditions").format(length=name),
+                                  tell("check the conditions"))
             if not 0 < found[name] < inf:
-                raise CannotBuild(f"synthesis: {name} = {exact * 1000:.4g} mm is rounded to nothing", "round to a smaller length")
+                raise CannotBuild(tell("synthesis: {length} = {exact:.4g} mm is rounded to nothing").format(length=name, exact=exact * 1000),
+                                  tell("round to a smaller length"))
         return found
 
     @property
