@@ -717,7 +717,8 @@ def _law(data: CamTable, name: str, table: str) -> Law:
     if name == "table":
         return table_law(*data.diagram(table), key=f"cam.{table}")
     if name not in LAWS:
-        raise CannotBuild(tell("cam.law: expected one of {known} or table, not {given!r}").format(known=", ".join(LAWS), given=name))
+        raise CannotBuild(tell("cam.law: expected one of {known} or table, not {given!r}").format(known=", ".join(LAWS),
+                                                                                              given=name))
     return LAWS[name]
 
 

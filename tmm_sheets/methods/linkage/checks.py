@@ -153,7 +153,8 @@ class _Search:
             texts.append(f"{np.mod(first, 360):.1f}" if single else f"{first:.1f}..{last:.1f}")
         if len(texts) > 4:
             more = len(texts) - 3
-            return tell_n("{ranges}, {n} more range deg", "{ranges}, {n} more ranges deg", more).format(ranges=", ".join(texts[:3]), n=more)
+            said = tell_n("{ranges}, {n} more range deg", "{ranges}, {n} more ranges deg", more)
+            return said.format(ranges=", ".join(texts[:3]), n=more)
         return tell("{ranges} deg").format(ranges=", ".join(texts))
 
     def _edges(self, inside: Any, outside: Any, i: int, mask: Any) -> Floats:

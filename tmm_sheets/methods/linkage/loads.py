@@ -28,7 +28,7 @@ from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.velocities import velocity_plan
-from tmm_sheets.words import marked
+from tmm_sheets.words import marked, tell
 
 STROKES = "strokes of forces"
 NEAR = 1e-12
@@ -170,8 +170,8 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     ways = along(np.array([r.begin for r in runs])) if runs else np.zeros(1)
     low, high = float(ways.min()), float(ways.max())
     if not high - low > 1e-9 * m.crank.length:
-        _refuse(m, f"point {point} does not move to and fro that way: its force has no strokes",
-                "give the sense of the working strokes along its path")
+        _refuse(m, tell("point {point} does not move to and fro that way: its force has no strokes").format(point=point),
+                tell("give the sense of the working strokes along its path"))
     ends = (_found(low, point, "beginning", "m"), _found(high - low, point, "length", "m"))
     return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first),
                         lambda t: np.clip((along(np.asarray(t)) - low) / (high - low), 0.0, 1.0), cycle.period,
@@ -197,7 +197,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
 
     runs = runs_of(speed)
     if not runs:
-        _refuse(m, f"link {link} does not turn all the time")
+        _refuse(m, tell("link {link} does not turn all the time").format(link=link))
     # The angle from the whole turn: more than 180 degrees would not show in the angles of the reversals alone.
     turned = np.unique(np.append(np.linspace(0.0, TURN, SWEEP + 1), [r.begin for r in runs]))
     swept = np.unwrap(angle(turned))

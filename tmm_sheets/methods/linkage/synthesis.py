@@ -100,8 +100,8 @@ class Synthesis:
                 raise CannotBuild(tell("synthesis: no length {length} follows from these conditions").format(length=name),
                                   tell("check the conditions"))
             if not 0 < found[name] < inf:
-                raise CannotBuild(tell("synthesis: {length} = {exact:.4g} mm is rounded to nothing").format(length=name, exact=exact * 1000),
-                                  tell("round to a smaller length"))
+                raise CannotBuild(tell("synthesis: {length} = {exact:.4g} mm is rounded to nothing").format(
+                    length=name, exact=exact * 1000), tell("round to a smaller length"))
         return found
 
     @property
