@@ -18,6 +18,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points, Role
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.player import Stage, play
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -117,7 +118,7 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     """S'', S' and S one under another over a common axis of the cam angle, with both graphical integrations."""
     cam: Cam = project.cam
     law = cam.law
-    names = dict.fromkeys(p.law.title for p in (law.rise, law.fall))
+    names = dict.fromkeys(tr(p.law.title) for p in (law.rise, law.fall))
     whose = "коромысла" if law.symbol == "ψ" else "толкателя"
     # The turned designation of the sheet stands in the upper left corner.
     area = canvas.title(Box(max(box.x0, 92.0), box.y0, box.x1, box.y1), f"Закон движения {whose} ({', '.join(names)})")

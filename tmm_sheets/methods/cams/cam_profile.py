@@ -678,8 +678,8 @@ def cam(data: CamTable) -> Cam:
                                "{angle:g} deg").format(angle=degrees(data.pressure_angle or 0.0)),
                           tell("usual values are 30 deg for translating followers"))
     if data.roller is not None and not data.roller > 0:
-        raise CannotBuild(tell("cam.roller: expected a radius greater than 0 mm, not {radius:g} mm").format(radius=data.roller * 1e3),
-                          tell("leave it out to have it taken by both rules"))
+        raise CannotBuild(tell("cam.roller: expected a radius greater than 0 mm, not {radius:g} mm").format(
+            radius=data.roller * 1e3), tell("leave it out to have it taken by both rules"))
     key, symbol = ("swing", "ψ") if angular else ("stroke", "S")
     fall_law = None if data.fall_law is None else _law(data, data.fall_law, "fall_table")
     rise, dwell, fall, stroke = (given(data, name) or 0.0 for name in ("rise", "upper_dwell", "fall", key))

@@ -132,14 +132,14 @@ def problems_of(pair: PairGeometry) -> Iterator[tuple[str, str]]:
         mate = 3 - i
         hint = tell("take a larger x{wheel} or a smaller x{mate}").format(wheel=i, mate=mate)
         if w.t_low < 0:
-            yield (tell("interference: the tip of wheel {mate} touches wheel {wheel} below its base circle").format(mate=mate, wheel=i),
-                   hint)
+            yield (tell("interference: the tip of wheel {mate} touches wheel {wheel} below its base circle").format(
+                mate=mate, wheel=i), hint)
         elif w.t_fillet > w.t_low + 1e-9 * pair.m:
             below = hypot(w.rb, w.t_fillet) - w.r_low
-            said = (tell("interference: the tip of wheel {mate} reaches {below:.3g} mm below the involute of wheel {wheel} into its "
-                         "undercut") if w.rack.undercut else
-                    tell("interference: the tip of wheel {mate} reaches {below:.3g} mm below the involute of wheel {wheel} into its "
-                         "fillet"))
+            said = (tell("interference: the tip of wheel {mate} reaches {below:.3g} mm below the involute of wheel {wheel} into "
+                         "its undercut") if w.rack.undercut else
+                    tell("interference: the tip of wheel {mate} reaches {below:.3g} mm below the involute of wheel {wheel} into "
+                         "its fillet"))
             yield said.format(mate=mate, wheel=i, below=below * 1e3), hint
     if pair.eps_alpha < 1:
         yield (tell("contact ratio {ratio:.3f} is less than 1").format(ratio=pair.eps_alpha),
