@@ -147,7 +147,7 @@ def problems_of(pair: PairGeometry) -> Iterator[tuple[str, str]]:
 
 
 def warnings_of(pair: PairGeometry) -> tuple[str, ...]:
-    """What a teacher would ask about, although it can be built (Russian, for the sheet)."""
+    """What a teacher would ask about, although it can be built (for the sheet)."""
     out = []
     if pair.eps_alpha < LOW_CONTACT_RATIO:
         out.append(tr("the contact ratio is less than 1.1"))

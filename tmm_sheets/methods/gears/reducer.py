@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def criterion_of(data: ReducerTable, sets: Sequence[ToothSet]) -> str:
-    """By what the tooth numbers were chosen, and the sets that came next (Russian)."""
+    """By what the tooth numbers were chosen, and the sets that came next."""
     tiers = ", ".join(number(100 * t) for t in (*TIERS, data.tolerance))
     told = "; ".join(", ".join(f"{name} = {z}" for name, z in named_teeth(data, t).items()) for t in sets)
     return tr("among the sets that fulfil coaxiality, assembly and neighbourhood, the least height of the reducer in the first of "
@@ -142,7 +142,7 @@ class Reducer:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Remarks for the sheet (Russian)."""
+        """Remarks for the sheet."""
         out = []
         if self.told("u_simple") < self.scheme.least_simple:
             out.append(tr("the ratio of the simple stage is less than {least}").format(least=number(self.scheme.least_simple)))
