@@ -66,7 +66,7 @@ def test_show(capsys):
         "  crank.length                0.08 m                    000, 2 ex. 1: l_AC sin(theta/2) = 0.0803, rounded to 0.08",
         "  D″  5–0  sliding",
         "Mobility W = 3n - 2 p5 - p4 = 3*5 - 2*7 - 0 = 1",
-        "  4–5  class 2, order 2  kind 5 (ВПП)",
+        "  4–5  class 2, order 2  kind 5 (RPP)",
         "Formula of structure: I(0,1) → II(2,3) → II(4,5)",
     ):
         assert f"{line}\n" in out
