@@ -75,7 +75,7 @@ class Guide:
 class GroupKind(ABC):
     """A kind of two-link group (вид группы Ассура; manual 000, table 3.1); a kind has no state of its own.
 
-    ``number`` is the manual's; ``form`` its pairs, outer, inner, outer, R turning, P sliding, looked up when it is said (Russian ВПВ).
+    ``number`` is the manual's; ``form`` is its pairs, outer, inner, outer, R turning, P sliding, looked up when it is said.
     ``orders`` are the same pairs as R and P, in every order the two links can be met in.
     """
 
