@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.words import tell
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -84,13 +84,13 @@ def _construct(project: Project, problem: CannotBuild) -> None:
 
 
 def _told(project: Project, plan: Plan, scale: Scale | None) -> Iterator[str]:
-    from tmm_sheets.construction.protocol import UNITS, sentences
+    from tmm_sheets.construction.protocol import sentences
 
     k = _position(project, plan)
-    place = f", положение {plan.labels[k]}" if len(plan.labels) > 1 else ""
+    title = tr("{title} ({name}), position {position}") if len(plan.labels) > 1 else "{title} ({name})"
     factor = f"; {scale}" if scale is not None and scale.mu != 1 else ""
-    yield f"{plan.title} ({plan.name}){place}{factor}"
-    to_mm, unit = (scale.mm, "мм") if scale is not None else (float, UNITS.get(plan.unit, plan.unit))
+    yield title.format(title=plan.title, name=plan.name, position=plan.labels[k]) + factor
+    to_mm, unit = (scale.mm, "mm") if scale is not None else (float, plan.unit)
     for i, said in enumerate(sentences(plan, k, to_mm, unit), 1):
         yield f"{i:3}. {said}"
 

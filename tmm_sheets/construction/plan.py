@@ -48,7 +48,7 @@ class Plan:
     name
         identifier for ``protocol --plan`` and ``build --explain``, e.g. ``"velocities"``.
     title
-        Russian title as it stands on the sheet.
+        title as it stands on the sheet, in its language.
     unit
         SI unit of the quantity laid off (``"m"``, ``"m/s"``, ``"N"`` ...).
     pole

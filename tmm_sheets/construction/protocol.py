@@ -13,12 +13,20 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, take
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number, size
+from tmm_sheets.words import marked, tr, tr_n
 
-UNITS = {"mm": "мм", "m": "м", "m/s": "м/с", "m/s2": "м/с²", "N": "Н", "rad": "рад"}
-"""Russian units of plans that no sheet draws."""
+UNITS = {"mm": marked("mm"), "m": marked("m"), "m/s": marked("m/s"), "m/s2": marked("m/s²"), "N": marked("N"), "rad": marked("rad")}
+"""Units of plans as they are said."""
+
+_PERPENDICULAR = {
+    (1,): marked("Through {0} perpendicular to {1} and through {2} parallel to {3} draw lines; they meet at point {name}."),
+    (3,): marked("Through {0} parallel to {1} and through {2} perpendicular to {3} draw lines; they meet at point {name}."),
+    (1, 3): marked("Through {0} perpendicular to {1} and through {2} perpendicular to {3} draw lines; they meet at point {name}."),
+}
+"""Sentences of lines that meet where these of their directions are said as perpendiculars: by what they are perpendicular to."""
 
 
-def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "мм") -> Iterator[str]:
+def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "mm") -> Iterator[str]:
     """Sentences of the plan at position ``k``; ``to_mm`` turns a length of the plan into millimetres of paper.
 
     A plan that is not drawn has no millimetres: ``to_mm`` leaves its lengths as they are and ``unit`` names theirs.
@@ -29,7 +37,8 @@ def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "
         segments = [f"|{name}{step.name}| = {_said(vector, 'vector', to_mm, unit, sizes[_sort(step)])}"
                     for name, vector in _segments(plan, step, k)]
         if segments:
-            said += f" {'Отрезки' if len(segments) > 1 else 'Отрезок'} {', '.join(segments)}."
+            told = tr_n("Segment {segments}.", "Segments {segments}.", len(segments)).format(segments=", ".join(segments))
+            said = f"{said} {told}"
         yield said
 
 
@@ -86,12 +95,11 @@ _OPERAND = re.compile(r"(?<=[·/×+−])( ?)(\{\d\})|(\{\d\})(?=²)")
 """An argument behind an arithmetic sign or squared: a negative one stands in parentheses there."""
 
 
-def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "мм",
+def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "mm",
              sizes: Mapping[str, float] | None = None) -> str:
     """One step as a sentence; ``sizes`` are those of each sort in its plan."""
     if sizes is None:
         sizes = _sizes([step], k)
-    wording = step.say if step.say is not None else step.rule.wording
     # What is taken from another plan has other positions there. A protractor knows no minutes: they are said in formulas, not
     # where an angle is laid off.
     args, drawn = () if step.rule.compute is take else step.args, step.rule.gives in ("point", "direction")
@@ -104,8 +112,18 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "�
         space, field = m[1] or "", m[2] or m[3]
         return f"{space}({field})" if shown[int(field[1:-1])].startswith("−") else m[0]
 
-    said = _OPERAND.sub(operand, wording).format(*shown, name=letter_of(step), value=value)
-    return said.replace("параллельно ⟂", "перпендикулярно ")
+    return _OPERAND.sub(operand, _wording(step, shown)).format(*shown, name=letter_of(step), value=value)
+
+
+def _wording(step: Step, shown: list[str]) -> str:
+    """The sentence before its arguments are put in; of lines drawn as perpendiculars the sign is taken off the arguments."""
+    if step.say is not None:
+        return step.say
+    if step.rule is LINE_LINE and (across := tuple(i for i in (1, 3) if shown[i].startswith("⟂"))):
+        for i in across:
+            shown[i] = shown[i].removeprefix("⟂")
+        return tr(_PERPENDICULAR[across])
+    return tr(step.rule.wording)
 
 
 def _show(arg: Any, kind: Kind, k: int, to_mm: Callable[[float], float], unit: str, sizes: Mapping[str, float],
@@ -138,9 +156,9 @@ def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of
         return "—" if np.isnan(value) else "−∞" if np.real(value) < 0 else "∞"
     if kind in ("length", "ordinate", "vector"):
         real = to_mm(float(value) if kind == "ordinate" else abs(value))
-        return f"{fixed(real, 1)} мм" if unit == "мм" else f"{number(real, kind=to_mm(of_sort))} {unit}"
+        return f"{fixed(real, 1) if unit == 'mm' else number(real, kind=to_mm(of_sort))} {tr(UNITS.get(unit, unit))}"
     if kind == "force":
-        return f"{fixed(abs(value), 1)} Н"
+        return f"{fixed(abs(value), 1)} {tr('N')}"
     if kind == "angle":
         return f"{fixed(degrees(value) % 360, 1)}°"
     if kind == "inclination":

@@ -13,6 +13,7 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.step import Helper, Rule
+from tmm_sheets.words import marked
 
 
 def _same(x: Any) -> Any:
@@ -54,63 +55,63 @@ def taken(name: str, unit: str, wording: str) -> Rule:
     return Rule(name, take, ("number", "number"), "number", wording, unit=unit)
 
 
-GIVEN = Rule("given point", _same, ("point",), "point", "Отметим точку {name}.")
-GIVEN_NUMBER = Rule("given number", _same, ("number",), "number", "Дано: {name} = {value}.")
-GIVEN_LENGTH = Rule("given length", _same, ("length",), "length", "Возьмём отрезок {name} = {value}.")
-GIVEN_DIRECTION = Rule("given direction", _same, ("direction",), "direction", "Проведём направление {name}.")
+GIVEN = Rule("given point", _same, ("point",), "point", marked("Mark point {name}."))
+GIVEN_NUMBER = Rule("given number", _same, ("number",), "number", marked("Given: {name} = {value}."))
+GIVEN_LENGTH = Rule("given length", _same, ("length",), "length", marked("Take the segment {name} = {value}."))
+GIVEN_DIRECTION = Rule("given direction", _same, ("direction",), "direction", marked("Draw the direction {name}."))
 
-UNDER = Rule("direction of an angle", ar.unit, ("angle",), "direction", "Проведём направление {name}.")
+UNDER = Rule("direction of an angle", ar.unit, ("angle",), "direction", marked("Draw the direction {name}."))
 
 LAY_OFF = Rule(
     "lay off under an angle", ar.polar, ("point", "length", "angle"), "point",
-    "Из точки {0} радиусом {1} проведём окружность и под углом {2} отметим на ней точку {name}.",
+    marked("About {0} with the radius {1} draw a circle and mark point {name} on it at the angle {2}."),
     lambda a, v: (Helper("circle", a[0], radius=a[1]), Helper("line", a[0], v)),
 )
-RAY = Rule("ray", ar.ray, ("point", "point"), "direction", "Проведём прямую {0}{1}.",
+RAY = Rule("ray", ar.ray, ("point", "point"), "direction", marked("Draw the line {0}{1}."),
            lambda a, v: (Helper("line", a[0], a[1]),))
 ALONG = Rule(
     "lay off along a line", ar.along, ("point", "direction", "length"), "point",
-    "На прямой {1} от точки {0} радиусом {2} сделаем засечку: точка {name}.",
+    marked("On the line {1} mark off the radius {2} from {0}: point {name}."),
     lambda a, v: (Helper("arc", a[0], v, abs(a[2])),),
 )
 OFFSET = Rule(
     "lay off to one side", ar.along, ("point", "direction", "ordinate"), "point",
-    "От точки {0} вдоль {1} отложим {2}: точка {name}.",
+    marked("From {0} lay off {2} along {1}: point {name}."),
     lambda a, v: (Helper("arc", a[0], v, abs(a[2])),), laid_off=True,
 )
-SHIFT = Rule("lay off a vector", _shift, ("point", "vector"), "point", "От точки {0} отложим {1}: точка {name}.",
+SHIFT = Rule("lay off a vector", _shift, ("point", "vector"), "point", marked("From {0} lay off {1}: point {name}."),
              lambda a, v: (Helper("line", a[0], v),), laid_off=True)
-TURN = Rule("turn by 90 degrees", ar.turned, ("direction",), "direction", "Повернём направление {0} на 90°.")
+TURN = Rule("turn by 90 degrees", ar.turned, ("direction",), "direction", marked("Turn the direction {0} by 90°."))
 PERPENDICULAR = Rule(
     "perpendicular", lambda p, q: 1j * ar.ray(p, q), ("point", "point"), "direction",
-    "Проведём перпендикуляр к {0}{1}.",
+    marked("Draw the perpendicular to {0}{1}."),
 )
 ARC_ARC = Rule(
     "arc cuts arc", ar.arc_arc, ("point", "length", "point", "length", "number"), "point",
-    "Из точки {0} радиусом {1} и из точки {2} радиусом {3} сделаем засечки: точка {name}.",
+    marked("Strike arcs about {0} with the radius {1} and about {2} with the radius {3}: point {name}."),
     lambda a, v: (Helper("arc", a[0], v, a[1]), Helper("arc", a[2], v, a[3])),
 )
 ARC_LINE = Rule(
     "arc cuts line", ar.arc_line, ("point", "length", "point", "direction", "number"), "point",
-    "Из точки {0} радиусом {1} сделаем засечку на прямой {3}: точка {name}.",
+    marked("About {0} with the radius {1} strike an arc across the line {3}: point {name}."),
     lambda a, v: (Helper("arc", a[0], v, a[1]),),
 )
 LINE_LINE = Rule(
     "lines meet", ar.line_line, ("point", "direction", "point", "direction"), "point",
-    "Через точку {0} параллельно {1} и через точку {2} параллельно {3} проведём прямые до пересечения в точке {name}.",
+    marked("Through {0} parallel to {1} and through {2} parallel to {3} draw lines; they meet at point {name}."),
     lambda a, v: (Helper("line", a[0], v), Helper("line", a[2], v)),
 )
 TANGENT = Rule(
     "tangent", ar.tangent_point, ("point", "point", "length", "number"), "point",
-    "Из точки {0} проведём касательную к окружности с центром {1} и радиусом {2}; точка касания {name}.",
+    marked("From {0} draw the tangent to the circle with the centre {1} and the radius {2}; it touches at point {name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 FOOT = Rule("foot of a perpendicular", ar.foot, ("point", "point", "direction"), "point",
-            "Из точки {0} опустим перпендикуляр на прямую {2}: точка {name}.",
+            marked("From {0} drop the perpendicular to the line {2}: point {name}."),
             lambda a, v: (Helper("line", a[0], v),))
-DISTANCE = Rule("measure a length", _distance, ("point", "point"), "length", "Измерим отрезок {0}{1} = {value}.")
-DIFFERENCE = Rule("measure a vector", _difference, ("point", "point"), "vector", "Измерим вектор {0}{1}: {value}.")
+DISTANCE = Rule("measure a length", _distance, ("point", "point"), "length", marked("Measure the segment {0}{1} = {value}."))
+DIFFERENCE = Rule("measure a vector", _difference, ("point", "point"), "vector", marked("Measure the vector {0}{1}: {value}."))
 ARM = Rule("measure an arm", ar.arm, ("point", "point", "force"), "length",
-           "Измерим плечо силы {2} относительно точки {0}: {value}.", lambda a, v: arm(*a))
+           marked("Measure the arm of the force {2} about {0}: {value}."), lambda a, v: arm(*a))
 TURNED_BY = Rule("turn a direction", lambda u, angle: u * ar.unit(angle), ("direction", "angle"), "direction",
-                 "Под углом {1} к {0} проведём направление {name}.")
+                 marked("At the angle {1} to {0} draw the direction {name}."))

@@ -8,7 +8,7 @@ from typing import Any
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
-from tmm_sheets.words import tell
+from tmm_sheets.words import tell, tr_in, tr_n
 
 HANDY = (1.0, 2.0, 2.5, 4.0, 5.0)
 """Mantissas that are handy for mental arithmetic (manuals 000 and 003 ask for such scales)."""
@@ -72,9 +72,8 @@ def fit_standard(span_mm: float, mm: float) -> tuple[int, int]:
 def times(ratio: float) -> str:
     """How many times something is enlarged, with the right form of the word: 2 раза, 5 раз, 2,5 раза."""
     whole = isclose(ratio, round(ratio))
-    n = round(ratio) % 100
-    few = not whole or (n % 10 in (2, 3, 4) and n // 10 != 1)
-    return f"{number(ratio)} {'раза' if few else 'раз'}"
+    said = tr_n("{ratio} time", "{ratio} times", round(ratio)) if whole else tr_in("a number with a fraction", "{ratio} times")
+    return said.format(ratio=number(ratio))
 
 
 def handy(least: float) -> float:

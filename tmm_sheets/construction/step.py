@@ -57,7 +57,7 @@ class Rule:
     gives
         kind of the result.
     wording
-        Russian sentence with ``{0}``, ``{1}`` ... for the arguments, ``{name}`` and ``{value}`` for the result.
+        sentence with ``{0}``, ``{1}`` ... for the arguments, ``{name}`` and ``{value}`` for the result; looked up when it is said.
     helpers
         ``helpers(args, value)`` at one position gives the helper lines; None when the move leaves none.
     beyond_paper

@@ -75,7 +75,7 @@ class Guide:
 class GroupKind(ABC):
     """A kind of two-link group (вид группы Ассура; manual 000, table 3.1); a kind has no state of its own.
 
-    ``number`` and ``form`` are the manual's: the pairs in Russian letters, outer, inner, outer, В turning, П sliding.
+    ``number`` is the manual's; ``form`` is its pairs, outer, inner, outer, R turning, P sliding, looked up when it is said.
     ``orders`` are the same pairs as R and P, in every order the two links can be met in.
     """
 
@@ -203,7 +203,7 @@ class StructuralGroup:
 
     @property
     def form(self) -> str:
-        """Its pairs in Russian letters, outer, inner, outer: В turning, П sliding."""
+        """Its pairs, outer, inner, outer: R turning, P sliding; looked up when it is said."""
         return self.kind.form
 
 

@@ -20,6 +20,7 @@ from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, RAY
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
+from tmm_sheets.words import marked, tr
 
 Floats = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -73,41 +74,41 @@ def running(row: Any, halves: Any, weights: Any, ends: Any) -> Any:
 
 
 SMOOTH = Rule("smooth curve through the ends of chords", smooth_curve, (), "curve",
-              "Через концы хорд по лекалу проведём плавную кривую {name}; её касательные на границах интервалов параллельны лучам "
-              "к ординатам подынтегральной кривой.")
+              marked("Through the ends of the chords draw the smooth curve {name} with a French curve; its tangents at the "
+                     "borders of the intervals are parallel to the rays to the ordinates of the integrand."))
 ON_CURVE = Rule("ordinate of a curve", ordinate_of, ("curve", "length"), "ordinate",
-                "На абсциссе {1} измерим ординату кривой {name} = {value}.")
+                marked("At the abscissa {1} measure the ordinate of the curve {name} = {value}."))
 AREA = Rule("area under a graph", running, ("number",) * 4, "number",
-            "Площадь под кривой (квадратура Гаусса – Лежандра): {name} = {value}.", beyond_paper=True)
+            marked("Area under the curve (Gauss–Legendre quadrature): {name} = {value}."), beyond_paper=True)
 POLE = Rule(
     "pole", lambda distance: -distance + 0j, ("length",), "point",
-    "На продолжении оси абсцисс влево от начала координат отложим полюсное расстояние {0}: полюс {name}.",
+    marked("On the axis of abscissae produced to the left of the origin lay off the pole distance {0}: pole {name}."),
     lambda a, v: (Helper("line", v, 0j),),
 )
 ORIGIN = Rule("origin of the integral", lambda y: 1j * y, ("ordinate",), "point",
-              "На оси ординат нижнего графика отметим начальную точку {name}.")
+              marked("On the axis of ordinates of the lower graph mark the starting point {name}."))
 MID_ORDINATE = Rule(
     "ordinate in the middle of an interval", _mid_ordinate, ("ordinate", "ordinate", "ordinate"), "point",
-    "В середине интервала между абсциссами {0} и {1} проведём ординату {2} до кривой: точка {name}.",
+    marked("In the middle of the interval between the abscissae {0} and {1} draw the ordinate {2} up to the curve: point {name}."),
     lambda a, v: (Helper("line", complex(v.real, 0), v),),
 )
 CARRY = Rule(
     "carry to the ordinate axis", lambda p: 1j * np.imag(p), ("point",), "point",
-    "Точку {0} снесём горизонталью на ось ординат: точка {name}.",
+    marked("Carry {0} horizontally over to the axis of ordinates: point {name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 CHORD = Rule(
     "chord parallel to a ray", _chord, ("point", "direction", "ordinate"), "point",
-    "Из точки {0} параллельно лучу {1} проведём хорду до ординаты с абсциссой {2}: точка {name}.",
+    marked("From {0}, parallel to the ray {1}, draw the chord up to the ordinate at the abscissa {2}: point {name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 CHORD_OF_CURVE = Rule(
     "chord of a curve", lambda p, q: (q - p) / np.abs(q - p), ("point", "point"), "direction",
-    "Стянем дугу кривой хордой {0}{1}.", lambda a, v: (Helper("line", a[0], a[1]),),
+    marked("Draw the chord {0}{1} of the arc of the curve."), lambda a, v: (Helper("line", a[0], a[1]),),
 )
 CARRY_BETWEEN = Rule(
     "carry to the middle of an interval", _between, ("point", "point", "point"), "point",
-    "Точку {2} снесём горизонталью на середину интервала между {0} и {1}: точка {name}.",
+    marked("Carry {2} horizontally over to the middle of the interval between {0} and {1}: point {name}."),
     lambda a, v: (Helper("line", a[2], v),),
 )
 
@@ -200,7 +201,7 @@ def differentiate(plan: Plan, prefix: str, points: Sequence[Any], pole_distance:
         chord = plan.add(f"{prefix}c{i}", CHORD_OF_CURVE, p, q)
         cut = plan.add(
             f"{prefix}{i}′", LINE_LINE, pole, chord, 0j, 1j,
-            say="Из полюса {0} параллельно хорде {1} проведём луч; на оси ординат он отсечёт точку {name}.")
+            say=tr("From the pole {0} draw the ray parallel to the chord {1}; it cuts off point {name} on the axis of ordinates."))
         result.append(plan.add(f"{prefix}d{i}", CARRY_BETWEEN, p, q, cut))
     return result
 

@@ -9,6 +9,7 @@ from tmm_sheets.construction import expression
 from tmm_sheets.construction.given import FoundNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, ordered
+from tmm_sheets.words import tr
 
 
 def parents(step: Step) -> list[Step]:
@@ -96,7 +97,7 @@ def rule_json(step: Step) -> dict[str, Any]:
         return found | {"primitive": tree.name}
     if tree is not None:
         found["expression"] = expression.as_json(tree)
-    return found | ({"source": rule.source} if rule.source else {})
+    return found | ({"source": tr(rule.source)} if rule.source else {})
 
 
 def _keys(name: str, count: int) -> Iterator[str]:

@@ -136,7 +136,7 @@ class _Telling:
     def __init__(self, plan: Plan, scale: Scale | None) -> None:
         self.plan = plan
         self.to_mm: Any = float if scale is None else scale.mm
-        self.unit = protocol.UNITS.get(plan.unit, plan.unit) if scale is None else "мм"
+        self.unit = plan.unit if scale is None else "mm"
         self._sizes: dict[int, dict[str, float]] = {}
 
     def sizes(self, k: int) -> dict[str, float]:

@@ -114,7 +114,7 @@ def _line(step: Step, at: str, book: Book) -> str:
 
 def _from(step: Step, k: int, plan: Any) -> str:
     to_mm: Any = float
-    return protocol.sentence(step, k, to_mm, protocol.UNITS.get(plan.unit, plan.unit) if plan is not None else "")
+    return protocol.sentence(step, k, to_mm, plan.unit if plan is not None else "")
 
 
 def _of_part(told: Told) -> str:

@@ -18,6 +18,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -75,7 +76,7 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     """S'', S' and S one under another over a common axis of the cam angle, with both graphical integrations."""
     cam: Cam = project.cam
     law = cam.law
-    names = dict.fromkeys(p.law.title for p in (law.rise, law.fall))
+    names = dict.fromkeys(tr(p.law.title) for p in (law.rise, law.fall))
     whose = "коромысла" if law.symbol == "ψ" else "толкателя"
     # The turned designation of the sheet stands in the upper left corner.
     area = canvas.title(Box(max(box.x0, 92.0), box.y0, box.x1, box.y1), f"Закон движения {whose} ({', '.join(names)})")
@@ -142,10 +143,10 @@ def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
         if p.angle > 0:
             a, b = (base + float(m.scales.phi.mm(v)) for v in (p.start, p.end))
             wide = abs(b - a)
-            full = f"{p.symbol} = {number(degrees(p.angle))}°"
-            canvas.dimension(a, b, -8.0, full if wide > 28.0 else p.symbol if wide > 9.0 else "")
+            full = f"{p.letters} = {number(degrees(p.angle))}°"
+            canvas.dimension(a, b, -8.0, full if wide > 28.0 else p.letters if wide > 9.0 else "")
             if wide <= 9.0:
-                canvas.label((a + b) / 2 - 8j, p.symbol, -1j, 3.5, 1.5, leader=False)
+                canvas.label((a + b) / 2 - 8j, p.letters, -1j, 3.5, 1.5, leader=False)
 
 
 def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:

@@ -377,7 +377,7 @@ def _phase_angles(s: Stage, picture: _ProfilePicture) -> None:
     for p in cam.law.phases:
         ends = sorted(start + cam.right * v for v in (p.start, p.end))
         s.line(cam.inversion.ends, origin, origin + rect(reach, start + cam.right * p.start), "thin")
-        canvas.angle_mark(origin, ends[0], ends[1], radius, p.symbol)
+        canvas.angle_mark(origin, ends[0], ends[1], radius, p.letters)
     turn = 0.5 * radius
     s.pen("O", "symbol").arc_arrow(origin, turn, start + cam.right * 0.3, start - cam.right * 1.3, "axis")
     canvas.label(origin + rect(turn, start - cam.right * 0.6), "ω", rect(1, start - cam.right * 0.6), 5.0, 1.0)

@@ -21,6 +21,7 @@ from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick, together
 from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Segment
@@ -520,6 +521,6 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     rows = [["Группа", "Класс", "Порядок", "Вид", "Пары"]]
     for g, found in zip(reversed(m.groups), decompose(m), strict=True):
         outer_i, outer_j = found.outer
-        rows.append([g.name, "II", "2", f"{found.kind.number} ({found.form})", f"{outer_i}, {found.inner}, {outer_j}"])
+        rows.append([g.name, "II", "2", f"{found.kind.number} ({tr(found.form)})", f"{outer_i}, {found.inner}, {outer_j}"])
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
     canvas.table(complex(box.x0, inside.y1 - 16.5), [w * box.width for w in widths], rows, 7.0, 3.5)

@@ -287,7 +287,7 @@ def _couples(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
     for n, step in enumerate(forces.link_couples.get(link, ())):
         value = float(np.real(step.at(k)))
         if not is_zero(value, forces.moment_size(k)):
-            yield n, Couple(symbol(step.name).replace(BAR, ""), 0j, value, step)
+            yield n, Couple(symbol(step.symbol or step.name).replace(BAR, ""), 0j, value, step)
 
 
 def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:

@@ -30,7 +30,7 @@ from tmm_sheets.methods.linkage.forces import MOMENTS
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.plan import Plan, Segment
     from tmm_sheets.project import Project
 
 
@@ -87,6 +87,12 @@ def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = ""
             yield length(plan, scales, k, start, step, f"{start.name}{step.name}")
 
 
+def _name(vector: Segment) -> str:
+    """Name of a vector of motion in every language: its symbol, with the index that Coriolis' acceleration has in Russian."""
+    name = re.sub(r"[\u0305{}]", "", vector.symbol)
+    return f"{name.partition('^')[0]}^к" if vector.head.rule is accelerations.CORIOLIS else name
+
+
 def _motion_results(project: Project, found: Measurables, of_velocities: list[int]) -> None:
     """Velocities and angular velocities at the positions with a velocity plan, accelerations at that of the force analysis."""
     study, force = project.study, project.force_index
@@ -102,7 +108,7 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
         mu = found.scales[key].mu
         for k in positions:
             label = study.labels[k]
-            vectors = [(re.sub(r"[\u0305{}]", "", s.symbol), s.tail, s.head) for s in of.plan.segments]
+            vectors = [(_name(s), s.tail, s.head) for s in of.plan.segments]
             vectors += [(f"{letter}_{name}", of.pole, step) for name, step in of.points.items() if step is not of.pole]
             for name, tail, head in vectors:
                 drawn = length(of.plan, found.scales, k, tail, head, name)

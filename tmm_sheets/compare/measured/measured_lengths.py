@@ -165,7 +165,7 @@ def _what(j: Judged) -> str:
 def _sentence(mistake: Mistake) -> str:
     """The step to be done again, as the protocol says it."""
     mu = mistake.mu
-    return sentence(mistake.step, mistake.place[1], (lambda x: x / mu) if mu else float, "мм" if mu else "")
+    return sentence(mistake.step, mistake.place[1], (lambda x: x / mu) if mu else float, "mm" if mu else "")
 
 
 def _where(j: Judged) -> str:

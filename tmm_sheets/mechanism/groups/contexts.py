@@ -122,7 +122,7 @@ class ForcePlans(Protocol[M, G]):
     def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
         """Part of F_jk at a point across its line to the centre of the moments, from their sum."""
 
-    def across(self, name: str, u: Step) -> Step:
+    def across(self, name: str, u: Step, symbol: str = "") -> Step:
         """Direction across another, drawn once."""
 
     def close(self, fp: ForcePlan, j: str, other: str, tail: Step, head: Step) -> Step:

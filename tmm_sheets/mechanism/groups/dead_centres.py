@@ -22,6 +22,7 @@ from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, angle_of, d
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
+from tmm_sheets.words import marked
 
 Numbers = tuple[Rule, tuple[Any, ...]]
 """A rule and the numbers of the mechanism it takes besides the crank angle."""
@@ -135,7 +136,7 @@ AWAY = 4.0
 """So many times the mechanism's size away a guide's own point is not drawn."""
 
 
-NEAREST = Rule("nearest point of a guide", foot_on_guide, ("point", "point", "angle"), "point", "Отметим точку {name}.")
+NEAREST = Rule("nearest point of a guide", foot_on_guide, ("point", "point", "angle"), "point", marked("Mark point {name}."))
 
 
 def near_point(m: Mechanism, guide: Guide) -> tuple[Any, ...]:
@@ -157,7 +158,7 @@ def near_point(m: Mechanism, guide: Guide) -> tuple[Any, ...]:
 
 
 PIN_ANGLE = Rule("angle of a dead position", lambda centre, pin: np.arctan2((pin - centre).imag, (pin - centre).real),
-                 ("point", "point"), "angle", "Угол кривошипа в мёртвом положении {1} {name} = {value}.", unit="rad",
+                 ("point", "point"), "angle", marked("Angle of the crank in the dead position {1} {name} = {value}."), unit="rad",
                  exact=True)
 
 
@@ -167,7 +168,7 @@ def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
 
 
 IN_LINE_ANGLE = Rule("angle of a crank in line with the rod", _in_line, ("point", "point", "number", "length"), "angle",
-                     "Кривошип на одной прямой с шатуном, конец которого в точке {1}: угол {name} = {value}.", unit="rad",
+                     marked("The crank is in line with the coupler whose end is at {1}: angle {name} = {value}."), unit="rad",
                  exact=True)
 REACH = Rule("reach of crank and rod in line", lambda rod, crank, sign: np.abs(rod + sign * crank), ("length", "length", "number"),
              "length", "{name} = {value}.")

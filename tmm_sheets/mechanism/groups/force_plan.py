@@ -9,11 +9,12 @@ from typing import Literal
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.words import marked
 
 Role = Literal["weight", "inertia", "applied", "reaction"]
 
 CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point"), "force",
-             "Замкнём план: {name} = |{0}–{1}|·μ_F = {value}.", lambda a, v: (Helper("line", a[0], a[1]),))
+             marked("Close the polygon: {name} = |{0}–{1}|·μ_F = {value}."), lambda a, v: (Helper("line", a[0], a[1]),))
 
 
 @dataclass(frozen=True)

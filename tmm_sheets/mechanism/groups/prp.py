@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class PRPKind(GroupKind):
     """Kind 4: two blocks on two guides, joined by a hinge."""
 
-    number, form, orders = 4, marked("ПВП"), ("PRP",)
+    number, form, orders = 4, marked("PRP"), ("PRP",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         c, (i, j) = str(g.inner), g.links

@@ -9,7 +9,7 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class RPPKind(GroupKind):
     """Kind 5: a block hinged to a pin in the slot of a link that slides along a guide."""
 
-    number, form, orders = 5, marked("ВПП"), ("RPP", "PPR")
+    number, form, orders = 5, marked("RPP"), ("RPP", "PPR")
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         p, (i, j) = g.outer[0], g.links
@@ -32,10 +32,10 @@ class RPPKind(GroupKind):
         guide = g.guides[0]
         u = pos.guide_directions[guide]
         slot = pos.plan.add(f"n{g.links[1]}–n{g.links[1]}", rules.TURNED_BY, u, g.slot,
-                            say=f"Паз звена {g.links[1]}: под углом {{1}} к {{0}} возьмём направление {{name}}.")
+                            say=tr("Slot of link {link}: take the direction {{name}} at the angle {{1}} to "
+                                   "{{0}}.").format(link=g.links[1]))
         pos.points[g.inner] = pos.plan.add(g.inner, rules.LINE_LINE, pos.points[g.outer[0]], slot, pos.guide_points[guide], u,
-                                           say="Через точку {0} параллельно {1} проведём прямую до пересечения с {3} "
-                                               "в точке {name}.")
+                                           say=tr("Through {0} parallel to {1} draw a line; it meets {3} at point {name}."))
         pos.directions[g.links[0]] = slot
         pos.directions[g.links[1]] = u
 

@@ -16,24 +16,24 @@ from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGEN
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 ALONG_TANGENT = Rule(
     "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
-    ("point", "point"), "direction", "Проведём прямую {0}{1}.", lambda a, v: (Helper("line", a[0], a[1]),),
+    ("point", "point"), "direction", marked("Draw the line {0}{1}."), lambda a, v: (Helper("line", a[0], a[1]),),
 )
 OFFSET = Rule("offset of a slot", np.abs, ("ordinate",), "length", "{name} = {value}.")
 SINE = Rule("sine between slot and perpendicular to the line of pivots", lambda h, d: h / d, (), "number",
-            "Синус угла между пазом и перпендикуляром к линии шарниров {name} = {value}.", unit="1")
+            marked("Sine of the angle between the slot and the perpendicular to the line of pivots {name} = {value}."), unit="1")
 
 
 class RPRKind(GroupKind):
     """Kind 3: a block hinged to a pin, sliding along a rocker that is hinged to a pivot."""
 
-    number, form, orders = 3, marked("ВПВ"), ("RPR",)
+    number, form, orders = 3, marked("RPR"), ("RPR",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         (p, q), (i, j) = g.outer, g.links
@@ -96,7 +96,8 @@ class RPRKind(GroupKind):
         total = forces.moment_sum(f"ΣM{i}–{j}", pos.points[q], [i, j])
         tangential = forces.tangential(i, owner, total, q, p)
         radial = pos.direction(q, p)
-        across = forces.across(f"{q}{p}" if radial is pos.directions[j] else f"напр {j}", pos.directions[j])
+        across = (forces.across(f"{q}{p}", pos.directions[j]) if radial is pos.directions[j]
+                  else forces.across(f"напр {j}", pos.directions[j], tr("⟂dir {link}").format(link=j)))
         block = forces.plan_of(i, (i,))
         start = block.plan.add("2", rules.GIVEN, 0j)
         after = block.plan.add("3", rules.SHIFT, start, tangential)

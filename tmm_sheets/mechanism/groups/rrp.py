@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
-            "Синус угла между шатуном и перпендикуляром к направляющей {name} = {value}.", unit="1")
+            marked("Sine of the angle between the coupler and the perpendicular to the guide {name} = {value}."), unit="1")
 
 
 class RRPKind(GroupKind):
     """Kind 2: a rod hinged to a slider on a guide."""
 
-    number, form, orders = 2, marked("ВВП"), ("RRP", "PRR")
+    number, form, orders = 2, marked("RRP"), ("RRP", "PRR")
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         p, c, (i, j) = g.outer[0], str(g.inner), g.links

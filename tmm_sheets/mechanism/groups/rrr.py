@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
-            "Синус угла между звеньями {name} = {value}.", unit="1")
+            marked("Sine of the angle between the links {name} = {value}."), unit="1")
 
 
 class RRRKind(GroupKind):
     """Kind 1: two rods joined by a hinge, hinged to what is before them."""
 
-    number, form, orders = 1, marked("ВВВ"), ("RRR",)
+    number, form, orders = 1, marked("RRR"), ("RRR",)
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         (p, q), c, (i, j) = g.outer, str(g.inner), g.links

@@ -20,10 +20,11 @@ from tmm_sheets.methods.cams.cam_displacement import ExactMotion, in_phase
 from tmm_sheets.methods.cams.cam_inversion import Inversion
 from tmm_sheets.methods.cams.cam_laws import Phase
 from tmm_sheets.methods.cams.cam_zone import TURNED, found_share
+from tmm_sheets.words import marked, tr
 
 Reals = npt.NDArray[np.float64]
 
-SOURCE = "003, лист 2"
+SOURCE = marked("003, sheet 2")
 
 
 # --- spring -----------------------------------------------------------------------------------------------------------
@@ -39,30 +40,34 @@ def _force(s: Any, preload: Any, rate: Any, length: Any) -> Any:
     return preload + rate * length * s
 
 
-MASS = Rule("moved mass", lambda mass: mass, ("number",), "number", "По заданию масса толкателя {name} = {value} кг.", unit="kg")
+MASS = Rule("moved mass", lambda mass: mass, ("number",), "number", marked("Given mass of the follower {name} = {value} kg."),
+            unit="kg")
 REDUCED_MASS = Rule("mass reduced to the roller", lambda inertia, arm: inertia / arm**2, ("number", "length"), "number",
-                    "Масса коромысла, приведённая к оси ролика: {name} = J/AB² = {value} кг.", unit="kg", source=SOURCE)
+                    marked("Mass of the rocker reduced to the axis of the roller: {name} = J/AB² = {value} kg."), unit="kg",
+                    source=SOURCE)
 SPEED = Rule("speed of the cam", lambda speed: speed, ("number",), "number",
-             "По заданию угловая скорость кулачка {name} = {value} рад/с.",
+             marked("Given angular velocity of the cam {name} = {value} rad/s."),
              unit="rad/s")
-ARM = Rule("arm of the way", lambda length: length, ("number",), "number", "Перемещение закона умножается на {name} = {value}.",
+ARM = Rule("arm of the way", lambda length: length, ("number",), "number",
+           marked("The displacement of the law is multiplied by {name} = {value}."),
            unit="m")
 INERTIA = Rule("force of inertia", _inertia, ("ordinate", "number", "number", "number"), "number",
-               "Сила инерции, отрывающая толкатель от кулачка: {name} = {value} Н.", unit="N", source=SOURCE)
+               marked("Force of inertia that lifts the follower off the cam: {name} = {value} N."), unit="N", source=SOURCE)
 LARGEST = Rule("largest force of inertia", lambda *of: np.maximum(_inertia(*of), 0.0), INERTIA.takes, "number",
-               "Наибольшая сила инерции, отрывающая толкатель от кулачка: {name} = {value} Н.", unit="N", source=SOURCE)
+               marked("Greatest force of inertia that lifts the follower off the cam: {name} = {value} N."), unit="N",
+               source=SOURCE)
 PRODUCT = Rule("force by a factor", lambda factor, force: factor * force, ("number", "number"), "number",
-               "Сила пружины {name} = {0}·{1} = {value} Н.", unit="N", source=SOURCE)
+               marked("Force of the spring {name} = {0}·{1} = {value} N."), unit="N", source=SOURCE)
 WAY = Rule("way of the spring", lambda length, stroke: length * stroke, ("number", "length"), "number",
-           "Ход пружины {name} = {value} м.", unit="m", source=SOURCE)
+           marked("Travel of the spring {name} = {value} m."), unit="m", source=SOURCE)
 RATE = Rule("stiffness", lambda most, first, way: (most - first) / way, ("number", "number", "number"), "number",
-            "Жёсткость пружины {name} = ({0} − {1})/{2} = {value} Н/м.", unit="N/m", source=SOURCE)
+            marked("Stiffness of the spring {name} = ({0} − {1})/{2} = {value} N/m."), unit="N/m", source=SOURCE)
 FORCE = Rule("force of the spring", _force, ("ordinate", "number", "number", "number"), "number",
-             "Сила пружины в этом положении {name} = {value} Н.", unit="N", source=SOURCE)
+             marked("Force of the spring at this position {name} = {value} N."), unit="N", source=SOURCE)
 RATIO = Rule("force by force of inertia", lambda s, dds, stroke, largest, factor, preload, mass, speed, length: factor * largest * (
     preload + (1 - preload) * s / stroke) / _inertia(dds, mass, speed, length),
              ("ordinate", "ordinate", "length") + ("number",) * 6,
-    "number", "Наименьшее отношение силы пружины к силе инерции {name} = {value}.", unit="1", source=SOURCE)
+    "number", marked("Least ratio of the force of the spring to the force of inertia {name} = {value}."), unit="1", source=SOURCE)
 
 
 def _number(step: str, doc: str) -> property:
@@ -112,7 +117,8 @@ class Spring:
     @cached_property
     def course_plan(self) -> Plan:
         """Force and force of inertia over rise and fall, for smooth curves."""
-        at = self.exact.at("cam-spring-between", "Силы пружины и инерции", self.exact.display(), "узлы плавной кривой")
+        at = self.exact.at("cam-spring-between", tr("Forces of the spring and of inertia"), self.exact.display(),
+                           tr("nodes of a smooth curve"))
         numbers = self.plan
         at.plan.add("F", FORCE, at.s, numbers["F_0"], numbers["c"], numbers["l"])
         at.plan.add("Q", INERTIA, at.dds, numbers["m"], numbers["ω"], numbers["l"])
@@ -151,13 +157,13 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
         largest force by the largest separating force of inertia; force in the lowest position by the largest.
     """
     law = exact.law
-    plan = Plan("cam-spring", "Замыкающая пружина", "m")
+    plan = Plan("cam-spring", tr("Closing spring"), "m")
     moved = plan.add("m", MASS if len(mass) == 1 else REDUCED_MASS, *mass)
     way = plan.add("l", ARM, length)
     turning = plan.add("ω", SPEED, speed)
     pieces = [(p, a + 1e-12, b - 1e-12) for p in (law.rise, law.fall) for a, b in pairwise((0.0, *p.law.jumps, 1.0))]
     _, x, p = min(((*_least(lambda x, p=p: p.dds(x), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
-    share = found_share(plan, exact.phases, p, x, "Q", f"{law.symbol}'' наименьшее")
+    share = found_share(plan, exact.phases, p, x, "Q", tr("{symbol}'' is least").format(symbol=law.symbol))
     (dds,) = in_phase(plan, law, exact.phases, p, share, "Q", (2,))
     largest = plan.add("Q_max", LARGEST, dds, moved, turning, way)
     most = plan.add("F_max", PRODUCT, factor, largest)
@@ -172,7 +178,7 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
         return np.asarray(np.divide(force, inertia, out=np.full_like(force, np.inf), where=inertia > 1e-12 * biggest))
 
     _, x, p = min(((*_least(lambda x, p=p: ratio(x, p), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
-    share = found_share(plan, exact.phases, p, x, "k", f"отношение F/Q при {law.symbol}'' < 0 наименьшее")
+    share = found_share(plan, exact.phases, p, x, "k", tr("the ratio F/Q where {symbol}'' < 0 is least").format(symbol=law.symbol))
     s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
     plan.add("k_min", RATIO, s, dds, law.stroke, largest, factor, preload, moved, turning, way)
     return Spring(exact, plan, factor, preload, speed)
@@ -192,10 +198,10 @@ def _least(f: Any, lo: float, hi: float) -> tuple[float, float]:
 
 
 BACK = Rule("lay off backwards", lambda b, u, distance: b + u * -distance, ("point", "direction", "length"), "point",
-            "От точки {0} по линии толкателя отложим постоянное расстояние между роликами {2}: точка {name}.",
+            marked("From {0} along the line of the follower lay off the constant distance {2} between the rollers: point {name}."),
             lambda a, v: (Helper("line", a[0], v),))
 DISTANCE = Rule("distance of the rollers", lambda s0, stroke: 2 * s0 + stroke, ("length", "length"), "length",
-                "Расстояние между роликами {name} = 2·S_0 + S_max = {value}.", source=SOURCE)
+                marked("Distance between the rollers {name} = 2·S_0 + S_max = {value}."), source=SOURCE)
 
 
 def _spread(pivot: Any, apex: Any, swing: Any) -> Any:
@@ -204,22 +210,23 @@ def _spread(pivot: Any, apex: Any, swing: Any) -> Any:
 
 
 SPREAD = Rule("angle between the arms", _spread, ("point", "point", "inclination"), "inclination",
-              "Угол между плечами коромысла {name} = 2·∠B_0AO + ψ_max = {value}.", unit="rad", source=SOURCE)
+              marked("Angle between the arms of the rocker {name} = 2·∠B_0AO + ψ_max = {value}."), unit="rad", source=SOURCE)
 
 
 def second_disc_of_tappet(inv: Inversion, distance: Step) -> None:
     """Record the centre profile B′ of the second disc and its normals N′: the rollers keep their ``distance`` (m)."""
     plan = inv.plan
     second = plan.add("B′", BACK, inv.centres, inv.lines, distance)
-    plan.add("N′", rules.RAY, second, plan["P"], say="Нормаль {name} второго диска проходит через ту же точку {1}.")
+    plan.add("N′", rules.RAY, second, plan["P"], say=tr("The normal {name} of the second disc passes through the same point {1}."))
 
 
 def second_disc_of_rocker(inv: Inversion, angle: Step, sense: float) -> None:
     """Record the centre profile B′ of the second disc and its normals N′: the arms keep their ``angle``, rad."""
     plan = inv.plan
     second = plan.add("B′", TURNED, inv.ends, inv.centres, angle, sense,
-                      say="Второе плечо коромысла повёрнуто вокруг {0} относительно первого на постоянный угол {2}: точка {name}.")
+                      say=tr("The second arm of the rocker is turned about {0} from the first by the constant angle {2}: point "
+                             "{name}."))
     line = plan.add("B′A", rules.RAY, second, inv.ends)
     tips = plan.add("D′", rules.OFFSET, second, line, plan["D"].args[2],
-                    say="От точки {0} к оси коромысла отложим отрезок AB·ψ' = {2}: точка {name}.")
-    plan.add("N′", rules.RAY, tips, inv.origin, say="Нормаль {name} второго диска параллельна прямой {0}{1}.")
+                    say=tr("From {0} towards the axis of the rocker lay off the segment AB·ψ' = {2}: point {name}."))
+    plan.add("N′", rules.RAY, tips, inv.origin, say=tr("The normal {name} of the second disc is parallel to the line {0}{1}."))

@@ -29,6 +29,7 @@ from tmm_sheets.methods.cams.cam_laws import (
     share,
     within_turn,
 )
+from tmm_sheets.words import marked, tr
 
 Reals = npt.NDArray[np.float64]
 
@@ -40,30 +41,30 @@ KINDS: dict[str, tuple[Kind, Kind, Kind]] = {
 }  # fmt: skip
 """Kinds of the displacement and its derivatives, by its symbol: m, or rad."""
 
-PHASE = Rule("phase angle", lambda x: x, ("angle",), "angle", "По заданию фазовый угол {name} = {value}.", unit="rad",
+PHASE = Rule("phase angle", lambda x: x, ("angle",), "angle", marked("Given phase angle {name} = {value}."), unit="rad",
              source=SOURCE)
-STROKE = Rule("stroke", lambda x: x, ("length",), "length", "По заданию ход толкателя {name} = {value}.", source=SOURCE)
-SWING = Rule("swing", lambda x: x, ("inclination",), "inclination", "По заданию угол качания коромысла {name} = {value}.",
+STROKE = Rule("stroke", lambda x: x, ("length",), "length", marked("Given stroke of the follower {name} = {value}."), source=SOURCE)
+SWING = Rule("swing", lambda x: x, ("inclination",), "inclination", marked("Given angle of swing of the rocker {name} = {value}."),
              unit="rad",
              source=SOURCE)
 BACK = Rule("travel of the fall", lambda x: -x, ("ordinate",), "ordinate",
-            "На возвращении перемещение убывает на весь ход: {name} = {value}.")
+            marked("On the return the displacement falls by the whole stroke: {name} = {value}."))
 BACK_ANGLE = Rule("swing of the fall", lambda x: -x, ("inclination",), "inclination",
-                  "На возвращении угол коромысла убывает на весь угол качания: {name} = {value}.", unit="rad")
+                  marked("On the return the angle of the rocker falls by the whole angle of swing: {name} = {value}."), unit="rad")
 NEXT = Rule("end of a phase", lambda start, angle: start + angle, ("angle", "angle"), "angle",
-            "Фаза кончается при угле {name} = {0} + {1} = {value}.", unit="rad")
+            marked("The phase ends at the angle {name} = {0} + {1} = {value}."), unit="rad")
 IDLE = Rule("lower dwell", lambda end: 2 * np.pi - end, ("angle",), "angle",
-            "На ближнее стояние остаётся {name} = 360° − {0} = {value}.", unit="rad")
+            marked("Left for the lower dwell: {name} = 360° − {0} = {value}."), unit="rad")
 
-ANGLES = Rule("cam angles", lambda x: x, ("angle",), "angle", "Угол поворота кулачка {name} = {value}.", unit="rad")
-TURN = Rule("within a turn", within_turn, ("angle",), "angle", "В пределах оборота этот угол {name} = {value}.", unit="rad")
+ANGLES = Rule("cam angles", lambda x: x, ("angle",), "angle", marked("Cam angle {name} = {value}."), unit="rad")
+TURN = Rule("within a turn", within_turn, ("angle",), "angle", marked("Within a turn this angle is {name} = {value}."), unit="rad")
 SHARE = Rule("share of a phase", share, ("angle", "angle", "angle"), "number",
-             "Пройденная доля фазы, от 0 до 1: {name} = ({0} − {1})/{2} = {value}.",
+             marked("Part of the phase passed, from 0 to 1: {name} = ({0} − {1})/{2} = {value}."),
              unit="1", source=SOURCE)
 NUMBERED = Rule("share at numbered positions", lambda x: x, ("number",), "number",
-                "Каждая фаза разделена на равные части; пройденная доля {name} = {value}.", unit="1")
+                marked("Each phase is divided into equal parts; part passed {name} = {value}."), unit="1")
 AT_SHARE = Rule("cam angle of a share", lambda start, angle, x: start + angle * x, ("angle", "angle", "number"), "angle",
-                "Этой доле соответствует угол поворота кулачка {name} = {0} + {1}·{2} = {value}.", unit="rad")
+                marked("This part of the phase corresponds to the cam angle {name} = {0} + {1}·{2} = {value}."), unit="rad")
 
 
 @primitive("row")
@@ -78,20 +79,23 @@ def _of_phase(symbol: str) -> tuple[Rule, Rule, Rule]:
     angular = " of a rocker" if symbol == "ψ" else ""
     return (
         Rule(f"displacement in a phase{angular}", displaced, (s, travel, "number"), s,
-             "Перемещение на этой фазе {name} = {0} + {1}·{2} = {value}.", unit="rad" if angular else "", source=SOURCE),
+             marked("Displacement in this phase {name} = {0} + {1}·{2} = {value}."), unit="rad" if angular else "", source=SOURCE),
         Rule(f"first derivative in a phase{angular}", first_derivative, (travel, "angle", "number"), ds,
-             "Аналог скорости {name} = h/φ·f', где h – ход этой фазы со знаком, φ – её угол в радианах: {value}.",
+             marked("First derivative {name} = h/φ·f', where h is the travel of this phase with its sign and φ its angle in "
+                    "radians: {value}."),
              unit="1" if angular else "", source=SOURCE),
         Rule(f"second derivative in a phase{angular}", second_derivative, (travel, "angle", "number"), dds,
-             "Аналог ускорения {name} = h/φ²·f'' = {value}.", unit="1" if angular else "", source=SOURCE),
+             marked("Second derivative {name} = h/φ²·f'' = {value}."), unit="1" if angular else "", source=SOURCE),
     )
 
 
 def _of_turn(symbol: str) -> tuple[Rule, Rule, Rule]:
-    names = ("Перемещение", "Аналог скорости", "Аналог ускорения")
+    said = (marked("Displacement by the phase in which the angle lies: {name} = {value}."),
+            marked("First derivative by the phase in which the angle lies: {name} = {value}."),
+            marked("Second derivative by the phase in which the angle lies: {name} = {value}."))
     angular = " of a rocker" if symbol == "ψ" else ""
     rules = (Rule(f"{('displacement', 'first derivative', 'second derivative')[i]}{angular}", by_pieces, ("angle", kind), kind,
-                  f"{names[i]} по фазе, в которой лежит угол: {{name}} = {{value}}.", unit=("rad", "1", "1")[i] if angular else "")
+                  said[i], unit=("rad", "1", "1")[i] if angular else "")
              for i, kind in enumerate(KINDS[symbol]))
     return next(rules), next(rules), next(rules)
 
@@ -102,9 +106,13 @@ IN_TURN = {symbol: _of_turn(symbol) for symbol in KINDS}
 
 @cache
 def _law_rule(law: Law, order: int) -> Rule:
-    whose = ("относительное перемещение", "его производная по доле фазы", "вторая производная по доле фазы")[order]
     return Rule(f"{law.name} law, {('displacement', 'first derivative', 'second derivative')[order]}", law.forms[order],
-                ("number",), "number", f"Закон {law.title}: {whose} {{name}} = {{value}}.", unit="1", source=SOURCE)
+                ("number",), "number", "{name} = {value}.", unit="1", source=SOURCE)
+
+
+_LAW = (marked("Law of motion ({law}): relative displacement {{name}} = {{value}}."),
+        marked("Law of motion ({law}): its derivative over the part of the phase {{name}} = {{value}}."),
+        marked("Law of motion ({law}): second derivative over the part of the phase {{name}} = {{value}}."))
 
 
 @dataclass(frozen=True)
@@ -118,19 +126,20 @@ class Phases:
 
 def phases(law: PositionFunction) -> Phases:
     """Record the phases of a position function."""
-    plan = Plan("cam-phases", "Фазы поворота кулачка", "m")
+    plan = Plan("cam-phases", tr("Phases of the cam"), "m")
     straight = law.symbol == "S"
-    rise, dwell, fall = (plan.add(p.symbol, PHASE, p.angle, symbol=p.symbol) for p in (law.rise, law.upper_dwell, law.fall))
+    rise, dwell, fall = (plan.add(p.symbol, PHASE, p.angle, symbol=p.letters) for p in (law.rise, law.upper_dwell, law.fall))
     travel = plan.add(f"{law.symbol}_max", STROKE if straight else SWING, law.stroke, symbol=f"{law.symbol}_{{max}}")
     back = plan.add(f"−{law.symbol}_max", BACK if straight else BACK_ANGLE, travel)
     down = plan.add("φ_2", NEXT, rise, dwell)
     end = plan.add("φ_3", NEXT, down, fall)
-    idle = plan.add("φ_бс", IDLE, end, symbol="φ_бс")
+    idle = plan.add("φ_бс", IDLE, end, symbol=law.lower_dwell.letters)
     return Phases(plan, {"φ_у": (0.0, rise, 0.0, travel), "φ_дс": (rise, dwell, travel, 0.0), "φ_с": (down, fall, travel, back),
                          "φ_бс": (end, idle, 0.0, 0.0)}, {"φ_у": rise, "φ_дс": down, "φ_с": end})
 
 
-_WHERE = {"φ_у": "на удалении", "φ_с": "на возвращении"}
+_TRAVELLED = {"φ_у": marked("Displacement on the rise {name} = {0} + {1}·{2} = {value}."),
+              "φ_с": marked("Displacement on the return {name} = {0} + {1}·{2} = {value}.")}
 
 
 def names(symbol: str) -> tuple[str, str, str]:
@@ -142,15 +151,16 @@ def in_phase(plan: Plan, law: PositionFunction, at: Phases, phase: Phase, x: Any
              orders: Iterable[int] = (0, 1, 2)) -> list[Step]:
     """Record displacement and derivatives of a phase at the share ``x``, named with the index ``tag``."""
     _, angle, first, travel = at.of[phase.symbol]
+    written = phase.index if tag == phase.tag else tag
     found = []
     for order in orders:
         symbol = names(law.symbol)[order]
         f = plan.add(f"{names('f')[order]}_{tag}", _law_rule(phase.law, order), x, *phase.law.nodes,
-                     symbol=f"{names('f')[order]}_{{{tag}}}")
+                     say=tr(_LAW[order]).format(law=tr(phase.law.title)), symbol=f"{names('f')[order]}_{{{written}}}")
         args = (first, travel, f) if order == 0 else (travel, angle, f)
         rule = IN_PHASE[law.symbol][order]
-        say = rule.wording.replace("на этой фазе", _WHERE.get(phase.symbol, "на этой фазе"))
-        found.append(plan.add(f"{symbol}_{tag}", rule, *args, say=say, symbol=f"{symbol}_{{{tag}}}"))
+        say = tr(_TRAVELLED[phase.symbol]) if order == 0 and phase.symbol in _TRAVELLED else None
+        found.append(plan.add(f"{symbol}_{tag}", rule, *args, say=say, symbol=f"{symbol}_{{{written}}}"))
     return found
 
 
@@ -174,9 +184,8 @@ def displacement(plan: Plan, law: PositionFunction, at: Phases, phi: Any) -> Dis
     moving = {}
     for p in (law.rise, law.fall):
         start, angle, _, _ = at.of[p.symbol]
-        tag = p.symbol.removeprefix("φ_")
-        x = plan.add(f"x_{tag}", SHARE, turn, start, angle, symbol=f"x_{tag}")
-        moving[p.symbol] = in_phase(plan, law, at, p, x, tag)
+        x = plan.add(f"x_{p.tag}", SHARE, turn, start, angle, symbol=f"x_{p.index}")
+        moving[p.symbol] = in_phase(plan, law, at, p, x, p.tag)
     found = []
     for order in range(3):
         pieces: list[Any] = []
@@ -191,10 +200,11 @@ def displacement(plan: Plan, law: PositionFunction, at: Phases, phi: Any) -> Dis
 def numbered(plan: Plan, law: PositionFunction, at: Phases) -> Displacement:
     """Record displacement and derivatives at the numbered positions: those of the phase that a position belongs to."""
     n = law.parts
-    shares = Given(np.concatenate((law.shares, law.shares)), "cam.parts", choice=f"каждая фаза делится на {n} равных частей")
-    place = Given(np.arange(2.0 * n + 2), "cam.parts", choice="номер положения по порядку")
+    shares = Given(np.concatenate((law.shares, law.shares)), "cam.parts",
+                   choice=tr("each phase is divided into {n} equal parts").format(n=n))
+    place = Given(np.arange(2.0 * n + 2), "cam.parts", choice=tr("number of the position in order"))
     x = plan.add("x", NUMBERED, shares, symbol="x")
-    both = [in_phase(plan, law, at, p, x, p.symbol.removeprefix("φ_")) for p in (law.rise, law.fall)]
+    both = [in_phase(plan, law, at, p, x, p.tag) for p in (law.rise, law.fall)]
     (a, b, _, _), (c, d, _, _) = at.of[law.rise.symbol], at.of[law.fall.symbol]
     up, down = plan.add("φ_1", AT_SHARE, a, b, x), plan.add("φ_2", AT_SHARE, c, d, x)
     phi = plan.add("φ", OF_POSITION, place, up, n + 0.5, down, symbol="φ")
@@ -218,23 +228,24 @@ class ExactMotion:
     @cached_property
     def positions(self) -> Displacement:
         """Displacement and derivatives at the numbered positions."""
-        whose = "толкателя" if self.law.symbol == "S" else "коромысла"
-        return numbered(Plan("cam-law", f"Закон движения {whose}", "m", self.law.labels), self.law, self.phases)
+        title = tr("Law of motion of the follower") if self.law.symbol == "S" else tr("Law of motion of the rocker")
+        return numbered(Plan("cam-law", title, "m", self.law.labels), self.law, self.phases)
 
     @cached_property
     def before(self) -> Displacement:
         """Limits from below at the numbered positions."""
-        return self._beside(-1, "cam-law-left-between", "слева")
+        return self._beside(-1, "cam-law-left-between", tr("Limits from the left at the numbered positions"),
+                            tr("numbered positions, limit from the left"))
 
     @cached_property
     def after(self) -> Displacement:
         """Limits from above at the numbered positions."""
-        return self._beside(1, "cam-law-right-between", "справа")
+        return self._beside(1, "cam-law-right-between", tr("Limits from the right at the numbered positions"),
+                            tr("numbered positions, limit from the right"))
 
-    def _beside(self, side: int, name: str, where: str) -> Displacement:
-        phi = Given(self.law.positions + side * INSIDE, "cam.parts", choice=f"нумерованные положения, предел {where}", unit="rad")
-        return displacement(Plan(name, f"Пределы {where} в нумерованных положениях", "m", self.law.labels), self.law, self.phases,
-                            phi)
+    def _beside(self, side: int, name: str, title: str, choice: str) -> Displacement:
+        phi = Given(self.law.positions + side * INSIDE, "cam.parts", choice=choice, unit="rad")
+        return displacement(Plan(name, title, "m", self.law.labels), self.law, self.phases, phi)
 
     def at(self, name: str, title: str, phi: Any, choice: str) -> Displacement:
         """Displacement and derivatives at any cam angles, rad."""
@@ -251,4 +262,4 @@ class ExactMotion:
 
 
 OF_POSITION = Rule("cam angle of a position", by_pieces, ("number", "angle", "number", "angle"), "angle",
-                   "Угол поворота кулачка в этом положении {name} = {value}.", unit="rad")
+                   marked("Cam angle at this position {name} = {value}."), unit="rad")

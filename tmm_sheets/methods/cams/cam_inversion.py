@@ -21,28 +21,32 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import Displacement
 from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Zone
+from tmm_sheets.words import marked, tr
 
 Reals = npt.NDArray[np.float64]
 
 LAY_OFF_FROM = Rule(
     "lay off an angle from a line", lambda o, b, r, angle, sense: o + r * ar.ray(o, b) * np.exp(1j * sense * angle),
     ("point", "point", "length", "angle", "number"), "point",
-    "От прямой {0}{1} в сторону, обратную вращению кулачка, отложим угол {3}; на окружности радиуса {2} отметим точку {name}.",
+    marked("From the line {0}{1}, against the rotation of the cam, lay off the angle {3}; on the circle with the radius {2} mark "
+           "point {name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 PITCH_POINT = Rule(
     "centre of relative rotation", lambda o, u, ds: o + u * ds, ("point", "direction", "ordinate"), "point",
-    "Через {0} перпендикулярно к линии толкателя отложим аналог скорости {2}: точка {name} на нормали к профилю.",
+    marked("Through {0}, perpendicular to the line of the follower, lay off the first derivative {2}: point {name} on the normal "
+           "to the profile."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 ACROSS_LINE = Rule("perpendicular to a direction", lambda u, side: 1j * side * u, ("direction", "number"), "direction",
-                   "Проведём перпендикуляр {name} к прямой {0}.")
+                   marked("Draw the perpendicular {name} to the line {0}."))
 CONTACT = Rule("contact on the normal", lambda b, n, r: b + r * n, ("point", "direction", "length"), "point",
-               "Из точки {0} радиусом ролика {2} проведём окружность; на нормали {1} лежит точка профиля {name}.",
+               marked("About {0} with the radius of the roller {2} draw a circle; point {name} of the profile lies on the normal "
+                      "{1}."),
                lambda a, v: (Helper("circle", a[0], radius=a[2]),))
 FOOT_OF_LINE = Rule("foot on the follower's line", lambda right, e: -(right * e) + 0j, ("number", "ordinate"), "point",
-                    "На расстоянии e = {1} от точки O отметим основание линии толкателя {name}.")
-FROM_AXIS = Rule("point from the axis of the cam", lambda p, o: p - o, ("point", "point"), "point", "Отметим точку {name}.")
+                    marked("At the distance e = {1} from O mark the foot {name} of the line of the follower."))
+FROM_AXIS = Rule("point from the axis of the cam", lambda p, o: p - o, ("point", "point"), "point", marked("Mark point {name}."))
 
 
 @primitive("tangent to the circle e")
@@ -54,7 +58,8 @@ TANGENT_E = Rule("tangent to the circle e", _touching, ("point", "point", "ordin
                  rules.TANGENT.wording, rules.TANGENT.helpers)
 BETWEEN = Rule("angle between two lines", lambda n, u, right: np.arctan2(right * ar.cross(n, -u), ar.dot(n, -u)),
                ("direction", "direction", "number"), "inclination",
-               "Измерим угол давления между нормалью {0} и направлением скорости толкателя {1}: {value}.")
+               marked("Measure the pressure angle between the normal {0} and the direction {1} of the follower's velocity: "
+                      "{value}."))
 
 
 @dataclass(frozen=True)
@@ -91,9 +96,9 @@ def translating(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
     o = plan.add("O", rules.GIVEN, 0j)
     foot = plan.add("T_0", FOOT_OF_LINE, right, e)
     start = plan.add("B_0", rules.ALONG, foot, 1j, s0,
-                     say="По катетам e и S_0 = {2} построим прямоугольный треугольник; вершина {name}.")
+                     say=tr("From the legs e and S_0 = {2} draw a right triangle; its vertex {name}."))
     axis = plan.add("A", rules.OFFSET, start, 1j, at.s,
-                    say="На линии толкателя от точки {0} отложим перемещение {2}: точка {name}.")
+                    say=tr("On the line of the follower lay off the displacement {2} from {0}: point {name}."))
     # The cam turns by -right * phi, so the follower goes round the standing cam by right * phi.
     ends = plan.add("N", LAY_OFF_FROM, o, start, r0, at.phi, right)
     feet = plan.add("T", TANGENT_E, ends, o, e, -right if dimensions.e >= 0 else right)
@@ -113,9 +118,9 @@ def rocker(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
     right, turn = cones.right, cones.turn
     zone, arm = dimensions.plan, dimensions.swing[3]
     o = plan.add("O", rules.GIVEN, 0j)
-    a0 = plan.add("A_0", FROM_AXIS, zone["A"], zone["O"], say="На расстоянии l_0 от точки O отметим ось коромысла {name}.")
+    a0 = plan.add("A_0", FROM_AXIS, zone["A"], zone["O"], say=tr("At the distance l_0 from O mark the axis {name} of the rocker."))
     b0 = plan.add("B_0", FROM_AXIS, zone["B_0"], zone["O"],
-                  say="По сторонам r_0, l_0 и AB построим треугольник OA_0B_0; вершина {name}.")
+                  say=tr("From the sides r_0, l_0 and AB draw the triangle OA_0B_0; its vertex {name}."))
     axis = plan.add("C", TURNED, a0, b0, at.s, turn)
     ends = plan.add("A", LAY_OFF_FROM, o, a0, zone["l_0"], at.phi, right)
     radius = plan.add("OC", rules.DISTANCE, o, axis)
@@ -124,9 +129,9 @@ def rocker(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
     line = plan.add("BA", rules.RAY, centres, ends)
     x = at.plan.add("x", ALONG_ROCKER, 1.0 if turn * right < 0 else -1.0, arm, at.ds)
     tips = plan.add("D", rules.OFFSET, centres, line, x,
-                    say="На линии коромысла от точки {0} отложим отрезок AB·ψ' = {2}: точка {name}.")
+                    say=tr("On the line of the rocker lay off the segment AB·ψ' = {2} from {0}: point {name}."))
     normals = plan.add("DO", rules.RAY, tips, o,
-                       say="Проведём прямую {0}{1}: нормаль к профилю в точке B ей параллельна.")
+                       say=tr("Draw the line {0}{1}: the normal to the profile at B is parallel to it."))
     lines = plan.add("⊥BA", ACROSS_LINE, line, -turn)
     angles = plan.add("α", BETWEEN, normals, lines, right)
     return Inversion(plan, at, o, axis, ends, None, lines, centres, normals, angles)
@@ -135,17 +140,20 @@ def rocker(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
 def flat(plan: Plan, r0: Step, right: float, at: Displacement) -> Inversion:
     """Record the inversion of a flat follower; the plate is perpendicular to its motion."""
     o = plan.add("O", rules.GIVEN, 0j)
-    start = plan.add("B_0", rules.ALONG, o, 1j, r0, say="На линии толкателя отложим радиус r_0 = {2}: точка {name}.")
+    start = plan.add("B_0", rules.ALONG, o, 1j, r0,
+                     say=tr("On the line of the follower lay off the radius r_0 = {2}: point {name}."))
     axis = plan.add("A", rules.OFFSET, start, 1j, at.s,
-                    say="На линии толкателя от точки {0} отложим перемещение {2}: точка {name}.")
+                    say=tr("On the line of the follower lay off the displacement {2} from {0}: point {name}."))
     ends = plan.add("N", LAY_OFF_FROM, o, start, r0, at.phi, right)
     lines = plan.add("ON", rules.RAY, o, ends)
     radius = plan.add("OA", rules.DISTANCE, o, axis)
     centres = plan.add("B", rules.ARC_LINE, o, radius, o, lines, 1.0)
-    plates = plan.add("⊥ON", ACROSS_LINE, lines, right, say="Через точку B проведём перпендикуляр {name} к {0}: плоскость тарелки.")
+    plates = plan.add("⊥ON", ACROSS_LINE, lines, right,
+                      say=tr("Through B draw the perpendicular {name} to {0}: the plane of the flat face."))
     plan.add("F", rules.OFFSET, centres, plates, at.ds,
-             say="На тарелке от точки {0} отложим аналог скорости {2}: точка касания с профилем {name}.")
-    normals = plan.add("−ON", rules.RAY, centres, o, say="Нормаль к профилю {name} параллельна линии толкателя.")
+             say=tr("On the flat face lay off the first derivative {2} from {0}: point {name} of contact with the profile."))
+    normals = plan.add("−ON", rules.RAY, centres, o,
+                       say=tr("The normal {name} to the profile is parallel to the line of the follower."))
     angles = plan.add("α", BETWEEN, normals, lines, right)
     return Inversion(plan, at, o, axis, ends, None, lines, centres, normals, angles)
 
@@ -176,7 +184,7 @@ def rocker_curvature(psi: Any, dpsi: Any, ddpsi: Any, pivot: Any, apex: Any, tur
 
 TAPPET_RADIUS = Rule("radius of curvature", lambda *of: 1 / tappet_curvature(*of), ("ordinate",) * 5 + ("number", "length"),
                      "length",
-                     "Радиус кривизны центрового профиля в этом месте {name} = {value}.", source="002, 4.4")
+                     marked("Radius of curvature of the pitch curve at this place {name} = {value}."), source="002, 4.4")
 ROCKER_RADIUS = Rule("radius of curvature, rocker", lambda *of: 1 / rocker_curvature(*of),
                      ("inclination", "number", "number", "point", "point", "number", "number", "inclination"), "length",
-                     "Радиус кривизны центрового профиля в этом месте {name} = {value}.", source="002, 4.4")
+                     marked("Radius of curvature of the pitch curve at this place {name} = {value}."), source="002, 4.4")

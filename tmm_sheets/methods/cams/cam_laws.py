@@ -19,6 +19,7 @@ import numpy.typing as npt
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.words import marked, tell, tr
 
 Reals = npt.NDArray[np.float64]
 Function = Callable[..., Any]
@@ -104,26 +105,26 @@ class Law:
 
 
 SINE = Law(
-    "sine", "синусоидальный",
+    "sine", marked("sine acceleration"),
     (lambda x: x - np.sin(2 * pi * x) / (2 * pi), lambda x: 2 * np.sin(pi * x) ** 2, lambda x: 2 * pi * np.sin(2 * pi * x)),
     peak=2 * pi,
     division=lambda x: 2 * pi * x,
 )
 COSINE = Law(
-    "cosine", "косинусоидальный",
+    "cosine", marked("cosine acceleration"),
     (lambda x: np.sin(pi / 2 * x) ** 2, lambda x: pi / 2 * np.sin(pi * x), lambda x: pi**2 / 2 * np.cos(pi * x)),
     peak=pi**2 / 2,
     division=lambda x: pi / 2 - pi * x,
 )
 CONSTANT = Law(
-    "constant", "постоянного ускорения",
+    "constant", marked("constant acceleration"),
     (lambda x: by_pieces(x, 2 * x**2, 0.5, 1 - 2 * (1 - x) ** 2), lambda x: by_pieces(x, 4 * x, 0.5, 4 * (1 - x)),
      lambda x: by_pieces(x, 4.0, 0.5, -4.0)),
     peak=4.0,
     jumps=(0.5,),
 )
 LINEAR = Law(
-    "linearly decreasing", "линейно убывающего ускорения",
+    "linearly decreasing", marked("linearly decreasing acceleration"),
     (lambda x: x**2 * (3 - 2 * x), lambda x: 6 * x * (1 - x), lambda x: 6 * (1 - 2 * x)),
     peak=6.0,
 )
@@ -232,7 +233,7 @@ def diagram(x: Any, shares: Any, accelerations: Any, order: float) -> Any:
     return p.at((p.s, p.ds, p.dds)[int(order)], x)
 
 
-def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title: str = "по заданной диаграмме",
+def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title: str = marked("by the given diagram"),
               key: str = "cam.table") -> Law:
     """Law from a diagram of the acceleration: shares ``x`` of the phase, 0 .. 1, and relative accelerations ``y``.
 
@@ -248,17 +249,18 @@ def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title
     nodes = tuple(Given(np.asarray(row, dtype=float), f"{key}[*][{i}]", over="curve") for i, row in enumerate((x, y)))
     p = _pieces(*(tuple(given.value) for given in nodes))
     if not p.area > 0:
-        raise CannotBuild(f"{key}: the diagram of the acceleration is zero everywhere")
+        raise CannotBuild(tell("{key}: the diagram of the acceleration is zero everywhere").format(key=key))
     if abs(p.unequal) > READING * p.area:
         share = 0.5 + p.unequal / p.area / 4
         raise CannotBuild(
-            f"{key}: the areas above and below the axis are {share:.2f} and {1 - share:.2f} of the whole, "
-            "the follower would not come to rest", "make both areas equal: what speeds up must slow down again")
+            tell("{key}: the areas above and below the axis are {above:.2f} and {below:.2f} of the whole, the follower would not "
+                 "come to rest").format(key=key, above=share, below=1 - share),
+            tell("make both areas equal: what speeds up must slow down again"))
     shares = np.union1d(np.linspace(0, 1, 4001), p.starts)
     velocity = p.at(p.ds, shares)
     if velocity.min() < -1e-9 * velocity.max():
-        raise CannotBuild(f"{key}: the follower turns back inside the phase, at the share {shares[velocity.argmin()]:.3f}",
-                          "speeding up comes first, slowing down after it")
+        raise CannotBuild(tell("{key}: the follower turns back inside the phase, at the share {share:.3f}").format(
+            key=key, share=shares[velocity.argmin()]), tell("speeding up comes first, slowing down after it"))
     values = np.concatenate((p.at(p.dds, shares), p.at(p.dds, np.append(p.starts[1:], 1.0) - 1e-12)))
     return Law(name, title, (lambda x, a, b: diagram(x, a, b, 0.0), lambda x, a, b: diagram(x, a, b, 1.0),
                              lambda x, a, b: diagram(x, a, b, 2.0)),
@@ -267,13 +269,17 @@ def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title
 
 TRAPEZOID = replace(
     table_law((0, 1 / 8, 1 / 8, 3 / 8, 3 / 8, 5 / 8, 5 / 8, 7 / 8, 7 / 8, 1), (0, 1, 1, 1, 1, -1, -1, -1, -1, 0),
-              "trapezoid", "трапецеидальный", "cam.law"), even=True)
+              "trapezoid", marked("trapezoidal acceleration"), "cam.law"), even=True)
 
 LAWS = {law.name: law for law in (SINE, COSINE, CONSTANT, TRAPEZOID, LINEAR)}
 """Laws of motion by the name they have in project files."""
 
 
 # --- phases of a turn -----------------------------------------------------------------------------------------------
+
+
+PHASES = {"φ_у": marked("φ_r"), "φ_дс": marked("φ_ud"), "φ_с": marked("φ_f"), "φ_бс": marked("φ_ld")}
+"""Symbols of the phases, by which they are found, and how they are written: rise, upper dwell, fall, lower dwell."""
 
 
 @dataclass(frozen=True)
@@ -289,6 +295,21 @@ class Phase:
     first: float
     travel: float
     law: Law
+
+    @property
+    def letters(self) -> str:
+        """The symbol as it is written on paper."""
+        return tr(PHASES[self.symbol])
+
+    @property
+    def tag(self) -> str:
+        """Index of the symbol, for names of steps."""
+        return self.symbol.removeprefix("φ_")
+
+    @property
+    def index(self) -> str:
+        """The same as it is written on paper."""
+        return self.letters.removeprefix("φ_")
 
     @property
     def end(self) -> float:

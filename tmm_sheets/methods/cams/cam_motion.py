@@ -25,6 +25,7 @@ from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, names, row
 from tmm_sheets.methods.cams.cam_laws import Law, PositionFunction
 from tmm_sheets.methods.integration import SMOOTH, integrate, ordinates
+from tmm_sheets.words import marked, tr
 
 Reals = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -39,55 +40,60 @@ LEAST_POLE = 7.0
 """Pole distance below which rays become too steep to draw well, mm."""
 
 AMPLITUDE = Rule("amplitude by proportion", lambda a, phase, other: a * (phase / other) ** 2, ("length", "angle", "angle"),
-                 "length", "Из пропорции a_1/a_2 = φ_с²/φ_у² найдём вторую амплитуду {name} = {value}.")
+                 "length", marked("From the proportion a_1/a_2 = φ_f²/φ_r² find the second amplitude {name} = {value}."))
 EQUAL_STROKE = Rule("amplitude for an equal stroke", lambda a: a, ("length",), "length",
-                    "Из условия равенства ходов при разных законах найдём вторую амплитуду {name} = {value}.")
+                    marked("The strokes by the two laws must be equal: from this find the second amplitude {name} = {value}."))
 ORDINATE = Rule("lay off an ordinate", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
-                "На вертикали с абсциссой {0} отложим ординату закона {1}: точка {name}.",
+                marked("On the vertical at the abscissa {0} lay off the ordinate {1} of the law: point {name}."),
                 lambda a, v: (Helper("line", complex(a[0], 0), v),))
 ACROSS = Rule("carry across", lambda p, x: x + 1j * np.imag(p), ("point", "ordinate"), "point",
-              "Точку {0} перенесём горизонталью на вертикаль с абсциссой {1}: точка {name}.",
+              marked("Carry {0} horizontally over to the vertical at the abscissa {1}: point {name}."),
               lambda a, v: (Helper("line", a[0], v),))
 JUMP = Rule("lay off the other ordinate of a jump", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
-            "На той же вертикали с абсциссой {0}, по другую сторону скачка, отложим ординату закона {1}: точка {name}.",
+            marked("On the same vertical at the abscissa {0}, on the other side of the jump, lay off the ordinate {1} of the law: "
+                   "point {name}."),
             lambda a, v: (Helper("line", complex(a[0], 0), v),))
 EQUAL_AREA = Rule("rectangle of equal area", lambda area, width: area / width, ("number", "length"), "ordinate",
-                  "Криволинейную трапецию площадью {0} мм² заменим прямоугольником той же площади и той же ширины {1}; "
-                  "его высота {name} = {value}.")
+                  marked("Replace the area of {0} mm² under the curve by a rectangle of the same area and the same width {1}; its "
+                         "height is {name} = {value}."))
 CIRCLE_CENTRE = Rule("centre of the auxiliary circle", lambda pole, radius: -(pole + GAP + radius) + 0j, ("length", "length"),
                      "point",
-                     "Слева от полюса на продолжении оси абсцисс отметим центр вспомогательной окружности {name}.")
+                     marked("To the left of the pole, on the axis of abscissae produced, mark the centre {name} of the auxiliary "
+                            "circle."))
 
-FACTOR = Rule("scale factor", lambda mu: mu, ("number",), "number", "Примем масштабный коэффициент {name} = {value}.", unit="1/mm")
+FACTOR = Rule("scale factor", lambda mu: mu, ("number",), "number", marked("Take the scale factor {name} = {value}."), unit="1/mm")
 POLE_DISTANCE = Rule("pole distance", lambda integral, integrand, across: integral / (integrand * across), ("number",) * 3,
                      "length",
-                     "Полюсное расстояние {name} = {0}/({1}·{2}) = {value}.", source=SOURCE)
+                     marked("Pole distance {name} = {0}/({1}·{2}) = {value}."), source=SOURCE)
 LARGEST = Rule("largest ordinate of the law", lambda travel, peak, angle, mu: np.abs(travel) * peak / angle**2 / mu,
                ("number", "number", "angle", "number"), "length",
-               "Наибольшая ордината графика аналога ускорения {name} = {value}.", source=SOURCE)
+               marked("Greatest ordinate of the graph of the second derivative {name} = {value}."), source=SOURCE)
 ABSCISSA = Rule("abscissa of a position", lambda phi, k, mu: rules.take(phi, k) / mu, ("angle", "number", "number"), "ordinate",
-                "Абсцисса положения {name} = φ/μ_φ = {value}.")
+                marked("Abscissa of the position {name} = φ/μ_φ = {value}."))
 HEIGHT = Rule("ordinate of the law", lambda y, k, mu: rules.take(y, k) / mu, ("ordinate", "number", "number"), "ordinate",
-              "Ордината закона на графике {name} = {value}.")
+              marked("Ordinate of the law on the graph {name} = {value}."))
 WIDTH = Rule("width of an interval", lambda a, b: b - a, ("ordinate", "ordinate"), "length",
-             "Ширина интервала {name} = {1} − {0} = {value}.")
+             marked("Width of the interval {name} = {1} − {0} = {value}."))
 AREA = Rule("area under a diagram", lambda y, a, b, mu, across: (rules.take(y, b) - rules.take(y, a)) / (mu * across),
             ("number",) * 5, "number",
-            "Площадь под графиком на этом интервале равна приращению интеграла, делённому на масштабы: {name} = {value} мм².",
+            marked("The area under the graph in this interval equals the increment of the integral divided by the scale factors: "
+                   "{name} = {value} mm²."),
             unit="mm2")
-NO_AREA = Rule("no area", lambda: 0.0, (), "number", "На дальнем стоянии площадь под графиком {name} = 0.", unit="mm2")
+NO_AREA = Rule("no area", lambda: 0.0, (), "number", marked("On the upper dwell the area under the graph is {name} = 0."),
+               unit="mm2")
 
 
 SLOPES = Rule("slopes of an integral", lambda y, at, mu, pole: rules.take(y, at) / mu / pole,
               ("number", "number", "number", "length"), "number",
-              "Наклон интегральной кривой равен ординате подынтегральной, делённой на полюсное расстояние.", unit="1")
+              marked("The slope of the integral curve equals the ordinate of the integrand divided by the pole distance."),
+              unit="1")
 ON_PAPER = Rule("point of a diagram", lambda phi, across, y, mu: phi / across + 1j * (y / mu),
                 ("angle", "number", "ordinate", "number"),
-                "point", "Точка плавной кривой {name}.", unit="mm")
+                "point", marked("Point of the smooth curve {name}."), unit="mm")
 MEASURED = {symbol: tuple(
     Rule(f"measured ordinates, {name}{' of a rocker' if symbol == 'ψ' else ''}",
          lambda mu, *points: row(*(np.imag(p) for p in points)) * mu, ("number", "point"), kind,
-         "Снимем с графика ординату и умножим на масштабный коэффициент: {name} = {value}.",
+         marked("Take the ordinate from the graph and multiply it by the scale factor: {name} = {value}."),
          unit="" if symbol == "S" else ("rad", "1", "1")[i])
     for i, (name, kind) in enumerate(zip(("displacement", "first derivative", "second derivative"), kinds, strict=True)))
     for symbol, kinds in KINDS.items()}
@@ -141,14 +147,14 @@ def _equal_scales(law: PositionFunction, spans: tuple[float, float], width: floa
     amplitude = max(law.rise.amplitude, law.fall.amplitude)
     beside, circle = _left_of_axis(law)
     tall = 2 * amplitude + sum(spans)
-    pairs = [(Scale("μ_φ", radians(deg), "рад/мм"), mu) for mu in _coarser(tall / height)
+    pairs = [(Scale("μ_φ", radians(deg), tr("rad/mm")), mu) for mu in _coarser(tall / height)
              for deg in _coarser(_finest(law, width))]
 
     def free(phi: Scale, mu: float) -> float:
         return width - float(phi.mm(law.fall.end)) - beside - circle * amplitude / mu - 1 / phi.mu
 
     phi, mu = min([p for p in pairs if free(*p) >= 0] or pairs[-1:], key=lambda p: p[0].mu ** 1.5 * p[1])
-    return MotionScales(phi, *(Scale(f"μ_{law.symbol}{primes}", mu, "м/мм") for primes in ("''", "'", "")))
+    return MotionScales(phi, *(Scale(f"μ_{law.symbol}{primes}", mu, tr("m/mm")) for primes in ("''", "'", "")))
 
 
 def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float) -> MotionScales:
@@ -156,8 +162,8 @@ def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float,
     finest = _finest(law, width)
     amplitude = max(law.rise.amplitude, law.fall.amplitude)
     beside, circle = _left_of_axis(law)
-    unit, of = ("м/мм", "м/мм") if law.symbol == "S" else ("рад/мм", "1/мм")
-    phi = Scale("μ_φ", radians(finest), "рад/мм")
+    unit, of = (tr("m/mm"), tr("m/mm")) if law.symbol == "S" else (tr("rad/mm"), tr("1/mm"))
+    phi = Scale("μ_φ", radians(finest), tr("rad/mm"))
     left = width - phi.mm(law.fall.end) - beside
     dds = fit(f"μ_{law.symbol}''", of, amplitude, min((left - LEAST_POLE - 5.0) / 2, 0.15 * height) if circle else 0.15 * height)
     room = height - 2 * dds.mm(amplitude)
@@ -217,7 +223,7 @@ class FollowerMotion:
     @cached_property
     def ordinates(self) -> Displacement:
         """Displacement and derivatives at the numbered positions as they are measured on the diagrams, SI."""
-        plan = Plan("cam-ordinates", "Ординаты графиков движения", "m", self.law.labels)
+        plan = Plan("cam-ordinates", tr("Ordinates of the motion diagrams"), "m", self.law.labels)
         found = []
         for order, steps in enumerate((self.s, self.ds, self.dds)):
             name = names(self.law.symbol)[order]
@@ -237,7 +243,8 @@ class FollowerMotion:
     @cached_property
     def between_plan(self) -> Plan:
         """Plan of the smooth curve S''."""
-        exact = self.exact.at("cam-motion-between", "График аналога ускорения", self.exact.display(), "узлы плавной кривой")
+        exact = self.exact.at("cam-motion-between", tr("Graph of the second derivative"), self.exact.display(),
+                              tr("nodes of a smooth curve"))
         exact.plan.add("Q", ON_PAPER, exact.phi, self.numbers["μ_φ"], exact.dds, self.numbers[f"μ_{self.names[0]}"])
         return exact.plan
 
@@ -266,10 +273,10 @@ class FollowerMotion:
 def motion(law: PositionFunction, scales: MotionScales, exact: ExactMotion | None = None) -> FollowerMotion:
     """Record the construction of the three diagrams: auxiliary circle, two integrations with rays and chords."""
     exact = exact or ExactMotion(law)
-    whose = "толкателя" if law.symbol == "S" else "коромысла"
     numbers, x = _numbers(law, scales, exact)
-    plan = Plan("cam-motion", f"Графики движения {whose}", "mm")
-    areas = Plan("cam-areas", "Прямоугольники равной площади под графиками", "mm")
+    plan = Plan("cam-motion", tr("Motion diagrams of the follower") if law.symbol == "S" else tr("Motion diagrams of the rocker"),
+                "mm")
+    areas = Plan("cam-areas", tr("Rectangles of equal area under the graphs"), "mm")
     circle, dds = _acceleration(plan, numbers, law, exact, x)
     # Where there is no upper dwell, 8 and 8' are one point and there is nothing to integrate between them.
     top = law.parts
@@ -284,10 +291,11 @@ def motion(law: PositionFunction, scales: MotionScales, exact: ExactMotion | Non
 
 def _numbers(law: PositionFunction, scales: MotionScales, exact: ExactMotion) -> tuple[Plan, list[Step]]:
     """Scale factors, pole distances, abscissae of the numbered positions, heights of the law's diagram."""
-    plan = Plan("cam-scales", "Масштабы графиков движения", "mm")
-    choice = "наименьший удобный, при котором графики помещаются"
+    plan = Plan("cam-scales", tr("Scale factors of the motion diagrams"), "mm")
+    choice = tr("the least handy one with which the graphs have room")
     phi, dds, ds, s = (plan.add(scale.symbol, FACTOR, Given(scale.mu, scale.symbol, choice=choice, over="none"),
-                                say=f"{FACTOR.wording.removesuffix('.')} {scale.unit}.", symbol=scale.symbol)
+                                say=tr("Take the scale factor {{name}} = {{value}} {unit}.").format(unit=scale.unit),
+                                symbol=scale.symbol)
                        for scale in (scales.phi, scales.dds, scales.ds, scales.s))
     plan.add("H_1", POLE_DISTANCE, ds, dds, phi, symbol="H_1")
     plan.add("H_2", POLE_DISTANCE, s, ds, phi, symbol="H_2")
@@ -349,7 +357,7 @@ def _division(law: Law) -> Rule:
 def _division_rule(name: str, divided: Callable[[Any], Any]) -> Rule:
     return Rule(f"division of the auxiliary circle, {name} law", lambda x, k, sense: sense * divided(rules.take(x, k)),
                 ("number", "number", "number"), "angle",
-                "Вспомогательная окружность делится на равные части: угол {name} = {value}.",
+                marked("The auxiliary circle is divided into equal parts: angle {name} = {value}."),
                 unit="rad", source=SOURCE)
 
 
@@ -372,7 +380,7 @@ def _integral(plan: Plan, areas: Plan, numbers: Plan, exact: ExactMotion, kept: 
     ends = integrate(plan, f"{symbol}_", [x[k] for k in kept], heights, numbers[pole], borders=labels, intervals=labels[1:])
     slopes = []
     for name, integrand, at in (("left", above, kept[:-1]), ("right", below, kept[1:])):
-        places = Given(np.array(at, dtype=float), "cam.parts", choice="номера положений")
+        places = Given(np.array(at, dtype=float), "cam.parts", choice=tr("numbers of the positions"))
         slopes.append(numbers.add(f"{symbol}_{name}", SLOPES, integrand, places, numbers[mu], numbers[pole]))
-    plan.add(symbol, SMOOTH, *ends, *slopes, say="Концы хорд соединим плавной кривой {name}.")
+    plan.add(symbol, SMOOTH, *ends, *slopes, say=tr("Join the ends of the chords by the smooth curve {name}."))
     return ends

@@ -34,9 +34,10 @@ from tmm_sheets.methods.cams.cam_inversion import (
     rocker_curvature,
     tappet_curvature,
 )
-from tmm_sheets.methods.cams.cam_laws import LAWS, Law, Phase, PositionFunction, table_law
+from tmm_sheets.methods.cams.cam_laws import LAWS, PHASES, Law, Phase, PositionFunction, table_law
 from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
 from tmm_sheets.methods.cams.cam_zone import Plate, Zone, found_share
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import CamTable
@@ -50,7 +51,7 @@ SHARE_OF_R0 = (0.3, 0.4)
 """r_p <= (0.3 .. 0.4) r0 (manual 000, 7.3)."""
 SHARE_OF_RHO = (0.7, 0.8)
 """r_p <= (0.7 .. 0.8) rho_min (manual 000, 7.3); manual 003 takes 0.5."""
-ASKED = "углы поворота кулачка, о которых спрашивают"
+ASKED = marked("cam angles asked for")
 """What tells cam angles that are not those of the program."""
 DENSE = 128
 """Least number of parts of each phase in curves and in tables of results; the numbered positions are among them."""
@@ -80,12 +81,13 @@ def _circle_centre(p: Any, q: Any, r: Any) -> Any:
 
 THREE_POINT_CENTRE = Rule(
     "centre of a circle through three points", _circle_centre, ("point", "point", "point"), "point",
-    "Через середины хорд {0}{1} и {1}{2} проведём перпендикуляры до пересечения в центре кривизны {name}.",
+    marked("Through the middles of the chords {0}{1} and {1}{2} draw perpendiculars; they meet at the centre of curvature {name}."),
     lambda a, v: (Helper("line", (a[0] + a[1]) / 2, v), Helper("line", (a[1] + a[2]) / 2, v)),
 )
 
 
-GIVEN = {"rise": ("φ_у", "rad"), "upper_dwell": ("φ_дс", "rad"), "fall": ("φ_с", "rad"), "stroke": ("S_{max}", "m"),
+GIVEN = {"rise": (PHASES["φ_у"], "rad"), "upper_dwell": (PHASES["φ_дс"], "rad"), "fall": (PHASES["φ_с"], "rad"),
+         "stroke": ("S_{max}", "m"),
          "swing": ("ψ_{max}", "rad"), "arm": ("AB", "m"), "eccentricity": ("e", "m"), "pressure_angle": ("[α]", "rad"),
          "base_radius": ("r_0", "m"), "roller": ("r_p", "m"), "curvature_share": ("", "1"), "speed": ("ω", "rad/s"),
          "follower_mass": ("m", "kg"), "follower_inertia": ("J", "kg*m2"), "spring_factor": ("", "1"), "preload": ("", "1")}
@@ -95,7 +97,8 @@ GIVEN = {"rise": ("φ_у", "rad"), "upper_dwell": ("φ_дс", "rad"), "fall": ("
 def given(data: CamTable, key: str) -> GivenNumber | None:
     """A number of the project file that knows its place there; None where it is left out."""
     value = getattr(data, key)
-    return None if value is None else GivenNumber(value, f"cam.{key}", *GIVEN[key])
+    symbol, unit = GIVEN[key]
+    return None if value is None else GivenNumber(value, f"cam.{key}", tr(symbol), unit)
 
 
 @dataclass(frozen=True)
@@ -160,16 +163,17 @@ def _inscribed(centres: Any, normals: Any, i: Any, j: Any) -> Any:
 
 INSCRIBED = Rule("circle that touches the centre profile from inside", _inscribed, ("point", "direction", "number", "number"),
                  "length",
-                 "Окружность, касающаяся центрового профиля изнутри и проходящая через другую его точку: {name} = {value}.")
+                 marked("Circle that touches the pitch curve from inside and passes through another point of it: {name} = "
+                        "{value}."))
 LEAST = Rule("least length", lambda *of: reduce(np.minimum, of), ("length",) * 5, "length",
-             "Наименьшее из этих значений: {name} = {value}.")
+             marked("The least of these values: {name} = {value}."))
 PART = Rule("part of a radius", lambda share, radius: share * radius, ("number", "length"), "length",
-            "Предел радиуса ролика {0}·{1} = {value}.", source="000, 7.3")
+            marked("Limit of the radius of the roller {0}·{1} = {value}."), source="000, 7.3")
 ROUNDED = Rule("rounded roller", rounded_down, ("length",), "length",
-               "Округлим радиус ролика в меньшую сторону до 0,5 мм: {name} = {value}.")
-CHOSEN = Rule("given roller", lambda radius: radius, ("length",), "length", "По заданию радиус ролика {name} = {value}.")
+               marked("Round the radius of the roller down to 0.5 mm: {name} = {value}."))
+CHOSEN = Rule("given roller", lambda radius: radius, ("length",), "length", marked("Given radius of the roller {name} = {value}."))
 OF_THREE = Rule("point of the sharpest place", rules.take, ("point", "number"), "point",
-                "На самом крутом участке центрового профиля отметим точку {name}.")
+                marked("At the sharpest place of the pitch curve mark point {name}."))
 
 
 # --- the cam --------------------------------------------------------------------------------------------------------
@@ -236,7 +240,7 @@ class Cam:
     @cached_property
     def inversion(self) -> Inversion:
         """Inversion in the numbered positions: the plan of the protocol."""
-        return self._invert(Plan("cam-profile", "Профиль кулачка", "m", self.law.labels), self.motion.ordinates)
+        return self._invert(Plan("cam-profile", tr("Cam profile"), "m", self.law.labels), self.motion.ordinates)
 
     @cached_property
     def dense(self) -> Inversion:
@@ -250,11 +254,12 @@ class Cam:
 
     def at(self, phi: Reals) -> Inversion:
         """The same inversion at any cam angles, rad."""
-        return self._bare(phi, choice=ASKED)
+        return self._bare(phi, choice=tr(ASKED))
 
-    def _bare(self, phi: Reals, name: str = "between", choice: str = "фазы делятся на равные части") -> Inversion:
-        at = self.exact.at(f"cam-law-{name}", "Закон движения в промежуточных положениях", phi, choice)
-        plan = Plan(f"cam-profile-{name}", "Профиль кулачка в промежуточных положениях", "m", at.plan.labels)
+    def _bare(self, phi: Reals, name: str = "between",
+              choice: str = marked("the phases are divided into equal parts")) -> Inversion:
+        at = self.exact.at(f"cam-law-{name}", tr("Law of motion between the positions"), phi, choice)
+        plan = Plan(f"cam-profile-{name}", tr("Cam profile between the positions"), "m", at.plan.labels)
         return self._invert(plan, at)
 
     def _invert(self, plan: Plan, at: Displacement) -> Inversion:
@@ -340,7 +345,7 @@ class RollerCam(Cam):
         """Plan of what keeps the rollers of two discs apart: that with which both discs have the same smallest radius."""
         if self.data.closure != "geometric":
             return None
-        plan = Plan("cam-discs", "Два диска", "m")
+        plan = Plan("cam-discs", tr("Two discs"), "m")
         self._keep_apart(plan)
         return plan
 
@@ -362,7 +367,7 @@ class RollerCam(Cam):
     @cached_property
     def curvature(self) -> Plan:
         """Exact radii of curvature of the sharpest places."""
-        plan = Plan("cam-curvature", "Наименьший радиус кривизны центрового профиля", "m")
+        plan = Plan("cam-curvature", tr("Least radius of curvature of the pitch curve"), "m")
         radii = [found.radius for found in self._sharpest_places(plan)]
         plan.add("ρ_min", LEAST, *radii, symbol="ρ_{min}")
         return plan
@@ -399,7 +404,8 @@ class RollerCam(Cam):
                     best = (1 / float(bend(at)), p, at, a, b)
         _, p, at, a, b = best
         tag = "ρ2" if second else "ρ"
-        share = found_share(plan, self.exact.phases, p, at, tag, "кривизна выпуклой части центрового профиля наибольшая")
+        share = found_share(plan, self.exact.phases, p, at, tag,
+                            tr("the curvature of the convex part of the pitch curve is greatest"))
         moving = in_phase(plan, self.law, self.exact.phases, p, share, tag)
         radius = plan.add(f"{tag}_min", rule, *moving, *of) if second else plan.add("ρ_1", rule, *moving, *of)
         return Sharpest(p, at, radius, float(p.phi(a)), float(p.phi(b)), self.law.parts)
@@ -412,7 +418,7 @@ class RollerCam(Cam):
     @cached_property
     def near(self) -> Inversion:
         """The inversion in three points of the sharpest place."""
-        return self._bare(self.sharpest.three, "curvature-between", "три точки самого крутого участка центрового профиля")
+        return self._bare(self.sharpest.three, "curvature-between", tr("three points of the sharpest place of the pitch curve"))
 
     # --- roller
 
@@ -422,7 +428,7 @@ class RollerCam(Cam):
 
         Where another part of the profile is in the way, it limits the roller as a radius of curvature does.
         """
-        plan = Plan("cam-roller", "Выбор радиуса ролика", "m")
+        plan = Plan("cam-roller", tr("Choice of the radius of the roller"), "m")
         rho = self.curvature["ρ_min"]
         share = self.given("curvature_share")
         of_rho = SHARE_OF_RHO if share is None else (share, share)
@@ -460,10 +466,10 @@ class RollerCam(Cam):
                 found = float(radius[i, j]), course.plan[centres], course.plan[normals], 2 * int(i), 2 * int(j)
         if found is None:
             return []
-        choice = "пара точек центрового профиля с наименьшей вписанной окружностью"
+        choice = tr("the pair of points of the pitch curve with the least inscribed circle")
         of, normals, *pair = found[1:]
         places = (Given(float(k), "cam-profile-between", choice=choice, over="none") for k in pair)
-        return [plan.add("r_вп", INSCRIBED, of, normals, *places)]
+        return [plan.add("r_вп", INSCRIBED, of, normals, *places, symbol=tr("r_in"))]
 
     @property
     def roller_rules(self) -> tuple[RollerRule, RollerRule]:
@@ -490,10 +496,10 @@ class RollerCam(Cam):
         radius = float(self.choice["r_p"].value)
         if self.data.roller is not None and not radius < self.largest_roller:
             raise CannotBuild(
-                f"cam: a roller of radius {radius * 1e3:g} mm makes a profile with a cusp or a loop: "
-                f"the centre profile allows less than {self.largest_roller * 1e3:.4g} mm",
-                f"take a roller of at most {rounded_down(min(r.limits[1] for r in self.roller_rules)) * 1e3:g} mm "
-                "or leave cam.roller out")
+                tell("cam: a roller of radius {radius:g} mm makes a profile with a cusp or a loop: the centre profile allows less "
+                     "than {most:.4g} mm").format(radius=radius * 1e3, most=self.largest_roller * 1e3),
+                tell("take a roller of at most {radius:g} mm or leave cam.roller out").format(
+                    radius=rounded_down(min(r.limits[1] for r in self.roller_rules)) * 1e3))
         return radius
 
     # --- profile
@@ -519,7 +525,7 @@ class RollerCam(Cam):
 
     def at(self, phi: Reals) -> Inversion:
         """The same inversion at any cam angles, rad."""
-        return self._contact(self._bare(phi, choice=ASKED))
+        return self._contact(self._bare(phi, choice=tr(ASKED)))
 
     def _contact(self, inv: Inversion) -> Inversion:
         _ = self.roller
@@ -662,16 +668,18 @@ def cam(data: CamTable) -> Cam:
         when the numbers allow no cam: at once for angles and lengths, for the axis and the roller when they are asked for.
     """
     if data.follower not in FOLLOWERS:
-        raise CannotBuild(f"cam.follower: expected one of {', '.join(FOLLOWERS)}, not {data.follower!r}")
+        raise CannotBuild(tell("cam.follower: expected one of {known}, not {given!r}").format(known=", ".join(FOLLOWERS),
+                                                                                           given=data.follower))
     follower, angular = FOLLOWERS[data.follower]
     _check_phases(data)
     _check_displacement(data, angular)
     if follower is not FlatCam and not 1e-6 < (data.pressure_angle or 0.0) < pi / 2 - 1e-6:
-        raise CannotBuild("cam.pressure_angle: expected a permitted pressure angle greater than 0 and less than 90 deg, "
-                          f"not {degrees(data.pressure_angle or 0.0):g} deg", "usual values are 30 deg for translating followers")
+        raise CannotBuild(tell("cam.pressure_angle: expected a permitted pressure angle greater than 0 and less than 90 deg, not "
+                               "{angle:g} deg").format(angle=degrees(data.pressure_angle or 0.0)),
+                          tell("usual values are 30 deg for translating followers"))
     if data.roller is not None and not data.roller > 0:
-        raise CannotBuild(f"cam.roller: expected a radius greater than 0 mm, not {data.roller * 1e3:g} mm",
-                          "leave it out to have it taken by both rules")
+        raise CannotBuild(tell("cam.roller: expected a radius greater than 0 mm, not {radius:g} mm").format(
+            radius=data.roller * 1e3), tell("leave it out to have it taken by both rules"))
     key, symbol = ("swing", "ψ") if angular else ("stroke", "S")
     fall_law = None if data.fall_law is None else _law(data, data.fall_law, "fall_table")
     rise, dwell, fall, stroke = (given(data, name) or 0.0 for name in ("rise", "upper_dwell", "fall", key))
@@ -684,29 +692,33 @@ def _check_phases(data: CamTable) -> None:
     turn = data.rise + data.upper_dwell + data.fall
     for name, value in (("rise", data.rise), ("fall", data.fall)):
         if not value > 0:
-            raise CannotBuild(f"cam.{name}: expected a phase angle greater than 0 deg, not {degrees(value):g} deg")
+            raise CannotBuild(tell("cam.{key}: expected a phase angle greater than 0 deg, not {angle:g} deg").format(
+                key=name, angle=degrees(value)))
     if not data.upper_dwell >= 0:
-        raise CannotBuild(f"cam.upper_dwell: expected a phase angle of 0 deg or more, not {degrees(data.upper_dwell):g} deg")
+        raise CannotBuild(tell("cam.upper_dwell: expected a phase angle of 0 deg or more, not {angle:g} deg").format(
+            angle=degrees(data.upper_dwell)))
     if not turn <= 2 * pi * (1 + 1e-9):
-        raise CannotBuild(f"cam: rise, upper_dwell and fall make {degrees(turn):g} deg together, more than a turn of the cam",
-                          "shorten a phase: what is left of 360 deg is the lower dwell")
+        raise CannotBuild(tell("cam: rise, upper_dwell and fall make {angle:g} deg together, more than a turn of the cam").format(
+            angle=degrees(turn)), tell("shorten a phase: what is left of 360 deg is the lower dwell"))
 
 
 def _check_displacement(data: CamTable, angular: bool) -> None:
     """The stroke, or of a rocker arm and swing."""
     for name, length in (("arm", data.arm),) if angular else (("stroke", data.stroke),):
         if length is None or not (length > 0 and isfinite(length)):
-            raise CannotBuild(f"cam.{name}: expected a length greater than 0 mm, not {(length or 0.0) * 1e3:g} mm")
+            raise CannotBuild(tell("cam.{key}: expected a length greater than 0 mm, not {length:g} mm").format(
+                key=name, length=(length or 0.0) * 1e3))
     if angular and not 0 < (data.swing or 0.0) < pi / 2:
-        raise CannotBuild("cam.swing: expected an angle greater than 0 and less than 90 deg, "
-                          f"not {degrees(data.swing or 0.0):g} deg")
+        raise CannotBuild(tell("cam.swing: expected an angle greater than 0 and less than 90 deg, not {angle:g} deg").format(
+            angle=degrees(data.swing or 0.0)))
 
 
 def _law(data: CamTable, name: str, table: str) -> Law:
     if name == "table":
         return table_law(*data.diagram(table), key=f"cam.{table}")
     if name not in LAWS:
-        raise CannotBuild(f"cam.law: expected one of {', '.join(LAWS)} or table, not {name!r}")
+        raise CannotBuild(tell("cam.law: expected one of {known} or table, not {given!r}").format(known=", ".join(LAWS),
+                                                                                              given=name))
     return LAWS[name]
 
 

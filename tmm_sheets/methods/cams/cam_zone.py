@@ -36,6 +36,7 @@ from tmm_sheets.methods.cams.cam_displacement import (
 )
 from tmm_sheets.methods.cams.cam_laws import Phase, PositionFunction
 from tmm_sheets.numbers import fixed
+from tmm_sheets.words import marked, tell, tr
 
 Reals = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -257,44 +258,48 @@ def _lower(p: Any, q: Any) -> Any:
 
 
 CURVE = Rule("curve of the analogues", lambda s, ds, right: right * ds + 1j * s, ("ordinate", "ordinate", "number"), "point",
-             "Точки с ординатами S и абсциссами S' соединим плавной кривой {name}.", source=SOURCE)
+             marked("Join the points with the ordinates S and the abscissae S' by the smooth curve {name}."), source=SOURCE)
 ROCKER_CURVE = Rule("curve of the analogues of a rocker", lambda psi, dpsi, pivot, turn, right, arm: _tip(
     _swung(pivot, psi, turn), _up(psi, turn), right, arm, dpsi), ("inclination", "number", "point", "number", "number", "length"),
     "point",
-    "Концы отрезков AB·ψ', отложенных на линиях коромысла, соединим плавной кривой {name}.", source=SOURCE)
+    marked("Join the ends of the segments AB·ψ' laid off on the lines of the rocker by the smooth curve {name}."), source=SOURCE)
 TOUCH = Rule("tangent under an angle", lambda s, ds, right: right * ds + 1j * s, ("ordinate", "ordinate", "number"), "point",
-             "Под допустимым углом давления к оси S проведём касательную к кривой S(S'); точка касания {name}.")
+             marked("At the permitted pressure angle to the axis S draw the tangent to the curve S(S'); point of contact "
+                    "{name}."))
 INCLINED = Rule("direction under the permitted angle", lambda alpha, side: side * np.sin(alpha) + 1j * np.cos(alpha),
                 ("angle", "number"),
-                "direction", "Проведём направление {name}.")
+                "direction", marked("Draw the direction {name}."))
 OUTERMOST = Rule("outermost ray", ROCKER_CURVE.compute, ROCKER_CURVE.takes, "point",
-                 "Крайний из лучей, ограничивающих зону с этой стороны, выходит из точки {name} кривой D(ψ).")
+                 marked("The outermost of the rays that bound the zone on this side begins at point {name} of the curve D(ψ)."))
 OUTERMOST_DIRECTION = Rule("direction of the outermost ray",
                            lambda psi, turn, alpha, side: _ray_direction(_up(psi, turn), alpha, side),
                            ("inclination", "number", "angle", "number"), "direction",
-                           "Крайний луч {name} проведём под допустимым углом давления к скорости точки B.")
+                           marked("Draw the outermost ray {name} at the permitted pressure angle to the velocity of B."))
 LOWER = Rule("lower of two points", _lower, ("point", "point"), "point",
-             "Из точек {0} и {1} ниже лежит {name}: возьмём в ней центр вращения кулачка.")
-SIGNED = Rule("abscissa", lambda p, right: right * np.real(p), ("point", "number"), "ordinate", "Измерим отрезок {name} = {value}.")
+             marked("Of the points {0} and {1} the lower one is {name}: take the centre of rotation of the cam there."))
+SIGNED = Rule("abscissa", lambda p, right: right * np.real(p), ("point", "number"), "ordinate",
+              marked("Measure the segment {name} = {value}."))
 TURNED = Rule("turn about the axis of the rocker", lambda a, b, angle, sense: a + (b - a) * np.exp(1j * sense * angle),
               ("point", "point", "angle", "number"), "point",
-              "Радиусом {0}{1} из точки {0} проведём дугу и повернём линию коромысла на угол {2}: точка {name}.",
+              marked("About {0} with the radius {0}{1} draw an arc and turn the line of the rocker by the angle {2}: point "
+                     "{name}."),
               lambda a, v: (Helper("line", a[0], v),))
 SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
-           "К ординате S {0} прибавим ординату S'' {1}: ордината {name} = {value}.")
+           marked("To the ordinate {0} of S add the ordinate {1} of S'': ordinate {name} = {value}."))
 FIRST = {symbol: tuple(
     Rule(f"ordinates of the limited phases, {('displacement', 'first derivative')[i]}{' of a rocker' if symbol == 'ψ' else ''}",
-         rules.take, (kind, "number"), kind, "Ордината графика {name} = {value}.", unit="" if symbol == "S" else ("rad", "1")[i])
+         rules.take, (kind, "number"), kind, marked("Ordinate of the graph {name} = {value}."),
+         unit="" if symbol == "S" else ("rad", "1")[i])
     for i, kind in enumerate(kinds[:2])) for symbol, kinds in KINDS.items()}
 ALONG_ROCKER = Rule("analogue on the rocker", lambda sign, arm, dpsi: sign * arm * dpsi, ("number", "length", "number"), "ordinate",
-                    "Отрезок {name} = AB·ψ' = {value}.", source=SOURCE)
+                    marked("Segment {name} = AB·ψ' = {value}."), source=SOURCE)
 LOWEST_SUM = Rule("lowest sum", lambda s, dds: s + dds, ("ordinate", "ordinate"), "ordinate",
-                  "Наименьшая (отрицательная) ордината графика {name} = {0} + {1} = {value}.")
+                  marked("Least (negative) ordinate of the graph {name} = {0} + {1} = {value}."))
 LOWEST = Rule("lowest ordinate", lambda total: np.maximum(-total, 0.0), ("ordinate",), "length",
-              "Наименьшая (отрицательная) ордината графика S + S'' даёт r_min = {value}.")
+              marked("The least (negative) ordinate of the graph S + S'' gives r_min = {value}."))
 NEEDED = Rule("radius with a reserve", lambda total, stroke: np.maximum(1.1 * -total, 0.5 * stroke), ("ordinate", "length"),
               "length",
-              "С запасом в десятую долю r_min, но не меньше половины хода: {name} = {value}.", source=SOURCE)
+              marked("With a margin of a tenth of r_min, but not below half the stroke: {name} = {value}."), source=SOURCE)
 
 
 @primitive("rounded up to a millimetre")
@@ -304,23 +309,25 @@ def rounded_up(radius: Any) -> Any:
     return ceil(radius / unit * (1 - 1e-12)) * unit
 
 
-ROUNDED = Rule("rounded radius", rounded_up, ("length",), "length", "Округлим до целого миллиметра: {name} = {value}.")
-CHOSEN = Rule("given radius", lambda radius: radius, ("length",), "length", "По заданию {name} = {value}.")
+ROUNDED = Rule("rounded radius", rounded_up, ("length",), "length", marked("Round to a whole millimetre: {name} = {value}."))
+CHOSEN = Rule("given radius", lambda radius: radius, ("length",), "length", marked("Given by the task: {name} = {value}."))
 RESERVE = Rule("reserve", lambda radius, least: radius - least, ("length", "length"), "length",
-               "Запас {name} = {0} − {1} = {value}.")
+               marked("Margin {name} = {0} − {1} = {value}."))
 RESERVED = Rule("add a reserve", lambda least, reserve: least + reserve, ("length", "length"), "length",
-                "К радиусу {0} прибавим запас Δr = {1}: {name} = {value}.")
+                marked("To the radius {0} add the margin Δr = {1}: {name} = {value}."))
 LARGEST = Rule("largest ordinate", np.abs, ("ordinate",), "length",
-               "Наибольшая ордината графика S' даёт размер тарелки {name} = {value}.")
+               marked("The greatest ordinate of the graph S' gives the size of the flat face {name} = {value}."))
 SHARPEST = Rule("least radius of curvature", lambda radius, total: radius + total, ("length", "ordinate"), "length",
-                "Наименьший радиус кривизны профиля {name} = r_0 + (S + S'')_min = {value}.", source=SOURCE)
-CHOICE = Rule("share found", lambda x: x, ("number",), "number", "Место найдём перебором: доля фазы {name} = {value}.", unit="1")
+                marked("Least radius of curvature of the profile {name} = r_0 + (S + S'')_min = {value}."), source=SOURCE)
+CHOICE = Rule("share found", lambda x: x, ("number",), "number",
+              marked("Find the place by search: part of the phase {name} = {value}."), unit="1")
 
 
 def found_share(plan: Plan, at: Phases, phase: Phase, x: float, tag: str, choice: str) -> Step:
     """Record the share of a phase that a search found by the criterion ``choice``, and the cam angle there."""
     share = plan.add(f"x_{tag}", CHOICE, Given(x, f"x_{tag}", choice=choice, over="none", unit="1"), symbol=f"x_{{{tag}}}",
-                     say=f"Перебором найдём место, где {choice}: доля фазы {{name}} = {{value}}.")
+                     say=tr("By search find the place where {choice}: part of the phase {{name}} = "
+                            "{{value}}.").format(choice=choice))
     start, angle, _, _ = at.of[phase.symbol]
     plan.add(f"φ_{tag}", AT_SHARE, start, angle, share, symbol=f"φ_{{{tag}}}")
     return share
@@ -382,7 +389,7 @@ class Zone:
         """Plan of the smooth curve of the tips."""
         x = np.linspace(0, 1, 129)
         phi = np.concatenate([p.phi(x) for p in self.cones.phases])
-        at = self.exact.at("cam-zone-between", "Кривая аналогов", phi, "узлы плавной кривой")
+        at = self.exact.at("cam-zone-between", tr("Curve of S(S')"), phi, tr("nodes of a smooth curve"))
         if self.cones.pivot is None:
             at.plan.add("S(S')", CURVE, at.s, at.ds, self.right)
         else:
@@ -405,7 +412,7 @@ class Zone:
         found = self.cones.corner("least")
         if found is None:
             return None
-        plan = Plan("cam-zone-least", "Наименьший возможный кулачок", "m")
+        plan = Plan("cam-zone-least", tr("Least possible cam"), "m")
         _rocker_axis(plan, self, found[1])
         return plan
 
@@ -416,8 +423,8 @@ def _limited(law: PositionFunction, limit: Limit) -> tuple[Phase, ...]:
 
 def _limited_ordinates(law: PositionFunction, s: Any, ds: Any, n: int) -> tuple[Plan, Step, Step]:
     """Ordinates of the limited phases only."""
-    plan = Plan("cam-zone-ordinates", "Ординаты графиков для построения зоны", "m", law.labels[:n])
-    first = Given(np.arange(float(n)), "cam.limit", choice="положения фаз, в которых ограничен угол давления")
+    plan = Plan("cam-zone-ordinates", tr("Ordinates of the graphs for the construction of the zone"), "m", law.labels[:n])
+    first = Given(np.arange(float(n)), "cam.limit", choice=tr("positions of the phases in which the pressure angle is limited"))
     zero, one, _ = names(law.symbol)
     rules_of = FIRST[law.symbol]
     return plan, plan.add(zero, rules_of[0], s, first), plan.add(one, rules_of[1], ds, first)
@@ -435,42 +442,46 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any
     cones = Cones(limited, alpha, right)
     n = len(limited) * (law.parts + 1)
     rows, s, ds = _limited_ordinates(law, s, ds, n)
-    touch = Plan("cam-zone-touch", "Точки касания границ зоны", "m")
-    plan = Plan("cam-zone", "Определение основных размеров", "m", law.labels[:n])
+    touch = Plan("cam-zone-touch", tr("Points of contact of the borders of the zone"), "m")
+    plan = Plan("cam-zone", tr("Main dimensions of the cam"), "m", law.labels[:n])
     start = plan.add("B", rules.GIVEN, 0j)
-    axis = plan.add("A", rules.OFFSET, start, 1j, s, say="На оси S от точки {0} отложим перемещение {2}: точка {name}.")
+    axis = plan.add("A", rules.OFFSET, start, 1j, s, say=tr("On the axis S lay off the displacement {2} from {0}: point {name}."))
     points = plan.add("D", rules.OFFSET, axis, complex(right), ds,
-                      say="Из точки {0} перпендикулярно к оси S отложим аналог скорости {2}: точка {name}.")
+                      say=tr("From {0}, perpendicular to the axis S, lay off the first derivative {2}: point {name}."))
     touching = []
     for name, side in (("K_1", 1.0), ("K_2", -1.0)):
         phase, x = _touched(cones, side)
-        share = found_share(touch, exact.phases, phase, x, name, ("S'" if side > 0 else "−S'") + " − S·tg[α] наибольшее")
+        share = found_share(touch, exact.phases, phase, x, name,
+                            tr("{ds} − S·tan[α] is greatest").format(ds="S'" if side > 0 else "−S'"))
         at = in_phase(touch, law, exact.phases, phase, share, name, (0, 1))
-        drawn = "Соединим точки D плавной кривой S(S'). " if side > 0 else ""
-        touching.append(plan.add(name, TOUCH, *at, right, say=f"{drawn}Под углом {fixed(degrees(alpha), 1)}° к оси S проведём "
-                                 "касательную к кривой S(S'); точка касания {name}."))
+        say = (tr("Join the points D by the smooth curve S(S'). At the angle {angle}° to the axis S draw the tangent to the "
+                  "curve S(S'); point of contact {{name}}.") if side > 0 else
+               tr("At the angle {angle}° to the axis S draw the tangent to the curve S(S'); point of contact {{name}}."))
+        touching.append(plan.add(name, TOUCH, *at, right, say=say.format(angle=fixed(degrees(alpha), 1))))
     borders = [plan.add(f"t_{k}", INCLINED, alpha, right * side) for k, side in ((1, 1.0), (2, -1.0))]
     if e is not None or centre == "least":
         plan.add("V", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
-                 say="Касательные {1} и {3} пересекаются в вершине зоны {name}.")
+                 say=tr("The tangents {1} and {3} meet at the vertex {name} of the zone."))
     if e is not None:
         line = plan.add("e_0", rules.OFFSET, start, complex(right), e,
-                        say="На перпендикуляре к оси S от точки {0} отложим эксцентриситет {2}: точка {name}.")
+                        say=tr("On the perpendicular to the axis S lay off the eccentricity {2} from {0}: point {name}."))
         met = [plan.add(f"O_{k}", rules.LINE_LINE, line, 1j, touch_, border,
-                        say="Через {0} параллельно оси S проведём прямую до касательной {3} из {2}: точка {name}.")
+                        say=tr("Through {0}, parallel to the axis S, draw a line up to the tangent {3} from {2}: point {name}."))
                for k, touch_, border in ((1, touching[0], borders[0]), (2, touching[1], borders[1]))]
         apex = plan.add("O", LOWER, *met)
     elif centre == "least" and len(rays := (cones.corner("least") or (0j, ()))[1]) == 1:
         side = 0 if rays[0].direction.real * right < 0 else 1
         apex = plan.add("O", rules.FOOT, start, touching[side], borders[side],
-                        say="Из точки {0} опустим перпендикуляр на касательную {2}: в его основании возьмём центр вращения {name}.")
+                        say=tr("From {0} drop the perpendicular to the tangent {2}: take the centre of rotation {name} at its "
+                               "foot."))
     else:
         apex = plan.add("O", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
-                        say="Касательные {1} и {3} пересекаются в вершине зоны; возьмём в ней центр вращения кулачка {name}.")
-    foot = plan.add("C", rules.FOOT, apex, start, 1j, say="Из точки {0} опустим перпендикуляр на ось S: точка {name}.")
-    plan.add("S_0", rules.DISTANCE, foot, start, say="Измерим отрезок CB = S_0 = {value}.")
-    plan.add("e", SIGNED, apex, right, say="Измерим отрезок CO = e = {value}.")
-    plan.add("r_0", rules.DISTANCE, apex, start, say="Измерим отрезок OB = r_0 = {value}.")
+                        say=tr("The tangents {1} and {3} meet at the vertex of the zone; take the centre of rotation {name} of "
+                               "the cam there."))
+    foot = plan.add("C", rules.FOOT, apex, start, 1j, say=tr("From {0} drop the perpendicular to the axis S: point {name}."))
+    plan.add("S_0", rules.DISTANCE, foot, start, say=tr("Measure the segment CB = S_0 = {value}."))
+    plan.add("e", SIGNED, apex, right, say=tr("Measure the segment CO = e = {value}."))
+    plan.add("r_0", rules.DISTANCE, apex, start, say=tr("Measure the segment OB = r_0 = {value}."))
     plans = {p.name: p for p in (rows, touch, plan)}
     return Zone(plan, plans, exact, cones, axis, points, tuple(touching), tuple(borders), apex)
 
@@ -498,20 +509,23 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
     n = len(limited) * (law.parts + 1)
     rows, psi, dpsi = _limited_ordinates(law, psi, dpsi, n)
     x = rows.add("x", ALONG_ROCKER, 1.0 if same else -1.0, arm, dpsi)
-    plan = Plan("cam-zone", "Определение основных размеров", "m", law.labels[:n])
+    plan = Plan("cam-zone", tr("Main dimensions of the cam"), "m", law.labels[:n])
     start = plan.add("B_0", rules.GIVEN, 0j)
     pivot = plan.add("A", rules.ALONG, start, complex(side), arm,
-                     say="На расстоянии AB = {2} от точки {0} отметим ось коромысла {name}.")
+                     say=tr("At the distance AB = {2} from {0} mark the axis {name} of the rocker."))
     axis = plan.add("B", TURNED, pivot, start, psi, -side)
     line = plan.add("BA", rules.RAY, axis, pivot)
-    where = "к оси A" if same else "на продолжении AB"
-    points = plan.add("D", rules.OFFSET, axis, line, x, say=f"От точки {{0}} {where} отложим x = AB·ψ' = {{2}}: точка {{name}}.")
+    say = (tr("From {0} towards the axis A lay off x = AB·ψ' = {2}: point {name}.") if same else
+           tr("From {0} on AB produced lay off x = AB·ψ' = {2}: point {name}."))
+    points = plan.add("D", rules.OFFSET, axis, line, x, say=say)
     found = cones.corner(centre)
     if found is None:
         raise CannotBuild(
-            f"cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {degrees(alpha):g} deg on "
-            + ("the rise" if limit == "rise" else "the rise and the fall"), _wider(cones))
-    touch = Plan("cam-zone-touch", "Точки, из которых выходят крайние лучи зоны", "m")
+            (tell("cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {angle:g} deg on the rise")
+             if limit == "rise" else
+             tell("cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {angle:g} deg on the rise "
+                  "and the fall")).format(angle=degrees(alpha)), _wider(cones))
+    touch = Plan("cam-zone-touch", tr("Points where the outermost rays of the zone begin"), "m")
     z = Zone(plan, {p.name: p for p in (rows, touch, plan)}, exact, cones, axis, points, (), (), start)
     touching, borders, apex = _rocker_axis(plan, z, found[1], touch)
     return replace(z, touching=touching, borders=borders, apex=apex)
@@ -525,19 +539,22 @@ def _rocker_axis(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan | None 
     touching, borders = [], []
     for k, ray in enumerate(rays, 1):
         tag = f"K_{k}"
-        x = found_share(touch, z.exact.phases, ray.phase, ray.x, tag, "граничный луч дальше всех отсекает центр вращения кулачка")
+        x = found_share(touch, z.exact.phases, ray.phase, ray.x, tag,
+                        tr("the border ray cuts off the centre of rotation of the cam farther than all others"))
         psi, dpsi = in_phase(touch, z.exact.law, z.exact.phases, ray.phase, x, tag, (0, 1))
-        drawn = "Соединим точки D плавной кривой D(ψ). " if k == 1 else ""
-        touching.append(plan.add(f"K_{k}", OUTERMOST, psi, dpsi, pivot, turn, right, arm, say=drawn + OUTERMOST.wording))
+        say = tr("Join the points D by the smooth curve D(ψ). The outermost of the rays that bound the zone on this side begins "
+                 "at point {name} of the curve D(ψ).") if k == 1 else None
+        touching.append(plan.add(f"K_{k}", OUTERMOST, psi, dpsi, pivot, turn, right, arm, say=say))
         borders.append(plan.add(f"t_{k}", OUTERMOST_DIRECTION, psi, turn, z.cones.alpha, ray.side * z.right))
     if len(touching) == 1:
         apex = plan.add("O", rules.FOOT, start, touching[0], borders[0],
-                        say="Из точки {0} опустим перпендикуляр на луч {2}: в его основании возьмём центр вращения {name}.")
+                        say=tr("From {0} drop the perpendicular to the ray {2}: take the centre of rotation {name} at its foot."))
     else:
         apex = plan.add("O", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
-                        say="Крайние лучи {1} и {3} пересекаются в вершине зоны; возьмём в ней центр вращения кулачка {name}.")
-    plan.add("r_0", rules.DISTANCE, apex, start, say="Измерим отрезок OB_0 = r_0 = {value}.")
-    plan.add("l_0", rules.DISTANCE, apex, pivot, say="Измерим отрезок OA = l_0 = {value}.")
+                        say=tr("The outermost rays {1} and {3} meet at the vertex of the zone; take the centre of rotation {name} "
+                               "of the cam there."))
+    plan.add("r_0", rules.DISTANCE, apex, start, say=tr("Measure the segment OB_0 = r_0 = {value}."))
+    plan.add("l_0", rules.DISTANCE, apex, pivot, say=tr("Measure the segment OA = l_0 = {value}."))
     return tuple(touching), tuple(borders), apex
 
 
@@ -549,8 +566,8 @@ def _wider(cones: Cones) -> str:
         there = Cones(cones.phases, middle * pi / 180, cones.right, cones.pivot, cones.turn).corner("vertex") is not None
         low, high = (low, middle) if there else (middle, high)
     if high < 90:
-        return f"it can be had from {high} deg on; or take longer phases, a smaller swing"
-    return "take longer phases or a smaller swing"
+        return tell("it can be had from {angle} deg on; or take longer phases, a smaller swing").format(angle=high)
+    return tell("take longer phases or a smaller swing")
 
 
 # --- flat follower ----------------------------------------------------------------------------------------------------
@@ -573,7 +590,7 @@ class Plate:
     @cached_property
     def course_plan(self) -> Plan:
         """S and S + S'' over rise and fall, for smooth curves."""
-        at = self.exact.at("cam-plate-between", "График S + S''", self.exact.display(), "узлы плавной кривой")
+        at = self.exact.at("cam-plate-between", tr("Graph of S + S''"), self.exact.display(), tr("nodes of a smooth curve"))
         at.plan.add("S+S''", SUM, at.s, at.dds)
         return at.plan
 
@@ -637,11 +654,11 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
         when the given radius makes the profile concave or pointed.
     """
     exact = exact or ExactMotion(law)
-    place = Plan("cam-plate-places", "Наименьшая ордината S + S'' и наибольшие S'", "m")
-    plan = Plan("cam-plate", "Определение основных размеров", "m", law.labels)
+    place = Plan("cam-plate-places", tr("Least ordinate of S + S'' and greatest ones of S'"), "m")
+    plan = Plan("cam-plate", tr("Main dimensions of the cam"), "m", law.labels)
     sums = plan.add("S+S''", SUM, s, dds)
     _, phase, x = lowest_sum(law)
-    at = found_share(place, exact.phases, phase, x, "min", "ордината S + S'' наименьшая")
+    at = found_share(place, exact.phases, phase, x, "min", tr("the ordinate of S + S'' is least"))
     lowest = place.add("(S+S'')_min", LOWEST_SUM, *in_phase(place, law, exact.phases, phase, at, "min", (0, 2)))
     least = plan.add("r_min", LOWEST, lowest)
     if base_radius is None:
@@ -651,13 +668,14 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     r_min, chosen = -float(lowest.value), float(radius.value)
     if not chosen > r_min:
         raise CannotBuild(
-            f"cam.base_radius: with {chosen * 1e3:g} mm the profile has a cusp at {degrees(phase.phi(x)):.1f} deg: a flat follower "
-            f"needs more than {r_min * 1e3:.4g} mm here", f"take {ceil(1100 * r_min)} mm or leave cam.base_radius out")
+            tell("cam.base_radius: with {radius:g} mm the profile has a cusp at {angle:.1f} deg: a flat follower needs more than "
+                 "{least:.4g} mm here").format(radius=chosen * 1e3, angle=degrees(phase.phi(x)), least=r_min * 1e3),
+            tell("take {radius} mm or leave cam.base_radius out").format(radius=ceil(1100 * r_min)))
     base = plan.add("r_0", RESERVED, least, plan.add("Δr", RESERVE, radius, least))
     plan.add("ρ_min", SHARPEST, base, lowest)
     shares = np.linspace(0, 1, 2001)
     for name, p in (("l_1", law.rise), ("l_2", law.fall)):
         k = int(np.argmax(np.abs(p.ds(shares))))
-        share = found_share(place, exact.phases, p, float(shares[k]), name, "|S'| наибольшее")
+        share = found_share(place, exact.phases, p, float(shares[k]), name, tr("|S'| is greatest"))
         plan.add(name, LARGEST, *in_phase(place, law, exact.phases, p, share, name, (1,)))
     return Plate(plan, place, exact, sums)

@@ -17,6 +17,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, taken
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.integration import Floats, Quadrature, weighted
+from tmm_sheets.words import marked, tr
 
 Curve = Callable[[Any], Any]
 
@@ -57,25 +58,27 @@ def touched(curve: Curve, angle: float, side: int, samples: Floats) -> float:
 
 
 SEGMENT = Rule("segment of the energy axis", lambda a, b: np.imag(a) - np.imag(b), ("point", "point"), "ordinate",
-               "На оси ΔE измерим отрезок от {1} до {0}, вверх положительный: {name} = {value}.")
-_ANGLE = ("Вычислим угол наклона касательной {name} = arctg[μ_J/(2μ_E)·ω1²(1 ", " δ/2)²] = {value}.")
+               marked("On the axis ΔE measure the segment from {1} to {0}, positive upwards: {name} = {value}."))
 UPPER_ANGLE = Rule(
     "angle of the upper tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 + delta / 2)) ** 2),
-    ("number",) * 4, "angle", "+".join(_ANGLE), source="000, 5.5")
+    ("number",) * 4, "angle", marked("Compute the slope angle of the tangent {name} = arctan[μ_J/(2μ_E)·ω1²(1 + δ/2)²] = {value}."),
+    source="000, 5.5")
 LOWER_ANGLE = Rule(
     "angle of the lower tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 - delta / 2)) ** 2),
-    ("number",) * 4, "angle", "−".join(_ANGLE), source="000, 5.5")
+    ("number",) * 4, "angle", marked("Compute the slope angle of the tangent {name} = arctan[μ_J/(2μ_E)·ω1²(1 − δ/2)²] = {value}."),
+    source="000, 5.5")
 SLOPE_OF_ANGLE = Rule("slope of an angle", np.tan, ("angle",), "number", "{name} = {value}.", exact=True)
 UNDER_ANGLE = Rule("direction under an angle", lambda angle: np.cos(angle) + 1j * np.sin(angle), ("angle",), "direction",
-                   "Под углом {0} к оси приведённых моментов инерции возьмём направление {name}.")
+                   marked("At the angle {0} to the axis of the reduced moments of inertia take the direction {name}."))
 PROJECT = Rule(
     "project from two graphs", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
-    "С графика ΔE(φ1) проведём горизонталь с ординатой {0}, с графика J(φ1) вертикаль с абсциссой {1}: "
-    "на их пересечении точка кривой энергомасс.",
+    marked("From the graph ΔE(φ1) draw the horizontal with the ordinate {0}, from the graph J(φ1) the vertical with the abscissa "
+           "{1}: they meet at a point of the energy-mass curve."),
     lambda a, v: (Helper("line", complex(0, v.imag), v), Helper("line", complex(v.real, 0), v)),
 )
 TOUCH = Rule("point of contact", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
-             "Проведём касательную этого направления к кривой: точка касания {name} с ординатой {0} и абсциссой {1}.")
+             marked("Draw the tangent of this direction to the curve: point of contact {name} with the ordinate {0} and the "
+                    "abscissa {1}."))
 
 
 def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, contact: Callable[[str, float], tuple[Step, Step]],
@@ -104,7 +107,7 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, conta
     ``b`` (intercepts on the energy axis) and ``ab`` (from b up to a, mm: negative where the upper tangent cuts the axis below the
     lower one, so that no flywheel is needed).
     """
-    plan = Plan(f"energy-mass{where}", "Диаграмма энергомасс", "mm", labels)
+    plan = Plan(f"energy-mass{where}", tr("Energy-mass diagram"), "mm", labels)
     plan.add("points", PROJECT, energy, inertia)
     for name, rule, intercept in (("max", UPPER_ANGLE, "a"), ("min", LOWER_ANGLE, "b")):
         angle = plan.add(f"ψ_{name}", rule, mu_j, mu_e, omega, delta)
@@ -112,7 +115,7 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, conta
         direction = plan.add(f"t_{name}", UNDER_ANGLE, angle)
         touching = plan.add(f"T_{name}", TOUCH, *contact(name, float(angle.value)))
         plan.add(intercept, LINE_LINE, touching, direction, 0j, 1j,
-                 say="Касательная в точке {0} пересечёт ось ΔE в точке {name}.")
+                 say=tr("The tangent at {0} meets the axis ΔE at point {name}."))
     plan.add("ab", SEGMENT, plan["a"], plan["b"])
     return plan
 
@@ -181,7 +184,8 @@ EVEN_SEGMENT_LIMIT = Rule(
         weighted(m, up) + weighted(end, end_up) - omega**2 / 2 * j_up
         - (weighted(m, low) + weighted(end, end_low) - omega**2 / 2 * j_low)),
     ("number",) * 9, "number", "", beyond_paper=True, unit="J")
-AT_CONTACT = taken("moment of inertia at a contact", "kg*m2", "Приведённый момент инерции в точке касания {name} = {value} кг·м².")
+AT_CONTACT = taken("moment of inertia at a contact", "kg*m2",
+                   marked("Reduced moment of inertia at the point of contact {name} = {value} kg·m²."))
 
 
 class AtAngles(Protocol):
@@ -253,9 +257,11 @@ def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callab
                                                for of, which in zip(ends[1], ("max", "min"), strict=True))]
     inertia = mass(at("limit-contacts", contacts))
     j = [plan.add(f"J_{name}", AT_CONTACT, inertia, k) for k, name in enumerate(("max", "min"))]
-    error = "" if np.isinf(found.error) else f", относительная погрешность не больше {max(found.error, 1e-15):.0e}"
-    say = (f"При n → ∞ избыток энергии между точками касания – квадратурой Гаусса – Лежандра (панелей на интервал {found.panels}, "
-           f"узлов {len(nodes) + len(ends[0])}{error}): {{name}} = {{value}} Дж.")
+    told = (tr("As n → ∞, the excess of energy between the points of contact by Gauss–Legendre quadrature (panels per interval: "
+               "{panels}, nodes: {nodes}): {{name}} = {{value}} J.") if np.isinf(found.error) else
+            tr("As n → ∞, the excess of energy between the points of contact by Gauss–Legendre quadrature (panels per interval: "
+               "{panels}, nodes: {nodes}, relative error not above {error:.0e}): {{name}} = {{value}} J."))
+    say = told.format(panels=found.panels, nodes=len(nodes) + len(ends[0]), error=max(found.error, 1e-15))
     if delta is None:
         return plan.add("ab·μ_E", EVEN_SEGMENT_LIMIT, *args, *j, omega, say=say)
     return plan.add("ab·μ_E", SEGMENT_LIMIT, *args, *j, omega, delta, say=say)

@@ -38,6 +38,7 @@ from tmm_sheets.methods.integration import (
     differentiate,
     integrate,
 )
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import FlywheelTable
@@ -201,86 +202,92 @@ def _within(phi: Any, turn: Any) -> Any:
     return np.where(later, np.mod(phi - 1e-12, turn) + 1e-12, phi)
 
 
-FIRST_TURN = Rule("angle of the first turn", _within, ("angle", "angle"), "angle", "Угол в пределах оборота {name} = {value}.",
+FIRST_TURN = Rule("angle of the first turn", _within, ("angle", "angle"), "angle", marked("Angle within a turn {name} = {value}."),
                   unit="rad", exact=True)
-MOMENT_AT = taken("reduced moment at the positions", "N*m", "Приведённый момент сил {name} = {value} Н·м.")
-INERTIA_AT = taken("reduced moment of inertia at the positions", "kg*m2", "Приведённый момент инерции {name} = {value} кг·м².")
-SLOPE_AT = taken("slope of the moment of inertia at the positions", "kg*m2", "Производная {name} = {value} кг·м².")
-ORDINATE_AT = taken("ordinate of an interval", "mm", "Ордината {name} = {value} мм.")
+MOMENT_AT = taken("reduced moment at the positions", "N*m", marked("Reduced moment of forces {name} = {value} N·m."))
+INERTIA_AT = taken("reduced moment of inertia at the positions", "kg*m2",
+                   marked("Reduced moment of inertia {name} = {value} kg·m²."))
+SLOPE_AT = taken("slope of the moment of inertia at the positions", "kg*m2", marked("Derivative {name} = {value} kg·m²."))
+ORDINATE_AT = taken("ordinate of an interval", "mm", marked("Ordinate {name} = {value} mm."))
 JUMP = 1e-6
 """Ordinates of a graph on both sides of a border that differ by more, mm, are those of a jump."""
 BULGE = Rule("bulge of a curve", lambda y, a, b, share: y - ((1 - share) * a + share * b), ("number",) * 4, "number",
-             "Кривая отходит от хорды между соседними положениями на {name} = {value} мм.", unit="mm", exact=True)
+             marked("The curve departs from the chord between neighbouring positions by {name} = {value} mm."), unit="mm",
+             exact=True)
 ON_DRAWN = Rule("ordinate of a drawn curve", lambda a, b, share, bulge: (1 - share) * a + share * b + bulge, ("number",) * 4,
-                "ordinate", "На кривой, проведённой через точки положений, измерим ординату {name} = {value}.", unit="mm")
+                "ordinate", marked("On the curve drawn through the points of the positions measure the ordinate {name} = {value}."),
+                unit="mm")
 BORDER_SLOPE = Rule("slope of an integral", lambda y, pole: y / pole, ("number", "length"), "number",
-                    "Наклон графика работы {name} = {value}.")
-SLOPE_OF_CHORD = taken("slope at the border of an interval", "", "Наклон кривой на границе интервала {name} = {value}.")
-WORK_AT = taken("work of the cycle", "J", "Работа за цикл {name} = {value} Дж.")
+                    marked("Slope of the graph of work {name} = {value}."))
+SLOPE_OF_CHORD = taken("slope at the border of an interval", "",
+                       marked("Slope of the curve at the border of the interval {name} = {value}."))
+WORK_AT = taken("work of the cycle", "J", marked("Work of the cycle {name} = {value} J."))
 TO_PAPER = Rule("to scale", lambda value, mu: value / mu, ("number", "number"), "number",
-                "Ордината на чертеже {name} = {0}/{1} = {value} мм.", unit="mm")
+                marked("Ordinate on the drawing {name} = {0}/{1} = {value} mm."), unit="mm")
 FROM_PAPER = Rule("from scale", lambda y, mu: y * mu, ("ordinate", "number"), "number",
-                  "{name} = {0}·{1} Дж/мм = {value} Дж.", unit="J")
+                  marked("{name} = {0}·{1} J/mm = {value} J."), unit="J")
 TO_SLOPE = Rule("slope on paper", lambda value, mu, pole: value / (mu * pole), ("number",) * 3, "number",
-                "Наклон {name} = M/(μ_M·H) = {value}.")
+                marked("Slope {name} = M/(μ_M·H) = {value}."))
 ABSCISSA = Rule("abscissa of an angle", lambda phi, mu: phi / mu, ("number", "number"), "number",
-                "Абсцисса угла {name} = {value} мм.", unit="mm", exact=True)
-BORDER_AT = replace(taken("abscissa of a border", "mm", "Абсцисса границы интервала {name} = {value} мм."), exact=True)
+                marked("Abscissa of the angle {name} = {value} mm."), unit="mm", exact=True)
+BORDER_AT = replace(taken("abscissa of a border", "mm", marked("Abscissa of the border of an interval {name} = {value} mm.")),
+                    exact=True)
 PLOT = Rule(
     "plot a point", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
-    "На абсциссе {0} отложим ординату {1}: точка графика.",
+    marked("At the abscissa {0} lay off the ordinate {1}: a point of the graph."),
     lambda a, v: (Helper("line", complex(a[0], 0), v),),
 )
 BALANCE = Rule(
     "balance the cycle", np.conj, ("point",), "point",
-    "За цикл работы равны: конечную ординату отложим с обратным знаком, точка {name}; прямая из начала координат в неё – "
-    "график работы постоянного момента.",
+    marked("Over the cycle the works are equal: lay off the final ordinate with the opposite sign, point {name}; the line from "
+           "the origin to it is the graph of the work of the constant moment."),
     lambda a, v: (Helper("line", a[0], v), Helper("line", 0j, v)),
 )
 CONSTANT_MOMENT = Rule("constant moment", lambda p, mu: np.imag(p) * mu, ("point", "number"), "number",
-                       "Постоянный приведённый момент, уравновешивающий цикл: {name} = y·μ_M = {value} Н·м.", unit="N*m",
+                       marked("Constant reduced moment that balances the cycle: {name} = y·μ_M = {value} N·m."), unit="N*m",
                        source="000, 5.3")
-MEASURE = Rule("measure ordinates", _gather, (), "ordinate", "Измерим ординату графика работ {name} = {value}.")
+MEASURE = Rule("measure ordinates", _gather, (), "ordinate", marked("Measure the ordinate of the graph of work {name} = {value}."))
 ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / np.real(end), ("ordinate", "point"), "ordinate",
-               "На абсциссе {0} измерим ординату прямой {name} = {value}.")
+               marked("At the abscissa {0} measure the ordinate of the line {name} = {value}."))
 SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
-           "Сложим ординаты {0} и {1} с их знаками: {name} = {value}.")
+           marked("Add the ordinates {0} and {1} with their signs: {name} = {value}."))
 AREA_ORDINATE = Rule("ordinate from an area", lambda a, mu: a / mu, ("number", "number"), "ordinate",
-                     "Для проверки: площадь графика момента даёт конечную ординату работы {name} = {value}.", beyond_paper=True)
+                     marked("As a check, the area of the graph of the moment gives the final ordinate of work {name} = {value}."),
+                     beyond_paper=True)
 BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
-                   "Построенная конечная ордината {0} отличается от неё на {name} = {value}: ордината в середине интервала – "
-                   "не средняя ордината кривой.", beyond_paper=True)
+                   marked("The final ordinate {0} as constructed differs from it by {name} = {value}: the ordinate in the middle "
+                          "of an interval is not the mean ordinate of the curve."), beyond_paper=True)
 MEAN_MOMENT = Rule("mean moment from the work", lambda a, period: -a / period, ("number", "number"), "number",
-                   "По площади {name} = {value} Н·м.", beyond_paper=True, unit="N*m")
+                   marked("By the area {name} = {value} N·m."), beyond_paper=True, unit="N*m")
 ENLARGE = Rule("enlarge ordinates", lambda y, mu, other: y * (mu / other), ("ordinate", "number", "number"), "ordinate",
-               "Пересчитаем ординату {0} из масштаба μ_A = {1} Дж/мм в масштаб μ_E = {2} Дж/мм: "
-               "{name} = {0}·μ_A/μ_E = {value}.")
-LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", "Отложим ординату {name} = {value}.")
+               marked("Convert the ordinate {0} from the scale factor μ_A = {1} J/mm to μ_E = {2} J/mm: {name} = {0}·μ_A/μ_E = "
+                      "{value}."))
+LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", marked("Lay off the ordinate {name} = {value}."))
 OF_SEGMENT = Rule("moment of inertia from the segment", lambda ab, mu, delta, omega: ab * mu / (delta * omega**2),
                   ("number",) * 4, "number",
-                  "По отрезку ab, мм: {name} = ab·μ_E/(δ·ω1²) = {0}·{1}/({2}·{3}²) = {value} кг·м².", unit="kg*m2",
+                  marked("From the segment ab, mm: {name} = ab·μ_E/(δ·ω1²) = {0}·{1}/({2}·{3}²) = {value} kg·m²."), unit="kg*m2",
                   source="000, 5.6")
 OF_EXCESS = Rule("moment of inertia from the excess of energy", lambda excess, delta, omega: excess / (delta * omega**2),
-                 ("number",) * 3, "number", "{name} = {0}/({1}·{2}²) = {value} кг·м².", beyond_paper=True, unit="kg*m2",
+                 ("number",) * 3, "number", marked("{name} = {0}/({1}·{2}²) = {value} kg·m²."), beyond_paper=True, unit="kg*m2",
                  source="000, 5.6")
 TOGETHER = Rule("moments of inertia together", lambda a, b: a + b, ("number", "number"), "number",
-                "Всё, что вращается с начальным звеном: {name} = {0} + {1} = {value} кг·м².", unit="kg*m2")
+                marked("All that turns with the input link: {name} = {0} + {1} = {value} kg·m²."), unit="kg*m2")
 BARE = Rule("moment of inertia of the flywheel", lambda first, crank: first - crank, ("number", "number"), "number",
-            "Момент инерции маховика {name} = {0} − {1} = {value} кг·м².", unit="kg*m2")
+            marked("Moment of inertia of the flywheel {name} = {0} − {1} = {value} kg·m²."), unit="kg*m2")
 BARE_OF_ROTOR = Rule("moment of inertia of the flywheel beside a rotor", lambda first, crank, rotor: first - crank - rotor,
                      ("number",) * 3, "number",
-                     "Момент инерции маховика {name} = {0} − {1} − {2} = {value} кг·м².", unit="kg*m2")
+                     marked("Moment of inertia of the flywheel {name} = {0} − {1} − {2} = {value} kg·m²."), unit="kg*m2")
 WITHOUT_CRANK = Rule("without the crank", lambda j, crank: j - crank, ("number", "number"), "number",
-                     "Без начального звена {name} = {0} − {1} = {value} кг·м².", unit="kg*m2", source="002, 1.7")
+                     marked("Without the input link {name} = {0} − {1} = {value} kg·m²."), unit="kg*m2", source="002, 1.7")
 RATIO = Rule("ratio of angular velocities", lambda rotor, crank: rotor / crank, ("number", "number"), "number",
-             "Передаточное отношение от двигателя {name} = {0}/{1} = {value}.")
+             marked("Ratio from the motor {name} = {0}/{1} = {value}."))
 ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("number", "number"), "number",
-             "Момент инерции ротора, приведённый к начальному звену: {name} = {0}·{1}² = {value} кг·м².", unit="kg*m2")
+             marked("Moment of inertia of the rotor reduced to the input link: {name} = {0}·{1}² = {value} kg·m²."), unit="kg*m2")
 RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maximum(-wheel, 0.0), ("number", "number"), "number",
-               "В готовой машине вместе с начальным звеном вращается {name} = {value} кг·м².", unit="kg*m2")
+               marked("All that turns in the finished machine, the input link included: {name} = {value} kg·m²."), unit="kg*m2")
 TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
 DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"),
-                  "number", "Построение отличается от предела на {name} = {value} %.", beyond_paper=True, unit="%")
+                  "number", marked("The construction against the limit: {name} = {value} %."), beyond_paper=True, unit="%")
 
 
 @dataclass(frozen=True, eq=False)
@@ -395,16 +402,17 @@ class Flywheel(ABC):
         mu_phi = handy(reduced.period / space.angle)
         largest = _largest(reduced.forces_at(self.samples))
         if not mass.max() > 0:
-            raise CannotBuild("a flywheel needs links with masses", "add mass, centre and inertia to [[link]] of the project file")
+            raise CannotBuild(tell("a flywheel needs links with masses"),
+                              tell("add mass, centre and inertia to [[link]] of the project file"))
         spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), float(mass.max()))
         mu_m, mu_a, mu_e, mu_j = _stacked(spans, mu_phi, space) if space.stack else _alone(spans, mu_phi, space)
         return FlywheelScales(
-            angle=Scale("μ_φ", mu_phi, "рад/мм"),
-            force=fit(*(("μ_M′", "Н·м/мм") if reduced.forces_are_moments else ("μ_F", "Н/мм")), largest, space.force),
-            moment=Scale("μ_M", mu_m, "Н·м/мм"),
-            work=Scale("μ_A", mu_a, "Дж/мм"),
-            energy=Scale("μ_E", mu_e, "Дж/мм"),
-            inertia=Scale("μ_J", mu_j, "кг·м²/мм"),
+            angle=Scale("μ_φ", mu_phi, tr("rad/mm")),
+            force=fit(*(("μ_M′", tr("N·m/mm")) if reduced.forces_are_moments else ("μ_F", tr("N/mm"))), largest, space.force),
+            moment=Scale("μ_M", mu_m, tr("N·m/mm")),
+            work=Scale("μ_A", mu_a, tr("J/mm")),
+            energy=Scale("μ_E", mu_e, tr("J/mm")),
+            inertia=Scale("μ_J", mu_j, tr("kg·m²/mm")),
             pole=mu_a / (mu_m * mu_phi),
         )
 
@@ -441,7 +449,7 @@ class Flywheel(ABC):
     @cached_property
     def across_plan(self) -> Plan:
         """Abscissae of the positions, mm: ``x``; on the graph J(phi), where it has another scale, ``x_J``."""
-        plan = Plan(f"abscissae@positions{self.where}", "Абсциссы положений", "mm", self.labels)
+        plan = Plan(f"abscissae@positions{self.where}", tr("Abscissae of the positions"), "mm", self.labels)
         phi = self.data_plan["φ1"]
         plan.add("x", ABSCISSA, phi, self.mu("angle"))
         if self.inertia_angle is not self.scales.angle:
@@ -458,7 +466,7 @@ class Flywheel(ABC):
     @cached_property
     def borders_plan(self) -> Plan:
         """Angles ``φ`` of the borders of the intervals and their abscissae ``x``, mm; ``x_`` with a border's name is one alone."""
-        plan = Plan(f"abscissae@borders{self.where}", "Абсциссы границ интервалов", "mm", self.borders)
+        plan = Plan(f"abscissae@borders{self.where}", tr("Abscissae of the borders of the intervals"), "mm", self.borders)
         choice = "positions, jumps and kinks of the moment"
         phi = plan.add("φ", GIVEN_NUMBER, Given(self.edges, "borders of the intervals", "φ_1", "rad", choice=choice))
         x = plan.add("x", ABSCISSA, phi, self.mu("angle"))
@@ -469,7 +477,7 @@ class Flywheel(ABC):
     @cached_property
     def data_plan(self) -> Plan:
         """What is given: angles ``φ1`` of the positions and ``δ``."""
-        plan = Plan(f"flywheel-data@given{self.where}", "Исходные данные маховика", "", self.labels)
+        plan = Plan(f"flywheel-data@given{self.where}", tr("Givens of the flywheel"), "", self.labels)
         plan.add("φ1", GIVEN_NUMBER, Given(self.reduced.phi, "cycle", "φ_1", "rad"))
         plan.add("δ", GIVEN_NUMBER, self.delta)
         return plan
@@ -493,8 +501,8 @@ class Flywheel(ABC):
     @cached_property
     def moment_plan(self) -> Plan:
         """Graph of the reduced moment: step ``M`` holds its points at the positions, mm, ``M_пр`` the moment, N m."""
-        plan = Plan(f"reduced-moment{self.where}", "График приведённого момента", "mm", self.labels)
-        moment = plan.add("M_пр", MOMENT_AT, self.reduced.numbered.moment(), self.closing)
+        plan = Plan(f"reduced-moment{self.where}", tr("Graph of the reduced moment"), "mm", self.labels)
+        moment = plan.add("M_пр", MOMENT_AT, self.reduced.numbered.moment(), self.closing, symbol=tr("M_red"))
         plan.add("M", PLOT, self.across, plan.add("y_M", TO_PAPER, moment, self.mu("moment")))
         return plan
 
@@ -506,7 +514,8 @@ class Flywheel(ABC):
     @cached_property
     def middles_plan(self) -> Plan:
         """Ordinates of the moment in the middles of the intervals, mm: ``y``."""
-        plan = Plan(f"ordinates@middles{self.where}", "Ординаты момента в серединах интервалов", "mm", self.intervals)
+        plan = Plan(f"ordinates@middles{self.where}", tr("Ordinates of the moment in the middles of the intervals"), "mm",
+                    self.intervals)
         at = self.reduced.at("middles", (self.edges[:-1] + self.edges[1:]) / 2, self.intervals)
         plan.add("y", TO_PAPER, at.moment(), self.mu("moment"))
         return plan
@@ -514,7 +523,8 @@ class Flywheel(ABC):
     @cached_property
     def slopes_plan(self) -> Plan:
         """Slopes of the work curve on paper at the borders of the intervals, behind each (``+``) and before it (``−``)."""
-        plan = Plan(f"slopes@borders{self.where}", "Наклоны графика работы на границах интервалов", "mm", self.borders)
+        plan = Plan(f"slopes@borders{self.where}", tr("Slopes of the graph of work at the borders of the intervals"), "mm",
+                    self.borders)
         for name, side in (("+", 1), ("−", -1)):
             plan.add(name, TO_SLOPE, self.at_borders.moment(side), self.mu("moment"), self.pole)
         return plan
@@ -522,7 +532,7 @@ class Flywheel(ABC):
     @cached_property
     def intervals_plan(self) -> Plan:
         """The same interval by interval: ``y``, ``+`` (at its beginning), ``−`` (at its end) with its name."""
-        plan = Plan(f"ordinates@intervals{self.where}", "Ординаты момента по интервалам", "mm")
+        plan = Plan(f"ordinates@intervals{self.where}", tr("Ordinates of the moment by intervals"), "mm")
         slopes, middles = self.slopes_plan, self.middles_plan["y"]
         for k, interval in enumerate(self.intervals):
             left, right = self._drawn_at(plan, k, 1), self._drawn_at(plan, k + 1, -1)
@@ -561,7 +571,7 @@ class Flywheel(ABC):
     @cached_property
     def work_plan(self) -> Plan:
         """Graphical integration of the moment: see :func:`integrate` for the names of its steps; ``A(φ)`` is the smooth curve."""
-        plan, of = Plan(f"work{self.where}", "График работы", "mm"), self.intervals_plan
+        plan, of = Plan(f"work{self.where}", tr("Graph of work"), "mm"), self.intervals_plan
         across = [self.borders_plan.asides[f"x_{name}"] for name in self.borders]
         ends = integrate(plan, "", across, [of[f"y{name}"] for name in self.intervals], self.pole,
                          borders=self.borders, intervals=self.intervals, mark=self.mark)
@@ -573,7 +583,7 @@ class Flywheel(ABC):
     @cached_property
     def area_plan(self) -> Plan:
         """Work by the area of the graph of the moment: ``A`` at the positions, ``A_Σ`` of the cycle, J; ``M`` its mean, N m."""
-        plan = Plan(f"area@limit{self.where}", "Работа по площади графика момента", "", self.labels)
+        plan = Plan(f"area@limit{self.where}", tr("Work by the area of the graph of the moment"), "", self.labels)
         q = Quadrature(np.zeros_like, self.edges, 4)
         moment = self.reduced.at("area", q.at).moment()
         ends = Given(q.panels * np.array(self.at_positions), "borders of the positions")
@@ -586,7 +596,7 @@ class Flywheel(ABC):
     @cached_property
     def driving_plan(self) -> Plan:
         """Work of the constant moment (step ``K``, end of its line) and its differentiation (step ``dK``), mm; ``M``, N m."""
-        plan = Plan(f"driving-moment{self.where}", "График постоянного момента", "mm")
+        plan = Plan(f"driving-moment{self.where}", tr("Graph of the constant moment"), "mm")
         origin = plan.add("0", ORIGIN, 0.0)
         end = plan.add("K", BALANCE, self.work_ends[-1])
         (found,) = differentiate(plan, "", [origin, end], self.pole, intervals=["K"])
@@ -599,21 +609,21 @@ class Flywheel(ABC):
 
         ``δA`` is how much greater the work of the cycle is by the ordinates in the middles than by the area, % of the area.
         """
-        plan = Plan(f"total-work{self.where}", "График суммарной работы", "mm", self.labels)
+        plan = Plan(f"total-work{self.where}", tr("Graph of the total work"), "mm", self.labels)
         line = plan.add("y_1", ON_LINE, self.across, self.driving_plan["K"])
         curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
         total = plan.add("ΣA", SUM, curve, line)
         energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("energy"))
         plan.add("points", PLOT, self.across, energy)
         plan.add("A", FROM_PAPER, curve, self.mu("work"),
-                 say="Работа переменного момента {name} = y_2·μ_A = {0}·{1} Дж/мм = {value} Дж.")
+                 say=tr("Work of the variable moment {name} = y_2·μ_A = {0}·{1} J/mm = {value} J."))
         plan.add("A_K", FROM_PAPER, line, self.mu("work"),
-                 say="Работа постоянного момента {name} = y_1·μ_A = {0}·{1} Дж/мм = {value} Дж.")
+                 say=tr("Work of the constant moment {name} = y_1·μ_A = {0}·{1} J/mm = {value} J."))
         plan.add("E", FROM_PAPER, energy, self.mu("energy"),
-                 say="Изменение кинетической энергии {name} = ΔE·μ_E = {0}·{1} Дж/мм = {value} Дж.")
+                 say=tr("Change of the kinetic energy {name} = ΔE·μ_E = {0}·{1} J/mm = {value} J."))
         done = plan.add("A_Σ", WORK_AT, plan["A"], len(self.labels) - 1)
         plan.add("δA", DIFFERENCE, done, self.area_plan["A_Σ"],
-                 say="Работа за цикл отличается от найденной по площади графика на {name} = {value} %.")
+                 say=tr("The work of the cycle against that by the area of the graph: {name} = {value} %."))
         return plan
 
     @cached_property
@@ -629,8 +639,8 @@ class Flywheel(ABC):
     @cached_property
     def inertia_plan(self) -> Plan:
         """Graph of the reduced moment of inertia: ``J`` the ordinates, ``points`` at the positions, mm; ``J_пр``, kg m2."""
-        plan = Plan(f"reduced-inertia{self.where}", "График приведённого момента инерции", "mm", self.labels)
-        inertia = plan.add("J_пр", INERTIA_AT, self.mass(self.reduced.numbered), self.closing)
+        plan = Plan(f"reduced-inertia{self.where}", tr("Graph of the reduced moment of inertia"), "mm", self.labels)
+        inertia = plan.add("J_пр", INERTIA_AT, self.mass(self.reduced.numbered), self.closing, symbol=tr("J_red"))
         ordinate = plan.add("J", LAY_DOWN, plan.add("y_J", TO_PAPER, inertia, self.mu("inertia")))
         plan.add("points", PLOT, self.across_plan["x_J" if "x_J" in self.across_plan else "x"], ordinate)
         return plan
@@ -638,7 +648,7 @@ class Flywheel(ABC):
     @cached_property
     def contacts_plan(self) -> Plan:
         """Ordinates of the graphs at the angles of the contacts, see :meth:`contact`."""
-        return Plan(f"ordinates@contacts{self.where}", "Ординаты графиков в точках касания", "mm")
+        return Plan(f"ordinates@contacts{self.where}", tr("Ordinates of the graphs at the points of contact"), "mm")
 
     def contact(self, name: str, phi: float, criterion: str) -> tuple[Step, Step, Step]:
         """Abscissa, and ordinates of dE and J, mm, at the angle of a contact, chosen by a criterion."""
@@ -649,7 +659,7 @@ class Flywheel(ABC):
         total = plan.add(f"ΣA_{name}", SUM, work, plan.add(f"K_{name}", ON_LINE, x, self.driving_plan["K"]))
         energy = plan.add(f"ΔE_{name}", ENLARGE, total, self.mu("work"), self.mu("energy"))
         at = self.at(f"contact-{name}", np.array([phi]), (name,))
-        mass = plan.add(f"J_пр_{name}", AT_CONTACT, self.mass(at), 0)
+        mass = plan.add(f"J_пр_{name}", AT_CONTACT, self.mass(at), 0, symbol=tr("J_red_{contact}").format(contact=name))
         exact, row = plan.add(f"J°_{name}", TO_PAPER, mass, self.mu("inertia")), self.inertia_plan["y_J"]
         right = int(np.clip(np.searchsorted(self.reduced.phi, phi), 1, len(self.reduced.phi) - 1))
         before, after = self.reduced.phi[right - 1:right + 1]
@@ -749,37 +759,38 @@ class Flywheel(ABC):
     @cached_property
     def first_plan(self) -> Plan:
         """From the segment ab to the flywheel: ``J_I`` all that turns with the crank, ``J_м`` the flywheel, ``J_вр`` what runs."""
-        plan = Plan(f"flywheel-inertia{self.where}", "Момент инерции маховика", "")
+        plan = Plan(f"flywheel-inertia{self.where}", tr("Moment of inertia of the flywheel"), "")
         first = self._first(plan)
-        flywheel = self._bare(plan, "J_м", first, BARE, BARE_OF_ROTOR)
-        none = ("Момент инерции маховика не больше нуля, маховик не требуется: вместе с начальным звеном вращается "
-                "{name} = {value} кг·м².")
-        plan.add("J_вр", RUNNING, first, flywheel, say=None if float(flywheel.value) > 0 else none)
+        flywheel = self._bare(plan, "J_м", first, BARE, BARE_OF_ROTOR, tr("J_f"))
+        none = tr("The moment of inertia of the flywheel is not greater than zero, no flywheel is needed; all that turns, the "
+                  "input link included: {name} = {value} kg·m².")
+        plan.add("J_вр", RUNNING, first, flywheel, say=None if float(flywheel.value) > 0 else none, symbol=tr("J_rot"))
         return plan
 
     @cached_property
     def limit_plan(self) -> Plan:
         """The same for vanishing intervals: ``J_I∞``, ``J_м∞``, and ``разность``, by how many per cent the drawn one is off."""
-        plan = Plan(f"flywheel-limit{self.where}", "Маховик при n → ∞", "")
-        flywheel = self._bare(plan, "J_м∞", self._first_converged(plan), BARE_LIMIT, BARE_OF_ROTOR_LIMIT)
-        plan.add("разность", DIFFERENCE, self.first_plan["J_м"], flywheel)
+        plan = Plan(f"flywheel-limit{self.where}", tr("Flywheel as n → ∞"), "")
+        flywheel = self._bare(plan, "J_м∞", self._first_converged(plan), BARE_LIMIT, BARE_OF_ROTOR_LIMIT, tr("J_f∞"))
+        plan.add("разность", DIFFERENCE, self.first_plan["J_м"], flywheel, symbol=tr("difference"))
         return plan
 
-    def _bare(self, plan: Plan, name: str, first: Step, without: Rule, with_rotor: Rule) -> Step:
+    def _bare(self, plan: Plan, name: str, first: Step, without: Rule, with_rotor: Rule, symbol: str) -> Step:
         """What of all that turns with the crank is left for the flywheel."""
         if "J_рот" not in self.rotor_plan:
-            return plan.add(name, without, first, self.reduced.crank)
-        return plan.add(name, with_rotor, first, self.reduced.crank, self.rotor_plan["J_рот"])
+            return plan.add(name, without, first, self.reduced.crank, symbol=symbol)
+        return plan.add(name, with_rotor, first, self.reduced.crank, self.rotor_plan["J_рот"], symbol=symbol)
 
     @cached_property
     def rotor_plan(self) -> Plan:
         """Moment of inertia of the motor's rotor reduced to the crank: ``J_рот``."""
-        plan, motor = Plan(f"rotor{self.where}", "Ротор двигателя", ""), self.data.motor
+        plan, motor = Plan(f"rotor{self.where}", tr("Rotor of the motor"), ""), self.data.motor
         if motor is None or not motor.rotor_inertia:
             return plan
         u: Any = motor.ratio and named(motor.ratio, "flywheel.motor.ratio", "u")
-        u = u or plan.add("u", RATIO, named(motor.rated, "flywheel.motor.rated", "ω_н", "rad/s"), self.omega1)
-        plan.add("J_рот", ROTOR, named(motor.rotor_inertia, "flywheel.motor.rotor_inertia", "J_р", "kg*m2"), u)
+        u = u or plan.add("u", RATIO, named(motor.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), self.omega1)
+        plan.add("J_рот", ROTOR, named(motor.rotor_inertia, "flywheel.motor.rotor_inertia", tr("J_r"), "kg*m2"), u,
+                 symbol=tr("J_rotor"))
         return plan
 
     @property
@@ -833,11 +844,13 @@ class Flywheel(ABC):
         if self.needed and self.J_flywheel_converged > 0:
             return ""
         if self.needed == (self.J_flywheel_converged > 0):
-            return (f"no flywheel is needed: {there:.4g} kg m2 turn with the crank, {self.J_first:.4g} are enough "
-                    f"({self.J_first_converged:.4g} in the limit of many positions)")
-        one, other = ("needs a", "none is needed") if self.needed else ("needs no", "one is needed")
-        return (f"the drawn construction {one} flywheel ({self.J_flywheel:.4g} kg m2), in the limit of many positions {other} "
-                f"({self.J_flywheel_converged:.4g} kg m2): the difference is the construction's error")
+            return tell("no flywheel is needed: {there:.4g} kg m2 turn with the crank, {enough:.4g} are enough ({limit:.4g} in the "
+                        "limit of many positions)").format(there=there, enough=self.J_first, limit=self.J_first_converged)
+        said = (tell("the drawn construction needs a flywheel ({drawn:.4g} kg m2), in the limit of many positions none is needed "
+                     "({limit:.4g} kg m2): the difference is the construction's error") if self.needed else
+                tell("the drawn construction needs no flywheel ({drawn:.4g} kg m2), in the limit of many positions one is needed "
+                     "({limit:.4g} kg m2): the difference is the construction's error"))
+        return said.format(drawn=self.J_flywheel, limit=self.J_flywheel_converged)
 
     @property
     @abstractmethod
@@ -870,8 +883,8 @@ class Flywheel(ABC):
         if m is None:
             return None
         return motor_check(self.driving_plan["M"], self.omega1, named(m.efficiency, "flywheel.motor.efficiency", "η"),
-                           named(m.synchronous, "flywheel.motor.synchronous", "ω_с", "rad/s"),
-                           named(m.rated, "flywheel.motor.rated", "ω_н", "rad/s"), m.power, self.data.delta, self.where)
+                           named(m.synchronous, "flywheel.motor.synchronous", tr("ω_s"), "rad/s"),
+                           named(m.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), m.power, self.data.delta, self.where)
 
     def speed(self, phi: Floats, inertia: float | None = None) -> Floats:
         """Angular velocity of the crank over the angle with the exact flywheel (or another, kg m2), rad/s.
@@ -899,12 +912,12 @@ class Flywheel(ABC):
         return self._acceleration(self.reduced.numbered, self.labels, "", (self.closing,))
 
     def _acceleration(self, at: AtAngles, labels: tuple[str, ...], name: str, closing: tuple[Given, ...] = ()) -> Plan:
-        plan = Plan(f"crank-acceleration{name}{self.where}", "Угловое ускорение начального звена", "rad/s2", labels)
+        plan = Plan(f"crank-acceleration{name}{self.where}", tr("Angular acceleration of the input link"), "rad/s2", labels)
         mu_phi, mu_j = self.mu("angle"), self.mu("inertia")
         moment, inertia, slope = at.moment(), at.inertia, at.slope
         if closing:
-            moment = plan.add("M_пр", MOMENT_AT, moment, *closing)
-            inertia = plan.add("J_пр", INERTIA_AT, inertia, *closing)
+            moment = plan.add("M_пр", MOMENT_AT, moment, *closing, symbol=tr("M_red"))
+            inertia = plan.add("J_пр", INERTIA_AT, inertia, *closing, symbol=tr("J_red"))
             slope = plan.add("J′", SLOPE_AT, slope, *closing)
         others = plan.add("J_II", WITHOUT_CRANK, inertia, self.reduced.crank)
         angle = plan.add("ψ", TANGENT, slope, mu_phi, mu_j)
@@ -963,22 +976,23 @@ _FACTORS = {"angle": ("mu_phi", "rad/mm"), "force": ("mu_F", "N/mm"), "moment": 
             "energy": ("mu_E", "J/mm"), "inertia": ("mu_J", "kg*m2/mm")}  # fmt: skip
 """Names and units of the scale factors in the record."""
 TANGENT = Rule("tangent of a graph", lambda slope, mu_phi, mu_j: np.arctan(slope * (mu_phi / mu_j)), ("number",) * 3, "inclination",
-               "В точке графика J(φ1) проведём касательную; угол её наклона {name} = {value}.")
+               marked("At the point of the graph J(φ1) draw the tangent; its slope angle is {name} = {value}."))
 SLOPE = Rule("slope of a graph", lambda angle, mu_phi, mu_j: np.tan(angle) * (mu_j / mu_phi), ("inclination", "number", "number"),
-             "number", "{name} = tg ψ·μ_J/μ_φ = {value} кг·м².", unit="kg*m2", source="002, 1.12")
+             "number", marked("{name} = tan ψ·μ_J/μ_φ = {value} kg·m²."), unit="kg*m2", source="002, 1.12")
 SUM_OF_MOMENTS = Rule("add moments", lambda a, b: a + b, ("number", "number"), "number",
-                      "Сложим приведённые моменты {0} и {1} с их знаками: {name} = {value} Н·м.", unit="N*m")
+                      marked("Add the reduced moments {0} and {1} with their signs: {name} = {value} N·m."), unit="N*m")
 ALL_INERTIA = Rule("add moments of inertia", lambda a, b: a + b, ("number", "number"), "number",
-                   "Момент инерции всех звеньев {name} = {0} + {1} = {value} кг·м².", unit="kg*m2")
+                   marked("Moment of inertia of all links {name} = {0} + {1} = {value} kg·m²."), unit="kg*m2")
 ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m - omega * omega / 2 * slope) / j,
                     ("number", "number", "number", "number"), "number",
-                    "{name} = (M − ω²/2·dJ/dφ)/J = ({0} − {3}²/2·{1})/{2} = {value} рад/с².")
+                    marked("{name} = (M − ω²/2·dJ/dφ)/J = ({0} − {3}²/2·{1})/{2} = {value} rad/s²."))
 
 
 def _largest(forces: Mapping[str, Floats]) -> float:
     largest = max((float(np.max(values)) for values in forces.values()), default=0.0)
     if not largest > 0:
-        raise CannotBuild("a flywheel needs a technological force or moment", "add [[force]] or [[moment]] to the project file")
+        raise CannotBuild(tell("a flywheel needs a technological force or moment"),
+                          tell("add [[force]] or [[moment]] to the project file"))
     return largest
 
 

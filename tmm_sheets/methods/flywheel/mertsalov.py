@@ -27,6 +27,7 @@ from tmm_sheets.methods.flywheel.flywheel import FROM_PAPER, OF_EXCESS, OF_SEGME
 from tmm_sheets.methods.flywheel.running import Running
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
+from tmm_sheets.words import marked, tr
 
 SPACE = DiagramSpace(moment=100.0, work=130.0, energy=220.0, inertia=175.0, stack=480.0)
 """Room for the diagrams: all four stand one under another over a common angle axis, mm."""
@@ -34,38 +35,43 @@ SPACE = DiagramSpace(moment=100.0, work=130.0, energy=220.0, inertia=175.0, stac
 
 CONVERT = Rule("convert ordinates", lambda y, mu_j, omega, mu_e: y * (mu_j * omega**2 / 2 / mu_e),
                ("ordinate", "number", "number", "number"), "ordinate",
-               "Ординату {0} графика J_II(φ1) пересчитаем в масштаб энергий, умножив на μ_J·ω1²/(2μ_E) = {1}·{2}²/(2·{3}): "
-               "{name} = {value}.", source="002, 1.9")
+               marked("Convert the ordinate {0} of the graph J_II(φ1) to the scale factor of energy, multiplying by "
+                      "μ_J·ω1²/(2μ_E) = {1}·{2}²/(2·{3}): {name} = {value}."), source="002, 1.9")
 LAY_BELOW = Rule("lay off below a curve", lambda a, b: a - b, ("ordinate", "ordinate"), "ordinate",
-                 "От конца ординаты {0} отложим вниз {1}: остаётся {name} = {value}.")
+                 marked("From the end of the ordinate {0} lay off {1} downwards: {name} = {value} is left."))
 EXTREME = Rule("horizontal tangent", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
-               "Проведём горизонтальную касательную к кривой T_I(φ1): точка касания {name} с абсциссой {0} и ординатой {1}.")
+               marked("Draw the horizontal tangent to the curve T_I(φ1): point of contact {name} with the abscissa {0} and the "
+                      "ordinate {1}."))
 MIDDLE = Rule("middle", lambda a, b: (a + b) / 2, ("point", "point"), "point",
-              "Через середину отрезка {0}{1} проведём ось средней угловой скорости: точка {name}.")
+              marked("Through the middle of the segment {0}{1} draw the axis of the mean angular velocity: point {name}."))
 FROM_AXIS = Rule("ordinate from an axis", lambda y, axis: y - np.imag(axis), ("ordinate", "point"), "ordinate",
-                 "От оси средней угловой скорости измерим ординату {name} = {value}.")
+                 marked("From the axis of the mean angular velocity measure the ordinate {name} = {value}."))
 SPEED_SCALE = Rule("scale factor of the angular velocity", lambda mu, j, omega: mu / (j * omega), ("number",) * 3, "number",
-                   "Масштаб угловой скорости {name} = μ_E/(J_I·ω1) = {0}/({1}·{2}) = {value} рад/(с·мм).", unit="rad/s/mm",
+                   marked("Scale factor of the angular velocity {name} = μ_E/(J_I·ω1) = {0}/({1}·{2}) = {value} rad/(s·mm)."),
+                   unit="rad/s/mm",
                    source="002, 1.11")
 ANGULAR_SPEED = Rule("angular velocity from its graph", lambda y, mu, mean: mean + mu * y, ("ordinate", "number", "number"),
-                     "number", "{name} = {2} + {1}·y = {value} рад/с.", unit="rad/s")
+                     "number", marked("{name} = {2} + {1}·y = {value} rad/s."), unit="rad/s")
 EXTREME_SPEED = Rule("angular velocity at an extreme", lambda at, axis, mu, mean: mean + mu * (np.imag(at) - np.imag(axis)),
                      ("point", "point", "number", "number"), "number",
-                     "В точке {0} угловая скорость {name} = {3} + {2}·y = {value} рад/с.", unit="rad/s")
+                     marked("At {0} the angular velocity is {name} = {3} + {2}·y = {value} rad/s."), unit="rad/s")
 HIGHEST = Rule("highest angular velocity permitted", lambda omega, delta: omega * (1 + delta / 2), ("number", "number"), "number",
-               "Допускается {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} рад/с.", unit="rad/s")
+               marked("Permitted: {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} rad/s."), unit="rad/s")
 LOWEST = Rule("lowest angular velocity permitted", lambda omega, delta: omega * (1 - delta / 2), ("number", "number"), "number",
-              "Допускается {name} = ω1·(1 − δ/2) = {0}·(1 − {1}/2) = {value} рад/с.", unit="rad/s")
+              marked("Permitted: {name} = ω1·(1 − δ/2) = {0}·(1 − {1}/2) = {value} rad/s."), unit="rad/s")
 FOUND = Rule("found by the exact running", lambda w: w, ("number",), "number",
-             "Точное движение по закону изменения энергии даёт {name} = {value} рад/с.", unit="rad/s", beyond_paper=True)
+             marked("Exact running by the law of energy gives {name} = {value} rad/s."), unit="rad/s", beyond_paper=True)
 NON_UNIFORMITY = Rule("non-uniformity of a running", lambda fast, slow: (fast - slow) / ((fast + slow) / 2), ("number", "number"),
-                      "number", "{name} = (ω_max − ω_min)/ω_ср = {value}.", beyond_paper=True)
+                      "number", marked("{name} = (ω_max − ω_min)/ω_m = {value}."), beyond_paper=True)
 EXCESS = Rule("mean of two moments of inertia", lambda a, b: (a + b) / 2, ("number", "number"), "number",
-              "По теории метод завышает на {name} = ({0} + {1})/2 = {value} кг·м².", unit="kg*m2", beyond_paper=True)
+              marked("By theory the method gives too much by {name} = ({0} + {1})/2 = {value} kg·m²."), unit="kg*m2",
+              beyond_paper=True)
 ENERGY_SCALE = Rule("scale factor of an energy", lambda mu_j, omega: mu_j * omega**2 / 2, ("number", "number"), "number",
-                    "Масштаб кинетической энергии на графике J {name} = μ_J·ω_1²/2 = {value} Дж/мм.", unit="J/mm", exact=True)
+                    marked("Scale factor of the kinetic energy on the graph J {name} = μ_J·ω_1²/2 = {value} J/mm."), unit="J/mm",
+                    exact=True)
 BETWEEN_LIMITS = Rule("difference of two moments of inertia", lambda a, b: a - b, ("number", "number"), "number",
-                      "В пределе методы расходятся на {name} = {0} − {1} = {value} кг·м².", unit="kg*m2", beyond_paper=True)
+                      marked("In the limit the methods differ by {name} = {0} − {1} = {value} kg·m²."), unit="kg*m2",
+                      beyond_paper=True)
 
 
 @dataclass(frozen=True)
@@ -113,7 +119,7 @@ class Mertsalov(Flywheel):
         ``T_II`` and ``T_I`` (ordinates at the positions), ``points`` of the curve, ``M_max`` and ``M_min`` (points of contact of
         the horizontal tangents), ``a`` and ``b`` (on the ordinate axis), ``ab`` (their distance); ``E_II`` and ``E_I``, J.
         """
-        plan = Plan(f"first-energy{self.where}", "График кинетической энергии звеньев первой группы", "mm", self.labels)
+        plan = Plan(f"first-energy{self.where}", tr("Graph of the kinetic energy of the first group of links"), "mm", self.labels)
         convert = self.mu("inertia"), self.omega1, self.mu("energy")
         plan.aside("μ_T", ENERGY_SCALE, *convert[:2])
         second = plan.add("T_II", CONVERT, self.inertia_plan["J"], *convert)
@@ -126,9 +132,10 @@ class Mertsalov(Flywheel):
             level = of.add(f"T_I_{name}", LAY_BELOW, energy, of.add(f"T_II_{name}", CONVERT, mass, *convert))
             plan.add(end, CARRY, plan.add(f"M_{name}", EXTREME, x, level))
         plan.add("ab", DISTANCE, plan["a"], plan["b"])
-        for name, of_group, ordinate in (("E_II", "второй", second), ("E_I", "первой", first)):
+        for name, said, ordinate in (("E_II", tr("Energy of the second group of links {name} = {0}·{1} J/mm = {value} J."), second),
+                                     ("E_I", tr("Energy of the first group of links {name} = {0}·{1} J/mm = {value} J."), first)):
             plan.add(name, FROM_PAPER, ordinate, self.mu("energy"),
-                     say=f"Энергия звеньев {of_group} группы {{name}} = {{0}}·{{1}} Дж/мм = {{value}} Дж.")
+                     say=said)
         return plan
 
     @cached_property
@@ -137,7 +144,7 @@ class Mertsalov(Flywheel):
 
         ``μ_ω`` is its scale factor, ``ω_max`` and ``ω_min`` the angular velocity at the tangents.
         """
-        plan = Plan(f"crank-speed{self.where}", "График угловой скорости начального звена", "mm", self.labels)
+        plan = Plan(f"crank-speed{self.where}", tr("Graph of the angular velocity of the input link"), "mm", self.labels)
         energy = self.energy_plan
         mu = plan.add("μ_ω", SPEED_SCALE, self.mu("energy"), self.first_plan["J_вр"], self.omega1)
         axis = plan.add("O", MIDDLE, energy["a"], energy["b"])
@@ -172,7 +179,7 @@ class Mertsalov(Flywheel):
     @property
     def speed_scale(self) -> Scale:
         """Scale factor of the angular velocity on the curve T_I: mu_E/(J_I omega), J_I that of the finished machine."""
-        return Scale("μ_ω", float(self.speed_plan["μ_ω"].value), "с^{−1}/мм")
+        return Scale("μ_ω", float(self.speed_plan["μ_ω"].value), tr("s^{−1}/mm"))
 
     @property
     def ab(self) -> Step:
@@ -228,8 +235,9 @@ class Mertsalov(Flywheel):
     @cached_property
     def compared(self) -> tuple[Compared, ...]:
         """Both methods, drawn and for vanishing intervals, each with the exact running of a machine that has its flywheel."""
-        found = (("Мерцалов, построение", self.first_plan["J_I"]), ("Виттенбауэр, построение", self.other.first_plan["J_I"]),
-                 ("Мерцалов, n → ∞", self.limit_plan["J_I∞"]), ("Виттенбауэр, n → ∞", self.other.limit_plan["J_I∞"]))
+        found = ((tr("Mertsalov, construction"), self.first_plan["J_I"]),
+                 (tr("Wittenbauer, construction"), self.other.first_plan["J_I"]),
+                 (tr("Mertsalov, n → ∞"), self.limit_plan["J_I∞"]), (tr("Wittenbauer, n → ∞"), self.other.limit_plan["J_I∞"]))
         # No flywheel takes away from what turns with the crank without it.
         least = self.reduced.crank_inertia + self.J_rotor
         return tuple(Compared(name, float(first.value), self.running(max(float(first.value), least)), first)
@@ -238,10 +246,11 @@ class Mertsalov(Flywheel):
     @cached_property
     def comparison_plan(self) -> Plan:
         """Exact running with each of these flywheels: ``ω_max``, ``ω_min``, ``δ`` with its number; ``ΔJ`` limits, ``e`` theory."""
-        plan = Plan(f"comparison{self.where}", "Сравнение с точным движением", "")
+        plan = Plan(f"comparison{self.where}", tr("Comparison with the exact running"), "")
         for i, c in enumerate(self.compared, 1):
             criterion = f"steady running with {c.first:.6g} kg m2 on the crank whose extremes have the mean omega1"
-            say = f"{c.name}: точное движение по закону изменения кинетической энергии даёт {{name}} = {{value}} рад/с."
+            say = tr("{method}: exact running by the law of kinetic energy gives {{name}} = {{value}} rad/s."
+                     ).format(method=c.name)
             fast, slow = (plan.add(f"ω_{name}{i}", FOUND, Given(value, f"running {i}", unit="rad/s", over="none", choice=criterion),
                                    say=say) for name, value in (("max", c.running.fastest), ("min", c.running.slowest)))
             plan.add(f"δ{i}", NON_UNIFORMITY, fast, slow)

@@ -25,37 +25,40 @@ from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import Applied, distinct
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
+from tmm_sheets.words import marked, tr
 
 _SOURCE = "000, 5"
 
 POWER = Rule("power of a force", lambda f, v: (f * np.conj(v)).real, ("force", "point"), "number",
-             "Мощность силы {0} по плану скоростей, отрезок p{1}: {name} = F·V·cos(F̅, V̅) = {value} Вт.", unit="W", source=_SOURCE)
+             marked("Power of the force {0} by the velocity polygon, segment p{1}: {name} = F·V·cos(F̅, V̅) = {value} W."),
+             unit="W", source=_SOURCE)
 MOMENT_POWER = Rule("power of a moment", lambda m, w: m * w, ("number", "number"), "number",
-                    "Мощность момента: {name} = M·ω = {0}·{1} = {value} Вт.", unit="W", source=_SOURCE)
+                    marked("Power of the moment: {name} = M·ω = {0}·{1} = {value} W."), unit="W", source=_SOURCE)
 WEIGHT_POWER = Rule("power of a weight", lambda m, g, v: -(m * g * np.imag(v)), ("number", "number", "point"), "number",
-                    "Мощность силы тяжести {0}·{1} Н по плану скоростей, отрезок p{2}: {name} = {value} Вт.", unit="W",
+                    marked("Power of the weight {0}·{1} N by the velocity polygon, segment p{2}: {name} = {value} W."), unit="W",
                     source="002, 1.5")
 REDUCED_MOMENT = Rule("reduced moment", lambda omega, *powers: reduce(add, powers) / omega, ("number",) * 9, "number",
-                      "Приведённый момент сил {name} = ΣN/ω1 = {value} Н·м.", unit="N*m", source=_SOURCE)
+                      marked("Reduced moment of forces {name} = ΣN/ω1 = {value} N·m."), unit="N*m", source=_SOURCE)
 TRANSLATION = Rule("twice the energy of a centre of mass", lambda m, v: m * (v * np.conj(v)).real, ("number", "point"), "number",
-                   "{name} = {0}·V² = {value} Дж, V – по отрезку p{1}.", unit="J", source=_SOURCE)
+                   marked("{name} = {0}·V² = {value} J, V from the segment p{1}."), unit="J", source=_SOURCE)
 ROTATION = Rule("twice the energy of rotation", lambda j, w: j * w * w, ("number", "number"), "number",
-                "{name} = {0}·{1}² = {value} Дж.", unit="J", source=_SOURCE)
+                marked("{name} = {0}·{1}² = {value} J."), unit="J", source=_SOURCE)
 REDUCED_INERTIA = Rule("reduced moment of inertia", lambda omega, *terms: reduce(add, terms) / omega**2, ("number",) * 20, "number",
-                       "Приведённый момент инерции {name} = Σ/ω1² = {value} кг·м².", unit="kg*m2", source=_SOURCE)
+                       marked("Reduced moment of inertia {name} = Σ/ω1² = {value} kg·m²."), unit="kg*m2", source=_SOURCE)
 TURNING_SLOPE = Rule("power of the inertia of rotation", lambda j, w, e: j * w * e, ("number",) * 3, "number",
-                     "Для производной: {name} = {0}·{1}·{2} = {value} Вт.", unit="W")
+                     marked("For the derivative: {name} = {0}·{1}·{2} = {value} W."), unit="W")
 MOVING_SLOPE = Rule("power of the inertia of a centre of mass", lambda m, a, v: m * (a * np.conj(v)).real,
                     ("number", "point", "point"), "number",
-                    "Для производной, по отрезкам π{1} и p{2}: {name} = {0}·a·V·cos(a̅, V̅) = {value} Вт.", unit="W")
+                    marked("For the derivative, from the segments π{1} and p{2}: {name} = {0}·a·V·cos(a̅, V̅) = {value} W."),
+                    unit="W")
 INERTIA_SLOPE = Rule("slope of the reduced moment of inertia", lambda omega, *parts: 2 * reduce(add, parts) / omega**3,
-                     ("number",) * 20, "number", "{name} = 2Σ/ω1³ = {value} кг·м².", unit="kg*m2", source="002, 1.12")
+                     ("number",) * 20, "number", marked("{name} = 2Σ/ω1³ = {value} kg·m²."), unit="kg*m2", source="002, 1.12")
 CRANK_INERTIA = Rule("moment of inertia about the pivot", lambda j, m, s, o: j + m * np.abs(s - o) ** 2,
-                     ("number", "number", "point", "point"), "number", "{name} = {0} + {1}·|{3}{2}|² = {value} кг·м².",
+                     ("number", "number", "point", "point"), "number", marked("{name} = {0} + {1}·|{3}{2}|² = {value} kg·m²."),
                      unit="kg*m2")
-AT_START = taken("moment of inertia of the crank", "kg*m2", "В любом положении {name} = {value} кг·м².")
+AT_START = taken("moment of inertia of the crank", "kg*m2", marked("At any position {name} = {value} kg·m²."))
 EVERYWHERE = Rule("the same at all positions", lambda x, phi: x + 0 * phi, ("number", "number"), "number",
-                  "{name} = {0} во всех положениях.")
+                  marked("{name} = {0} at all positions."))
 
 
 TRIED = "@search"
@@ -88,8 +91,9 @@ class Reduction:
         self._drawn = drawn
         self.purpose = "reduced quantities" if where == TRIED else ""
         search = reduced.mechanism.search(self.purpose)
-        self.plan = Plan(f"reduction{where}", "Приведение сил и масс", "", labels, search=search)
-        self.slope_plan = Plan(f"inertia-slope{where}", "Производная приведённого момента инерции", "", labels, search=search)
+        self.plan = Plan(f"reduction{where}", tr("Reduction of forces and masses"), "", labels, search=search)
+        self.slope_plan = Plan(f"inertia-slope{where}", tr("Derivative of the reduced moment of inertia"), "", labels,
+                               search=search)
         self._moments: dict[int, Step] = {}
         self.loads: dict[str, Step] = {}
 
@@ -296,17 +300,17 @@ class Reduced:
         m, plan = self.mechanism, self.crank_plan
         crank = m.links[m.crank.link]
         if crank.pivot_inertia is not None or not self.moves(crank):
-            return plan.add("J_кр", GIVEN_NUMBER, turning(crank))
+            return plan.add("J_кр", GIVEN_NUMBER, turning(crank), symbol=tr("J_cr"))
         assert crank.centre is not None
         pos = self._at_start
         at_start = plan.add("J_1", CRANK_INERTIA, turning(crank), crank.mass, pos.points[crank.centre],
                             pos.points[m.crank.pivot])
-        return plan.add("J_кр", AT_START, at_start, 0)
+        return plan.add("J_кр", AT_START, at_start, 0, symbol=tr("J_cr"))
 
     @cached_property
     def crank_plan(self) -> Plan:
         """Plan of the crank's own moment of inertia."""
-        return Plan("crank-inertia", "Момент инерции начального звена", "")
+        return Plan("crank-inertia", tr("Moment of inertia of the input link"), "")
 
     @cached_property
     def _at_start(self) -> Positions:

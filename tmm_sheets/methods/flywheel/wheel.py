@@ -9,33 +9,36 @@ from typing import Any, Literal
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.numbers import number
+from tmm_sheets.words import marked, tr
 
 RIM_SPEED = 30.0
 """Speed of the rim up to which a rim with spokes is used, m/s (manual 000, 5.7)."""
 _SOURCE = "000, 5.7"
 
 RIM_INERTIA = Rule("share of the rim", lambda share, j: share * j, ("number", "number"), "number",
-                   "На обод приходится {name} = {0}·J_м = {value} кг·м².", unit="kg*m2", source="001")
+                   marked("The rim has {name} = {0}·J_f = {value} kg·m²."), unit="kg*m2", source="001")
 RIM_DIAMETER = Rule(
     "diameter of a rim", lambda j, density, width, thickness: (4 * j / (pi * density * width * thickness)) ** 0.2,
-    ("number",) * 4, "number", "Средний диаметр обода {name} = [4·{0}/(π·{1}·{2}·{3})]^(1/5) = {value} м.", unit="m",
+    ("number",) * 4, "number", marked("Mean diameter of the rim {name} = [4·{0}/(π·{1}·{2}·{3})]^(1/5) = {value} m."), unit="m",
     source=_SOURCE)
 DISC_DIAMETER = Rule(
     "diameter of a disc", lambda j, density, width: (32 * j / (pi * density * width)) ** 0.2,
-    ("number",) * 3, "number", "Диаметр диска {name} = [32·{0}/(π·{1}·{2})]^(1/5) = {value} м.", unit="m", source=_SOURCE)
+    ("number",) * 3, "number", marked("Diameter of the disc {name} = [32·{0}/(π·{1}·{2})]^(1/5) = {value} m."), unit="m",
+    source=_SOURCE)
 RIM_VELOCITY = Rule("speed of a rim", lambda omega, d: omega * d / 2, ("number", "number"), "number",
-                    "Окружная скорость {name} = ω1·D/2 = {0}·{1}/2 = {value} м/с.", unit="m/s", source=_SOURCE)
+                    marked("Peripheral speed {name} = ω1·D/2 = {0}·{1}/2 = {value} m/s."), unit="m/s", source=_SOURCE)
 WIDTH = Rule("share of a diameter", lambda ratio, d: ratio * d, ("number", "number"), "number",
-             "{name} = {0}·D = {value} м.", unit="m", source=_SOURCE)
+             marked("{name} = {0}·D = {value} m."), unit="m", source=_SOURCE)
 RIM_MASS = Rule("mass of a rim", lambda j, d: 4 * j / d**2, ("number", "number"), "number",
-                "Масса обода {name} = 4·{0}/{1}² = {value} кг.", unit="kg", source=_SOURCE)
+                marked("Mass of the rim {name} = 4·{0}/{1}² = {value} kg."), unit="kg", source=_SOURCE)
 DISC_MASS = Rule("mass of a disc", lambda j, d: 8 * j / d**2, ("number", "number"), "number",
-                 "Масса диска {name} = 8·{0}/{1}² = {value} кг.", unit="kg", source=_SOURCE)
+                 marked("Mass of the disc {name} = 8·{0}/{1}² = {value} kg."), unit="kg", source=_SOURCE)
 MOTOR_POWER = Rule("power of the motor", lambda m, omega, efficiency: m * omega / efficiency, ("number",) * 3, "number",
-                   "Необходимая мощность двигателя {name} = M·ω1/η = {0}·{1}/{2} = {value} Вт.", unit="W", source="002, 1.13")
+                   marked("Power needed of the motor {name} = M·ω1/η = {0}·{1}/{2} = {value} W."), unit="W", source="002, 1.13")
 PERMITTED = Rule("non-uniformity that the slip permits", lambda synchronous, rated: 2 * (synchronous - rated) / rated,
                  ("number", "number"), "number",
-                 "Двигатель остаётся двигателем весь цикл, пока δ не больше {name} = 2(ω_с − ω_н)/ω_н = {value}.",
+                 marked("The motor stays a motor all through the cycle as long as δ is not greater than {name} = 2(ω_s − ω_r)/ω_r "
+                        "= {value}."),
                  source="002, 1.13")
 
 
@@ -86,7 +89,7 @@ def wheel(inertia: Step | float, omega: float, form: str, density: float, width_
     kappa = B/D, c = H/D. A rim that would run at 30 m/s or more becomes a disc. ``rim_share`` of J is counted for the rim
     (manual 001: 0.9), the rest for spokes and hub.
     """
-    plan = Plan(f"flywheel-wheel{where}", "Размеры маховика", "")
+    plan = Plan(f"flywheel-wheel{where}", tr("Sizes of the flywheel"), "")
     if form == "rim" and _rim(plan, inertia, omega, density, width_ratio, thickness_ratio, rim_share):
         return RimWheel("rim", plan)
     d = plan.add("D", DISC_DIAMETER, inertia, density, width_ratio)
@@ -99,17 +102,21 @@ def wheel(inertia: Step | float, omega: float, form: str, density: float, width_
 def _rim(plan: Plan, inertia: Step | float, omega: float, density: float, width_ratio: float, thickness_ratio: float,
          share: float) -> bool:
     """Record a rim with spokes; False, with its diameter and speed only, where it would run too fast."""
-    rim: Any = inertia if share == 1 else plan.add("J_об", RIM_INERTIA, share, inertia)
+    rim: Any = inertia if share == 1 else plan.add("J_об", RIM_INERTIA, share, inertia, symbol=tr("J_rim"))
     of = (rim, density, width_ratio, thickness_ratio)
     too_fast = not omega * float(RIM_DIAMETER.compute(*map(value_of, of))) / 2 < RIM_SPEED
-    mark = "_об" if too_fast else ""
-    d = plan.add(f"D{mark}", RIM_DIAMETER, *of)
-    plan.add(f"V{mark}", RIM_VELOCITY, omega, d,
-             say="Окружная скорость обода {name} = ω1·D/2 = {0}·{1}/2 = {value} м/с "
-             + ("≥ 30 м/с: вместо обода берём диск." if too_fast else "< 30 м/с: обод со спицами допустим."))
-    if not too_fast:
-        plan.add("B", WIDTH, width_ratio, d, say="Ширина обода {name} = κ·D = {0}·{1} = {value} м.")
-        plan.add("H", WIDTH, thickness_ratio, d, say="Толщина обода {name} = c·D = {0}·{1} = {value} м.")
+    if too_fast:
+        d = plan.add("D_об", RIM_DIAMETER, *of, symbol=tr("D_rim"))
+        plan.add("V_об", RIM_VELOCITY, omega, d, symbol=tr("V_rim"),
+                 say=tr("Peripheral speed of the rim {name} = ω1·D/2 = {0}·{1}/2 = {value} m/s ≥ 30 m/s: we take a disc instead "
+                        "of a rim."))
+    else:
+        d = plan.add("D", RIM_DIAMETER, *of)
+        plan.add("V", RIM_VELOCITY, omega, d,
+                 say=tr("Peripheral speed of the rim {name} = ω1·D/2 = {0}·{1}/2 = {value} m/s < 30 m/s: a rim with spokes is "
+                        "permitted."))
+        plan.add("B", WIDTH, width_ratio, d, say=tr("Width of the rim {name} = κ·D = {0}·{1} = {value} m."))
+        plan.add("H", WIDTH, thickness_ratio, d, say=tr("Thickness of the rim {name} = c·D = {0}·{1} = {value} m."))
         plan.add("m", RIM_MASS, rim, d)
     return not too_fast
 
@@ -150,12 +157,16 @@ class MotorCheck:
 def motor_check(moment: Step | float, omega: float, efficiency: float, synchronous: float, rated: float, power: float,
                 delta: float, where: str = "") -> MotorCheck:
     """Check of a motor that drives the crank through a gear train against the constant ``moment``, N m (manual 002, 1.13)."""
-    plan = Plan(f"motor-check{where}", "Проверка двигателя", "")
+    plan = Plan(f"motor-check{where}", tr("Check of the motor"), "")
     needed = float(MOTOR_POWER.compute(value_of(moment), omega, efficiency))
-    plan.add("P", MOTOR_POWER, moment, omega, efficiency, say=MOTOR_POWER.wording.removesuffix(".") + (
-        f" ≤ {number(power)} Вт: мощности двигателя хватает." if needed <= power else f" > {number(power)} Вт: двигатель слаб."))
+    enough = tr("Power needed of the motor {{name}} = M·ω1/η = {{0}}·{{1}}/{{2}} = {{value}} W ≤ {power} W: the motor is strong "
+                "enough.")
+    weak = tr("Power needed of the motor {{name}} = M·ω1/η = {{0}}·{{1}}/{{2}} = {{value}} W > {power} W: the motor is too weak.")
+    plan.add("P", MOTOR_POWER, moment, omega, efficiency, say=(enough if needed <= power else weak).format(power=number(power)))
     permitted = PERMITTED.compute(synchronous, rated)
-    plan.add("[δ]", PERMITTED, synchronous, rated, say=PERMITTED.wording.removesuffix(".") + (
-        f" ≥ {number(delta)}: генераторного режима нет." if delta <= permitted
-        else f" < {number(delta)}: двигатель переходит в генераторный режим."))
+    steady = tr("The motor stays a motor all through the cycle as long as δ is not greater than {{name}} = 2(ω_s − ω_r)/ω_r = "
+                "{{value}} ≥ {delta}: it never runs as a generator.")
+    driven = tr("The motor stays a motor all through the cycle as long as δ is not greater than {{name}} = 2(ω_s − ω_r)/ω_r = "
+                "{{value}} < {delta}: it runs as a generator at times.")
+    plan.add("[δ]", PERMITTED, synchronous, rated, say=(steady if delta <= permitted else driven).format(delta=number(delta)))
     return MotorCheck(plan, power, delta)

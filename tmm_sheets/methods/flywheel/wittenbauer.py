@@ -13,6 +13,7 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.methods.flywheel.energy_mass import ConvergedWheel, energy_mass_plan, limit, limit_segment, touched
 from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, TOGETHER, TOGETHER_LIMIT, DiagramSpace, Flywheel
 from tmm_sheets.methods.integration import Floats
+from tmm_sheets.words import tr
 
 TURN = 2 * pi
 """One turn of the crank, rad."""
@@ -87,7 +88,7 @@ class Wittenbauer(Flywheel):
         return float(self.first_plan["J_доб"].value)
 
     def _first(self, plan: Plan) -> Step:
-        added = plan.add("J_доб", OF_SEGMENT, self.ab, self.mu("energy"), self.delta, self.omega1)
+        added = plan.add("J_доб", OF_SEGMENT, self.ab, self.mu("energy"), self.delta, self.omega1, symbol=tr("J_add"))
         return plan.add("J_I", TOGETHER, added, self.reduced.crank)
 
     @cached_property
@@ -98,7 +99,8 @@ class Wittenbauer(Flywheel):
 
     def _first_converged(self, plan: Plan) -> Step:
         excess = limit_segment(plan, self.limit, self.edges, self.at, self.mass, self.omega1, self.delta)
-        return plan.add("J_I∞", TOGETHER_LIMIT, plan.add("J_доб∞", OF_EXCESS, excess, self.delta, self.omega1), self.reduced.crank)
+        added = plan.add("J_доб∞", OF_EXCESS, excess, self.delta, self.omega1, symbol=tr("J_add∞"))
+        return plan.add("J_I∞", TOGETHER_LIMIT, added, self.reduced.crank)
 
     @property
     def drawn(self) -> dict[str, Any]:

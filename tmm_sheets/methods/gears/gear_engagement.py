@@ -28,6 +28,7 @@ from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry
 from tmm_sheets.methods.gears.rack import TAKEN
 from tmm_sheets.numbers import number
+from tmm_sheets.words import marked, tr
 
 COMMON_ORDINATES = (25.0, 20.0, 15.0, 10.0, 5.0)
 """Ordinate of both speeds at the pole, mm of paper: 25 (manual 000, 6 example), less where the far one gets too high."""
@@ -116,61 +117,65 @@ def on_normal(o: Any, foot: Any, pole: Any, touch: Any, length: Any, rho: Any) -
     return touch + string / np.abs(string) * turn_of(o, foot, string * (1 - length / np.abs(string))) * rho
 
 
-CENTRE = Rule("centre over the pole", lambda r: 1j * (r / 1e3), ("number",), "point", "Отметим точку {name}.", unit="m")
+CENTRE = Rule("centre over the pole", lambda r: 1j * (r / 1e3), ("number",), "point", marked("Mark point {name}."), unit="m")
 CIRCLE = Rule(
-    "circle", lambda o, mm: mm / 1e3, ("point", "number"), "length", "Из центра {0} радиусом {value} проведём окружность {name}.",
+    "circle", lambda o, mm: mm / 1e3, ("point", "number"), "length",
+    marked("About the centre {0} with the radius {value} draw the circle {name}."),
     lambda a, v: (Helper("circle", a[0], radius=v),), unit="m",
 )
-ANGLE = Rule("measure an angle", _angle, ("point", "point", "point"), "angle", "Измерим угол {0}{1}{2}: {name} = {value}.")
+ANGLE = Rule("measure an angle", _angle, ("point", "point", "point"), "angle",
+             marked("Measure the angle {0}{1}{2}: {name} = {value}."))
 RATIO = Rule("ratio of angles", lambda a, b: a / b, ("angle", "angle"), "number",
-             "Коэффициент перекрытия {name} = {0} / {1} = {value}.", source="000, 6.3")
+             marked("Contact ratio {name} = {0} / {1} = {value}."), source="000, 6.3")
 ROLLED = Rule(
     "profile in contact", _rolled, ("point", "point", "point", "point"), "point",
-    "Профиль, касающийся в {3}, пересекает начальную окружность с центром {1} в точке {name} "
-    "(дуга основной окружности от {2} равна отрезку {0}{3}).",
+    marked("The profile that touches at {3} cuts the pitch circle with the centre {1} at point {name} (the arc of the base circle "
+           "from {2} equals the segment {0}{3})."),
     lambda a, v: (Helper("line", a[1], v),),
 )
 DIVIDE = Rule(
     "equal parts", _divide, ("point", "point", "number", "number"), "point",
-    "Отрезок {0}{1} разделим на равные части (их {3}); деление {2} от {0}: точка {name}.",
+    marked("Divide the segment {0}{1} into equal parts ({3} of them); division {2} from {0}: point {name}."),
 )
 LAY_ARC = Rule(
     "lay off an arc", _lay_arc, ("point", "point", "point", "number", "number"), "point",
-    "По основной окружности с центром {0} от {1} отложим дугу, равную отрезку от {1} до деления {3}: точка {name}.",
+    marked("Along the base circle with the centre {0} lay off from {1} an arc equal to the segment from {1} to the division {3}: "
+           "point {name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 END_OF_TANGENT = Rule(
     "end of the unrolled tangent", _end_of_tangent, ("point", "point", "point", "point", "length"), "point",
-    "В точке {3} проведём касательную (перпендикуляр к радиусу) и отложим на ней {4}: точка эвольвенты {name}.",
+    marked("At {3} draw the tangent (perpendicular to the radius) and lay off {4} on it: point {name} of the involute."),
     lambda a, v: (Helper("line", a[3], v),),
 )
 ON_CIRCLE = Rule(
     "profile cuts a circle", _profile_on_circle, ("point", "point", "point", "length"), "point",
-    "Профиль, проходящий через {2}, пересекает окружность радиуса {3} с центром {0} в точке {name}.",
+    marked("The profile through {2} cuts the circle with the radius {3} and the centre {0} at point {name}."),
 )
 UNROLLED = Rule(
     "point of the profile", unrolled, ("point", "point", "point", "length"), "point",
-    "На эвольвенте отметим точку {name}, для которой длина касательной {3}.",
+    marked("On the involute mark point {name}, to which the length of the tangent is {3}."),
 )
-MIDDLE = Rule("middle", _middle, ("point", "point"), "point", "Разделим отрезок {0}{1} пополам: точка {name}.")
+MIDDLE = Rule("middle", _middle, ("point", "point"), "point", marked("Bisect the segment {0}{1}: point {name}."))
 RADIAL_FILLET = Rule(
     "fillet on a radial piece", _radial_fillet, ("point", "point", "length", "length", "number"), "point",
-    "Ниже {1} профиль идёт по радиусу; центр {name} выкружки радиуса {2} лежит на этом расстоянии от радиуса "
-    "и от окружности впадин.",
+    marked("Below {1} the profile is a radius; the centre {name} of the fillet with the radius {2} lies at this distance from the "
+           "radius and from the root circle."),
 )
 FILLET_ON_NORMAL = Rule(
     "fillet on the involute", on_normal, ("point", "point", "point", "point", "length", "length"), "point",
-    "На нормали к эвольвенте в точке {3} отложим радиус выкружки {5}: её центр {name}.",
+    marked("On the normal to the involute at {3} lay off the radius of the fillet {5}: its centre {name}."),
 )
 TAKEN_SPEED = Rule("common ordinate of the speeds", lambda y: y, ("number",), "number",
-                   "Ординату обеих скоростей в полюсе примем равной {value} мм.", unit="mm")
+                   marked("Take the ordinate of both velocities at the pitch point as {value} mm."), unit="mm")
 SPEED = Rule(
     "ordinate of a speed", _speed, ("point", "point", "point", "number"), "number",
-    "Через {0} и вершину ординаты {3} мм в полюсе проведём прямую; над делением {name} = {value} мм.",
+    marked("Through {0} and the top of the ordinate of {3} mm at the pitch point draw a line; over the division {name} = {value} "
+           "mm."),
     unit="mm", source="000, 6.3",
 )
 SLIDING = Rule("specific sliding", _sliding, ("number", "number"), "number",
-               "Удельное скольжение {name} = ({0} − {1})/{0} = {value}.", source="000, 6.3")
+               marked("Specific sliding {name} = ({0} − {1})/{0} = {value}."), source="000, 6.3")
 
 
 def engagement_plan(pair: PairGeometry) -> Plan:
@@ -179,9 +184,9 @@ def engagement_plan(pair: PairGeometry) -> Plan:
     Steps: ``O1 O2 Pw``, circles ``rw1 r1 rb1 ra1 rf1`` and of wheel 2, ``N1 N2 A B``, ``alpha_w``, profiles in contact
     at A and B cutting the working pitch circles in ``a1 b1 a2 b2``, angles ``phi1 phi2``, ratios ``eps1 eps2``.
     """
-    plan = Plan("gear-engagement", "Картина зацепления", "m")
+    plan = Plan("gear-engagement", tr("Gear meshing"), "m")
     one = pair.wheels[0]
-    down = plan.add("O1O2", GIVEN_DIRECTION, -1j, say="Проведём линию центров.", symbol="O_1O_2")
+    down = plan.add("O1O2", GIVEN_DIRECTION, -1j, say=tr("Draw the line of centres."), symbol="O_1O_2")
     plan.add("O1", CENTRE, one.step("rw"), symbol="O_1")
     distance = plan.add("aw", TAKEN, pair.step("a_w"), symbol="a_w")
     plan.add("O2", ALONG, plan["O1"], down, distance, symbol="O_2")
@@ -224,8 +229,9 @@ def involute_plan(wheel: GearWheel, engagement: Plan, parts: int) -> Plan:
     Division ``k`` of P_wN (``parts`` of them, further ones beyond N) is carried to the base circle as an arc from N, and
     |P_w k| laid off on the tangent there: steps ``k``, ``k′``, ``Pwk`` and ``Ek`` for each number k of :func:`divisions`.
     """
-    plan = Plan(f"gear-involute-{wheel.number}", f"Эвольвента колеса {wheel.number} обкаткой", "m")
-    whole = Given(parts, f"gear.involute.parts[{wheel.number - 1}]", over="none", choice="части отрезка PwN по 15–25 мм на листе")
+    plan = Plan(f"gear-involute-{wheel.number}", tr("Involute of wheel {wheel} by rolling").format(wheel=wheel.number), "m")
+    whole = Given(parts, f"gear.involute.parts[{wheel.number - 1}]", over="none",
+                  choice=tr("parts of the segment PwN of 15–25 mm on the sheet"))
     for k in divisions(wheel, parts):
         _unroll(plan, wheel, engagement, float(k), whole, (f"{k}", f"{k}′", f"Pw{k}", f"E{k}"))
     return plan
@@ -233,7 +239,8 @@ def involute_plan(wheel: GearWheel, engagement: Plan, parts: int) -> Plan:
 
 def smooth_involute(wheel: GearWheel, engagement: Plan, numbers: Any) -> Plan:
     """Points of the same involute by the same steps at any fractions of P_wN (0 at the base circle, 1 at the pole)."""
-    plan = Plan(f"gear-involute-{wheel.number}-between", f"Эвольвента колеса {wheel.number} между делениями", "m",
+    plan = Plan(f"gear-involute-{wheel.number}-between",
+                tr("Involute of wheel {wheel} between the divisions").format(wheel=wheel.number), "m",
                 tuple(f"{v:g}" for v in numbers))
     shares = Given(np.asarray(numbers, dtype=float), "gear.involute.divisions", over="curve")
     _unroll(plan, wheel, engagement, shares, 1, ("k", "k′", "Pwk", "E"))
@@ -256,11 +263,11 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
     tooth); ``H`` on the tip circle.
     """
     i = wheel.number
-    plan = Plan(f"gear-tooth-{i}", f"Зуб колеса {i}", "m")
+    plan = Plan(f"gear-tooth-{i}", tr("Tooth of wheel {wheel}").format(wheel=i), "m")
     centre, foot, pole = engagement[f"O{i}"], engagement[f"N{i}"], engagement["Pw"]
     side = hand(pair)  # sense in which a wheel turns away from its flank: the same for both
     start = plan.add("E", ON_CIRCLE, centre, foot, pole, engagement[f"r{i}"])
-    chord = plan.add("s", TAKEN, wheel.step("s_chord"), say="Возьмём толщину зуба по хорде {value}.")
+    chord = plan.add("s", TAKEN, wheel.step("s_chord"), say=tr("Take the chordal tooth thickness {value}."))
     other = plan.add("F", ARC_ARC, centre, engagement[f"r{i}"], start, chord, -side)
     middle = plan.add("M", MIDDLE, start, other)
     plan.add("axis", RAY, centre, middle)
@@ -274,7 +281,7 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
         touch = plan.add("Q", UNROLLED, centre, foot, pole, length)
         fillet = plan.add("C", FILLET_ON_NORMAL, centre, foot, pole, touch, length, rho)
     else:
-        begin = plan.add("G", UNROLLED, centre, foot, pole, 0.0, say="Эвольвента начинается на основной окружности в точке {name}.")
+        begin = plan.add("G", UNROLLED, centre, foot, pole, 0.0, say=tr("The involute begins on the base circle at point {name}."))
         fillet = plan.add("C", RADIAL_FILLET, centre, begin, rho, root, side)
         radial = plan.add(f"O{i}G", RAY, centre, begin, symbol=f"O_{i}G")
         touch = plan.add("Q", _FOOT_ON_RADIUS, centre, radial, fillet)
@@ -285,7 +292,7 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
 
 _FOOT_ON_RADIUS = Rule(
     "foot on the radial piece", lambda o, u, c: ar.foot(c, o, u), ("point", "direction", "point"), "point",
-    "Из центра выкружки {2} опустим перпендикуляр на радиус {1}: точка сопряжения {name}.",
+    marked("From the centre of the fillet {2} drop the perpendicular to the radius {1}: point of junction {name}."),
 )
 
 
@@ -296,7 +303,8 @@ def common_ordinate(pair: PairGeometry) -> Given:
     found = next((y for y in COMMON_ORDINATES if y * (1 + ratio) <= HIGHEST_ORDINATE), COMMON_ORDINATES[-1])
     tried = ", ".join(number(y) for y in COMMON_ORDINATES)
     return Given(found, "gear.sliding.ordinate", "y_V", "mm", "000, 6", "none",
-                 f"наибольшая из {tried} мм, с которой наибольшая ордината не выше {number(HIGHEST_ORDINATE)} мм")
+                 tr("the greatest of {tried} mm with which the greatest ordinate is not higher than {most} mm").format(
+                     tried=tried, most=number(HIGHEST_ORDINATE)))
 
 
 def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = (3, 4)) -> Plan:
@@ -305,7 +313,7 @@ def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = 
     Speeds are ordinates in mm of paper with :func:`common_ordinate` at the pole; sliding is infinite at a wheel's own foot.
     """
     first, second = parts
-    plan = Plan("gear-sliding", "Удельные скольжения", "m", tuple(str(k) for k in range(first + second + 1)))
+    plan = Plan("gear-sliding", tr("Specific sliding"), "m", tuple(str(k) for k in range(first + second + 1)))
     one = np.concatenate([np.arange(first, 0, -1.0), np.zeros(second + 1)])
     two = np.concatenate([np.zeros(first), np.arange(second + 1.0)])
     return _sliding_steps(plan, pair, engagement, one / first, two / second)
@@ -314,19 +322,20 @@ def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = 
 def sliding_between(pair: PairGeometry, engagement: Plan, share: Any) -> Plan:
     """The same for any points of N1N2: ``share`` is -1 at N1, 0 at the pole, 1 at N2 (for smooth curves)."""
     share = np.asarray(share, dtype=float)
-    plan = Plan("gear-sliding-between", "Удельные скольжения между делениями", "m", tuple(f"{v:g}" for v in share))
+    plan = Plan("gear-sliding-between", tr("Specific sliding between the divisions"), "m", tuple(f"{v:g}" for v in share))
     return _sliding_steps(plan, pair, engagement, np.maximum(-share, 0), np.maximum(share, 0))
 
 
 def greatest_sliding(pair: PairGeometry, engagement: Plan) -> Plan:
     """Sliding of each wheel at the end of the active line next to its own foot: steps ``theta1``, ``theta2``."""
-    plan = Plan("gear-greatest-sliding", "Наибольшие удельные скольжения на ножках зубьев", "m")
+    plan = Plan("gear-greatest-sliding", tr("Greatest specific sliding at the dedenda of the teeth"), "m")
     pole, feet = engagement["Pw"], (engagement["N1"], engagement["N2"])
     ordinate = plan.add("yV", TAKEN_SPEED, common_ordinate(pair), symbol="y_V")
     for i, name in zip((1, 2), "AB" if pair.driver == 1 else "BA", strict=True):
         own, other = (plan.add(f"yV{k}{name}", SPEED, feet[k - 1], pole, engagement[name], ordinate, symbol=f"y_{{V{k}}}({name})",
-                               say=f"Через {{0}} и вершину ординаты {{3}} мм в полюсе проведём прямую; над точкой {name} "
-                                   "{name} = {value} мм.") for k in (i, 3 - i))
+                               say=tr("Through {{0}} and the top of the ordinate of {{3}} mm at the pitch point draw a line; over "
+                                      "point {point} {{name}} = {{value}} mm."
+                                      ).format(point=name)) for k in (i, 3 - i))
         plan.add(f"theta{i}", SLIDING, own, other, symbol=f"θ_{i}")
     return plan
 
@@ -345,5 +354,5 @@ def _sliding_steps(plan: Plan, pair: PairGeometry, engagement: Plan, to_first: A
 
 _BETWEEN = Rule(
     "point of the line of action", lambda p, a, s, b, t: p + (a - p) * s + (b - p) * t,
-    ("point", "point", "number", "point", "number"), "point", "Отметим деление на линии зацепления {1}{3}.",
+    ("point", "point", "number", "point", "number"), "point", marked("Mark the division of the line of action {1}{3}."),
 )

@@ -16,6 +16,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Kind, Rule, Step
 from tmm_sheets.methods.gears import fillets
 from tmm_sheets.methods.gears.rack import Rack
+from tmm_sheets.words import marked, tr
 
 FILLET = 0.38
 """Fillet radius of the basic rack in modules (GOST 13755; manual 000, 6.4, item 5)."""
@@ -83,144 +84,160 @@ def _formula(name: str, compute: Any, takes: tuple[Any, ...], wording: str, unit
 
 
 N, A = "number", "angle"
-TEETH = _formula("number of teeth", lambda z: z, (N,), "Число зубьев {name} = {value}.", "", "000, 6.1")
-MODULE = _formula("module in millimetres", lambda m: m * 1e3, (N,), "Модуль {name} = {value} мм.", "mm", "000, 6.1")
-PROFILE = _formula("profile angle", lambda a: a, (A,), "Угол профиля исходного контура {name} = {value}.", "rad", "ГОСТ 13755-81")
-ADDENDUM = _formula("addendum coefficient", lambda h: h, (N,), "Коэффициент высоты головки зуба {name} = {value}.", "",
-                    "ГОСТ 13755-81")
-CLEARANCE = _formula("clearance coefficient", lambda c: c, (N,), "Коэффициент радиального зазора {name} = {value}.", "",
-                     "ГОСТ 13755-81")
-SHIFT = _formula("shift coefficient", lambda x: x, (N,), "Коэффициент смещения {name} = {value}.", "", "000, 6.1")
+TEETH = _formula("number of teeth", lambda z: z, (N,), marked("Number of teeth {name} = {value}."), "", "000, 6.1")
+MODULE = _formula("module in millimetres", lambda m: m * 1e3, (N,), marked("Module {name} = {value} mm."), "mm", "000, 6.1")
+PROFILE = _formula("profile angle", lambda a: a, (A,), marked("Profile angle of the basic rack {name} = {value}."), "rad",
+                   marked("GOST 13755-81"))
+ADDENDUM = _formula("addendum coefficient", lambda h: h, (N,), marked("Addendum coefficient {name} = {value}."), "",
+                    marked("GOST 13755-81"))
+CLEARANCE = _formula("clearance coefficient", lambda c: c, (N,), marked("Bottom clearance coefficient {name} = {value}."), "",
+                     marked("GOST 13755-81"))
+SHIFT = _formula("shift coefficient", lambda x: x, (N,), marked("Profile shift coefficient {name} = {value}."), "", "000, 6.1")
 SHIFT_BY_RULE = _formula(
     "shift without undercut", lambda h, z, a: np.maximum(h - z * np.sin(a) ** 2 / 2, 0.0), (N, N, A),
-    "Наименьшее смещение без подрезания (не меньше нуля) x = h_a* − z·sin²α/2: {name} = {0} − {1}·sin²{2}/2; принимаем {value}.",
-    "", "ГОСТ 16532-70")
+    marked("Least shift without undercut (not less than zero) x = h_a* − z·sin²α/2: {name} = {0} − {1}·sin²{2}/2; we take "
+           "{value}."),
+    "", marked("GOST 16532-70"))
 LEAST_TEETH = _formula("least teeth without undercut", least_teeth, (N, A),
-                       "Наименьшее число зубьев без подрезания, целая часть 2h_a*/sin²α: {name} = {value}.", "", "000, 6.1")
+                       marked("Least number of teeth without undercut, the whole part of 2h_a*/sin²α: {name} = {value}."), "",
+                       "000, 6.1")
 LEAST_SHIFT = _formula("least shift coefficient", lambda h, least, z: h * (least - z) / least, (N, N, N),
-                       "Наименьший коэффициент смещения h_a*(z_min − z)/z_min: {name} = {0} × ({1} − {2})/{1} = {value}.", "",
+                       marked("Least profile shift coefficient h_a*(z_min − z)/z_min: {name} = {0} × ({1} − {2})/{1} = {value}."),
+                       "",
                      "000, 6.1")
-INVOLUTE = _formula("involute function", involute, (A,), "Эвольвентный угол {name} = tg {0} − {0} = {value}.", "")
+INVOLUTE = _formula("involute function", involute, (A,), marked("Involute function {name} = tan {0} − {0} = {value}."), "")
 WORKING_INVOLUTE = _formula(
     "involute function of the working pressure angle",
     lambda inv, x1, x2, a, z1, z2: inv + 2 * (x1 + x2) * np.tan(a) / (z1 + z2), (N, N, N, A, N, N),
-    "Эвольвентный угол зацепления inv α_w = inv α + 2(x_1 + x_2)·tg α/(z_1 + z_2): "
-    "{name} = {0} + 2 × ({1} + {2}) × tg {3}/({4} + {5}) = {value}.", "")
+    marked("Involute function of the working pressure angle inv α_w = inv α + 2(x_1 + x_2)·tan α/(z_1 + z_2): {name} = {0} + 2 × "
+           "({1} + {2}) × tan {3}/({4} + {5}) = {value}."), "")
 WORKING_ANGLE = _formula("working pressure angle", inverse_involute, (N,),
-                         "По эвольвентному углу {0} найдём угол зацепления {name} = {value}.", "rad")
+                         marked("From the involute function {0} find the working pressure angle {name} = {value}."), "rad")
 SAME_ANGLE = _formula("working pressure angle without shift", lambda a: a, (A,),
-                      "Сумма смещений равна нулю: угол зацепления {name} = α = {value}.", "rad")
+                      marked("The sum of the shifts is zero: working pressure angle {name} = α = {value}."), "rad")
 DISTANCE = _formula("reference centre distance", lambda m, z1, z2: m * (z1 + z2) / 2, (N, N, N),
-                    "Делительное межосевое расстояние a = m(z_1 + z_2)/2: {name} = {0} × ({1} + {2})/2 = {value} мм.")
+                    marked("Reference centre distance a = m(z_1 + z_2)/2: {name} = {0} × ({1} + {2})/2 = {value} mm."))
 WORKING_DISTANCE = _formula("centre distance", lambda a, alpha, w: a * np.cos(alpha) / np.cos(w), (N, A, A),
-                            "Межосевое расстояние a_w = a·cos α/cos α_w: {name} = {0} × cos {1}/cos {2} = {value} мм.")
+                            marked("Centre distance a_w = a·cos α/cos α_w: {name} = {0} × cos {1}/cos {2} = {value} mm."))
 # (cos a - cos a_w)/cos a_w without cancellation
 Y = _formula("centre distance modification coefficient",
              lambda z1, z2, a, w: (z1 + z2) * np.sin((a + w) / 2) * np.sin((w - a) / 2) / np.cos(w), (N, N, A, A),
-             "Коэффициент воспринимаемого смещения y = (z_1 + z_2)(cos α/cos α_w − 1)/2: "
-             "{name} = ({0} + {1}) × (cos {2}/cos {3} − 1)/2 = {value}.", "")
+             marked("Centre distance modification coefficient y = (z_1 + z_2)(cos α/cos α_w − 1)/2: {name} = ({0} + {1}) × (cos "
+                    "{2}/cos {3} − 1)/2 = {value}."), "")
 DY = _formula("addendum shortening coefficient", lambda x1, x2, y: x1 + x2 - y, (N, N, N),
-              "Коэффициент уравнительного смещения Δy = x_1 + x_2 − y: {name} = {0} + {1} − {2} = {value}.", "")
+              marked("Addendum shortening coefficient Δy = x_1 + x_2 − y: {name} = {0} + {1} − {2} = {value}."), "")
 PITCH_RADIUS = _formula("pitch radius", lambda m, z: m * z / 2, (N, N),
-                        "Делительный радиус r = mz/2: {name} = {0} × {1}/2 = {value} мм.")
+                        marked("Reference radius r = mz/2: {name} = {0} × {1}/2 = {value} mm."))
 BASE_RADIUS = _formula("base radius", lambda r, a: r * np.cos(a), (N, A),
-                       "Основной радиус r_b = r·cos α: {name} = {0} × cos {1} = {value} мм.")
+                       marked("Base radius r_b = r·cos α: {name} = {0} × cos {1} = {value} mm."))
 WORKING_RADIUS = _formula("working pitch radius", lambda rb, w: rb / np.cos(w), (N, A),
-                          "Начальный радиус r_w = r_b/cos α_w: {name} = {0}/cos {1} = {value} мм.")
+                          marked("Pitch radius r_w = r_b/cos α_w: {name} = {0}/cos {1} = {value} mm."))
 TIP_RADIUS = _formula("tip radius", lambda m, z, h, x, dy: m * (z / 2 + h + x - dy), (N, N, N, N, N),
-                      "Радиус вершин r_a = m(z/2 + h_a* + x − Δy): {name} = {0} × ({1}/2 + {2} + {3} − {4}) = {value} мм.")
+                      marked("Tip radius r_a = m(z/2 + h_a* + x − Δy): {name} = {0} × ({1}/2 + {2} + {3} − {4}) = {value} mm."))
 ROOT_RADIUS = _formula("root radius", lambda m, z, h, c, x: m * (z / 2 - h - c + x), (N, N, N, N, N),
-                       "Радиус впадин r_f = m(z/2 − h_a* − c* + x): {name} = {0} × ({1}/2 − {2} − {3} + {4}) = {value} мм.")
+                       marked("Root radius r_f = m(z/2 − h_a* − c* + x): {name} = {0} × ({1}/2 − {2} − {3} + {4}) = {value} mm."))
 THICKNESS = _formula("tooth thickness", lambda m, x, a: m * (pi / 2 + 2 * x * np.tan(a)), (N, N, A),
-                     "Толщина зуба по делительной окружности s = m(π/2 + 2x·tg α): "
-                     "{name} = {0} × (π/2 + 2 × {1} × tg {2}) = {value} мм.")
+                     marked("Tooth thickness on the reference circle s = m(π/2 + 2x·tan α): {name} = {0} × (π/2 + 2 × {1} × tan "
+                            "{2}) = {value} mm."))
 CHORD = _formula("chord of an arc", lambda r, arc: 2 * r * np.sin(arc / (2 * r)), (N, N),
-                 "2r·sin(дуга/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} мм.")
-PITCH = _formula("pitch", lambda m: pi * m, (N,), "Шаг по делительной окружности p = πm: {name} = π × {0} = {value} мм.")
+                 marked("2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} mm."))
+PITCH = _formula("pitch", lambda m: pi * m, (N,), marked("Pitch on the reference circle p = πm: {name} = π × {0} = {value} mm."))
 BASE_PITCH = _formula("base pitch", lambda m, a: pi * m * np.cos(a), (N, A),
-                      "Основной шаг p_b = πm·cos α: {name} = π × {0} × cos {1} = {value} мм.", source="ГОСТ 16532-70")
+                      marked("Base pitch p_b = πm·cos α: {name} = π × {0} × cos {1} = {value} mm."), source=marked("GOST 16532-70"))
 TIP_TANGENT = _formula("radius of curvature at the tip", lambda ra, rb: np.sqrt((ra - rb) * (ra + rb)), (N, N),
-                       "Радиус кривизны эвольвенты у вершины ρ_a = √(r_a² − r_b²): {name} = √({0}² − {1}²) = {value} мм.",
-                       source="ГОСТ 16532-70")
+                       marked("Radius of curvature of the involute at the tip ρ_a = √(r_a² − r_b²): {name} = √({0}² − {1}²) = "
+                              "{value} mm."),
+                       source=marked("GOST 16532-70"))
 TIP_ANGLE = _formula("pressure angle at the tip", lambda t, rb: np.arctan2(t, rb), (N, N),
-                     "Угол профиля у вершины tg α_a = ρ_a/r_b: {name} = arctg({0}/{1}) = {value}.", "rad", "ГОСТ 16532-70")
+                     marked("Profile angle at the tip tan α_a = ρ_a/r_b: {name} = arctan({0}/{1}) = {value}."), "rad",
+                     marked("GOST 16532-70"))
 TIP_THICKNESS = _formula(
     "tooth thickness at the tip", lambda ra, s, r, inv, a: 2 * ra * (s / (2 * r) + inv - involute(a)), (N, N, N, N, A),
-    "Толщина зуба у вершины s_a = 2r_a(s/2r + inv α − inv α_a): "
-    "{name} = 2 × {0} × ({1}/(2 × {2}) + {3} − inv {4}) = {value} мм.", source="ГОСТ 16532-70")
+    marked("Tooth thickness at the tip s_a = 2r_a(s/2r + inv α − inv α_a): {name} = 2 × {0} × ({1}/(2 × {2}) + {3} − inv {4}) = "
+           "{value} mm."), source=marked("GOST 16532-70"))
 TIP_SHARE = _formula("relative tooth thickness at the tip", lambda sa, m: sa / m, (N, N),
-                     "Относительная толщина у вершины (заострения нет, если s_a/m ≥ 0,2): {name} = {0}/{1} = {value}.", "",
-                     "ГОСТ 16532-70")
-ANGULAR_PITCH = _formula("angular pitch", lambda z: 2 * pi / z, (N,), "Угловой шаг τ = 360°/z: {name} = 360°/{0} = {value}.",
+                     marked("Relative thickness at the tip (the tooth is not pointed if s_a/m ≥ 0.2): {name} = {0}/{1} = {value}."),
+                     "",
+                     marked("GOST 16532-70"))
+ANGULAR_PITCH = _formula("angular pitch", lambda z: 2 * pi / z, (N,),
+                         marked("Angular pitch τ = 360°/z: {name} = 360°/{0} = {value}."),
                          "rad", "000, 6.3")
 LINE = _formula("length of the line of action", lambda a, w: a * np.sin(w), (N, A),
-                "Линия зацепления N_1N_2 = a_w·sin α_w: {name} = {0} × sin {1} = {value} мм.", source="ГОСТ 16532-70")
+                marked("Line of action N_1N_2 = a_w·sin α_w: {name} = {0} × sin {1} = {value} mm."), source=marked("GOST 16532-70"))
 ACTIVE = _formula("active line of action", lambda one, two, line: one + two - line, (N, N, N),
-                  "Активная линия зацепления g_α = ρ_a1 + ρ_a2 − N_1N_2: {name} = {0} + {1} − {2} = {value} мм.",
-                  source="ГОСТ 16532-70")
+                  marked("Length of the path of contact g_α = ρ_a1 + ρ_a2 − N_1N_2: {name} = {0} + {1} − {2} = {value} mm."),
+                  source=marked("GOST 16532-70"))
 CONTACT_RATIO = _formula("contact ratio", lambda g, pb: g / pb, (N, N),
-                         "Коэффициент перекрытия ε_α = g_α/p_b (не меньше 1): {name} = {0}/{1} = {value}.", "", "000, 6.3")
-OVERLAP = _formula("overlap angle", lambda g, rb: g / rb, (N, N), "Угол перекрытия φ_α = g_α/r_b: {name} = {0}/{1} = {value}.",
+                         marked("Contact ratio ε_α = g_α/p_b (not less than 1): {name} = {0}/{1} = {value}."), "", "000, 6.3")
+OVERLAP = _formula("overlap angle", lambda g, rb: g / rb, (N, N),
+                   marked("Angle of contact φ_α = g_α/r_b: {name} = {0}/{1} = {value}."),
                    "rad", "000, 6.3")
 POLE_TANGENT = _formula("radius of curvature at the pole", lambda rb, w: rb * np.tan(w), (N, A),
-                        "Радиус кривизны эвольвенты в полюсе ρ_w = r_b·tg α_w: {name} = {0} × tg {1} = {value} мм.",
-                        source="ГОСТ 16532-70")
+                        marked("Radius of curvature of the involute at the pitch point ρ_w = r_b·tan α_w: {name} = {0} × tan {1} "
+                               "= {value} mm."),
+                        source=marked("GOST 16532-70"))
 LOW_TANGENT = _formula("radius of curvature at the lowest contact", lambda line, other: line - other, (N, N),
-                       "Радиус кривизны в нижней точке активного профиля ρ_p = N_1N_2 − ρ_a другого колеса: "
-                       "{name} = {0} − {1} = {value} мм.", source="ГОСТ 16532-70")
+                       marked("Radius of curvature at the lowest point of the active profile ρ_p = N_1N_2 − ρ_a of the other "
+                              "wheel: {name} = {0} − {1} = {value} mm."), source=marked("GOST 16532-70"))
 LOW_RADIUS = _formula("radius of the lowest contact", np.hypot, (N, N),
-                      "Радиус нижней точки активного профиля r_p = √(r_b² + ρ_p²): {name} = √({0}² + {1}²) = {value} мм.",
-                      source="ГОСТ 16532-70")
+                      marked("Radius of the lowest point of the active profile r_p = √(r_b² + ρ_p²): {name} = √({0}² + {1}²) = "
+                             "{value} mm."),
+                      source=marked("GOST 16532-70"))
 LIMIT_TANGENT = _formula(
     "radius of curvature at the limit", lambda h, z, a, x, m: (x - (h - z * np.sin(a) ** 2 / 2)) * m / np.sin(a), (N, N, A, N, N),
-    "Радиус кривизны в граничной точке ρ_l = m(x − h_a* + z·sin²α/2)/sin α (подрезания нет, если ρ_l ≥ 0): "
-    "{name} = {4} × ({3} − {0} + {1} × sin²{2}/2)/sin {2} = {value} мм.", source="ГОСТ 16532-70")
+    marked("Radius of curvature at the end of the involute ρ_l = m(x − h_a* + z·sin²α/2)/sin α (no undercut if ρ_l ≥ 0): {name} = "
+           "{4} × ({3} − {0} + {1} × sin²{2}/2)/sin {2} = {value} mm."), source=marked("GOST 16532-70"))
 HALF_TOOTH = _formula("half of the tooth at the base circle", lambda s, r, inv: s / (2 * r) + inv, (N, N, N),
-                      "Половина угловой толщины зуба на основной окружности ψ_b = s/2r + inv α: "
-                      "{name} = {0}/(2 × {1}) + {2} = {value}.", "rad", "ГОСТ 16532-70")
+                      marked("Half the angular thickness of the tooth on the base circle ψ_b = s/2r + inv α: {name} = {0}/(2 × "
+                             "{1}) + {2} = {value}."), "rad", marked("GOST 16532-70"))
 FILLET_RADIUS = _formula(
     "fillet radius", lambda m, rb, rf, half, z, low: fillets.radius(FILLET * m, rb, rf, half, pi / z, low), (N, N, N, N, N, N),
-    "Радиус переходной кривой 0,38m, если он помещается во впадине, иначе наибольший возможный: {name} = {value} мм.",
+    marked("Radius of the fillet 0.38m if there is room for it in the tooth space, else the greatest possible: {name} = {value} "
+           "mm."),
     source="000, 6.4")
 FILLET_START = _formula("beginning of the involute over the fillet",
                         lambda rho, rb, rf: np.maximum(fillets.start(rho, rb, rf), 0.0), (N, N, N),
-                        "Радиус кривизны эвольвенты там, где её сменяет переходная кривая (0 — на основной окружности): "
-                        "{name} = {value} мм.", source="000, 6.4")
+                        marked("Radius of curvature of the involute where the fillet takes over (0 on the base circle): {name} = "
+                               "{value} mm."), source="000, 6.4")
 RACK_FILLET = _formula("tip radius of the rack", lambda c, m, a: c * m / (1 - np.sin(a)), (N, N, A),
-                       "Радиус закругления рейки ρ_f = c*m/(1 − sin α): {name} = {0} × {1}/(1 − sin {2}) = {value} мм.",
-                       source="ГОСТ 13755-81")
+                       marked("Fillet radius of the rack ρ_f = c*m/(1 − sin α): {name} = {0} × {1}/(1 − sin {2}) = {value} mm."),
+                       source=marked("GOST 13755-81"))
 RACK_START = _formula("beginning of the involute cut by the rack", involute_from, (N, A, N, N, N, N),
-                      "Радиус кривизны эвольвенты там, где её сменяет переходная кривая, нарезанная рейкой: {name} = {value} мм.",
-                      source="ГОСТ 16532-70")
+                      marked("Radius of curvature of the involute where the fillet cut by the rack takes over: {name} = {value} "
+                             "mm."),
+                      source=marked("GOST 16532-70"))
 
 
-RACK_SHIFT = _formula("shift of the rack", lambda x, m: x * m, (N, N), "Смещение рейки xm: {name} = {0} × {1} = {value} мм.",
+RACK_SHIFT = _formula("shift of the rack", lambda x, m: x * m, (N, N),
+                      marked("Shift of the rack xm: {name} = {0} × {1} = {value} mm."),
                       source="003, 4")
 RACK_HALF = _formula("half of a rack's tooth", lambda m: pi * m / 4, (N,),
-                     "Половина толщины зуба рейки на делительной прямой πm/4: {name} = {value} мм.", source="ГОСТ 13755-81")
+                     marked("Half the thickness of the rack tooth on the reference line πm/4: {name} = {value} mm."),
+                     source=marked("GOST 13755-81"))
 RACK_U = _formula("tip centre along the reference line",
                   lambda a, h, m, alpha, rho: a - h * m * np.tan(alpha) - rho * np.cos(alpha), (N, N, N, A, N),
-                  "Центр закругления рейки от оси её зуба, πm/4 − h_a*m·tg α − ρ_f·cos α: "
-                  "{name} = {0} − {1} × {2} × tg {3} − {4} × cos {3} = {value} мм.", source="ГОСТ 13755-81")
+                  marked("Centre of the rack's fillet from the axis of its tooth, πm/4 − h_a*m·tan α − ρ_f·cos α: {name} = {0} − "
+                         "{1} × {2} × tan {3} − {4} × cos {3} = {value} mm."), source=marked("GOST 13755-81"))
 RACK_Y = _formula("tip centre over the reference line", lambda rho, h, c, m: rho - (h + c) * m, (N, N, N, N),
-                  "Центр закругления рейки от делительной прямой (вниз — минус), ρ_f − (h_a* + c*)m: "
-                  "{name} = {0} − ({1} + {2}) × {3} = {value} мм.", source="ГОСТ 13755-81")
+                  marked("Centre of the rack's fillet from the reference line (minus is downwards), ρ_f − (h_a* + c*)m: {name} = "
+                         "{0} − ({1} + {2}) × {3} = {value} mm."), source=marked("GOST 13755-81"))
 RACK_BOTTOM = _formula("end of the straight flank", lambda h, m, a: -h * m / np.cos(a), (N, N, A),
-                       "Конец прямолинейной части боковой стороны, −h_a*m/cos α: {name} = −{0} × {1}/cos {2} = {value} мм.",
-                       source="ГОСТ 13755-81")
+                       marked("End of the straight part of the flank, −h_a*m/cos α: {name} = −{0} × {1}/cos {2} = {value} mm."),
+                       source=marked("GOST 13755-81"))
 FIRST_ROLL = _formula(
     "rolling to the tip of the tooth", lambda r, xm, a, alpha, t: ((r + xm) * np.tan(alpha) - t / np.cos(alpha) - a) / r,
-    (N, N, N, A, N), "Угол перекатывания, при котором рейка касается вершины зуба: {name} = {value}.", "rad", "003, 4",
+    (N, N, N, A, N), marked("Angle of rolling at which the rack touches the tip of the tooth: {name} = {value}."), "rad", "003, 4",
     "inclination")
 LAST_ROLL = _formula(
     "rolling to the root of the tooth",
     lambda r, xm, u, y, alpha: np.maximum(((-y - xm) / np.tan(alpha) - u) / r, ((-y - xm) / tan(pi / 2) - u) / r), (N, N, N, N, A),
-    "Угол перекатывания, при котором закругление рейки проходит впадину: {name} = {value}.", "rad", "003, 4", "inclination")
+    marked("Angle of rolling at which the fillet of the rack passes the tooth space: {name} = {value}."), "rad", "003, 4",
+    "inclination")
 
 
 def rack_sizes(geometry: Plan, i: int) -> Plan:
     """Sizes of the rack that cuts wheel ``i``, and the angles of rolling of the first and last position that touch its flank."""
-    plan = Plan("gear-rack-sizes", "Размеры рейки станочного зацепления", "mm")
+    plan = Plan("gear-rack-sizes", tr("Sizes of the generating rack"), "mm")
     m, alpha, h, c, r = (geometry[k] for k in ("m", "alpha", "ha", "c", f"r{i}"))
     xm = plan.add("xm", RACK_SHIFT, geometry[f"x{i}"], m)
     rho = plan.add("rho", RACK_FILLET, c, m, alpha, symbol="ρ_f")
@@ -242,7 +259,7 @@ def given(x: Any, name: str, symbol: str = "", unit: str = "", source: str = "")
 
 def geometry_plan(data: GearData) -> Plan:
     """The formulas of GOST 16532 in the order of the manual, steps named as in ``solve --json``."""
-    plan = Plan("gear-geometry", "Геометрический расчёт передачи", "mm")
+    plan = Plan("gear-geometry", tr("Geometry of the gear pair"), "mm")
     _basic(plan, data)
     _common(plan)
     for i in "12":
@@ -291,8 +308,11 @@ def _wheel(plan: Plan, i: str) -> None:
     plan.add(f"ra{i}", TIP_RADIUS, m, z, h, x, plan["dy"], symbol=f"r_{{a{i}}}")
     plan.add(f"rf{i}", ROOT_RADIUS, m, z, h, c, x, symbol=f"r_{{f{i}}}")
     s = plan.add(f"s{i}", THICKNESS, m, x, alpha, symbol=f"s_{i}")
-    plan.add(f"s_chord{i}", CHORD, r, s, symbol=f"s̅_{i}", say=f"Толщина зуба по хорде делительной окружности, {CHORD.wording}")
-    plan.add(f"p_chord{i}", CHORD, r, plan["p"], symbol=f"p̅_{i}", say=f"Шаг по хорде делительной окружности, {CHORD.wording}")
+    plan.add(f"s_chord{i}", CHORD, r, s, symbol=f"s̅_{i}",
+             say=tr("Chordal tooth thickness on the reference circle, 2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = "
+                    "{value} mm."))
+    plan.add(f"p_chord{i}", CHORD, r, plan["p"], symbol=f"p̅_{i}",
+             say=tr("Chordal pitch on the reference circle, 2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} mm."))
 
 
 def _quality(plan: Plan) -> None:

@@ -17,6 +17,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_formulas import FILLET, GearData, geometry_plan
 from tmm_sheets.methods.gears.rack import Rack
 from tmm_sheets.numbers import fixed
+from tmm_sheets.words import tell, tr
 
 LEAST_TIP = 0.2
 """Least tooth thickness at the tip circle in modules (GOST 16532, appendix)."""
@@ -81,7 +82,7 @@ class PairGeometry:
         found = list(impossible(self.geometry)) or list(problems_of(self))
         if found:
             hints = dict.fromkeys(hint for _, hint in found)
-            raise CannotBuild("gear: " + "; ".join(text for text, _ in found), "; ".join(hints))
+            raise CannotBuild(f"gear: {'; '.join(text for text, _ in found)}", "; ".join(hints))
 
     @cached_property
     def wheels(self) -> tuple[GearWheel, GearWheel]:
@@ -104,11 +105,13 @@ def impossible(plan: Plan) -> Iterator[tuple[str, str]]:
     """What leaves nothing to compute: no pressure angle, or no tooth."""
     inv_w, shifts = float(plan["inv_alpha_w"].value), float(plan["x1"].value + plan["x2"].value)
     if not inv_w > 0:
-        yield f"with x1 + x2 = {shifts:.4g} the wheels have no pressure angle (inv alpha_w = {inv_w:.4g})", "take larger shifts"
+        yield (tell("with x1 + x2 = {shifts:.4g} the wheels have no pressure angle (inv alpha_w = {involute:.4g})").format(
+            shifts=shifts, involute=inv_w), tell("take larger shifts"))
         return
     for i in (1, 2):
         if plan[f"ra{i}"].value <= plan[f"rb{i}"].value:
-            yield f"wheel {i} has no tooth: its tip circle lies inside its base circle", "take a larger shift"
+            yield (tell("wheel {wheel} has no tooth: its tip circle lies inside its base circle").format(wheel=i),
+                   tell("take a larger shift"))
 
 
 def problems_of(pair: PairGeometry) -> Iterator[tuple[str, str]]:
@@ -118,33 +121,45 @@ def problems_of(pair: PairGeometry) -> Iterator[tuple[str, str]]:
         # a shift written with four decimals, rounded down, is still meant to be the least one
         if pair.profile == "fillet" and w.shift < w.least_shift - 5e-5:
             least = ceil(w.least_shift * 100 - 1e-9) / 100
-            yield f"z{i} = {w.teeth} with x{i} = {w.shift:.4g} is undercut", f"least shift is x{i} = {least:.2f}"
+            yield (tell("z{wheel} = {teeth} with x{wheel} = {shift:.4g} is undercut").format(wheel=i, teeth=w.teeth, shift=w.shift),
+                   tell("least shift is x{wheel} = {least:.2f}").format(wheel=i, least=least))
         if w.sa < LEAST_TIP * pair.m:
-            what = "impossible: its flanks meet below the tip circle" if w.sa < 0 else (
-                f"pointed: {w.sa / pair.m:.3f} m thick at the tip circle, less than {LEAST_TIP:g} m")
-            yield f"the tooth of wheel {i} (z{i} = {w.teeth}, x{i} = {w.shift:.4g}) is {what}", f"take a smaller x{i}"
+            said = (tell("the tooth of wheel {wheel} (z{wheel} = {teeth}, x{wheel} = {shift:.4g}) is impossible: its flanks meet "
+                         "below the tip circle") if w.sa < 0 else
+                    tell("the tooth of wheel {wheel} (z{wheel} = {teeth}, x{wheel} = {shift:.4g}) is pointed: {thick:.3f} m thick "
+                         "at the tip circle, less than {least:g} m"))
+            yield (said.format(wheel=i, teeth=w.teeth, shift=w.shift, thick=w.sa / pair.m, least=LEAST_TIP),
+                   tell("take a smaller x{wheel}").format(wheel=i))
         if w.rf <= 0 or w.fillet != w.fillet:
-            yield f"wheel {i} has no space between its teeth at the root circle", f"take a smaller x{i} or more teeth"
+            yield (tell("wheel {wheel} has no space between its teeth at the root circle").format(wheel=i),
+                   tell("take a smaller x{wheel} or more teeth").format(wheel=i))
         mate = 3 - i
+        hint = tell("take a larger x{wheel} or a smaller x{mate}").format(wheel=i, mate=mate)
         if w.t_low < 0:
-            yield (f"interference: the tip of wheel {mate} touches wheel {i} below its base circle",
-                   f"take a larger x{i} or a smaller x{mate}")
+            yield (tell("interference: the tip of wheel {mate} touches wheel {wheel} below its base circle").format(
+                mate=mate, wheel=i), hint)
         elif w.t_fillet > w.t_low + 1e-9 * pair.m:
             below = hypot(w.rb, w.t_fillet) - w.r_low
-            yield (f"interference: the tip of wheel {mate} reaches {below * 1e3:.3g} mm below the involute of wheel {i} into its "
-                   f"{'undercut' if w.rack.undercut else 'fillet'}", f"take a larger x{i} or a smaller x{mate}")
+            said = (tell("interference: the tip of wheel {mate} reaches {below:.3g} mm below the involute of wheel {wheel} into "
+                         "its undercut") if w.rack.undercut else
+                    tell("interference: the tip of wheel {mate} reaches {below:.3g} mm below the involute of wheel {wheel} into "
+                         "its fillet"))
+            yield said.format(mate=mate, wheel=i, below=below * 1e3), hint
     if pair.eps_alpha < 1:
-        yield f"contact ratio {pair.eps_alpha:.3f} is less than 1", "take smaller shifts or more teeth"
+        yield (tell("contact ratio {ratio:.3f} is less than 1").format(ratio=pair.eps_alpha),
+               tell("take smaller shifts or more teeth"))
 
 
 def warnings_of(pair: PairGeometry) -> tuple[str, ...]:
-    """What a teacher would ask about, although it can be built (Russian, for the sheet)."""
+    """What a teacher would ask about, although it can be built (for the sheet)."""
     out = []
     if pair.eps_alpha < LOW_CONTACT_RATIO:
-        out.append("коэффициент перекрытия меньше 1,1")
+        out.append(tr("the contact ratio is less than 1.1"))
     for w in pair.wheels:
         if pair.profile == "rack" and w.rack.undercut:
-            out.append(f"зуб колеса {w.number} подрезан: смещение меньше {fixed(w.rack.least_shift)}")
+            out.append(tr("the tooth of wheel {wheel} is undercut: the shift is less than {least}").format(
+                wheel=w.number, least=fixed(w.rack.least_shift)))
         if pair.profile == "fillet" and w.step("rho_f").value < FILLET * pair.step("m").value:
-            out.append(f"радиус выкружки колеса {w.number} уменьшен: во впадине нет места для 0,38m")
+            out.append(tr("the fillet of wheel {wheel} is smaller: there is no room for 0.38m in the tooth "
+                          "space").format(wheel=w.number))
     return tuple(out)

@@ -17,6 +17,7 @@ from tmm_sheets.methods.gears import gear_teeth as gt
 from tmm_sheets.methods.gears import rack
 from tmm_sheets.methods.gears.gear_formulas import GearData, given, rack_sizes
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry, warnings_of
+from tmm_sheets.words import tr
 
 POSITIONS = 13
 """Positions of the rack that are drawn along one flank."""
@@ -27,7 +28,7 @@ ROOM = 360.0
 def standard(symbol: str, span: float, room: float) -> Scale:
     """Scale factor (m of the object per mm of paper) of the largest GOST 2.302 scale that fits ``span`` mm in ``room`` mm."""
     real, drawn = fit_standard(span, room)
-    return Scale(symbol, real / drawn * 1e-3, "м/мм")
+    return Scale(symbol, real / drawn * 1e-3, tr("m/mm"))
 
 
 class GearPair(PairGeometry):
@@ -204,8 +205,8 @@ def settled(section: Any, reducer: Any = None) -> MeshingPair:
         teeth, module, addendum, clearance = reducer.simple_pair
     else:
         teeth, module = section.teeth, section.module
-        addendum = given(1.0, "gear.addendum", source="ГОСТ 13755-81") if section.addendum is None else section.addendum
-        clearance = given(0.25, "gear.clearance", source="ГОСТ 13755-81") if section.clearance is None else section.clearance
+        addendum = given(1.0, "gear.addendum", source=tr("GOST 13755-81")) if section.addendum is None else section.addendum
+        clearance = given(0.25, "gear.clearance", source=tr("GOST 13755-81")) if section.clearance is None else section.clearance
     return MeshingPair(teeth, module, section.shift, section.pressure_angle, addendum, clearance, section.driver, section.sense,
                        section.profile)
 

@@ -14,6 +14,7 @@ from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.methods.gears import rack
 from tmm_sheets.methods.gears.gear_engagement import on_normal, unrolled
 from tmm_sheets.methods.gears.gear_geometry import GearWheel
+from tmm_sheets.words import marked
 
 Points = npt.NDArray[np.complex128]
 
@@ -88,9 +89,9 @@ def _cut(centre: Any, axis: Any, side: Any, m: Any, alpha: Any, addendum: Any, c
 INVOLUTE = 32
 """Points on the involute of a flank."""
 FLANK = Rule("flank of a tooth", _flank, (*("point",) * 6, "length", "length"), "curve",
-             "Обведём рабочий профиль зуба: выкружку и эвольвенту до окружности вершин.", exact=True)
+             marked("Trace the tooth profile: the fillet and the involute up to the tip circle."), exact=True)
 CUT = Rule("flank cut by a rack", _cut, ("point", "direction", "number", "length", "angle", *("number",) * 4, "length"), "curve",
-           "Обведём профиль зуба как огибающую положений рейки.", exact=True)
+           marked("Trace the tooth profile as the envelope of the positions of the rack."), exact=True)
 
 
 def record_flank(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan) -> Step:

@@ -25,6 +25,7 @@ from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH, OFFSET
 from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.words import marked, tr
 
 Points = npt.NDArray[np.complex128]
 
@@ -173,37 +174,42 @@ def _within(point: Any, start: Any, u: Any, least: Any) -> Any:
 ROLL = Rule(
     "roll on the pitch circle", lambda o, r, roll: o + 1j * r * np.exp(1j * roll), ("point", "length", "angle"),
     "point",
-    "На делительной окружности с центром {0} и радиусом {1} отложим дугу, равную перемещению рейки: точка {name}.",
+    marked("On the reference circle with the centre {0} and the radius {1} lay off an arc equal to the travel of the rack: point "
+           "{name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
-NORMAL = Rule("outward radius", ar.ray, ("point", "point"), "direction", "Проведём радиус {0}{1}.",
+NORMAL = Rule("outward radius", ar.ray, ("point", "point"), "direction", marked("Draw the radius {0}{1}."),
               lambda a, v: (Helper("line", a[0], a[1]),))
 ROLLING_LINE = Rule("rolling line", lambda u: -1j * u, ("direction",), "direction",
-                    "Перпендикулярно радиусу проведём начальную прямую рейки {name}.")
+                    marked("Perpendicular to the radius draw the pitch line {name} of the rack."))
 REFERENCE = Rule("shifted reference line", ar.along, ("point", "direction", "ordinate"), "point",
-                 "От начальной прямой отложим смещение {2}: точка {name} делительной прямой рейки.")
+                 marked("From the pitch line lay off the shift {2}: point {name} of the reference line of the rack."))
 FLANK = Rule("flank of the rack", _turned_down, ("direction", "angle"), "direction",
-             "Под углом профиля {1} к оси зуба рейки проведём его боковую сторону.")
+             marked("At the profile angle {1} to the axis of the rack tooth draw its flank."))
 TOUCH = Rule(
     "perpendicular on the flank", lambda p, q, u: ar.foot(p, q, u), ("point", "point", "direction"), "point",
-    "Из точки {0} опустим перпендикуляр на боковую сторону зуба рейки через {1}: точка касания {name}.",
+    marked("From {0} drop the perpendicular to the flank of the rack tooth through {1}: point of contact {name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 WITHIN = Rule(
     "point within the straight flank", _within, ("point", "point", "direction", "ordinate"), "point",
-    "Точка {0} принадлежит профилю зуба, если лежит в пределах прямолинейной части рейки: точка {name}.",
+    marked("Point {0} belongs to the tooth profile if it lies within the straight part of the rack: point {name}."),
 )
 
-TAKEN = Rule("length in millimetres", lambda mm: mm / 1e3, ("number",), "length", "Возьмём отрезок {name} = {value}.", unit="m")
-TAKEN_ORDINATE = Rule("ordinate in millimetres", lambda mm: mm / 1e3, ("number",), "ordinate", "Возьмём отрезок {name} = {value}.",
+TAKEN = Rule("length in millimetres", lambda mm: mm / 1e3, ("number",), "length", marked("Take the segment {name} = {value}."),
+             unit="m")
+TAKEN_ORDINATE = Rule("ordinate in millimetres", lambda mm: mm / 1e3, ("number",), "ordinate",
+                      marked("Take the segment {name} = {value}."),
                       unit="m")
 EVEN = Rule("even share", lambda first, last, k, parts: first + (last - first) * k / parts,
             ("inclination", "inclination", "number", "number"), "inclination",
-            "Угол перекатывания рейки от {0} до {1} разделим на равные части (их {3}): {name} = {value}.", unit="rad")
-ROLLS = Rule("angle of rolling", lambda roll: roll, ("inclination",), "inclination", "Угол перекатывания рейки {name} = {value}.",
+            marked("Divide the angle of rolling of the rack from {0} to {1} into equal parts ({3} of them): {name} = {value}."),
+            unit="rad")
+ROLLS = Rule("angle of rolling", lambda roll: roll, ("inclination",), "inclination",
+             marked("Angle of rolling of the rack {name} = {value}."),
              unit="rad")
 TRAVEL = Rule("travel of the rack", lambda r, roll: r * roll, ("length", "inclination"), "ordinate",
-              "Переместим рейку на {value} от среднего положения (произведение радиуса на угол перекатывания).")
+              marked("Move the rack {value} from its middle position (the radius times the angle of rolling)."))
 
 
 def generating_plan(rack: Rack, rolls: Any) -> Plan:
@@ -223,15 +229,17 @@ def drawn_positions(sizes: Plan, radius: Step, alpha: Step, parts: int) -> Plan:
 
     ``sizes`` of the rack, ``radius`` of the pitch circle and profile angle are steps.
     """
-    plan = Plan("gear-rack", "Станочное зацепление", "m", tuple(str(k) for k in range(parts + 1)))
+    plan = Plan("gear-rack", tr("Generation by the rack"), "m", tuple(str(k) for k in range(parts + 1)))
     plan.add("φ", EVEN, sizes["phi_first"], sizes["phi_last"], Given(np.arange(parts + 1.0), "gear.rack.positions"),
-             Given(parts, "gear.rack.parts", over="none", choice="столько положений рейки показано на листе"))
+             Given(parts, "gear.rack.parts", over="none", choice=tr("as many positions of the rack are shown on the sheet")))
     plan.add("r", TAKEN, radius)
-    for name, what in (("xm", "смещение рейки"), ("a", "половину толщины зуба рейки"),
-                       ("u", "расстояние центра закругления рейки от оси её зуба"),
-                       ("y", "расстояние центра закругления от делительной прямой"),
-                       ("h", "длину прямолинейной части боковой стороны ниже делительной прямой")):
-        plan.add(name, TAKEN_ORDINATE, sizes[name], say=f"Возьмём {what} {{name}} = {{value}}.")
+    for name, say in (("xm", tr("Take the shift of the rack {name} = {value}.")),
+                      ("a", tr("Take half the thickness of the rack tooth {name} = {value}.")),
+                      ("u", tr("Take the distance of the centre of the rack's fillet from the axis of its tooth {name} = "
+                               "{value}.")),
+                      ("y", tr("Take the distance of the centre of the fillet from the reference line {name} = {value}.")),
+                      ("h", tr("Take the length of the straight part of the flank below the reference line {name} = {value}."))):
+        plan.add(name, TAKEN_ORDINATE, sizes[name], say=say)
     _place(plan, alpha)
     _touch(plan, plan["h"])
     return plan
@@ -240,7 +248,7 @@ def drawn_positions(sizes: Plan, radius: Step, alpha: Step, parts: int) -> Plan:
 def _positions(name: str, rack: Rack, rolls: Any) -> Plan:
     """Positions of a rack that is known by numbers, for curves."""
     rolls = np.atleast_1d(np.asarray(rolls, dtype=float))
-    plan = Plan(name, "Станочное зацепление", "m", tuple(str(k) for k in range(len(rolls))))
+    plan = Plan(name, tr("Generation by the rack"), "m", tuple(str(k) for k in range(len(rolls))))
     plan.add("φ", ROLLS, rolls)
     end = rack.tip_centre
     for size, value in (("r", rack.r), ("xm", rack.shift * rack.module), ("a", rack.half_width), ("u", end.real), ("y", end.imag)):
@@ -274,7 +282,7 @@ def fillet_steps(rack: Rack, normals: Any) -> Step:
     """Points of the fillet that the tip radius cuts with the points under ``normals`` below the rolling line."""
     normals = np.atleast_1d(np.asarray(normals, dtype=float))
     plan = _positions("gear-rack-fillet-between", rack, rack.roll_of_tip(normals))
-    normal = plan.add("WC", FLANK, plan["WT"], normals, say="Через {0} и центр закругления рейки проведём прямую.")
+    normal = plan.add("WC", FLANK, plan["WT"], normals, say=tr("Through {0} and the centre of the rack's fillet draw a line."))
     return plan.add("G", ALONG, plan["C"], normal, rack.tip_radius)
 
 

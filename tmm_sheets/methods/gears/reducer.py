@@ -22,17 +22,19 @@ from tmm_sheets.methods.gears.tooth_search import (
     stage_numbers,
 )
 from tmm_sheets.numbers import number
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import ReducerTable
 
 
 def criterion_of(data: ReducerTable, sets: Sequence[ToothSet]) -> str:
-    """By what the tooth numbers were chosen, and the sets that came next (Russian)."""
+    """By what the tooth numbers were chosen, and the sets that came next."""
     tiers = ", ".join(number(100 * t) for t in (*TIERS, data.tolerance))
     told = "; ".join(", ".join(f"{name} = {z}" for name, z in named_teeth(data, t).items()) for t in sets)
-    return ("среди наборов, соблюдающих соосность, сборку и соседство, — наименьшая высота редуктора в первой из ступеней "
-            f"отклонения передаточного отношения {tiers} %, в которой наборы есть; лучшие наборы по порядку: {told}")
+    return tr("among the sets that fulfil coaxiality, assembly and neighbourhood, the least height of the reducer in the first of "
+              "the steps {tiers} % of the deviation of the ratio that has any sets; the best sets in order: {sets}"
+              ).format(tiers=tiers, sets=told)
 
 
 class Reducer:
@@ -140,17 +142,18 @@ class Reducer:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Remarks for the sheet (Russian)."""
+        """Remarks for the sheet."""
         out = []
         if self.told("u_simple") < self.scheme.least_simple:
-            out.append(f"передаточное отношение простой ступени меньше {number(self.scheme.least_simple)}")
+            out.append(tr("the ratio of the simple stage is less than {least}").format(least=number(self.scheme.least_simple)))
         z, numbers = self.chosen.stage, stage_numbers(self.data, 0)
         for satellite, ring, sign in internal_pairs(self.scheme.signs):
             if sign < 0:
                 least = int(self.conditions[f"least_z{numbers[ring]}"].value)
                 if not least or z[ring] < least:
-                    needed = f"нужно z_{numbers[ring]} ≥ {least}" if least else "без смещения нет ни одного венца"
-                    out.append(f"интерференция в паре {numbers[satellite]}–{numbers[ring]}: {needed}")
+                    said = (tr("interference in the pair {planet}–{ring}: z_{ring} ≥ {least} is needed") if least
+                            else tr("interference in the pair {planet}–{ring}: without shift no ring will do"))
+                    out.append(said.format(planet=numbers[satellite], ring=numbers[ring], least=least))
         return tuple(out)
 
     def results(self) -> dict[str, Any]:

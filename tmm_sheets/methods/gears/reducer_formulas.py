@@ -20,6 +20,7 @@ from tmm_sheets.construction.step import Kind, Rule, Step
 from tmm_sheets.methods.gears import planetary
 from tmm_sheets.methods.gears.gear_formulas import MODULE
 from tmm_sheets.methods.gears.tooth_search import ToothSet, named_teeth, simple_numbers, stage_numbers
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import ReducerTable
@@ -38,95 +39,97 @@ def common_divisor(a: float, b: float) -> int:
     return gcd(int(a), int(b))
 
 
-ASKED = _formula("ratio asked for", lambda u: u, 1, "Требуемое передаточное отношение {name} = {value}.")
+ASKED = _formula("ratio asked for", lambda u: u, 1, marked("Ratio asked for {name} = {value}."))
 ASKED_BY_SPEEDS = _formula("ratio of the speeds asked for", lambda one, two: one / two, 2,
-                           "Требуемое передаточное отношение ω_вх/ω_вых: {name} = {0}/{1} = {value}.")
-TEETH = _formula("number of teeth", lambda z: z, 1, "Число зубьев {name} = {value}.")
+                           marked("Ratio asked for ω_in/ω_out: {name} = {0}/{1} = {value}."))
+TEETH = _formula("number of teeth", lambda z: z, 1, marked("Number of teeth {name} = {value}."))
 SIMPLE_RATIO = _formula("ratio of the simple stage", lambda wheel, pinion: wheel / pinion, 2,
-                        "Передаточное отношение простой ступени: {name} = {0}/{1} = {value}.")
+                        marked("Ratio of the simple stage: {name} = {0}/{1} = {value}."))
 INNER_RATIO = _formula(
     "ratio with the carrier stopped", lambda s, z1, z2, z3, z4: planetary.inner_ratio((s, 1), (z1, z2, z3, z4)), 5,
-    "Передаточное отношение обращённого механизма (водило остановлено) ±z_2z_4/(z_1z_3): "
-    "{name} = ±{2} × {4}/({1} × {3}) = {value}.")
+    marked("Ratio of the train with the carrier held ±z_2z_4/(z_1z_3): {name} = ±{2} × {4}/({1} × {3}) = {value}."))
 STAGE_RATIO = {
     "sun": _formula("ratio of a stage driven by the sun", lambda i: planetary.stage_ratio(i, "sun"), 1,
-                    "Передаточное отношение от солнечного колеса к водилу, 1 − i: {name} = 1 − {0} = {value}."),
+                    marked("Ratio from the sun to the carrier, 1 − i: {name} = 1 − {0} = {value}.")),
     "ring": _formula("ratio of a stage driven by the ring", lambda i: planetary.stage_ratio(i, "ring"), 1,
-                     "Передаточное отношение от венца к водилу, 1 − 1/i: {name} = 1 − 1/{0} = {value}."),
+                     marked("Ratio from the ring to the carrier, 1 − 1/i: {name} = 1 − 1/{0} = {value}.")),
     "carrier": _formula("ratio of a stage driven by the carrier", lambda i: planetary.stage_ratio(i, "carrier"), 1,
-                        "Передаточное отношение от водила к центральному колесу, 1/(1 − i): {name} = 1/(1 − {0}) = {value}."),
+                        marked("Ratio from the carrier to the central wheel, 1/(1 − i): {name} = 1/(1 − {0}) = {value}.")),
 }
 PLANETARY_RATIO = _formula("ratio of the planetary stages", lambda u, stages: np.abs(u) ** stages, 2,
-                           "Передаточное отношение планетарной части без знака (ступеней {1}): {name} = {value}.")
+                           marked("Ratio of the planetary part without its sign (stages: {1}): {name} = {value}."))
 RATIO = _formula("ratio of the reducer", lambda planetary, simple: planetary * simple, 2,
-                 "Передаточное отношение редуктора: {name} = {0} × {1} = {value}.")
+                 marked("Ratio of the reducer: {name} = {0} × {1} = {value}."))
 DEVIATION = _formula("deviation of the ratio", lambda u, asked: u / asked - 1, 2,
-                     "Относительное отклонение от требуемого: {name} = {0}/{1} − 1 = {value}.")
-PAIR_EFFICIENCY = _formula("efficiency of a pair", lambda eta: eta, 1, "КПД одной пары колёс {name} = {value}.")
+                     marked("Relative deviation from the ratio asked for: {name} = {0}/{1} − 1 = {value}."))
+PAIR_EFFICIENCY = _formula("efficiency of a pair", lambda eta: eta, 1, marked("Efficiency of one pair of wheels {name} = {value}."))
 INNER_EFFICIENCY = _formula("efficiency with the carrier stopped", lambda eta: eta**2, 1,
-                            "КПД двух пар обращённого механизма: {name} = {0}² = {value}.")
+                            marked("Efficiency of both pairs of the train with the carrier held: {name} = {0}² = {value}."))
 STAGE_EFFICIENCY: dict[Callable[[Any, Any], Any], Rule] = {
     planetary.efficiency_from_sun: _formula(
         "efficiency of a stage driven by the sun", planetary.efficiency_from_sun, 2,
-        "КПД ступени (1 + η_0|i|)/(1 + |i|), i = {0}, η_0 = {1}: {name} = {value}."),
+        marked("Efficiency of a stage (1 + η_0|i|)/(1 + |i|), i = {0}, η_0 = {1}: {name} = {value}.")),
     planetary.efficiency_from_ring: _formula(
         "efficiency of a stage driven by the ring", planetary.efficiency_from_ring, 2,
-        "КПД ступени (1 + η_0/|i|)/(1 + 1/|i|), i = {0}, η_0 = {1}: {name} = {value}."),
+        marked("Efficiency of a stage (1 + η_0/|i|)/(1 + 1/|i|), i = {0}, η_0 = {1}: {name} = {value}.")),
     planetary.efficiency_from_carrier_below: _formula(
         "efficiency of a stage driven by the carrier, i < 1", planetary.efficiency_from_carrier_below, 2,
-        "КПД ступени (1 − i)/(1 − iη_0) при i < 1, i = {0}, η_0 = {1}: {name} = {value}."),
+        marked("Efficiency of a stage (1 − i)/(1 − iη_0) for i < 1, i = {0}, η_0 = {1}: {name} = {value}.")),
     planetary.efficiency_from_carrier_above: _formula(
         "efficiency of a stage driven by the carrier, i > 1", planetary.efficiency_from_carrier_above, 2,
-        "КПД ступени η_0(i − 1)/(i − η_0) при i > 1, i = {0}, η_0 = {1}: {name} = {value}."),
+        marked("Efficiency of a stage η_0(i − 1)/(i − η_0) for i > 1, i = {0}, η_0 = {1}: {name} = {value}.")),
 }
 PLANETARY_EFFICIENCY = _formula("efficiency of the planetary stages", lambda eta, stages: eta**stages, 2,
-                                "КПД планетарной части (ступеней {1}): {name} = {value}.")
+                                marked("Efficiency of the planetary part (stages: {1}): {name} = {value}."))
 EFFICIENCY = _formula("efficiency of the reducer", lambda planetary, pair: planetary * pair, 2,
-                      "КПД редуктора: {name} = {0} × {1} = {value}.")
+                      marked("Efficiency of the reducer: {name} = {0} × {1} = {value}."))
 DIAMETER = _formula("pitch diameter", lambda z, m: z * m, 2,
-                    "Начальный диаметр (смещений нет) d = mz: {name} = {1} × {0} = {value} мм.", "mm")
+                    marked("Pitch diameter (there are no shifts) d = mz: {name} = {1} × {0} = {value} mm."), "mm")
 CARRIER_RADIUS = _formula("distance of the satellites' axes", lambda d1, sign, d2: (d1 + sign * d2) / 2, 3,
-                          "Радиус водила: {name} = ({0} ± {2})/2 = {value} мм.", "mm")
+                          marked("Radius of the carrier: {name} = ({0} ± {2})/2 = {value} mm."), "mm")
 AXES = _formula("centre distance of the simple stage", lambda d1, d2: (d1 + d2) / 2, 2,
-                "Межосевое расстояние простой ступени: {name} = ({0} + {1})/2 = {value} мм.", "mm")
+                marked("Centre distance of the simple stage: {name} = ({0} + {1})/2 = {value} mm."), "mm")
 INPUT = _formula("speed of the input", lambda w: w * 30 / pi, 1,
-                 "Частота вращения входа 30ω/π: {name} = 30 × {0}/π = {value} об/мин.",
+                 marked("Speed of rotation of the input 30ω/π: {name} = 30 × {0}/π = {value} rpm."),
                  "1/min")
-SAME_SHAFT = _formula("speed on the same shaft", lambda n: n, 1, "На том же валу: {name} = {value} об/мин.", "1/min")
-STANDS = _formula("a wheel that stands still", lambda: 0.0, 0, "Колесо неподвижно: {name} = 0.", "1/min")
+SAME_SHAFT = _formula("speed on the same shaft", lambda n: n, 1, marked("On the same shaft: {name} = {value} rpm."), "1/min")
+STANDS = _formula("a wheel that stands still", lambda: 0.0, 0, marked("The wheel stands still: {name} = 0."), "1/min")
 DRIVEN = _formula("speed behind an external pair", lambda n, z1, z2: -n * z1 / z2, 3,
-                  "Внешнее зацепление меняет сторону вращения: {name} = −{0} × {1}/{2} = {value} об/мин.", "1/min")
-CARRIER = _formula("speed of the carrier", lambda n, u: n / u, 2, "Частота вращения водила: {name} = {0}/{1} = {value} об/мин.",
+                  marked("External meshing reverses the rotation: {name} = −{0} × {1}/{2} = {value} rpm."), "1/min")
+CARRIER = _formula("speed of the carrier", lambda n, u: n / u, 2,
+                   marked("Speed of rotation of the carrier: {name} = {0}/{1} = {value} rpm."),
                    "1/min")
 CENTRAL = _formula("speed of the driven central wheel", lambda n, i: n * (1 - i), 2,
-                   "Частота вращения центрального колеса n_H(1 − i): {name} = {0} × (1 − {1}) = {value} об/мин.", "1/min")
+                   marked("Speed of rotation of the central wheel n_H(1 − i): {name} = {0} × (1 − {1}) = {value} rpm."), "1/min")
 BLOCK = _formula("speed of the satellites", lambda h, s, n, z1, z2: h - s * (n - h) * z1 / z2, 5,
-                 "Частота вращения сателлитов по формуле Виллиса n_H ∓ (n_1 − n_H)z_1/z_2: "
-                 "{name} = {0} ∓ ({2} − {0}) × {3}/{4} = {value} об/мин.", "1/min")
-SATELLITES = _formula("number of satellites", lambda q: q, 1, "Число сателлитов {name} = {value}.")
-ADDENDUM = _formula("addendum coefficient", lambda h: h, 1, "Коэффициент высоты головки зуба {name} = {value}.")
+                 marked("Speed of rotation of the planets by the Willis formula n_H ∓ (n_1 − n_H)z_1/z_2: {name} = {0} ∓ ({2} − "
+                        "{0}) × {3}/{4} = {value} rpm."), "1/min")
+SATELLITES = _formula("number of satellites", lambda q: q, 1, marked("Number of planets {name} = {value}."))
+ADDENDUM = _formula("addendum coefficient", lambda h: h, 1, marked("Addendum coefficient {name} = {value}."))
 SIDE_OF_COAXIALITY = _formula("side of the coaxiality condition", lambda s, z1, z2: z1 + s * z2, 3,
-                              "Одна сторона условия соосности, в зубьях: {name} = {1} ± {2} = {value}.")
+                              marked("One side of the condition of coaxiality, in teeth: {name} = {1} ± {2} = {value}."))
 COAXIALITY = _formula("coaxiality", lambda left, right: left - right, 2,
-                      "Соосность соблюдена, если стороны равны: {0} − {1} = {value}.")
+                      marked("Coaxiality is fulfilled if the sides are equal: {0} − {1} = {value}."))
 ASSEMBLY = _formula(
     "assembly", lambda s, q, z1, z2, z3, z4: (z1 * z3 - s * z2 * z4) / (q * common_divisor(z2, z3)), 6,
-    "Условие сборки: частное (z_1z_3 ∓ z_2z_4)/(q·НОД(z_2, z_3)) должно быть целым: "
-    "({2} × {4} ∓ {3} × {5})/({1} × НОД({3}; {4})) = {value}.")
+    marked("Condition of assembly: the quotient (z_1z_3 ∓ z_2z_4)/(q·gcd(z_2, z_3)) must be a whole number: ({2} × {4} ∓ {3} × "
+           "{5})/({1} × gcd({3}; {4})) = {value}."))
 BETWEEN_AXES = _formula("distance between satellites", lambda axis, q: axis * np.sin(pi / q), 2,
-                        "Условие соседства; расстояние между осями соседних сателлитов, модулей: "
-                        "{0} × sin(180°/{1}) = {value}.")
+                        marked("Condition of neighbourhood; distance between the axes of neighbouring planets, in modules: {0} × "
+                               "sin(180°/{1}) = {value}."))
 WIDTH = _formula("width of the satellites", lambda z2, z3, h: np.maximum(z2, z3) + 2 * h, 3,
-                 "Диаметр вершин большего сателлита max(z_2; z_3) + 2h_a*, модулей: max({0}; {1}) + 2 × {2} = {value}.")
+                 marked("Tip diameter of the greater planet max(z_2; z_3) + 2h_a*, in modules: max({0}; {1}) + 2 × {2} = {value}."))
 NEIGHBOURHOOD = _formula("neighbourhood", lambda between, width: between - width, 2,
-                         "Соседство соблюдено, если запас положителен; он равен {0} − {1} = {value} модуля.")
+                         marked("The condition of neighbourhood is fulfilled if there is a positive margin; it is {0} − {1} = "
+                                "{value} of a module."))
 LEAST_RING = _formula("least ring without interference", planetary.least_ring, 2,
-                      "Наименьшее число зубьев венца без интерференции с сателлитом z = {0} (0 — такого нет): {name} = {value}.")
+                      marked("Least number of teeth of a ring without interference with the planet z = {0} (0: there is none): "
+                             "{name} = {value}."))
 
 
 def _said(rule: Rule, sign: int) -> str:
     """The rule's sentence with the sign of its pairs."""
-    return rule.wording.replace("±", "+" if sign > 0 else "−").replace("∓", "−" if sign > 0 else "+")
+    return tr(rule.wording).replace("±", "+" if sign > 0 else "−").replace("∓", "−" if sign > 0 else "+")
 
 
 class Names:
@@ -143,7 +146,7 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
     Set 0 is the ``chosen`` one, from which the others take what is the same.
     """
     scheme = planetary.SCHEMES[data.scheme]
-    title = f"Набор чисел зубьев {k + 1}" if k else "Числа зубьев и передаточное отношение редуктора"
+    title = tr("Set of tooth numbers {number}").format(number=k + 1) if k else tr("Tooth numbers and ratio of the reducer")
     plan = Plan(f"reducer-set-{k + 1}" if k else "reducer-ratio", title, "")
     if chosen is not None:
         asked = chosen["u_asked"]
@@ -155,45 +158,46 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
         asked = plan.add("u_asked", ASKED_BY_SPEEDS, speeds[0], speeds[-1], symbol="u")
     searched = False
     for name, z in named_teeth(data, teeth).items():
-        say = "Число зубьев {name} = {value} задано."
+        say = tr("Number of teeth {name} = {value} is given.")
         if name in data.teeth:
             found = Given(z, f"reducer.teeth.{name}", over="none")
         else:
             found = Given(z, f"reducer.runners_up[{k - 1}].{name}" if k else f"reducer.{name}", over="none", choice=criterion)
-            way = "тем же подбором" if searched or k else f"подбором: {criterion}"
-            say = f"Число зубьев {{name}} = {{value}} найдено {way}."
+            say = (tr("Number of teeth {name} = {value} found by the same search.") if searched or k else
+                   tr("Number of teeth {{name}} = {{value}} found by search: {criterion}.").format(criterion=criterion))
             searched = True
         plan.add(name, TEETH, found, symbol=f"z_{{{name[1:]}}}", say=say)
     names = Names(data)
     stages = Given(data.stages, "reducer.stages", over="none")
     sign = scheme.signs[0] * scheme.signs[1]
-    simple = plan.add("u_simple", SIMPLE_RATIO, plan[names.wheel], plan[names.pinion], symbol="u_{пр}")
+    simple = plan.add("u_simple", SIMPLE_RATIO, plan[names.wheel], plan[names.pinion], symbol=tr("u_{s}"))
     inner = plan.add("i14", INNER_RATIO, sign, *(plan[z] for z in names.stage), symbol="i_{14}^{H}", say=_said(INNER_RATIO, sign))
     driver = data.driver or scheme.drivers[0]
-    stage = plan.add("u_stage", STAGE_RATIO[driver], inner, symbol="u_{ст}")
-    whole = plan.add("u_planetary", PLANETARY_RATIO, stage, stages, symbol="u_{пл}")
+    stage = plan.add("u_stage", STAGE_RATIO[driver], inner, symbol=tr("u_{st}"))
+    whole = plan.add("u_planetary", PLANETARY_RATIO, stage, stages, symbol=tr("u_{pl}"))
     ratio = plan.add("u", RATIO, whole, simple)
     plan.add("u_deviation", DEVIATION, ratio, asked, symbol="Δu")
     if chosen is None:
-        pair = plan.add("eta_pair", PAIR_EFFICIENCY, GivenNumber(data.pair_efficiency, "reducer.pair_efficiency"), symbol="η_{п}")
+        pair = plan.add("eta_pair", PAIR_EFFICIENCY, GivenNumber(data.pair_efficiency, "reducer.pair_efficiency"),
+                        symbol=tr("η_{p}"))
         both = plan.add("eta_0", INNER_EFFICIENCY, pair, symbol="η_0")
     else:
         pair, both = chosen["eta_pair"], chosen["eta_0"]
     formula = planetary.efficiency_formula(planetary.inner_ratio(scheme.signs, teeth.stage), driver)
-    one = plan.add("eta_stage", STAGE_EFFICIENCY[formula], inner, both, symbol="η_{ст}")
-    part = plan.add("eta_planetary", PLANETARY_EFFICIENCY, one, stages, symbol="η_{пл}")
+    one = plan.add("eta_stage", STAGE_EFFICIENCY[formula], inner, both, symbol=tr("η_{st}"))
+    part = plan.add("eta_planetary", PLANETARY_EFFICIENCY, one, stages, symbol=tr("η_{pl}"))
     plan.add("eta", EFFICIENCY, part, pair, symbol="η")
     return plan
 
 
 def kinematics_plan(data: ReducerTable, ratio: Plan) -> Plan:
     """Diameters and speeds of all wheels and carriers: steps ``d1`` .., ``n1`` .., ``nH``, ``a_H`` and ``a_simple``."""
-    plan = Plan("reducer-kinematics", "Диаметры колёс и частоты вращения звеньев", "mm")
+    plan = Plan("reducer-kinematics", tr("Diameters of the wheels and speeds of rotation of the links"), "mm")
     first = stage_numbers(data, 0)
     teeth = [{n: ratio[f"z{of}"] for n, of in zip(stage_numbers(data, k), first, strict=True)} for k in range(data.stages)]
     simple = {n: ratio[f"z{n}"] for n in simple_numbers(data)}
     module, simple_module = (plan.add(name, MODULE, GivenNumber(getattr(data, k), f"reducer.{k}", "m", "m"), symbol=symbol)
-                             for name, k, symbol in (("m", "module", "m"), ("m_simple", "simple_module", "m_{пр}")))
+                             for name, k, symbol in (("m", "module", "m"), ("m_simple", "simple_module", tr("m_{s}"))))
     for wheels, m in (*((z, module) for z in teeth), (simple, simple_module)):
         for n, z in wheels.items():
             plan.add(f"d{n}", DIAMETER, z, m, symbol=f"d_{{{n}}}")
@@ -255,7 +259,7 @@ def _stage_speeds(plan: Plan, data: ReducerTable, ratio: Plan, z: Mapping[str, S
 
 def conditions_plan(data: ReducerTable, ratio: Plan) -> Plan:
     """Coaxiality, assembly, neighbourhood, and the least rings of internal pairs."""
-    plan = Plan("reducer-conditions", "Условия соосности, сборки и соседства", "")
+    plan = Plan("reducer-conditions", tr("Conditions of coaxiality, assembly and neighbourhood"), "")
     scheme = planetary.SCHEMES[data.scheme]
     s, z = scheme.signs, [ratio[name] for name in Names(data).stage]
     q = plan.add("q", SATELLITES, Given(data.satellites, "reducer.satellites", "q", over="none"))

@@ -20,6 +20,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN, RAY
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.gears.reducer_stages import ReducerWheel, Stage
+from tmm_sheets.words import marked, tr
 
 LETTERS = "ABCDEFGKLMNQRST"
 """Names of the points in the order of the power; O is the main axis, P the pole."""
@@ -34,37 +35,38 @@ def _read(at: Any, origin: Any, pole: Any) -> Any:
 
 
 AT_RADIUS = Rule("point on a pitch circle", lambda side, d: side * 1j * (d / 2e3), ("number", "number"), "point",
-                 "На высоте начального радиуса {1}/2 мм от главной оси отметим точку {name}.", unit="m")
+                 marked("At the height of the pitch radius {1}/2 mm from the main axis mark point {name}."), unit="m")
 AT_DISTANCE = Rule("point at a distance from the axis", lambda side, a: side * 1j * (a / 1e3), ("number", "number"), "point",
-                   "На расстоянии {1} мм от главной оси отметим точку {name}.", unit="m")
+                   marked("At the distance {1} mm from the main axis mark point {name}."), unit="m")
 VELOCITY_OF = Rule("velocity of a turning point", lambda n, p, o: n * pi / 30 * (np.imag(p) - np.imag(o)),
                    ("number", "point", "point"), "vector",
-                   "Скорость точки {1} звена, вращающегося вокруг {2} с частотой {0} об/мин, V = πn/30·{1}{2}: {name} = {value}.",
+                   marked("Velocity of point {1} of the link that turns about {2} at {0} rpm, V = πn/30·{1}{2}: {name} = {value}."),
                    source="003, 4")
 LAY_VELOCITY = Rule(
     "lay off a velocity", lambda p, v: p + v, ("point", "vector"), "point",
-    "От точки {0} отложим её скорость {1}: конец {name}.", lambda a, v: (Helper("line", a[0], v),), laid_off=True,
+    marked("From {0} lay off its velocity {1}: end {name}."), lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 VELOCITY = Rule(
     "velocity from a link's line", _over, ("point", "point", "direction"), "point",
-    "Горизонталь через точку {0} пересекает линию звена {2} в точке {name}: отрезок {0}{name} — скорость точки {0}.",
+    marked("The horizontal through {0} meets the line of link {2} at point {name}: the segment {0}{name} is the velocity of {0}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 PARALLEL = Rule(
     "ray parallel to a link's line", lambda pole, u, origin: ar.line_line(pole, u, origin, 1 + 0j),
     ("point", "direction", "point"), "point",
-    "Через полюс {0} параллельно линии звена {1} проведём луч до оси частот вращения: точка {name}.",
+    marked("Through the pole {0}, parallel to the line of link {1}, draw a ray to the axis of the speeds of rotation: point "
+           "{name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 READ = Rule("measure a speed of rotation", _read, ("point", "point", "point"), "number",
-            "Отрезок {1}{0} даёт частоту вращения {name} = {value} об/мин.", unit="1/min", source="003, 4")
+            marked("The segment {1}{0} gives the speed of rotation {name} = {value} rpm."), unit="1/min", source="003, 4")
 
 
 class _SpeedPicture:
     """Adds the links one after another, in the order of the power."""
 
     def __init__(self) -> None:
-        self.plan = Plan("reducer-velocities", "Картина скоростей", "m/s")
+        self.plan = Plan("reducer-velocities", tr("Picture of velocities"), "m/s")
         self.axis = self.plan.add("O", GIVEN, 0j)
         self.letters = iter(LETTERS)
 
@@ -74,7 +76,8 @@ class _SpeedPicture:
 
     def line(self, link: str, a: Step, b: Step) -> Step:
         """Line of a link's velocities through two of them."""
-        return self.plan.add(link, RAY, a, b, say=f"Линия распределения скоростей звена {link}: прямая {{0}}{{1}}.")
+        return self.plan.add(link, RAY, a, b,
+                             say=tr("Line of the velocities of link {link}: the line {{0}}{{1}}.").format(link=link))
 
     def velocity(self, point: Step, axis: Step, line: Step) -> Step:
         """Velocity of a point of a link whose line is there."""
@@ -144,10 +147,11 @@ def speeds(velocities: Plan, distance: float) -> Plan:
 
     For each line of the picture the end of its ray, named like the link, and the speed ``n<link>`` in 1/min.
     """
-    plan = Plan("reducer-speeds", "План частот вращения", "m/s")
-    given = Given(-1j * distance, "reducer.speeds.pole", "H", "m", over="none", choice="при нём масштаб μ_n удобен для счёта")
-    pole = plan.add("P", GIVEN, given, say="Отметим полюс {name}.")
-    origin = plan.add("0", GIVEN, 0j, say="Над полюсом отметим начало отсчёта {name} на оси частот вращения.")
+    plan = Plan("reducer-speeds", tr("Plan of the speeds of rotation"), "m/s")
+    given = Given(-1j * distance, "reducer.speeds.pole", "H", "m", over="none",
+                  choice=tr("with it the scale factor μ_n is handy for counting"))
+    pole = plan.add("P", GIVEN, given, say=tr("Mark the pole {name}."))
+    origin = plan.add("0", GIVEN, 0j, say=tr("Above the pole mark the origin {name} on the axis of the speeds of rotation."))
     for link in links_of(velocities):
         end = plan.add(link, PARALLEL, pole, velocities[link], origin)
         plan.add(f"n{link}", READ, end, origin, pole)

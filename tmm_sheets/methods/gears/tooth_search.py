@@ -23,6 +23,7 @@ from tmm_sheets.methods.gears.planetary import (
     neighbours_clear,
     stage_ratio,
 )
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import ReducerTable
@@ -242,14 +243,16 @@ def search(data: ReducerTable) -> list[ToothSet]:
         found = _sets(task)
         if found:
             return found
-    hint = "give another pinion, number of satellites or range simple_ratio of the simple stage"
+    hint = tell("give another pinion, number of satellites or range simple_ratio of the simple stage")
     nearest = tasks[-1].nearest()
     if nearest is None:
-        raise CannotBuild(f"reducer: no tooth set meets coaxiality, assembly and neighbourhood near the ratio {asked:.4g}", hint)
+        raise CannotBuild(tell("reducer: no tooth set meets coaxiality, assembly and neighbourhood near the ratio {asked:.4g}"
+                               ).format(asked=asked), hint)
     teeth = ", ".join(f"{name} = {z}" for name, z in named_teeth(data, nearest).items())
     raise CannotBuild(
-        f"reducer: no tooth set within {data.tolerance * 100:g} % of the ratio {asked:.4g}; the nearest, {teeth}, "
-        f"gives {nearest.ratio:.4g} ({nearest.deviation * 100:+.1f} %)", hint)
+        tell("reducer: no tooth set within {tolerance:g} % of the ratio {asked:.4g}; the nearest, {teeth}, gives {ratio:.4g} "
+             "({deviation:+.1f} %)").format(tolerance=data.tolerance * 100, asked=asked, teeth=teeth, ratio=nearest.ratio,
+                                            deviation=nearest.deviation * 100), hint)
 
 
 def _given(data: ReducerTable) -> tuple[Known, tuple[int, int | None]]:
@@ -259,9 +262,11 @@ def _given(data: ReducerTable) -> tuple[Known, tuple[int, int | None]]:
     known = list(dict.fromkeys((*names, *pair)))
     unknown = [name for name in data.teeth if name not in known]
     if unknown:
-        raise CannotBuild(f"reducer: teeth has {', '.join(unknown)}; here are {', '.join(known)}",
-                          "equal stages have the tooth numbers of the first" if data.stages > 1 else "")
+        raise CannotBuild(tell("reducer: teeth has {unknown}; here are {known}").format(unknown=", ".join(unknown),
+                                                                                       known=", ".join(known)),
+                          tell("equal stages have the tooth numbers of the first") if data.stages > 1 else "")
     if pair[0] not in data.teeth:
-        raise CannotBuild(f"reducer: teeth has no {pair[0]}, the pinion of the simple stage", f"write teeth = {{ {pair[0]} = 12 }}")
+        raise CannotBuild(tell("reducer: teeth has no {pinion}, the pinion of the simple stage").format(pinion=pair[0]),
+                          tell("write teeth = {{ {pinion} = 12 }}").format(pinion=pair[0]))
     one, two, three, four = (data.teeth.get(name) for name in names)
     return (one, two, three, four), (data.teeth[pair[0]], data.teeth.get(pair[1]))

@@ -16,24 +16,25 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.methods.linkage.velocities import POLE, SIMILAR, Velocities, plan_name, turning
+from tmm_sheets.words import marked, tr
 
 NORMAL = Rule(
     "normal acceleration", lambda a, w, big_q, big_b: a - w * w * (big_b - big_q),
     ("point", "number", "point", "point"), "point",
-    "От точки {0} параллельно {3}{2} к центру {2} отложим нормальное ускорение ω²·l: точка {name}.",
+    marked("From {0}, parallel to {3}{2} towards the centre {2}, lay off the normal acceleration ω²·l: point {name}."),
     lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 TANGENTIAL = Rule(
     "tangential acceleration", lambda a, e, big_q, big_b: a + 1j * e * (big_b - big_q),
     ("point", "number", "point", "point"), "point",
-    "От точки {0} перпендикулярно {2}{3} в сторону ε отложим касательное ускорение ε·l: точка {name}.",
+    marked("From {0}, perpendicular to {2}{3} in the sense of ε, lay off the tangential acceleration ε·l: point {name}."),
     lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 CORIOLIS = Rule(
     "Coriolis acceleration", lambda a, w, v_from, v_to: a + 2j * w * (v_to - v_from),
     ("point", "number", "point", "point"), "point",
-    "От точки {0} отложим поворотное (кориолисово) ускорение 2ω·V: вектор {2}{3} плана скоростей, повёрнутый на 90° "
-    "в сторону ω: точка {name}.",
+    marked("From {0} lay off the Coriolis acceleration 2ω·V, the vector {2}{3} of the velocity polygon turned by 90° in the sense "
+           "of ω: point {name}."),
     lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 OF_CRANK = Rule("angular acceleration of the crank", lambda sense, e: sense * e, ("number", "number"), "number",
@@ -42,14 +43,15 @@ SAME = Rule("the same acceleration", lambda e: e, ("number",), "number", "{name}
 RIGID = Rule(
     "acceleration on a turning link", lambda a, w, e, big_q, big_m: a + (1j * e - w * w) * (big_m - big_q),
     ("point", "number", "number", "point", "point"), "point",
-    "От точки {0} отложим нормальное и касательное ускорения точки звена, совпадающей с {4}: точка {name}.",
+    marked("From {0} lay off the normal and tangential acceleration of the point of the link that coincides with {4}: point "
+           "{name}."),
     lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 
 
 ANGULAR_ACCELERATION = Rule(
     "angular acceleration", turning, ("point", "point", "point", "point"), "number",
-    "Угловое ускорение |{name}| = a^τ / {0}{1}, со знаком {name} = {value} рад/с².", unit="rad/s2",
+    marked("Angular acceleration |{name}| = a^τ / {0}{1}, with its sign {name} = {value} rad/s²."), unit="rad/s2",
 )
 
 
@@ -103,7 +105,7 @@ class Accelerations:
         if link == self.positions.mechanism.frame:
             return a
         k = self.plan.add(_free(self.plan, "k"), CORIOLIS, a, self.velocities.omega[link], v_from, v_to)
-        self.plan.vector(f"a̅_{{{symbol}}}^к", a, k)
+        self.plan.vector(tr("a̅_{{{points}}}^c").format(points=symbol), a, k)
         return k
 
     def normal(self, a: Step, link: str, big_q: str, big_b: str, letters: str = "") -> Step:
@@ -138,7 +140,7 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
     """
     pos = vel.positions
     m = pos.mechanism
-    plan = Plan(f"accelerations{pos.where}{where}", "План ускорений", "m/s2", pos.plan.labels, "π", pos.plan.search)
+    plan = Plan(f"accelerations{pos.where}{where}", tr("Acceleration polygon"), "m/s2", pos.plan.labels, "π", pos.plan.search)
     acc = Accelerations(pos, vel, plan)
     pole = plan.add("π", POLE, 0j)
     for name in m.fixed:

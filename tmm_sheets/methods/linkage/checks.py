@@ -15,6 +15,7 @@ from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import Floats
+from tmm_sheets.words import tell, tell_n
 
 ASSEMBLY = "assembly"
 CLOSE = 0.02
@@ -46,7 +47,7 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
     missing = position_plan(mechanism, cycle.phi, cycle.labels, purpose=ASSEMBLY).plan.check()
     if missing:
         name, labels = missing
-        raise CannotBuild(f"{name} cannot be constructed at positions {', '.join(labels)}")
+        raise CannotBuild(tell("{point} cannot be constructed at positions {labels}").format(point=name, labels=", ".join(labels)))
 
 
 class _Search:
@@ -97,19 +98,23 @@ class _Search:
             return ""
         labels = [label for label, m in zip(self.cycle.labels, self.numbered[i], strict=True) if m < 0]
         reachable = self._assembles(self.margins, i)
+        worst = int(np.nanargmin(margin))
+        said = {"group": "-".join(group.links), "why": limit.say(float(-margin[worst]))}
+        if limit.measured and not fails.all():
+            said["why"] = tell("{why} at worst ({place})").format(why=said["why"], place=self._place(worst, i))
         if fails.all():
-            at = "at any position"
+            text = tell("group {group} does not assemble at any position: {why}").format(**said)
         elif labels:
-            at = f"at position{'s' * (len(labels) > 1)} {', '.join(labels)}"
+            text = tell_n("group {group} does not assemble at position {places}: {why}",
+                          "group {group} does not assemble at positions {places}: {why}",
+                          len(labels)).format(places=", ".join(labels), **said)
         else:
             ranges = self._ranges(fails, i)
-            at = f"at crank angle{'s' * ('.' in ranges.replace('.', '', 1))} {ranges}"
-        worst = int(np.nanargmin(margin))
-        text = f"group {'-'.join(group.links)} does not assemble {at}: {limit.say(float(-margin[worst]))}"
-        if limit.measured and not fails.all():
-            text += f" at worst ({self._place(worst, i)})"
+            text = tell_n("group {group} does not assemble at crank angle {places}: {why}",
+                          "group {group} does not assemble at crank angles {places}: {why}",
+                          2 if "." in ranges.replace(".", "", 1) else 1).format(places=ranges, **said)
         if limit.measured and reachable.any():
-            text += f"; reachable crank angles: {self._ranges(reachable, i)}"
+            text = tell("{message}; reachable crank angles: {ranges}").format(message=text, ranges=self._ranges(reachable, i))
         return text
 
     @staticmethod
@@ -120,8 +125,8 @@ class _Search:
     def _place(self, worst: int, i: int) -> str:
         low = np.nanmin(self.numbered[i]) if np.isfinite(self.numbered[i]).any() else np.inf
         if low <= self.margins[i][worst]:
-            return f"position {self.cycle.labels[int(np.nanargmin(self.numbered[i]))]}"
-        return f"crank angle {self._degrees(self.turned[worst]):.1f} deg"
+            return tell("position {label}").format(label=self.cycle.labels[int(np.nanargmin(self.numbered[i]))])
+        return tell("crank angle {angle:.1f} deg").format(angle=self._degrees(self.turned[worst]))
 
     def _degrees(self, turned: float) -> float:
         """World angle of the crank, 0 to 360 degrees."""
@@ -130,7 +135,7 @@ class _Search:
     def _ranges(self, mask: Any, i: int) -> str:
         """Crank angles where ``mask`` holds, as ranges in degrees with sharpened ends."""
         if mask.all():
-            return "all"
+            return tell("all")
         starts = np.flatnonzero(mask & ~np.roll(mask, 1))
         ends = np.flatnonzero(mask & ~np.roll(mask, -1))
         if ends[0] < starts[0]:
@@ -147,8 +152,10 @@ class _Search:
             single = f"{first:.1f}" == f"{last:.1f}"
             texts.append(f"{np.mod(first, 360):.1f}" if single else f"{first:.1f}..{last:.1f}")
         if len(texts) > 4:
-            texts = [*texts[:3], f"{len(texts) - 3} more ranges"]
-        return ", ".join(texts) + " deg"
+            more = len(texts) - 3
+            said = tell_n("{ranges}, {n} more range deg", "{ranges}, {n} more ranges deg", more)
+            return said.format(ranges=", ".join(texts[:3]), n=more)
+        return tell("{ranges} deg").format(ranges=", ".join(texts))
 
     def _edges(self, inside: Any, outside: Any, i: int, mask: Any) -> Floats:
         """Angles at the ends of ranges, halved until they are sharp to 0.001 degrees."""

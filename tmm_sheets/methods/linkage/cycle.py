@@ -11,6 +11,7 @@ from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.strokes import Floats, Run
+from tmm_sheets.words import tell
 
 
 @dataclass(frozen=True)
@@ -109,4 +110,5 @@ class Cycle:
         try:
             return self.labels.index(label)
         except ValueError:
-            raise CannotBuild(f"there is no position {label}", f"the positions are {', '.join(self.labels)}") from None
+            raise CannotBuild(tell("there is no position {label}").format(label=label),
+                              tell("the positions are {labels}").format(labels=", ".join(self.labels))) from None

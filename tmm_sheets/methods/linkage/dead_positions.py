@@ -6,6 +6,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step
 from tmm_sheets.mechanism.model import Mechanism
+from tmm_sheets.words import tr
 
 
 def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]:
@@ -17,7 +18,7 @@ def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]
     group = next((g for g in m.groups if c.pin in g.outer), None)
     if group is None:
         return None, None
-    plan = Plan("dead-positions", "Мёртвые положения", "m")
+    plan = Plan("dead-positions", tr("Dead positions"), "m")
     dead = group.kind.dead_positions(m, group, plan, plan.add(c.pivot, rules.GIVEN, m.fixed[c.pivot]))
     return (None, None) if dead is None else (plan, dead)
 

@@ -23,18 +23,20 @@ from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.numbers import size
+from tmm_sheets.words import marked, tr
 
-WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force", "Вес {name} = m·g = {0}·{1} = {value}, вниз.")
+WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force",
+              marked("Weight {name} = m·g = {0}·{1} = {value}, downwards."))
 INERTIA = Rule("inertia force", lambda m, a: -m * a, ("number", "point"), "force",
-               "Сила инерции {name} = m·a = {0}·a_{1} = {value}, против ускорения {1}.")
+               marked("Force of inertia {name} = m·a = {0}·a_{1} = {value}, against the acceleration of {1}."))
 COUPLE = Rule("inertia couple", lambda j, e: -j * e, ("number", "number"), "number",
-              "Момент инерции {name} = −J·ε = {value} Н·м, против ε.", unit="N*m")
-GIVEN_FORCE = Rule("given force vector", lambda f: f, ("force",), "force", "Сила {name} = {value}.", unit="N")
+              marked("Moment of the inertia forces {name} = −J·ε = {value} N·m, against ε."), unit="N*m")
+GIVEN_FORCE = Rule("given force vector", lambda f: f, ("force",), "force", marked("Force {name} = {value}."), unit="N")
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.", unit="N")
-OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", "{name} = {value} Н·м.", unit="N*m")
+OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", marked("{name} = {value} N·m."), unit="N*m")
 NEGATIVE = Rule("opposite number", lambda x: -x, ("number",), "number", "{name} = {value}.", beyond_paper=True, unit="1")
 ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), "length",
-           "Плечо {name} = {value} из уравнения моментов.")
+           marked("Arm {name} = {value} from the equation of moments."))
 
 
 def _tangential(total: Any, centre: Any, at: Any) -> Any:
@@ -43,7 +45,7 @@ def _tangential(total: Any, centre: Any, at: Any) -> Any:
 
 
 TANGENTIAL = Rule("component from moments", _tangential, ("number", "point", "point"), "force",
-                  "Из суммы моментов относительно точки {1} найдём составляющую {name} = {value}, перпендикулярную {1}{2}.",
+                  marked("From the sum of moments about {1} find the component {name} = {value}, perpendicular to {1}{2}."),
                   unit="N")
 
 
@@ -54,7 +56,7 @@ def _moments(about: Any, *terms: Any) -> Any:
     return total
 
 
-MOMENTS = Rule("sum of moments", _moments, ("point",), "number", "Сумма моментов относительно точки {0}: {name} = {value} Н·м.",
+MOMENTS = Rule("sum of moments", _moments, ("point",), "number", marked("Sum of moments about {0}: {name} = {value} N·m."),
                lambda a, v: tuple(h for at, force in zip(a[1::3], a[2::3], strict=True) for h in rules.arm(a[0], at, force)),
                unit="N*m")
 
@@ -151,7 +153,9 @@ class Kinetostatics:
 
     def plan_of(self, name: str, links: tuple[str, ...]) -> ForcePlan:
         """New force plan of a link or of a whole group."""
-        title = f"План сил звена {links[0]}" if len(links) == 1 else f"План сил группы {'–'.join(links)}"
+        title = tr("Force polygon of link "
+                   "{link}").format(link=links[0]) if len(links) == 1 else tr("Force polygon of group "
+                                                                              "{links}").format(links="–".join(links))
         fp = ForcePlan(name, links, Plan(f"force-{name}", title, "N", self.positions.plan.labels,
                                           search=self.positions.plan.search))
         self.plans[name] = fp
@@ -172,10 +176,10 @@ class Kinetostatics:
             self.loads[on].append(self.contact(on, link, at, step, turned))
         return step
 
-    def across(self, name: str, u: Step) -> Step:
+    def across(self, name: str, u: Step, symbol: str = "") -> Step:
         """Direction across another, drawn once."""
         label = f"⟂{name}"
-        return self.plan.steps[label] if label in self.plan else self.plan.add(label, rules.TURN, u)
+        return self.plan.steps[label] if label in self.plan else self.plan.add(label, rules.TURN, u, symbol=symbol)
 
     def sliding(self, j: str, other: str, force: Step, about: Step) -> Step:
         """Couple of a sliding pair's reaction on link ``j`` (its force taken at ``about``) and its arm, from moments about it."""
@@ -237,6 +241,10 @@ class Kinetostatics:
         return f_one, f_two, fp
 
 
+def _drive_plan() -> Plan:
+    return Plan("drive", tr("Gear drive of the input link"), "m")
+
+
 @dataclass(frozen=True)
 class GearForce:
     """Force of a gear pair on the crank shaft's wheel: acts along the line of action.
@@ -248,12 +256,12 @@ class GearForce:
     radius: float
     angle: float
     mate: float
-    plan: Plan = field(default_factory=lambda: Plan("drive", "Зубчатый привод начального звена", "m"), compare=False, repr=False)
+    plan: Plan = field(default_factory=_drive_plan, compare=False, repr=False)
 
     @classmethod
     def of_gear(cls, name: str, module: float, teeth: float, angle: float, mate: float) -> GearForce:
         """Force on a wheel of so many teeth, ``module`` in m."""
-        plan = Plan("drive", "Зубчатый привод начального звена", "m")
+        plan = _drive_plan()
         radius = plan.add("r", PITCH_RADIUS, module, teeth)
         return cls(name, FoundNumber(radius.value, radius), angle, mate, plan)
 
@@ -272,7 +280,7 @@ class GearForce:
 
 
 PITCH_RADIUS = Rule("radius of the pitch circle", lambda module, teeth: module * teeth / 2, ("length", "number"), "length",
-                    "Радиус делительной окружности {name} = m·z/2 = {value}.")
+                    marked("Radius of the reference circle {name} = m·z/2 = {value}."))
 
 
 def _line_of_action(sense: Any, mate: Any, angle: Any) -> Any:
@@ -281,7 +289,8 @@ def _line_of_action(sense: Any, mate: Any, angle: Any) -> Any:
 
 
 LINE_OF_ACTION = Rule("line of action", _line_of_action, ("number", "angle", "angle"), "direction",
-                      "Под углом зацепления {2} к перпендикуляру к линии центров проведём линию действия силы {name}.")
+                      marked("At the working pressure angle {2} to the perpendicular to the line of centres draw the line of "
+                             "action of the force {name}."))
 
 
 def contact_point(pos: Positions, driver: GearForce) -> Step:
@@ -302,7 +311,7 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
     more than the crank's own.
     """
     m = pos.mechanism
-    plan = Plan("loads", "Внешние силы и силы инерции", "N", pos.plan.labels, search=pos.plan.search)
+    plan = Plan("loads", tr("External forces and forces of inertia"), "N", pos.plan.labels, search=pos.plan.search)
     loads: dict[str, list[Load]] = {name: [] for name in m.links}
     couples: dict[str, list[Step]] = {}
     for link in m.links.values():
@@ -312,11 +321,14 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
                 w = plan.add(f"G{link.name}", WEIGHT, link.mass, gravity)
                 loads[link.name].append(Load(f"G̅_{link.name}", link.name, at, w, "weight"))
             if link.centre not in m.fixed:
-                fi = plan.add(f"Fи{link.name}", INERTIA, link.mass, acc.points[link.centre])
-                loads[link.name].append(Load(f"F̅_{{и{link.name}}}", link.name, at, fi, "inertia"))
+                fi = plan.add(f"Fи{link.name}", INERTIA, link.mass, acc.points[link.centre],
+                              symbol=tr("Fi{link}").format(link=link.name))
+                loads[link.name].append(Load(tr("F̅_{{i{link}}}").format(link=link.name), link.name, at, fi, "inertia"))
         inertia = link.inertia if carried is None or link.name != m.crank.link else carried
         if inertia:
-            couples.setdefault(link.name, []).append(plan.add(f"Mи{link.name}", COUPLE, inertia, acc.epsilon[link.name]))
+            couple = plan.add(f"Mи{link.name}", COUPLE, inertia, acc.epsilon[link.name],
+                              symbol=tr("Mi{link}").format(link=link.name))
+            couples.setdefault(link.name, []).append(couple)
     for name, link_name, point, vector in applied:
         f = plan.add(name, GIVEN_FORCE, vector)
         loads[link_name].append(Load(symbol(name), link_name, pos.points[point], f, "applied"))
@@ -332,7 +344,7 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
 def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
                   driver: GearForce | None, plan: Plan | None = None) -> Kinetostatics:
     """Force plans of all groups from the farthest to the crank; ``driver`` None means a pure balancing moment."""
-    sums = plan or Plan("moments", "Суммы моментов", "m", pos.plan.labels, search=pos.plan.search)
+    sums = plan or Plan("moments", tr("Sums of moments"), "m", pos.plan.labels, search=pos.plan.search)
     work = {name: list(of_link) for name, of_link in loads.items()}
     k = Kinetostatics(pos, acc, work, sums, couples)
     for g in reversed(pos.mechanism.groups):
@@ -354,7 +366,7 @@ def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
     tail = plan.chain(1, first, reactions)
     n = 1 + len(reactions)
     if driver is None:
-        k.balancing = k.plan.add("Mур", OPPOSITE_COUPLE, total)
+        k.balancing = k.plan.add("Mур", OPPOSITE_COUPLE, total, symbol=tr("Mb"))
     else:
         at = contact_point(pos, driver)
         k.balancing = k.plan.add(driver.name, DRIVING_FORCE, total, pivot, at, driver.line(c.sense))
@@ -371,5 +383,5 @@ def _driving(total: Any, centre: Any, at: Any, u: Any) -> Any:
 
 
 DRIVING_FORCE = Rule("balancing force", _driving, ("number", "point", "point", "direction"), "force",
-                     "Из суммы моментов относительно точки {1} найдём уравновешивающую силу {name} = {value}.",
+                     marked("From the sum of moments about {1} find the balancing force {name} = {value}."),
                      lambda a, v: rules.arm(a[1], a[2], a[3]), unit="N")

@@ -29,6 +29,7 @@ from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.velocities import velocity_plan
+from tmm_sheets.words import marked, tell
 
 STROKES = "strokes of forces"
 NEAR = 1e-12
@@ -50,7 +51,7 @@ class Path:
 
 WAY = Rule("fraction of a straight way",
            lambda p, sense, low, way: np.minimum(np.maximum(((p * np.conjugate(sense)).real - low) / way, 0.0), 1.0),
-           ("point", "direction", "length", "length"), "number", "Доля пройденного пути {name} = {value}.", exact=True)
+           ("point", "direction", "length", "length"), "number", marked("Part of the way travelled {name} = {value}."), exact=True)
 
 
 @primitive("fraction of a swing")
@@ -61,7 +62,7 @@ def _swung(u: Any, sense: float, low: float, swing: float) -> Any:
 
 
 SWING = Rule("fraction of a swing", _swung, ("direction", "number", "angle", "angle"), "number",
-             "Доля угла качания {name} = {value}.", exact=True)
+             marked("Part of the angle of swing {name} = {value}."), exact=True)
 
 
 @dataclass(frozen=True)
@@ -170,8 +171,8 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     ways = along(np.array([r.begin for r in runs])) if runs else np.zeros(1)
     low, high = float(ways.min()), float(ways.max())
     if not high - low > 1e-9 * m.crank.length:
-        _refuse(m, f"point {point} does not move to and fro that way: its force has no strokes",
-                "give the sense of the working strokes along its path")
+        _refuse(m, tell("point {point} does not move to and fro that way: its force has no strokes").format(point=point),
+                tell("give the sense of the working strokes along its path"))
     ends = (_found(low, point, "beginning", "m"), _found(high - low, point, "length", "m"))
     return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first),
                         lambda t: np.clip((along(np.asarray(t)) - low) / (high - low), 0.0, 1.0), cycle.period,
@@ -197,7 +198,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
 
     runs = runs_of(speed)
     if not runs:
-        _refuse(m, f"link {link} does not turn all the time")
+        _refuse(m, tell("link {link} does not turn all the time").format(link=link))
     # The angle from the whole turn: more than 180 degrees would not show in the angles of the reversals alone.
     turned = np.unique(np.append(np.linspace(0.0, TURN, SWEEP + 1), [r.begin for r in runs]))
     swept = np.unwrap(angle(turned))
@@ -325,8 +326,9 @@ class Applied:
         return np.abs(self.law(turned, side))
 
 
-FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"), "force", "Сила {name} = {value}.", unit="N")
-MOMENT = Rule("given moment", lambda value: value, ("number",), "number", "Момент {name} = {value} Н·м.", unit="N*m")
+FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"), "force", marked("Force {name} = {value}."),
+             unit="N")
+MOMENT = Rule("given moment", lambda value: value, ("number",), "number", marked("Moment {name} = {value} N·m."), unit="N*m")
 
 
 def _signed_sum(*terms: Any) -> Any:
@@ -415,7 +417,7 @@ def periodic_ordinate(curve: Any, at: Any, turns: Any, side: Any) -> Any:
     return read(curve, at, int(side), 2 * np.pi * turns)
 
 
-DIAGRAM = Rule("load diagram", diagram, ("number",) * 4, "curve", "По точкам задания проведём диаграмму нагрузки {name}.",
+DIAGRAM = Rule("load diagram", diagram, ("number",) * 4, "curve", marked("Through the given points draw the load diagram {name}."),
                exact=True)
 ON_WAY = Rule("ordinate of a load diagram", ordinate, ("curve", "number", "number"), "number", "{name} = {value}.", exact=True)
 AT_ANGLE = Rule("ordinate of a load diagram over the angle", periodic_ordinate, ("curve", "angle", "number", "number"), "number",

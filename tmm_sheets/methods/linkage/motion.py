@@ -15,6 +15,7 @@ from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.study import Study
+from tmm_sheets.words import marked, tr
 
 SAMPLES = 15
 """Points of a curve between two positions."""
@@ -22,20 +23,28 @@ STRAIGHT = 1e-9
 """Part of its way by which a point may leave a straight line."""
 TURN = 2 * np.pi
 
-BEGINNING = Rule("beginning of the way", take, ("point", "number"), "point", "Путь отсчитаем от точки {name}.", unit="m")
+BEGINNING = Rule("beginning of the way", take, ("point", "number"), "point", marked("Measure the way from point {name}."), unit="m")
 WAY = Rule("way along a path", lambda p, start, u: ((p - start) * np.conj(u)).real, ("point", "point", "direction"), "number",
-           "Путь от точки {1}: {name} = {value} м.", unit="m")
-VELOCITY, ACCELERATION = (
-    Rule(f"{name} along a path", lambda v, u: (v * np.conj(u)).real, ("point", "direction"), "number",
-         f"Проекция {{0}} на направление пути: {{name}} = {{value}} {said}.", unit=unit)
-    for name, said, unit in (("velocity", "м/с", "m/s"), ("acceleration", "м/с²", "m/s2")))
-FIRST = Rule("first direction of a link", take, ("direction", "number"), "direction", "Угол отсчитаем от направления {name}.")
+           marked("Way from {1}: {name} = {value} m."), unit="m")
+
+
+def _projection(v: Any, u: Any) -> Any:
+    return (v * np.conj(u)).real
+
+
+VELOCITY = Rule("velocity along a path", _projection, ("point", "direction"), "number",
+                marked("Projection of {0} on the direction of the way: {name} = {value} m/s."), unit="m/s")
+ACCELERATION = Rule("acceleration along a path", _projection, ("point", "direction"), "number",
+                    marked("Projection of {0} on the direction of the way: {name} = {value} m/s²."), unit="m/s2")
+FIRST = Rule("first direction of a link", take, ("direction", "number"), "direction",
+             marked("Measure the angle from the direction {name}."))
 ANGLE = Rule("angle turned from the beginning",
              lambda u, start, turns, sign: sign * (np.arctan2(u.imag, u.real) + TURN * turns - np.arctan2(start.imag, start.real)),
-             ("direction", "direction", "number", "number"), "angle", "Угол поворота звена {name} = {value}.")
-OMEGA, EPSILON = (Rule(f"angular {name} in the first sense", lambda w, sign: sign * w, ("number", "number"), "number",
-                       f"{{name}} = {{value}} {said}.", unit=unit)
-                  for name, said, unit in (("velocity", "с⁻¹", "rad/s"), ("acceleration", "с⁻²", "rad/s2")))
+             ("direction", "direction", "number", "number"), "angle", marked("Angle turned by the link {name} = {value}."))
+OMEGA = Rule("angular velocity in the first sense", lambda w, sign: sign * w, ("number", "number"), "number",
+             marked("{name} = {value} s⁻¹."), unit="rad/s")
+EPSILON = Rule("angular acceleration in the first sense", lambda w, sign: sign * w, ("number", "number"), "number",
+               marked("{name} = {value} s⁻²."), unit="rad/s2")
 
 Three = tuple[Step, Step, Step]
 
@@ -63,7 +72,7 @@ class Motion:
         self.study = study
         self._study_at = study_at
         self._known: dict[str, Output] = {}
-        self.plan = Plan("motion", "Кинематические диаграммы", "m", study.labels)
+        self.plan = Plan("motion", tr("Kinematic diagrams"), "m", study.labels)
 
     @property
     def plans(self) -> dict[str, Plan]:

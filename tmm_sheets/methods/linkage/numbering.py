@@ -23,22 +23,24 @@ from tmm_sheets.methods.linkage.dead_positions import check_dead_positions, dead
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.velocities import velocity_plan
+from tmm_sheets.words import marked, tell, tr
 
 DEAD_POINTS = "dead points"
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
 WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + sense * turned, ("angle", "number", "angle"), "angle",
-             "Угол кривошипа {name} = {0} + {1}·{2} = {value}.", unit="rad", exact=True)
+             marked("Angle of the crank {name} = {0} + {1}·{2} = {value}."), unit="rad", exact=True)
 EQUAL = Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra,
              ("number", "number", "angle"), "angle",
-             "Разделим оборот кривошипа на {0} равных частей; угол поворота {name} = {value}.", unit="rad", exact=True)
+             marked("Divide the turn of the crank into {0} equal parts; angle turned {name} = {value}."), unit="rad", exact=True)
 STROKE_OF_K = Rule("crank angle of the working stroke", lambda k: np.pi * (1 + (k - 1) / (k + 1)), ("number",), "angle",
-                   "Угол рабочего хода {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}.", unit="rad", source="000, 3.1", exact=True)
+                   marked("Angle of the working stroke {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}."), unit="rad",
+                   source="000, 3.1", exact=True)
 BETWEEN = Rule("symmetric between the dead positions",
                lambda dead, sense, exact, stroke: dead + sense * exact / 2 - sense * stroke / 2,
                ("angle", "number", "angle", "angle"), "angle",
-               "Рабочий ход отложим симметрично между мёртвыми положениями: угол положения 0 {name} = {value}.",
+               marked("Lay off the working stroke symmetrically between the dead positions: angle of position 0 {name} = {value}."),
                unit="rad", exact=True)
 
 
@@ -56,9 +58,10 @@ def _parts(stroke: float, working: float, idle: float) -> Floats:
 
 
 TURNED = Rule("angle between dead positions", _turned, ("angle", "angle", "number"), "angle",
-              "Угол рабочего хода между мёртвыми положениями {name} = {value}.", unit="rad", exact=True)
+              marked("Angle of the working stroke between the dead positions {name} = {value}."), unit="rad", exact=True)
 PARTS = Rule("equal parts of both strokes", _parts, ("angle", "number", "number"), "angle",
-             "Рабочий ход разделим на {1} равных частей, холостой на {2}; угол поворота {name} = {value}.", unit="rad", exact=True)
+             marked("Divide the working stroke into {1} equal parts, the idle stroke into {2}; angle turned {name} = {value}."),
+             unit="rad", exact=True)
 
 
 def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle: int, coefficient: float | None) -> Cycle:
@@ -75,13 +78,14 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
     check_dead_positions(m)
     sense, dead = m.crank.sense, _dead_of(m, output, SENSES[working_sense])
     labels = tuple(str(i) for i in range(working + idle))
-    plan = Plan("cycle", "Разметка положений", "rad", labels)
+    plan = Plan("cycle", tr("Numbering of the positions"), "rad", labels)
     start, stroke, begin = dead.start, dead.width, 0.0
     if coefficient is not None:
-        stroke = plan.add("φ_рх", STROKE_OF_K, GivenNumber(coefficient, "cycle.coefficient", "K"))
+        stroke = plan.add("φ_рх", STROKE_OF_K, GivenNumber(coefficient, "cycle.coefficient", "K"), symbol=tr("φ_w"))
         start = plan.add("φ_0", BETWEEN, dead.start, sense, dead.width, stroke)
         begin = (stroke.value - working_stroke(dead.runs)[1]) / 2
-    turned = plan.add("φ_п", PARTS, stroke, GivenNumber(working, "cycle.working"), GivenNumber(idle, "cycle.idle"))
+    turned = plan.add("φ_п", PARTS, stroke, GivenNumber(working, "cycle.working"), GivenNumber(idle, "cycle.idle"),
+                      symbol=tr("φ_t"))
     plan.add("φ", WORLD, start, sense, turned)
     return Cycle(labels, turned.value, float(start.value), sense, 2 * np.pi, _strokes(m, output, dead, begin), dead.plan, plan)
 
@@ -103,14 +107,15 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
     named = {(zero if i == 0 else str(i if i % positions else i + late)): (2 * np.pi / positions * i, i, 0.0) for i in range(count)}
     for label, angle in (extra or {}).items():
         if label in named:
-            raise CannotBuild(f"there is a position {label} already", "give the further position another name")
+            raise CannotBuild(tell("there is a position {label} already").format(label=label),
+                              tell("give the further position another name"))
         further = float(np.mod(angle, 2 * np.pi * turns))
         named[label] = (further, 0, further)
     order = sorted(named, key=lambda label: named[label][0])
-    numbering = Plan("cycle", "Разметка положений", "rad", tuple(order))
+    numbering = Plan("cycle", tr("Numbering of the positions"), "rad", tuple(order))
     rows = [Given(np.array([named[label][k] for label in order], dtype=np.float64), name, "", unit)
             for k, name, unit in ((1, "numbers of the positions", ""), (2, "cycle.extra", "rad"))]
-    turned = numbering.add("φ_п", EQUAL, GivenNumber(positions, "cycle.positions"), *rows)
+    turned = numbering.add("φ_п", EQUAL, GivenNumber(positions, "cycle.positions"), *rows, symbol=tr("φ_t"))
     numbering.add("φ", WORLD, GivenNumber(start, "cycle.start", "φ_0", "rad"), m.crank.sense, turned)
     plan, strokes = None, None
     if output is not None and working_sense is not None:
@@ -143,8 +148,8 @@ def _strokes(m: Mechanism, output: str, dead: DeadPoints, begin: float) -> Strok
     out = np.asarray(position_plan(m, np.array([first, first + m.crank.sense * width]), purpose=DEAD_POINTS).points[output].value)
     path = complex(out[1] - out[0])
     if not abs(path) > 0:
-        raise CannotBuild(f"point {output} has no stroke: it is in one place in both dead positions",
-                          'name another output, or give the crank angle of position 0 instead: start = "90 deg"')
+        raise CannotBuild(tell("point {output} has no stroke: it is in one place in both dead positions").format(output=output),
+                          tell('name another output, or give the crank angle of position 0 instead: start = "90 deg"'))
     return Strokes(output, begin, begin + width, path / abs(path), abs(path), complex(out[0]), tuple(r.later(begin) for r in runs))
 
 
@@ -163,12 +168,13 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     runs = runs_of(along)
     if len(runs) < 2:
         check_turn(m)  # names the group that does not assemble, and by how much
-        raise CannotBuild(f"point {output} has no dead positions: it never turns back",
-                          'give the crank angle of position 0 instead: start = "90 deg"')
+        raise CannotBuild(tell("point {output} has no dead positions: it never turns back").format(output=output),
+                          tell('give the crank angle of position 0 instead: start = "90 deg"'))
     turned = np.array([r.begin for r in runs])
     ways = (np.asarray(position_plan(m, sense * turned, purpose=DEAD_POINTS).points[output].value) * np.conj(axis)).real
     if not np.ptp(ways) > 1e-9 * m.crank.length:
-        raise CannotBuild(f"point {output} has no working stroke: it does not move that way", "give another working_sense")
+        raise CannotBuild(tell("point {output} has no working stroke: it does not move that way").format(output=output),
+                          tell("give another working_sense"))
     runs = in_strokes(runs, ways)
     begin, end = working_stroke(runs)
     ordered = over_cycle(runs, 2 * np.pi, begin)
@@ -180,7 +186,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
                        for value, name in ((sense * begin, "cycle.start"), (working_stroke(whole)[1], "working stroke")))
         return DeadPoints(None, start, wide, whole)
     # The constructed angles are put in the place of the found ones.
-    step = plan.aside("φ_рх", TURNED, *found, sense)
+    step = plan.aside("φ_рх", TURNED, *found, sense, symbol=tr("φ_w"))
     width = step.value
     places = {begin: 0.0, begin + 2 * np.pi: 2 * np.pi, end: width, end + 2 * np.pi: width + 2 * np.pi}
 

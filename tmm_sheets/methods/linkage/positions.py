@@ -13,6 +13,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.mechanism.groups.dead_centres import near_point
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
+from tmm_sheets.words import tr
 
 
 @dataclass
@@ -70,7 +71,7 @@ def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",
     They may be numbers, a row or a step. ``where`` stands behind the names of this plan and of those made on it: "@middles" for
     angles between the positions. ``purpose`` is what the plan searches for, when it is neither drawn nor told: it is counted then.
     """
-    plan = Plan(f"positions{where}", "Планы положений механизма", "m", labels, search=mechanism.search(purpose))
+    plan = Plan(f"positions{where}", tr("Positions of the mechanism"), "m", labels, search=mechanism.search(purpose))
     inner = {g.inner for g in mechanism.groups if g.inner}
     plan.reserved = frozenset({*mechanism.fixed, mechanism.crank.pin, *inner, *(p.name for p in mechanism.points)})
     pos = Positions(mechanism, plan, phi, where)
@@ -95,10 +96,10 @@ def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",
 
 def _fixed_guide(pos: Positions, guide: Guide) -> None:
     at = near_point(pos.mechanism, guide)
-    point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), *at, say="Отметим точку {name} направляющей.")
+    point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), *at, say=tr("Mark point {name} of the guide."))
     pos.guide_points[guide.name] = point
     pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.UNDER, guide.direction,
-                                                    say=f"Через точку {point.name} проведём направляющую {{name}}.")
+                                                    say=tr("Through {point} draw the guide {{name}}.").format(point=point.name))
 
 
 def _moving_guide(pos: Positions, guide: Guide) -> None:

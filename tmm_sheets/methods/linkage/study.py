@@ -22,6 +22,7 @@ from tmm_sheets.methods.linkage.loads import Applied
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
+from tmm_sheets.words import marked, tr
 
 
 class CrankMotion(Protocol):
@@ -129,7 +130,7 @@ class Study:
         sense of rotation.
         """
         by_statics, by_lever, line = self.forces.balancing, self.lever.balancing, self.lever.line
-        plan = Plan("balance", "Сравнение уравновешивающих", "N", self.labels, search=self.positions.plan.search)
+        plan = Plan("balance", tr("Comparison of the balancing quantities"), "N", self.labels, search=self.positions.plan.search)
         if line is not None:
             # The force plan gives a vector along the line of action, the lever its signed size there.
             by_statics = plan.add("along", ALONG_LINE, by_statics, line)
@@ -148,9 +149,10 @@ class Study:
 
 
 ALONG_LINE = Rule("size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",
-                  "Проекция силы {0} на линию действия: {value} Н.", unit="N")
-MEAN = Rule("mean moment", weighted, ("number", "number"), "number", "Средний момент за цикл {name} = {value} Н·м.", unit="N*m")
+                  marked("Projection of the force {0} on the line of action: {value} N."), unit="N")
+MEAN = Rule("mean moment", weighted, ("number", "number"), "number",
+            marked("Mean moment over the cycle {name} = {value} N·m."), unit="N*m")
 IN_SENSE = Rule("in the sense of rotation", lambda moment, sense: sense * moment, ("number", "number"), "number",
-                "По направлению вращения начального звена {name} = {value} Н·м.", unit="N*m")
+                marked("In the sense of rotation of the input link {name} = {value} N·m."), unit="N*m")
 DIFFERENCE = Rule("difference per cent", lambda a, b: 100 * np.abs(a - b) / np.abs(a), ("number", "number"), "number",
-                  "Расхождение {name} = |{0} − {1}|/|{0}|·100 % = {value} %.", unit="%")
+                  marked("Difference {name} = |{0} − {1}|/|{0}|·100 % = {value} %."), unit="%")

@@ -21,21 +21,22 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import SynthesisTable
 
 SWING = Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",), "angle",
-             "Угол между крайними положениями кулисы {name} = 180°·(K − 1)/(K + 1) = {value}.")
-HALF = Rule("half", lambda x: x / 2, ("angle",), "angle", "Половина угла: {name} = {value}.")
+             marked("Angle between the extreme positions of the rocker {name} = 180°·(K − 1)/(K + 1) = {value}."))
+HALF = Rule("half", lambda x: x / 2, ("angle",), "angle", marked("Half the angle: {name} = {value}."))
 UNDER = Rule("direction under an angle", lambda u, angle: u * (np.cos(angle) - 1j * np.sin(angle)), ("direction", "angle"),
-             "direction", "Под углом {1} к {0} проведём направление {name}.")
-PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", "Время оборота {name} = 2π/ω = {value} с.")
+             "direction", marked("At the angle {1} to {0} draw the direction {name}."))
+PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", marked("Time of a turn {name} = 2π/ω = {value} s."))
 STROKE = Rule("stroke of the piston", lambda v, t: v * t / 2, ("number", "number"), "length",
-              "Ход поршня {name} = V·T/2 = {value}.")
-CRANK = Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", "Радиус кривошипа {name} = H/2 = {value}.")
+              marked("Stroke of the piston {name} = V·T/2 = {value}."))
+CRANK = Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", marked("Radius of the crank {name} = H/2 = {value}."))
 TIMES = Rule("part or multiple of a length", lambda ratio, x: ratio * x, ("number", "length"), "length",
-             "Длина {name} = {0}·{1} = {value}.")
+             marked("Length {name} = {0}·{1} = {value}."))
 
 
 @primitive("round to a step")
@@ -45,7 +46,7 @@ def _nearest(x: Any, step: float) -> float:
     return float(f"{floor(x / step + 0.5) * step:.12g}") if isfinite(x / step) else nan
 
 
-ROUND = Rule("round a length", _nearest, ("length", "length"), "length", "Округлим до {1}: {name} = {value}.")
+ROUND = Rule("round a length", _nearest, ("length", "length"), "length", marked("Round to {1}: {name} = {value}."))
 
 
 @primitive("15 digits")
@@ -96,9 +97,11 @@ class Synthesis:
         for name, exact in self.exact.items():
             found[name] = float(self.plan[f"{name}′"].value) if f"{name}′" in self.plan else exact
             if not 0 < exact < inf:
-                raise CannotBuild(f"synthesis: no length {name} follows from these conditions", "check the conditions")
+                raise CannotBuild(tell("synthesis: no length {length} follows from these conditions").format(length=name),
+                                  tell("check the conditions"))
             if not 0 < found[name] < inf:
-                raise CannotBuild(f"synthesis: {name} = {exact * 1000:.4g} mm is rounded to nothing", "round to a smaller length")
+                raise CannotBuild(tell("synthesis: {length} = {exact:.4g} mm is rounded to nothing").format(
+                    length=name, exact=exact * 1000), tell("round to a smaller length"))
         return found
 
     @property
@@ -130,8 +133,10 @@ class Synthesis:
         assert c.mean_velocity is not None
         assert c.rod_ratio is not None
         period = float(self.plan["T"].value)
-        lines = [f"ω_1 = {number(self.speed, 6)} рад/с;  T = 2π/ω_1 = {number(period)} с",
-                 f"H = V_ср·T/2 = {number(c.mean_velocity)}·{number(period)}/2 = {number(x['H'])} м",
+        lines = [tr("ω_1 = {speed} rad/s;  T = 2π/ω_1 = {period} s").format(speed=number(self.speed, 6), period=number(period)),
+                 tr("H = V_m·T/2 = {velocity}·{period}/2 = {stroke} m").format(velocity=number(c.mean_velocity),
+                                                                               period=number(period),
+                                                                          stroke=number(x["H"])),
                  f"l_AB = H/2 = {self._said('l_AB')}",
                  f"l_BC = λ·l_AB = {number(c.rod_ratio)}·{number(self.lengths['l_AB'])} = {self._said('l_BC')}"]
         if "l_BS" in x:
@@ -141,7 +146,9 @@ class Synthesis:
 
     def _said(self, name: str) -> str:
         exact, used = self.exact[name], self.lengths[name]
-        return f"{number(exact, 5)} м" + ("" if abs(used - exact) < 1e-12 else f";  принято {number(used, 6)} м")
+        rounded = abs(used - exact) >= 1e-12
+        said = tr("{exact} m;  taken as {used} m") if rounded else tr("{exact} m")
+        return said.format(exact=number(exact, 5), used=number(used, 6))
 
 
 def _rounded(plan: Plan, name: str, c: SynthesisTable) -> Step:
@@ -153,13 +160,14 @@ def _given(c: SynthesisTable, name: str, symbol: str, unit: str = "") -> GivenNu
     return GivenNumber(getattr(c, name), f"synthesis.{name}", symbol, unit)
 
 
-BELOW = Rule("point below the origin", lambda distance: -1j * distance, ("length",), "point", "Отметим точку {name}.")
+BELOW = Rule("point below the origin", lambda distance: -1j * distance, ("length",), "point", marked("Mark point {name}."))
 HALF_OFF = Rule("lay off half a length", lambda p, length: p + length / 2, ("point", "length"), "point",
-                "От точки {0} перпендикулярно CA отложим половину хода H: точка {name}.", lambda a, v: (Helper("line", a[0], v),))
+                marked("From {0}, perpendicular to CA, lay off half the stroke H: point {name}."), lambda a,
+                v: (Helper("line", a[0], v),))
 
 
 def _quick_return(c: SynthesisTable) -> Plan:
-    plan = Plan("synthesis", "Геометрический синтез кулисного механизма", "m")
+    plan = Plan("synthesis", tr("Geometric synthesis of the slotted-link mechanism"), "m")
     a = plan.add("A", rules.GIVEN, 0j)
     pivot = plan.add("C", BELOW, _given(c, "centre_distance", "l_{AC}", "m"))
     plan.add("l_AC", rules.DISTANCE, a, pivot)
@@ -182,10 +190,10 @@ def _quick_return(c: SynthesisTable) -> Plan:
 
 
 def _engine(c: SynthesisTable, speed: float) -> Plan:
-    plan = Plan("synthesis", "Геометрический синтез кривошипно-ползунного механизма", "m")
+    plan = Plan("synthesis", tr("Geometric synthesis of the slider-crank mechanism"), "m")
     a = plan.add("A", rules.GIVEN, 0j)
     period = plan.add("T", PERIOD, GivenNumber(speed, "crank.speed", "ω_1", "rad/s"))
-    stroke = plan.add("H", STROKE, _given(c, "mean_velocity", "V_{ср}", "m/s"), period)
+    stroke = plan.add("H", STROKE, _given(c, "mean_velocity", tr("V_{m}"), "m/s"), period)
     plan.add("l_AB", CRANK, stroke)
     crank = _rounded(plan, "l_AB", c)
     plan.add("l_BC", TIMES, _given(c, "rod_ratio", "λ"), crank)
@@ -201,5 +209,5 @@ def _engine(c: SynthesisTable, speed: float) -> Plan:
 
 
 DEAD = Rule("dead position of the crank", lambda p, u, length, sign: p + sign * length * u, ("point", "direction", "length"),
-            "point", "На прямой {1} от точки {0} отложим кривошип {2}: крайнее положение {name}.",
+            "point", marked("On the line {1} lay off the crank {2} from {0}: extreme position {name}."),
             lambda a, v: (Helper("line", a[0], v),))

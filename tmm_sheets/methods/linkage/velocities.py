@@ -16,23 +16,24 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.linkage.positions import Positions
+from tmm_sheets.words import marked, tr
 
-POLE = Rule("pole", lambda z: z, ("point",), "point", "Выберем полюс {name}.")
+POLE = Rule("pole", lambda z: z, ("point",), "point", marked("Choose the pole {name}."))
 CRANK_VELOCITY = Rule(
     "velocity of the crank pin", lambda a, b, w: 1j * w * (b - a), ("point", "point", "number"), "vector",
-    "От полюса p перпендикулярно {0}{1} в сторону ω1 отложим скорость точки {1}: точка {name}.",
+    marked("From the pole p, perpendicular to {0}{1} in the sense of ω1, lay off the velocity of {1}: point {name}."),
     lambda a, v: (Helper("line", 0j, v),),
 )
 SIMILAR = Rule(
     "similarity", lambda q, b, big_q, big_b, big_d: q + (b - q) * (big_d - big_q) / (big_b - big_q),
     ("point", "point", "point", "point", "point"), "point",
-    "По теореме подобия найдём точку {name}: |{0}{name}| : |{0}{1}| = {2}{4} : {2}{3}.",
+    marked("By similarity find point {name}: |{0}{name}| : |{0}{1}| = {2}{4} : {2}{3}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
 RIGID = Rule(
     "velocity on a turning link", lambda q, w, big_q, big_m: q + 1j * w * (big_m - big_q),
     ("point", "number", "point", "point"), "point",
-    "От точки {0} перпендикулярно {2}{3} отложим вращательную скорость, получим {name}.",
+    marked("From {0}, perpendicular to {2}{3}, lay off the velocity of rotation: point {name}."),
     lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 
@@ -45,7 +46,7 @@ def turning(big_q: Any, big_b: Any, q: Any, b: Any) -> Any:
 
 ANGULAR_VELOCITY = Rule(
     "angular velocity", turning, ("point", "point", "point", "point"), "number",
-    "Угловая скорость |{name}| = |{2}{3}|·μ_V / {0}{1}, со знаком {name} = {value} рад/с.", unit="rad/s",
+    marked("Angular velocity |{name}| = |{2}{3}|·μ_V / {0}{1}, with its sign {name} = {value} rad/s."), unit="rad/s",
 )
 OF_CRANK = Rule("angular velocity of the crank", lambda sense, w: sense * w, ("number", "number"), "number", "{name} = {value}.",
                 unit="rad/s")
@@ -124,7 +125,7 @@ def plan_name(plan: Plan, point: str) -> str:
 def velocity_plan(pos: Positions) -> Velocities:
     """Record the velocity plans of all positions of ``pos``."""
     m = pos.mechanism
-    plan = Plan(f"velocities{pos.where}", "Планы скоростей", "m/s", pos.plan.labels, "p", pos.plan.search)
+    plan = Plan(f"velocities{pos.where}", tr("Velocity polygons"), "m/s", pos.plan.labels, "p", pos.plan.search)
     vel = Velocities(pos, plan)
     pole = plan.add("p", POLE, 0j)
     for name in m.fixed:

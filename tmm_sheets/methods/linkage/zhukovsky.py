@@ -19,12 +19,15 @@ from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import Load
 from tmm_sheets.methods.linkage.forces import GearForce, contact_point
 from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
+from tmm_sheets.words import marked, tr
 
 TURNED = Rule("turned plan point", lambda v: 1j * v, ("point",), "point",
-              "Повернём вектор p{0} плана скоростей на 90°: точка {name}.", lambda a, v: (Helper("line", 0j, v),))
+              marked("Turn the vector p{0} of the velocity polygon by 90°: point {name}."), lambda a, v: (Helper("line", 0j, v),))
 COUPLE_FORCE = Rule("force of a couple", lambda m, x, y: 1j * m * ar.ray(x, y) / np.abs(y - x), ("number", "point", "point"),
-                    "force", "Момент заменим парой сил {name} = M/{1}{2} = {value}, перпендикулярных {1}{2}.", unit="N")
-OPPOSITE_FORCE = Rule("second force of a couple", lambda f: -f, ("force",), "force", "Вторая сила пары: {name} = −{0}.",
+                    "force", marked("Replace the moment by a couple of forces {name} = M/{1}{2} = {value}, perpendicular to "
+                                    "{1}{2}."), unit="N")
+OPPOSITE_FORCE = Rule("second force of a couple", lambda f: -f, ("force",), "force",
+                      marked("Second force of the couple: {name} = −{0}."),
                       unit="N")
 
 
@@ -36,7 +39,7 @@ def _balance(pole: Any, at: Any, u: Any, *terms: Any) -> Any:
 
 
 BALANCE = Rule("balance of the lever", _balance, ("point", "point", "direction"), "number",
-               "Из суммы моментов всех сил относительно полюса {0} найдём {name} = {value}.", unit="N")
+               marked("From the sum of moments of all forces about the pole {0} find {name} = {value}."), unit="N")
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
     pos = vel.positions
     m = pos.mechanism
     c = m.crank
-    plan = Plan("lever", "Рычаг Жуковского", "m/s", pos.plan.labels, search=pos.plan.search)
+    plan = Plan("lever", tr("Zhukovsky lever"), "m/s", pos.plan.labels, search=pos.plan.search)
     pole = plan.add("p", POLE, 0j)
     result = Lever(plan, vel)
 
@@ -87,15 +90,15 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
     by_step = {id(step): vel.points[name] for name, step in pos.points.items()}
     terms: list[Step] = []
 
-    def hang(sign: str, at: Step, force: Step) -> None:
+    def hang(sign: str, at: Step, force: Step, name: str = "") -> None:
         if at is pole:
             return  # a force at a point at rest has no arm
-        arm = plan.add(f"h {sign}", rules.ARM, pole, at, force)
+        arm = plan.add(f"h {name or sign}", rules.ARM, pole, at, force, symbol=f"h {sign}" if name else "")
         result.hung.append(Hung(sign, at, force, arm))
         terms.extend((at, force))
 
     for load in loads:
-        hang(load.symbol, turned(by_step[id(load.at)]), load.vector)
+        hang(load.symbol, turned(by_step[id(load.at)]), load.vector, symbol(load.vector.name) if load.role == "inertia" else "")
     for link, of_link in couples.items():
         turning = _turning(vel, link)
         if turning is None:
@@ -103,25 +106,30 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
         big_x, big_y, x, y = _long_reference(vel, turning)
         for couple in of_link:
             sign = couple.name.removeprefix("M")
-            f = plan.add(f"FМ{sign}", COUPLE_FORCE, couple, pos.points[big_x], pos.points[big_y])
-            hang(f"F̅_{{М{sign}}}", turned(y), f)
+            index = (couple.symbol or couple.name).removeprefix("M")
+            letters, vector = tr("FM{index}").format(index=index), tr("F̅_{{M{index}}}").format(index=index)
+            f = plan.add(f"FМ{sign}", COUPLE_FORCE, couple, pos.points[big_x], pos.points[big_y], symbol=letters)
+            hang(vector, turned(y), f, f"F̅_{{М{sign}}}")
             if x is not vel.pole:
-                hang(f"F̅_{{М{sign}}}′", turned(x), plan.add(f"FМ{sign}′", OPPOSITE_FORCE, f))
+                at = turned(x)
+                second = plan.add(f"FМ{sign}′", OPPOSITE_FORCE, f, symbol=f"{letters}′")
+                hang(f"{vector}′", at, second, f"F̅_{{М{sign}}}′")
     if driver is None:
         # A pure moment is balanced by a force across the crank at its pin: M = F l.
         b = turned(vel.points[c.pin])
         across = plan.add(f"⟂{c.pivot}{c.pin}", rules.TURN, pos.direction(c.pivot, c.pin))
-        force = plan.add("Fур", BALANCE, pole, b, across, *terms)
-        result.balancing = plan.add("Mур", MOMENT_OF, force, c.length)
+        force = plan.add("Fур", BALANCE, pole, b, across, *terms, symbol=tr("Fb"))
+        result.balancing = plan.add("Mур", MOMENT_OF, force, c.length, symbol=tr("Mb"))
         result.contact = b
-        hang("F̅_{Мур}", b, plan.add("Fур на рычаге", VECTOR_OF, force, across))
+        hang(tr("F̅_{Mb}"), b, plan.add("Fур на рычаге", VECTOR_OF, force, across, symbol=tr("Fb on the lever")), "F̅_{Мур}")
         return result
     at = contact_point(pos, driver)
     f_step = plan.add(plan.free("f"), SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
     contact = plan.add(plan.free("f′"), TURNED, f_step)
     result.line = driver.line(c.sense)
     result.balancing = plan.add(driver.name, BALANCE, pole, contact, result.line, *terms)
-    force = plan.add(f"{driver.name} на рычаге", VECTOR_OF, result.balancing, result.line)
+    force = plan.add(f"{driver.name} на рычаге", VECTOR_OF, result.balancing, result.line,
+                     symbol=tr("{force} on the lever").format(force=driver.name))
     result.contact = contact
     arm = plan.add(f"h {driver.name}", rules.ARM, pole, contact, force)
     result.hung.append(Hung(symbol(driver.name), contact, force, arm))
@@ -149,5 +157,6 @@ def _long_reference(vel: Velocities, link: str) -> tuple[str, str, Step, Step]:
 
 
 MOMENT_OF = Rule("moment of a force across the crank", lambda f, length: f * length, ("number", "length"), "number",
-                 "{name} = F·l = {value} Н·м.", unit="N*m")
-VECTOR_OF = Rule("force along a line", lambda f, u: f * u, ("number", "direction"), "force", "Сила {name} = {value}.", unit="N")
+                 marked("{name} = F·l = {value} N·m."), unit="N*m")
+VECTOR_OF = Rule("force along a line", lambda f, u: f * u, ("number", "direction"), "force", marked("Force {name} = {value}."),
+                 unit="N")
