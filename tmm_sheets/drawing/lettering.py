@@ -11,6 +11,7 @@ next character literally. ``F̅_{21}^τ``, ``μ_l = 0,0025 м/мм``, ``z\_1``.
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
@@ -139,6 +140,20 @@ def index_size(height: float) -> float:
     if height in SIZES[1:]:
         return SIZES[SIZES.index(height) - 1]
     return 0.7 * height
+
+
+def fitted(markup: str, room: float, height: float, least: float = 2.5) -> Lettering:
+    """Lettering in the largest size of the standard up to ``height`` with which it is no wider than ``room``, mm.
+
+    Below ``least`` mm nobody reads it: where even that is too wide, it is what comes back.
+    """
+    sizes = [size for size in SIZES if least <= size <= height] or [height]
+    return next((laid for size in reversed(sizes) if (laid := letter(markup, size)).width <= room), letter(markup, sizes[0]))
+
+
+def columns(rows: Sequence[Sequence[str]], height: float, gap: float = 2.0) -> list[float]:
+    """Least widths of the columns of a table, mm: of the widest cell of each with ``gap`` mm left over."""
+    return [max(letter(cell, height).width for cell in column) + gap for column in zip(*rows, strict=True)]
 
 
 class _Setter:

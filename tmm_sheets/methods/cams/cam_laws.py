@@ -19,6 +19,7 @@ import numpy.typing as npt
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.words import marked, tr
 
 Reals = npt.NDArray[np.float64]
 Function = Callable[..., Any]
@@ -276,6 +277,10 @@ LAWS = {law.name: law for law in (SINE, COSINE, CONSTANT, TRAPEZOID, LINEAR)}
 # --- phases of a turn -----------------------------------------------------------------------------------------------
 
 
+PHASES = {"φ_у": marked("φ_r"), "φ_дс": marked("φ_ud"), "φ_с": marked("φ_f"), "φ_бс": marked("φ_ld")}
+"""Symbols of the phases, by which they are found, and how they are written: rise, upper dwell, fall, lower dwell."""
+
+
 @dataclass(frozen=True)
 class Phase:
     """A phase of the motion: ``angle`` rad from ``start`` on, the displacement going from ``first`` by ``travel``, m.
@@ -289,6 +294,21 @@ class Phase:
     first: float
     travel: float
     law: Law
+
+    @property
+    def letters(self) -> str:
+        """The symbol as it is written on paper."""
+        return tr(PHASES[self.symbol])
+
+    @property
+    def tag(self) -> str:
+        """Index of the symbol, for names of steps."""
+        return self.symbol.removeprefix("φ_")
+
+    @property
+    def index(self) -> str:
+        """The same as it is written on paper."""
+        return self.letters.removeprefix("φ_")
 
     @property
     def end(self) -> float:
