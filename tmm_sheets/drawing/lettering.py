@@ -151,7 +151,7 @@ def fitted(markup: str, room: float, height: float, least: float = 2.5) -> Lette
     return next((laid for size in reversed(sizes) if (laid := letter(markup, size)).width <= room), letter(markup, sizes[0]))
 
 
-def columns(rows: Sequence[Sequence[str]], height: float, gap: float = 2.0) -> list[float]:
+def columns(rows: Sequence[Sequence[str]], height: float, gap: float = 3.0) -> list[float]:
     """Least widths of the columns of a table, mm: of the widest cell of each with ``gap`` mm left over."""
     return [max(letter(cell, height).width for cell in column) + gap for column in zip(*rows, strict=True)]
 

@@ -340,7 +340,7 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     second = _second_derivative(cam)
     rows = [[tr("Position"), *cam.motion.law.labels], [in_degrees("φ"), *(fixed(v, 2) for v in np.degrees(cam.inversion.phi))],
             *_diagram_rows(cam.motion, second), *_check_values(cam, second)]
-    first = max(32.0 if len(second) > 1 else 26.0, columns([line[:1] for line in rows], 2.5)[0])
+    first = max(32.0 if len(second) > 1 else 26.0, columns([line[:1] for line in rows], 2.5, 2.0)[0])
     width = (box.width - first) / (len(rows[0]) - 1)
     row = min(box.height / len(rows), 8.0)
     canvas.table(complex(box.x0, box.y1), [first, *[width] * (len(rows[0]) - 1)], rows, row, 2.5)
