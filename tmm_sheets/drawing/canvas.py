@@ -346,7 +346,7 @@ class Canvas:
         for i, cells in enumerate(rows):
             x = x0
             for w, cell in zip(widths, cells, strict=True):
-                laid = fitted(cell, w - 1.0, height)
+                laid = fitted(cell, w - 1.0 + 1e-9, height)  # a column may be exactly as wide as its text needs
                 size = max((run.height for run in laid.runs), default=height)
                 self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - size / 2), 0.0, cell)
                 x += w

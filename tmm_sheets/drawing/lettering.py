@@ -11,7 +11,6 @@ next character literally. ``F̅_{21}^τ``, ``μ_l = 0,0025 м/мм``, ``z\_1``.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
@@ -149,11 +148,6 @@ def fitted(markup: str, room: float, height: float, least: float = 2.5) -> Lette
     """
     sizes = [size for size in SIZES if least <= size <= height] or [height]
     return next((laid for size in reversed(sizes) if (laid := letter(markup, size)).width <= room), letter(markup, sizes[0]))
-
-
-def columns(rows: Sequence[Sequence[str]], height: float, gap: float = 3.0) -> list[float]:
-    """Least widths of the columns of a table, mm: of the widest cell of each with ``gap`` mm left over."""
-    return [max(letter(cell, height).width for cell in column) + gap for column in zip(*rows, strict=True)]
 
 
 class _Setter:

@@ -14,8 +14,9 @@ import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import columns, fitted, letter
+from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
@@ -340,10 +341,11 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     second = _second_derivative(cam)
     rows = [[tr("Position"), *cam.motion.law.labels], [in_degrees("φ"), *(fixed(v, 2) for v in np.degrees(cam.inversion.phi))],
             *_diagram_rows(cam.motion, second), *_check_values(cam, second)]
-    first = max(32.0 if len(second) > 1 else 26.0, columns([line[:1] for line in rows], 2.5, 2.0)[0])
+    first = 32.0 if len(second) > 1 else 26.0
     width = (box.width - first) / (len(rows[0]) - 1)
     row = min(box.height / len(rows), 8.0)
-    canvas.table(complex(box.x0, box.y1), [first, *[width] * (len(rows[0]) - 1)], rows, row, 2.5)
+    widths = widened([first, *[width] * (len(rows[0]) - 1)], rows, 2.5)
+    canvas.table(complex(box.x0, box.y1), widths, rows, row, 2.5)
 
 
 def _second_derivative(cam: Cam) -> dict[str, Any]:
