@@ -6,8 +6,9 @@ import pytest
 
 from tmm_sheets import words
 from tmm_sheets.catalogue import read
+from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import SIZES, fitted, letter, plain
-from tmm_sheets.drawing.marks import Line, Text
+from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.methods.cams.cam_laws import LAWS
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -66,3 +67,13 @@ def test_a_text_without_room_takes_the_next_size_down(room, height):
     assert widths[3.5] > 40.0
     room = {200.0: 200.0, 50.0: (widths[2.5] + widths[3.5]) / 2, 1.0: 1.0}[room]
     assert {run.height for run in fitted(text, room, 3.5).runs} == {height}
+
+
+@pytest.mark.parametrize("room", [300.0, 258.0, 200.0])
+def test_a_title_stays_in_its_place(room):
+    canvas, text = Canvas(), "Закон движения толкателя (постоянного ускорения, линейно убывающего ускорения)"
+    canvas.title(Box(92.0, 0.0, 92.0 + room, 50.0), text)
+    (mark,) = (m for m in canvas.marks if isinstance(m, Text))
+    assert mark.height in (2.5, 3.5, 5.0)
+    assert mark.at.real >= 92.0
+    assert mark.at.real + letter(text, mark.height).width <= 92.0 + room

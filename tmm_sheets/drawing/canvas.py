@@ -294,7 +294,8 @@ class Canvas:
         self.begin(box, text)
         x = (box.x0 + box.x1) / 2
         y = box.y1 - height
-        self.text(complex(x, y), text, height, "centre")
+        laid = fitted(text, box.width, height)
+        self.put(laid, complex(x - laid.width / 2, y), 0.0, text)
         if factor:
             y -= 8.0
             self.text(complex(x, y), factor, 3.5 if len(factor) > 60 else 5.0, "centre")
