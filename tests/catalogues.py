@@ -172,7 +172,7 @@ def problems(catalogue: Catalog) -> list[str]:
 
 def _shape(text: str) -> tuple[set[str], int]:
     """Fields of a text, and how many braces open that do not close."""
-    fields = re.findall(r"(?<!\{)\{[a-z]\w*(?:![rsa])?(?::[^{}]*)?(?=\})", text)
+    fields = re.findall(r"(?<![{_^])\{[a-z]\w*(?:![rsa])?(?::[^{}]*)?(?=\})", text)
     return {field[1:] for field in fields}, text.count("{") - text.count("}")
 
 

@@ -39,7 +39,7 @@ def told(capsys, *arguments):
 
 def texts(catalogue):
     """Translations by context and text."""
-    return {(m.context, tuple(m.id) if m.pluralizable else m.id): tuple(m.string) if m.pluralizable else m.string
+    return {(m.context.decode() if isinstance(m.context, bytes) else m.context, tuple(m.id) if m.pluralizable else m.id): tuple(m.string) if m.pluralizable else m.string
             for m in catalogue if m.id}  # fmt: skip
 
 

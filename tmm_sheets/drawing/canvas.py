@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
 
-from tmm_sheets.drawing.lettering import Lettering, letter
+from tmm_sheets.drawing.lettering import Lettering, fitted, letter
 from tmm_sheets.drawing.marks import Arc, Box, Dimension, Fill, Form, Line, Mark, PlacedFrame, Points, Polyline, Role, Text, Trace
 
 Align = Literal["left", "centre", "right"]
@@ -294,7 +294,8 @@ class Canvas:
         self.begin(box, text)
         x = (box.x0 + box.x1) / 2
         y = box.y1 - height
-        self.text(complex(x, y), text, height, "centre")
+        laid = fitted(text, box.width, height)
+        self.put(laid, complex(x - laid.width / 2, y), 0.0, text)
         if factor:
             y -= 8.0
             self.text(complex(x, y), factor, 3.5 if len(factor) > 60 else 5.0, "centre")
@@ -346,10 +347,9 @@ class Canvas:
         for i, cells in enumerate(rows):
             x = x0
             for w, cell in zip(widths, cells, strict=True):
-                laid = letter(cell, height)
-                if laid.width > w - 1.0:
-                    laid = letter(cell, height * (w - 1.0) / laid.width)
-                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - height / 2), 0.0, cell)
+                laid = fitted(cell, w - 1.0 + 1e-9, height)  # a column may be exactly as wide as its text needs
+                size = max((run.height for run in laid.runs), default=height)
+                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - size / 2), 0.0, cell)
                 x += w
         return Box(x0, y0, x0 + total, y1)
 

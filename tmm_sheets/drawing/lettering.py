@@ -141,6 +141,15 @@ def index_size(height: float) -> float:
     return 0.7 * height
 
 
+def fitted(markup: str, room: float, height: float, least: float = 2.5) -> Lettering:
+    """Lettering in the largest size of the standard up to ``height`` with which it is no wider than ``room``, mm.
+
+    Below ``least`` mm nobody reads it: where even that is too wide, it is what comes back.
+    """
+    sizes = [size for size in SIZES if least <= size <= height] or [height]
+    return next((laid for size in reversed(sizes) if (laid := letter(markup, size)).width <= room), letter(markup, sizes[0]))
+
+
 class _Setter:
     """Sets markup from left to right; the state is the place where the next letter goes."""
 

@@ -14,8 +14,9 @@ import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
@@ -29,9 +30,6 @@ if TYPE_CHECKING:
 
 HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""
-PAPER = Scale("μ", 1.0, "мм/мм")
-"""The diagrams of the motion are constructed in millimetres of paper."""
-
 View = Callable[[Any, Canvas, Box, dict[str, Any]], None]
 
 
@@ -65,7 +63,25 @@ def distinct(labels: tuple[str, ...], x: Points) -> list[int]:
 
 def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str]) -> None:
     """Lines of results at the foot of a view's place."""
-    canvas.lines(complex(box.x0 + 6.0, box.y0 + 3.0 + 7.0 * (len(lines) - 1)), lines, 7.0)
+    top = box.y0 + 3.0 + 7.0 * (len(lines) - 1)
+    for i, line in enumerate(lines):
+        canvas.put(fitted(line, box.width - 8.0, 3.5), complex(box.x0 + 6.0, top - 7.0 * i), 0.0, line)
+
+
+def centred(canvas: Canvas, box: Box, above: float, text: str) -> None:
+    """A remark in the middle of a view's place, ``above`` mm over its foot."""
+    laid = fitted(text, box.width, 3.5)
+    canvas.put(laid, complex(box.centre.real - laid.width / 2, box.y0 + above), 0.0, text)
+
+
+def in_mm(symbol: str) -> str:
+    """A symbol with its unit, as it heads a row."""
+    return tr("{symbol}, mm").format(symbol=symbol)
+
+
+def in_degrees(symbol: str) -> str:
+    """The same of an angle."""
+    return tr("{symbol}, deg").format(symbol=symbol)
 
 
 # --- diagrams of the motion -----------------------------------------------------------------------------------------
@@ -76,12 +92,12 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     """S'', S' and S one under another over a common axis of the cam angle, with both graphical integrations."""
     cam: Cam = project.cam
     law = cam.law
-    names = dict.fromkeys(tr(p.law.title) for p in (law.rise, law.fall))
-    whose = "коромысла" if law.symbol == "ψ" else "толкателя"
+    laws = ", ".join(dict.fromkeys(tr(p.law.title) for p in (law.rise, law.fall)))
+    title = tr("Law of motion of the rocker ({laws})") if law.symbol == "ψ" else tr("Law of motion of the follower ({laws})")
     # The turned designation of the sheet stands in the upper left corner.
-    area = canvas.title(Box(max(box.x0, 92.0), box.y0, box.x1, box.y1), f"Закон движения {whose} ({', '.join(names)})")
+    area = canvas.title(Box(max(box.x0, 92.0), box.y0, box.x1, box.y1), title.format(laws=laws))
     m = cam.motion_on(box.width, area.height - HEADS)
-    canvas.scales[m.plan.name] = PAPER
+    canvas.scales[m.plan.name] = Scale("μ", 1.0, tr("mm/mm"))  # it is constructed in millimetres of paper
     curves = (m.curve_dds(), m.curve_ds(), m.curve_s())
     ups = [max(float(c.imag.max()), 0.0) for c in curves]
     downs = [max(float(-c.imag.min()), 0.0) for c in curves]
@@ -103,11 +119,11 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     _phase_borders(canvas, m, origins, ups)
     heads = (
         f"{m.scales.dds}",
-        f"{m.scales.ds},  H_1 = {number(m.scales.h1)} мм",
-        f"{m.scales.s},  H_2 = {number(m.scales.h2)} мм",
+        tr("{scale},  H_1 = {distance} mm").format(scale=m.scales.ds, distance=number(m.scales.h1)),
+        tr("{scale},  H_2 = {distance} mm").format(scale=m.scales.s, distance=number(m.scales.h2)),
     )
-    units = ("м",) * 3 if law.symbol == "S" else ("", "", "рад")
-    symbols = [", ".join(filter(None, pair)) for pair in zip(m.names, units, strict=True)]
+    texts = (tr("{symbol}, m"),) * 3 if law.symbol == "S" else ("{symbol}", "{symbol}", tr("{symbol}, rad"))
+    symbols = [text.format(symbol=name) for text, name in zip(texts, m.names, strict=True)]
     steps = (m.dds, m.ds, m.s)
     smooth = (m.between, m.plan[m.names[1]], m.plan[m.names[2]])
     every = zip(stages, ups, downs, curves, steps, symbols, heads, smooth, strict=True)
@@ -152,9 +168,9 @@ def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
 def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:
     """Scale factor of the angle, and how the other scale factors and the heights of S'' follow from one another."""
     law = m.law
-    canvas.text(at, f"{m.scales.phi}  ({number(degrees(m.scales.phi.mu))} град/мм)", 3.5)
+    canvas.text(at, tr("{scale}  ({degrees} deg/mm)").format(scale=m.scales.phi, degrees=number(degrees(m.scales.phi.mu))), 3.5)
     second, first, zero = (f"μ_{name}" for name in m.names)
-    equal = "φ_с^2/φ_у^2 = " if law.rise.law.peak == law.fall.law.peak else ""
+    equal = f"{law.fall.letters}^2/{law.rise.letters}^2 = " if law.rise.law.peak == law.fall.law.peak else ""
     lines = (
         f"a_1/a_2 = {equal}{number(abs(m.plan['a_1'].value))}/{number(abs(m.plan['a_2'].value))}",
         f"{first} = {second}·μ_φ·H_1",
@@ -169,7 +185,7 @@ def _diagram(s: Stage, step: Step, up: float, down: float, end: float, symbol: s
     axes(s, step, end + 13.0, (-down, up + 10.0), 3.0 if down else 0.0)
     canvas.text(o + complex(2.5, up + 6.0), symbol, 3.5)
     canvas.text(o + complex(22.0, up + 6.0), head, 3.5)
-    canvas.label(o + end + 12.0, "φ, рад", 1j, 3.5, 1.5, leader=False)
+    canvas.label(o + end + 12.0, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
 
 
 def _ordinates(s: Stage, m: FollowerMotion, steps: list[Step]) -> None:
@@ -263,7 +279,7 @@ class OverAngle:
                unit: float = 1.0) -> OverAngle:
         """In the middle of a room, of which the ordinates leave ``above`` mm free; ``scale`` is sign and unit of theirs."""
         low, high = (value / unit for value in span)
-        across = Scale("μ_φ", handy(degrees(end) / room.width), "град/мм")
+        across = Scale("μ_φ", handy(degrees(end) / room.width), tr("deg/mm"))
         tall = Scale(scale[0], handy((high - low) / (room.height - above)), scale[1])
         length, low, high = float(across.mm(degrees(end))), tall.mm(low), tall.mm(high)
         o = complex(room.x0 + (room.width - length) / 2, room.y0 - low + (room.height - (high - low)) / 2)
@@ -293,11 +309,11 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     dense, inv = cam.dense, cam.inversion
     found = dense.angles.value
     low, high = min(float(found.min()), -cam.alpha), max(float(found.max()), cam.alpha)
-    d = OverAngle.fitted(box.inset(10, 8, 18, 30), 2 * pi, (low, high), ("μ_α", "град/мм"), 8.0, radians(1.0))
-    canvas.title(box, "Угол давления", f"{d.tall},  {d.across}")
+    d = OverAngle.fitted(box.inset(10, 8, 18, 30), 2 * pi, (low, high), ("μ_α", tr("deg/mm")), 8.0, radians(1.0))
+    canvas.title(box, tr("Pressure angle"), f"{d.tall},  {d.across}")
     course, marked = d.placed(canvas, dense.plan), d.placed(canvas, inv.plan)
-    d.axes(course, dense.angles, (9.0, 9.0), "α, град", 5.5)
-    canvas.label(d.o + d.length + 5, "φ, град", -1j, 3.5, 1.5, leader=False)
+    d.axes(course, dense.angles, (9.0, 9.0), in_degrees("α"), 5.5)
+    canvas.label(d.o + d.length + 5, in_degrees("φ"), -1j, 3.5, 1.5, leader=False)
     for side in (1, -1):
         level = course.frame(1j * side * cam.alpha)
         course.line(cam.zone.borders[0], level, level + d.length, "hidden", "axis")
@@ -312,7 +328,7 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
         if k != n + 1 or abs(at[n + 1] - at[n]) > 4:
             canvas.label(complex(at[k]), inv.plan.labels[k], -1j if values[k] > 0 else 1j, 2.5, 0.6, leader=False)
     if cam.data.limit == "rise":
-        canvas.text(complex(box.centre.real, box.y0 + 3), "При силовом замыкании угол ограничен только на удалении", 3.5, "centre")
+        centred(canvas, box, 3.0, tr("With force closure the angle is limited on the rise only"))
 
 
 # --- table ----------------------------------------------------------------------------------------------------------
@@ -323,12 +339,13 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     """S, S', S'' and the pressure angle in the numbered positions."""
     cam: Cam = project.cam
     second = _second_derivative(cam)
-    columns = [["Положение", *cam.motion.law.labels], ["φ, град", *(fixed(v, 2) for v in np.degrees(cam.inversion.phi))],
-               *_diagram_rows(cam.motion, second), *_check_values(cam, second)]
+    rows = [[tr("Position"), *cam.motion.law.labels], [in_degrees("φ"), *(fixed(v, 2) for v in np.degrees(cam.inversion.phi))],
+            *_diagram_rows(cam.motion, second), *_check_values(cam, second)]
     first = 32.0 if len(second) > 1 else 26.0
-    width = (box.width - first) / (len(columns[0]) - 1)
-    row = min(box.height / len(columns), 8.0)
-    canvas.table(complex(box.x0, box.y1), [first, *[width] * (len(columns[0]) - 1)], columns, row, 2.5)
+    width = (box.width - first) / (len(rows[0]) - 1)
+    row = min(box.height / len(rows), 8.0)
+    widths = widened([first, *[width] * (len(rows[0]) - 1)], rows, 2.5)
+    canvas.table(complex(box.x0, box.y1), widths, rows, row, 2.5)
 
 
 def _second_derivative(cam: Cam) -> dict[str, Any]:
@@ -341,23 +358,23 @@ def _second_derivative(cam: Cam) -> dict[str, Any]:
 
 def _diagram_rows(m: FollowerMotion, second: Mapping[str, Any]) -> Iterator[list[str]]:
     """Two rows for each diagram: ordinates on paper, and what they mean."""
-    factor, unit = (1e3, "·10^3, м") if m.law.symbol == "S" else (1.0, "")
+    straight = m.law.symbol == "S"
     for symbol, steps, scale in zip(reversed(m.names), (m.s, m.ds, m.dds), (m.scales.s, m.scales.ds, m.scales.dds), strict=True):
         rows = second if steps is m.dds and len(second) > 1 else {"": m.measured(steps, scale)}
         for side, values in rows.items():
-            yield [f"y_{{{symbol}}}{side}, мм", *(fixed(v, 1) for v in scale.mm(values))]
-            head = f"{symbol}{side}{unit}" + (", рад" if symbol == "ψ" else "")
-            yield [head, *(fixed(v * factor, 2 if unit else 3) for v in values)]
+            yield [in_mm(f"y_{{{symbol}}}{side}"), *(fixed(v, 1) for v in scale.mm(values))]
+            text = tr("{symbol}·10^3, m") if straight else tr("{symbol}, rad") if symbol == "ψ" else "{symbol}"
+            yield [text.format(symbol=symbol + side), *(fixed(v * 1e3, 2) if straight else fixed(v, 3) for v in values)]
 
 
 def _check_values(cam: Cam, second: Mapping[str, Any]) -> Iterator[list[str]]:
     """What the dimensions of the cam rest upon: the pressure angle, under a flat follower S + S''."""
     if "roller" in cam.traits:
-        yield ["α, град", *(fixed(v, 1) for v in np.degrees(cam.inversion.angles.value))]
+        yield [in_degrees("α"), *(fixed(v, 1) for v in np.degrees(cam.inversion.angles.value))]
         return
     before, after = cam.plate.sides  # type: ignore[attr-defined]
     for side, sums in zip(second, (before, after), strict=False):
-        yield [f"(S + S''){side}·10^3, м", *(fixed(v * 1e3, 2) for v in sums.value)]
+        yield [tr("{symbol}·10^3, m").format(symbol=f"(S + S''){side}"), *(fixed(v * 1e3, 2) for v in sums.value)]
 
 
 # --- spring ---------------------------------------------------------------------------------------------------------
@@ -376,11 +393,11 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     text = max(letter(line, 3.5).width for line in lines) + 16.0
     beside = box.width > 1.7 * box.height
     area = box.inset(14, 8, text + 12, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
-    d = OverAngle.fitted(area, law.fall.end, (low, top), ("μ_F", "Н/мм"))
-    canvas.title(box, "Замыкающая пружина", f"{d.tall},  {d.across}")
+    d = OverAngle.fitted(area, law.fall.end, (low, top), ("μ_F", tr("N/mm")))
+    canvas.title(box, tr("Closing spring"), f"{d.tall},  {d.across}")
     course, found = d.placed(canvas, spring.course_plan), d.placed(canvas, spring.plan)
-    d.axes(course, steps[1], (10.0, 8.0), "F, Q, Н", 4.5)
-    canvas.label(d.o + d.length + 7, "φ, град", 1j, 3.5, 1.5, leader=False)
+    d.axes(course, steps[1], (10.0, 8.0), tr("F, Q, N"), 4.5)
+    canvas.label(d.o + d.length + 7, in_degrees("φ"), 1j, 3.5, 1.5, leader=False)
     course.curve(steps[1], course.frame(phi + 1j * force))
     course.curve(steps[2], d.from_axis(course.frame(phi + 1j * inertia)), "main")
     x, forces = course.frame(law.positions), spring.at_positions
@@ -402,14 +419,17 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
 def _spring_lines(spring: Spring, straight: bool) -> list[str]:
     """The spring in formulas and numbers; of a rocker the forces are those at the centre of the roller."""
     moved, way = ("m", "S") if straight else ("J/AB^2", "AB·ψ")
-    held = "> 1: отрыва нет" if spring.closed else f"≤ 1: отрыв! Нужно F_{{max}} ≥ {fixed(spring.needed_factor, 2)}·Q_{{max}}"
+    held = tr("(F/Q)_{{min}} > 1: it stays on the cam") if spring.closed else tr(
+        "(F/Q)_{{min}} ≤ 1: it leaves the cam! F_{{max}} ≥ {factor}·Q_{{max}} is needed")
     return [
-        f"Q = −{moved}·ω^2·{way}''" + ("" if straight else " (в точке B)"),
-        f"{moved} = {number(spring.mass)} кг,  ω = {number(spring.speed)} рад/с",
-        f"Q_{{max}} = {number(spring.largest_inertia)} Н (отрывает при {'S' if straight else 'ψ'}'' < 0)",
-        f"F_{{max}} = {number(spring.factor)}·Q_{{max}} = {number(spring.f_max)} Н",
-        f"F_0 = {number(spring.preload)}·F_{{max}} = {number(spring.f_0)} Н",
-        f"c = (F_{{max}} − F_0)/{'S' if straight else 'AB·ψ'}_{{max}} = {number(spring.rate * 1e-3)} Н/мм",
-        f"(F/Q)_{{min}} = {fixed(spring.worst, 3)} при φ = {fixed(degrees(spring.worst_phi), 1)}°",
-        f"(F/Q)_{{min}} {held}",
+        "Q = −m·ω^2·S''" if straight else tr("Q = −J/AB^2·ω^2·AB·ψ'' (at point B)"),
+        tr("{moved} = {mass} kg,  ω = {speed} rad/s").format(moved=moved, mass=number(spring.mass), speed=number(spring.speed)),
+        tr("Q_{{max}} = {force} N (lifts off where {symbol}'' < 0)").format(
+            force=number(spring.largest_inertia), symbol="S" if straight else "ψ"),
+        tr("F_{{max}} = {factor}·Q_{{max}} = {force} N").format(factor=number(spring.factor), force=number(spring.f_max)),
+        tr("F_0 = {share}·F_{{max}} = {force} N").format(share=number(spring.preload), force=number(spring.f_0)),
+        tr("c = (F_{{max}} − F_0)/{way}_{{max}} = {rate} N/mm").format(way=way, rate=number(spring.rate * 1e-3)),
+        tr("(F/Q)_{{min}} = {ratio} at φ = {angle}°").format(
+            ratio=fixed(spring.worst, 3), angle=fixed(degrees(spring.worst_phi), 1)),
+        held.format(factor=fixed(spring.needed_factor, 2)),
     ]

@@ -13,10 +13,12 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
+from tmm_sheets.drawing.tables import needs
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import for_cams, lines_of_text
+from tmm_sheets.sheets.cam import for_cams, in_degrees, in_mm, lines_of_text
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -34,7 +36,7 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         # No free corner: the figure leaves the foot of its place to the table.
         picture = _ProfilePicture(cam, Box(room.x0, room.y0 + _table_size(cam)[1] + 6, room.x1, room.y1))
     canvas.scales[cam.inversion.plan.name] = picture.scale
-    canvas.title(box, "Построение профиля кулачка", f"{ratio(picture.scale)}   {picture.scale}")
+    canvas.title(box, tr("Construction of the cam profile"), f"{ratio(picture.scale)}   {picture.scale}")
     inv, at = cam.inversion, picture.at
     s, dense = (placed(canvas, i.plan, picture.origin, picture.scale.mu, phase(picture.turn)) for i in (inv, cam.dense))
     _circles(s, picture)
@@ -60,7 +62,7 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     _phase_angles(s, picture)
     size = _table_size(cam)
     corner = picture.corner(size) or complex(room.x0, room.y0 + size[1])
-    canvas.table(corner, list(_WIDTHS), _given(cam), _ROW, 3.5)
+    canvas.table(corner, _widths(cam), _given(cam), _ROW, 3.5)
 
 
 GUIDE = 22.0
@@ -179,33 +181,41 @@ def _joined(inv: Inversion) -> dict[int, str]:
 
 
 _WIDTHS, _ROW = (56.0, 34.0), 7.0
+"""Least widths of the columns and height of the rows of the table, mm."""
+
+
+def _widths(cam: Cam) -> list[float]:
+    return [max(least, need + 2.0) for least, need in zip(_WIDTHS, needs(_given(cam), 3.5), strict=True)]
 
 
 def _table_size(cam: Cam) -> tuple[float, float]:
-    return sum(_WIDTHS), _ROW * len(_given(cam))
+    return sum(_widths(cam)), _ROW * len(_given(cam))
 
 
 def _given(cam: Any) -> list[list[str]]:
     """Given numbers and main dimensions."""
-    d = cam.data
-    head = ["Параметр", "Значение"]
-    phases = ["φ_у / φ_дс / φ_с, град", " / ".join(number(degrees(v)) for v in (d.rise, d.upper_dwell, d.fall))]
+    d, law = cam.data, cam.law
+    head = [tr("Parameter"), tr("Value")]
+    phases = [in_degrees(" / ".join(p.letters for p in (law.rise, law.upper_dwell, law.fall))),
+              " / ".join(number(degrees(v)) for v in (d.rise, d.upper_dwell, d.fall))]
     if "flat" in cam.traits:
         p = cam.plate
-        return [head, ["Ход толкателя S, мм", number(d.stroke * 1e3)], phases, ["r_{min}, мм", fixed(p.r_min * 1e3, 3)],
-                ["r_0, мм", number(p.r0 * 1e3)], ["l_1 / l_2, мм", f"{fixed(p.l1 * 1e3, 2)} / {fixed(p.l2 * 1e3, 2)}"]]
+        return [head, [tr("Stroke of the follower S, mm"), number(d.stroke * 1e3)], phases,
+                [in_mm("r_{min}"), fixed(p.r_min * 1e3, 3)], [in_mm("r_0"), number(p.r0 * 1e3)],
+                [in_mm("l_1 / l_2"), f"{fixed(p.l1 * 1e3, 2)} / {fixed(p.l2 * 1e3, 2)}"]]
     z = cam.zone
-    angle = ["[α] на удалении, град" if d.limit == "rise" else "[α], град", number(degrees(d.pressure_angle))]
+    angle = [tr("[α] on the rise, deg") if d.limit == "rise" else in_degrees("[α]"), number(degrees(d.pressure_angle))]
     if "rocker" in cam.traits:
-        rows = [head, ["Угол качания ψ, град", number(degrees(d.swing))], ["Длина коромысла AB, мм", number(d.arm * 1e3)],
-                phases, angle, ["r_0, мм", fixed(z.r0 * 1e3, 3)], ["l_0, мм", fixed(z.l0 * 1e3, 3)]]
+        rows = [head, [tr("Angle of swing ψ, deg"), number(degrees(d.swing))],
+                [tr("Length of the rocker AB, mm"), number(d.arm * 1e3)], phases, angle,
+                [in_mm("r_0"), fixed(z.r0 * 1e3, 3)], [in_mm("l_0"), fixed(z.l0 * 1e3, 3)]]
     else:
-        rows = [head, ["Ход толкателя S, мм", number(d.stroke * 1e3)], phases, angle, ["S_0, мм", fixed(z.s0 * 1e3, 3)],
-                ["e, мм", fixed(z.e * 1e3, 3)], ["r_0, мм", fixed(z.r0 * 1e3, 3)]]
-    rows.append(["r_p, мм", number(cam.roller * 1e3)])
+        rows = [head, [tr("Stroke of the follower S, mm"), number(d.stroke * 1e3)], phases, angle,
+                [in_mm("S_0"), fixed(z.s0 * 1e3, 3)], [in_mm("e"), fixed(z.e * 1e3, 3)], [in_mm("r_0"), fixed(z.r0 * 1e3, 3)]]
+    rows.append([in_mm("r_p"), number(cam.roller * 1e3)])
     if d.closure == "geometric":
-        rows.append(["Угол между плечами", f"{fixed(degrees(cam.spread), 2)}°"] if "rocker" in cam.traits
-                    else ["Между роликами L, мм", fixed(cam.distance * 1e3, 3)])
+        rows.append([tr("Angle between the arms"), f"{fixed(degrees(cam.spread), 2)}°"] if "rocker" in cam.traits
+                    else [tr("Between the rollers L, mm"), fixed(cam.distance * 1e3, 3)])
     return rows
 
 
@@ -343,14 +353,13 @@ def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
     outline = dense.plan["F′"].value
     for name, style in (("B′", "twodot"), ("F′", "hidden")):
         course.curve(dense.plan[name], at(dense.plan[name].value[:-1]), style, closed=True)
-    for name, own in (("диск 1", dense.plan["F"].value), ("диск 2", outline)):
+    for disc, own, other in ((1, dense.plan["F"].value, outline), (2, outline, dense.plan["F"].value)):
         # Where this disc stands out furthest over the other one.
-        other = outline if name == "диск 1" else dense.plan["F"].value
         away = np.array([float(np.abs(other - p).min()) for p in own[::4]])
         # Along a dwell it is the same: there in the middle.
         furthest = np.flatnonzero(away > away.max() - 1e-9)
         k = int(furthest[len(furthest) // 2]) * 4
-        canvas.label(complex(at(own[k])), name, complex(own[k]) * picture.turn, 3.5, 1.5)
+        canvas.label(complex(at(own[k])), tr("disc {number}").format(number=disc), complex(own[k]) * picture.turn, 3.5, 1.5)
     start = s.position(0)
     first, second = start.at(inv.centres), start.at("B′")
     start.pen("F′", "construction").circle(second, picture.roller, "main")
@@ -405,7 +414,7 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     text = 34.0
     room = Box(box.x0 + 8, box.y0 + text, box.x1 - 8, box.y1 - 24)
     scale = standard((float(np.ptp(every.real)), room.width), (float(np.ptp(every.imag)), room.height))
-    canvas.title(box, "Выбор радиуса ролика", ratio(scale))
+    canvas.title(box, tr("Choice of the radius of the roller"), ratio(scale))
     middle = complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2)
     origin = room.centre - scale.mm(middle)
 
@@ -424,18 +433,22 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
     canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)
     drawn_rho, rules = float(plan["ρ_min"].value), cam.roller_rules
-    lines = [f"ρ_{{min}} = |MD|·μ_l = {_mm(drawn_rho)} мм (точно {_mm(cam.sharpest.rho)} мм)"]
+    found = tr("ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm)")
     if cam.rho_min < cam.sharpest.rho * (1 - 1e-6):
-        lines[0] += f"; второго диска {_mm(cam.rho_min)} мм"
+        found = tr("ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm); of the second disc {second} mm")
+    lines = [found.format(drawn=_mm(drawn_rho), exact=_mm(cam.sharpest.rho), second=_mm(cam.rho_min))]
     for rule in rules:
         low, high = rule.limits
         if low == high:
-            lines.append(f"r_p ≤ {number(rule.shares[0])} {rule.symbol} = {_mm(low)} мм")
+            lines.append(tr("r_p ≤ {share} {radius} = {limit} mm").format(
+                share=number(rule.shares[0]), radius=rule.symbol, limit=_mm(low)))
             continue
         shares = f"({number(rule.shares[0])}…{number(rule.shares[1])})"
-        lines.append(f"r_p ≤ {shares} {rule.symbol} = {_mm(low)}…{_mm(high)} мм")
+        lines.append(tr("r_p ≤ {share} {radius} = {limit} mm").format(
+            share=shares, radius=rule.symbol, limit=f"{_mm(low)}…{_mm(high)}"))
     met = all(cam.roller <= rule.limits[1] * (1 + 1e-9) for rule in rules)
-    lines.append(f"Принято r_p = {number(cam.roller * 1e3)} мм" + ("" if met else " (больше рекомендуемого)"))
+    taken = tr("Taken: r_p = {radius} mm") if met else tr("Taken: r_p = {radius} mm (more than recommended)")
+    lines.append(taken.format(radius=number(cam.roller * 1e3)))
     lines_of_text(canvas, box, lines)
 
 

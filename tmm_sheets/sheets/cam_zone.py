@@ -14,9 +14,10 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import OverAngle, distinct, for_cams, lines_of_text
+from tmm_sheets.sheets.cam import OverAngle, centred, distinct, for_cams, lines_of_text
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
@@ -44,9 +45,9 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     mu, lowest, xs = min(fitted(share) for share in (0.3, 0.22, 0.15))
     depth = -lowest
     low = apex - 1j * depth
-    scale = Scale("μ_S", mu, "м/мм")
+    scale = Scale("μ_S", mu, tr("m/mm"))
     canvas.scales[z.plan.name] = scale
-    canvas.title(box, "Определение основных размеров", f"μ_S = μ_S' = {number(scale.mu)} м/мм")
+    canvas.title(box, tr("Main dimensions of the cam"), tr("μ_S = μ_S' = {factor} m/mm").format(factor=number(scale.mu)))
     origin = room.centre - scale.mm(complex((max(xs) + min(xs)) / 2, (stroke + low.imag) / 2))
 
     stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
@@ -62,9 +63,9 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     reach = float(curve.real[np.argmax(np.abs(curve.real))])
     pen = smooth.pen(z.curve, "axis")
     pen.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
-    pen.text(at(1j * stroke) + complex(-2.0, 5.5), "S, м", 3.5, "right")
+    pen.text(at(1j * stroke) + complex(-2.0, 5.5), tr("{symbol}, m").format(symbol="S"), 3.5, "right")
     pen.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
-    canvas.label(at(complex(reach)) + 8 * z.right, "S', м", -1j, 3.5, 1.5, leader=False)
+    canvas.label(at(complex(reach)) + 8 * z.right, tr("{symbol}, m").format(symbol="S'"), -1j, 3.5, 1.5, leader=False)
     smooth.curve(z.curve)
     points, labels = np.asarray(z.points.value), z.plan.labels
     for k in distinct(labels, points):
@@ -88,12 +89,17 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     if abs(o - c) > 6:
         canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8)
     canvas.label((o + b) / 2, "r_0", z.right * 1 + 0.6j, 3.5, 0.6)
-    factor = number(scale.mu)
-    measured = [f"{name} = |{segment}|·μ_S = {fixed(scale.mm(abs(value)), 2)}·{factor} = {fixed(abs(value) * 1e3, 3)}·10^{{−3}} м"
+    measured = [_measured(name, segment, abs(value), "μ_S", mu)
                 for name, segment, value in (("S_0", "CB", z.s0), ("e", "CO", z.e), ("r_0", "OB", z.r0))]
     if cam.data.eccentricity is not None:
-        measured[1] = f"e = {number(z.e * 1e3)} мм — по заданию"
+        measured[1] = tr("e = {length} mm (given)").format(length=number(z.e * 1e3))
     lines_of_text(canvas, box, measured)
+
+
+def _measured(name: str, segment: str, value: float, scale: str, mu: float) -> str:
+    """A main dimension, m, from its segment on paper and the scale factor."""
+    return tr("{name} = |{segment}|·{scale} = {length}·{factor} = {value}·10^{{−3}} m").format(
+        name=name, segment=segment, scale=scale, length=fixed(value / mu, 2), factor=number(mu), value=fixed(value * 1e3, 3))
 
 
 @for_cams
@@ -116,9 +122,9 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
         return handy(max((x1 - x0) / room.width, (y1 - low) / room.height)), low
 
     mu, low = min(fitted(share) for share in (0.4, 0.3, 0.2, 0.12))
-    scale = Scale("μ_l", mu, "м/мм")
+    scale = Scale("μ_l", mu, tr("m/mm"))
     canvas.scales[z.plan.name] = scale
-    canvas.title(box, "Определение основных размеров", f"{scale}")
+    canvas.title(box, tr("Main dimensions of the cam"), f"{scale}")
     origin = complex(room.centre - scale.mm(complex((x0 + x1) / 2, (y1 + low) / 2)))
     stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
     at = stage.frame
@@ -200,12 +206,12 @@ def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box) -> None:
 def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:
     """Main dimensions in formulas and numbers, and the least cam where it is another one."""
     z, mu = cam.zone, 1e-3 if scale is None else scale.mu
-    lines = [f"{name} = |{segment}|·μ_l = {fixed(value / mu, 2)}·{number(mu)} = {fixed(value * 1e3, 3)}·10^{{−3}} м"
-             for name, segment, value in (("r_0", "OB_0", z.r0), ("l_0", "OA", z.l0))]
-    lines.append(f"x_i = AB·ψ'_i — {'к оси A' if cam.data.rotation == 'same' else 'на продолжении AB'}")
+    lines = [_measured("r_0", "OB_0", z.r0, "μ_l", mu), _measured("l_0", "OA", z.l0, "μ_l", mu)]
+    lines.append(tr("x_i = AB·ψ'_i towards the axis A") if cam.data.rotation == "same" else tr("x_i = AB·ψ'_i on AB produced"))
     if z.least is not None and (r0 := float(z.least["r_0"].value)) < z.r0 * (1 - 1e-6):
-        lines += [f"Наименьший возможный r_0 = {fixed(r0 * 1e3, 2)} мм",
-                  f"при l_0 = {fixed(float(z.least['l_0'].value) * 1e3, 2)} мм (не в вершине зоны)"]
+        lines += [tr("Least possible r_0 = {radius} mm").format(radius=fixed(r0 * 1e3, 2)),
+                  tr("with l_0 = {length} mm (not in the apex of the zone)").format(
+                      length=fixed(float(z.least["l_0"].value) * 1e3, 2))]
     return lines
 
 
@@ -217,13 +223,13 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     steps = plate.course
     phi, s, total = (step.value for step in steps)
     span = min(float(total.min()), 0.0), max(float(total.max()), law.stroke)
-    d = OverAngle.fitted(box.inset(14, 44, 14, 34), law.fall.end, span, ("μ_S", "м/мм"), 10.0)
+    d = OverAngle.fitted(box.inset(14, 44, 14, 34), law.fall.end, span, ("μ_S", tr("m/mm")), 10.0)
     o, scale = d.o, d.tall
     canvas.scales[plate.plan.name] = scale
-    canvas.title(box, "Определение r_0 и размеров тарелки", f"μ_S = μ_S'' = {number(scale.mu)} м/мм")
+    canvas.title(box, tr("Radius r_0 and sizes of the plate"), tr("μ_S = μ_S'' = {factor} m/mm").format(factor=number(scale.mu)))
     course, found = d.placed(canvas, plate.course_plan), d.placed(canvas, plate.plan)
     at = course.frame
-    d.axes(course, steps[2], (9.0, 9.0), "S + S'', м", 6.0)
+    d.axes(course, steps[2], (9.0, 9.0), tr("{symbol}, m").format(symbol="S + S''"), 6.0)
     canvas.label(o + d.length + 6, "φ", 1j, 3.5, 1.5, leader=False)
     course.curve(steps[1], at(phi + 1j * s), "centre")
     for name, values, away in (("S", s, -1 + 1j), ("S + S''", total, 1 + 1j)):
@@ -247,13 +253,16 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
         found.line("r_min", complex(o.real - 6.0, level.imag), level)
         canvas.dimension(complex(o.real, o.imag), complex(o.real, level.imag), -7.0, "a")
     r_min = max(plate.r_min, 0.0)
+    enough = plate.r0 >= 1.1 * r_min * (1 - 1e-9)
+    radius = tr("r_0 = r_{{min}} + Δr = {radius} mm,  Δr = {margin} mm ≥ 0.1 r_{{min}}") if enough else tr(
+        "r_0 = {radius} mm, given (margin less than 0.1 r_{{min}})")
     lines_of_text(canvas, box, [
-        f"r_{{min}} = a·μ_S = {fixed(scale.mm(r_min), 2)}·{number(scale.mu)} = {fixed(r_min * 1e3, 3)}·10^{{−3}} м",
-        f"r_0 = r_{{min}} + Δr = {number(plate.r0 * 1e3)} мм,  Δr = {fixed((plate.r0 - r_min) * 1e3, 2)} мм ≥ 0,1 r_{{min}}"
-        if plate.r0 >= 1.1 * r_min * (1 - 1e-9) else f"r_0 = {number(plate.r0 * 1e3)} мм — по заданию (запас меньше 0,1 r_{{min}})",
-        f"l_1 = S'_{{max}} = {fixed(plate.l1 * 1e3, 2)} мм (удаление)",
-        f"l_2 = |S'|_{{max}} = {fixed(plate.l2 * 1e3, 2)} мм (возвращение)",
-        f"ρ_{{min}} = r_0 + (S + S'')_{{min}} = {fixed(cam.rho_min * 1e3, 2)} мм",
+        tr("r_{{min}} = a·μ_S = {length}·{factor} = {value}·10^{{−3}} m").format(
+            length=fixed(scale.mm(r_min), 2), factor=number(scale.mu), value=fixed(r_min * 1e3, 3)),
+        radius.format(radius=number(plate.r0 * 1e3), margin=fixed((plate.r0 - r_min) * 1e3, 2)),
+        tr("l_1 = S'_{{max}} = {length} mm (rise)").format(length=fixed(plate.l1 * 1e3, 2)),
+        tr("l_2 = |S'|_{{max}} = {length} mm (return)").format(length=fixed(plate.l2 * 1e3, 2)),
+        tr("ρ_{{min}} = r_0 + (S + S'')_{{min}} = {radius} mm").format(radius=fixed(cam.rho_min * 1e3, 2)),
     ])
 
 
@@ -264,7 +273,7 @@ def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     p = cam.plate
     room = box.inset(12, 26, 12, 34)
     scale = standard((p.l1 + p.l2, room.width), (0.3 * (p.l1 + p.l2), room.height - 24))
-    canvas.title(box, "Тарелка толкателя", ratio(scale))
+    canvas.title(box, tr("Plate of the follower"), ratio(scale))
     left, right = (p.l1, p.l2) if cam.right > 0 else (p.l2, p.l1)
     with canvas.as_role("symbol"):
         axis = _plate_symbol(canvas, room, scale.mm(left), scale.mm(right))
@@ -272,7 +281,7 @@ def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     names = ("l_1", "l_2") if cam.right > 0 else ("l_2", "l_1")
     canvas.dimension(a, axis, -11.0, f"{names[0]} = {fixed(left * 1e3, 1)}")
     canvas.dimension(axis, b, -11.0, f"{names[1]} = {fixed(right * 1e3, 1)}")
-    canvas.text(complex(box.centre.real, box.y0 + 4), "Точка касания не должна выходить за края тарелки", 3.5, "centre")
+    centred(canvas, box, 4.0, tr("The point of contact must not leave the plate"))
 
 
 def _plate_symbol(canvas: Canvas, room: Box, left: float, right: float) -> complex:

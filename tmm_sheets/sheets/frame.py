@@ -14,6 +14,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, plain
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -117,13 +118,18 @@ def pick(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str,
 def standard(*fitted: tuple[float, float]) -> Scale:
     """Largest GOST 2.302 scale with which every span, m, takes no more than its room, mm."""
     real, drawn = max((fit_standard(span * 1e3, room) for span, room in fitted), key=lambda scale: scale[0] / scale[1])
-    return Scale("μ_l", real / drawn * 1e-3, "м/мм")
+    return Scale("μ_l", real / drawn * 1e-3, tr("m/mm"))
 
 
 def ratio(scale: Scale) -> str:
     """A GOST 2.302 scale as it is written: М 4:1, М 1:2,5."""
+    return tr("M {ratio}").format(ratio=proportion(scale))
+
+
+def proportion(scale: Scale) -> str:
+    """The same without its letter: 4:1, 1:2,5."""
     real = scale.mu * 1e3
-    return f"М {number(1 / real)}:1" if real <= 1 else f"М 1:{number(real)}"
+    return f"{number(1 / real)}:1" if real <= 1 else f"1:{number(real)}"
 
 
 def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, points: Any, offsets: Any, box: Box) -> Frame:

@@ -12,12 +12,13 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Dimension
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.frame import Frame, ratio, standard
+from tmm_sheets.sheets.frame import Frame, proportion, ratio, standard
 from tmm_sheets.sheets.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
 from tmm_sheets.sheets.player import Stage, placed, play, stage
+from tmm_sheets.words import tr
 
 EDGE = 24.0
 """Least distance of a wheel's centre from the edge of the picture, mm."""
@@ -54,7 +55,7 @@ class _GearPicture:
         self.mu: Scale = gear.picture_scale(room)
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
             canvas.scales[f"gear-{name}"] = self.mu
-        self.box = canvas.title(box, "Картина зацепления", ratio(self.mu))
+        self.box = canvas.title(box, tr("Gear meshing"), ratio(self.mu))
         one, two = (w.ra / self.mu.mu + 4 for w in gear.wheels)
         spare = self.box.height - gear.a_w / self.mu.mu
         # The smaller wheel is shown whole, if that leaves room beyond the other's centre; both are cut alike otherwise.
@@ -319,7 +320,7 @@ class _Detail:
         self.gear, self.canvas = gear, canvas
         margin = 18.0
         mu = standard((1.25 * gear.p, box.width - margin))
-        inner = canvas.title(box, "Зона зацепления", ratio(mu))
+        inner = canvas.title(box, tr("Meshing zone"), ratio(mu))
         place = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
         self.pole = place.centre
         tall = mu.mm(max(w.ra - w.rw + gear.clearance * gear.m for w in gear.wheels)) + 8
@@ -388,7 +389,7 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     whole = scale.mm(one.t_pole + two.t_pole)
     plan = gear.sliding
     first = one.t_pole / scale.mu
-    upper = canvas.title(box, "Графики скоростей", ratio(scale))
+    upper = canvas.title(box, tr("Graphs of the velocities"), ratio(scale))
     left = (box.x0 + box.x1 - whole) / 2
     # rounded: where letters stand must not hang on the last digit
     y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
@@ -405,7 +406,7 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     canvas.label(complex(left + whole, axis + y1[-1]), "V_1", away=-1 + 0.3j, height=5)
     canvas.label(complex(left, axis + y2[0]), "V_2", away=1 + 0.5j, height=5)
 
-    lower = canvas.title(Box(box.x0, box.y0, box.x1, axis - 16), "Удельные скольжения")
+    lower = canvas.title(Box(box.x0, box.y0, box.x1, axis - 16), tr("Specific sliding"))
     worst = -min(gear.greatest_sliding)
     mu, top = _sliding_scale(worst, lower.height - 12)
     canvas.text(complex((box.x0 + box.x1) / 2, lower.y1 - 5), str(mu), 5.0, "centre")
@@ -429,7 +430,8 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         s.position(k).line("K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction", "axis")
         t.position(k).line("K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction", "axis")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
-    canvas.label(complex(left + first, axis + ordinate), f"{number(ordinate)} мм", away=1 - 0.2j, height=3.5)
+    said = tr("{length} mm").format(length=number(ordinate))
+    canvas.label(complex(left + first, axis + ordinate), said, away=1 - 0.2j, height=3.5)
 
 
 def _ways(gear: Any, plan: Plan) -> Any:
@@ -458,7 +460,7 @@ def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, first: float,
 
 def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
     """Scale factor of the sliding with which the worst value of the engagement is seen, and the height of 1 in mm."""
-    mu = fit("μ_θ", "1/мм", 1 + min(max(1.15 * worst, 2.0), DEEPEST), height)
+    mu = fit("μ_θ", tr("1/mm"), 1 + min(max(1.15 * worst, 2.0), DEEPEST), height)
     return mu, 1 / mu.mu
 
 
@@ -480,9 +482,10 @@ def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any
     """Ordinates of the speeds and specific sliding at the divisions of N1N2."""
     plan = project.gear.sliding
     rows = [["", *plan.labels]]
-    for name, symbol, decimals in (("yV1", "y_{V1}, мм", 2), ("yV2", "y_{V2}, мм", 2), ("theta1", "θ_1", 2), ("theta2", "θ_2", 2)):
-        rows.append([symbol, *(_cell(v, decimals) for v in plan[name].value)])
-    inner = canvas.title(box, "Скорости и удельные скольжения")
+    for name, text, symbol in (("yV1", tr("{symbol}, mm"), "y_{V1}"), ("yV2", tr("{symbol}, mm"), "y_{V2}"),
+                               ("theta1", "{symbol}", "θ_1"), ("theta2", "{symbol}", "θ_2")):
+        rows.append([text.format(symbol=symbol), *(_cell(v, 2) for v in plan[name].value)])
+    inner = canvas.title(box, tr("Velocities and specific sliding"))
     head = 24.0
     widths = [head] + [(box.width - head) / len(plan.labels)] * len(plan.labels)
     canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(14.0, (inner.y1 - box.y0) / len(rows)), height=3.5)
@@ -502,32 +505,32 @@ def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
 
     one, two = gear.wheels
     rows: list[tuple[str, ...]] = [
-        ("Параметр", "Знак", "Колесо 1", "Колесо 2"),
-        ("Число зубьев", "z", str(one.teeth), str(two.teeth)),
-        ("Модуль, мм", "m", number(gear.m * 1e3)),
-        ("Угол профиля исходного контура", "α", degrees_and_minutes(gear.alpha)),
-        ("Коэффициент высоты головки", "h_a^{*}", number(gear.addendum)),
-        ("Коэффициент радиального зазора", "c^{*}", number(gear.clearance)),
-        ("Коэффициент смещения", "x", number(one.shift), number(two.shift)),
-        ("Угол зацепления", "α_w", degrees_and_minutes(gear.alpha_w)),
-        ("Межосевое расстояние, мм", "a_w", fixed(gear.a_w * 1e3, 2)),
-        ("Коэф. воспринимаемого смещения", "y", fixed(gear.y, 4)),
-        ("Коэф. уравнительного смещения", "Δy", fixed(gear.dy, 4)),
-        ("Радиус делительный, мм", "r", *both("r")),
-        ("Радиус основной, мм", "r_b", *both("rb")),
-        ("Радиус начальный, мм", "r_w", *both("rw")),
-        ("Радиус вершин, мм", "r_a", *both("ra")),
-        ("Радиус впадин, мм", "r_f", *both("rf")),
-        ("Толщина зуба делительная, мм", "s", *both("s")),
-        ("Толщина зуба по хорде, мм", "s̅", *both("s_chord")),
-        ("Толщина зуба у вершины, мм", "s_a", *both("sa")),
-        ("Шаг делительный, мм", "p", fixed(gear.p * 1e3, 2)),
-        ("Шаг по хорде, мм", "p̅", *both("p_chord")),
-        ("Угловой шаг", "τ", degrees_and_minutes(one.tau), degrees_and_minutes(two.tau)),
-        ("Радиус переходной кривой, мм", "ρ_f", *both("fillet")) if gear.profile == "fillet" else (
-            "Радиус закругления рейки, мм", "ρ_f", fixed(one.fillet * 1e3, 2)),
+        (tr("Parameter"), tr("Symbol"), tr("Wheel 1"), tr("Wheel 2")),
+        (tr("Number of teeth"), "z", str(one.teeth), str(two.teeth)),
+        (tr("Module, mm"), "m", number(gear.m * 1e3)),
+        (tr("Profile angle of the basic rack"), "α", degrees_and_minutes(gear.alpha)),
+        (tr("Addendum coefficient"), "h_a^{*}", number(gear.addendum)),
+        (tr("Bottom clearance coefficient"), "c^{*}", number(gear.clearance)),
+        (tr("Profile shift coefficient"), "x", number(one.shift), number(two.shift)),
+        (tr("Working pressure angle"), "α_w", degrees_and_minutes(gear.alpha_w)),
+        (tr("Centre distance, mm"), "a_w", fixed(gear.a_w * 1e3, 2)),
+        (tr("Centre distance modification coefficient"), "y", fixed(gear.y, 4)),
+        (tr("Addendum shortening coefficient"), "Δy", fixed(gear.dy, 4)),
+        (tr("Reference radius, mm"), "r", *both("r")),
+        (tr("Base radius, mm"), "r_b", *both("rb")),
+        (tr("Pitch radius, mm"), "r_w", *both("rw")),
+        (tr("Tip radius, mm"), "r_a", *both("ra")),
+        (tr("Root radius, mm"), "r_f", *both("rf")),
+        (tr("Tooth thickness, mm"), "s", *both("s")),
+        (tr("Chordal tooth thickness, mm"), "s̅", *both("s_chord")),
+        (tr("Tooth thickness at the tip, mm"), "s_a", *both("sa")),
+        (tr("Pitch, mm"), "p", fixed(gear.p * 1e3, 2)),
+        (tr("Chordal pitch, mm"), "p̅", *both("p_chord")),
+        (tr("Angular pitch"), "τ", degrees_and_minutes(one.tau), degrees_and_minutes(two.tau)),
+        (tr("Fillet radius, mm"), "ρ_f", *both("fillet")) if gear.profile == "fillet" else (
+            tr("Fillet radius of the rack, mm"), "ρ_f", fixed(one.fillet * 1e3, 2)),
     ]
-    inner = canvas.title(box, "Основные параметры передачи")
+    inner = canvas.title(box, tr("Main parameters of the gear pair"))
     ruled_table(canvas, Box(box.x0, box.y0, box.x1, inner.y1), rows, (18.0, 30.0, 30.0), 12.0)
 
 
@@ -540,36 +543,38 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     difference = abs(mean - gear.eps_alpha) / gear.eps_alpha * 100
     entry, leave = ("A", "B") if gear.driver == 1 else ("B", "A")
     rows: list[tuple[str, ...]] = [
-        ("Показатель", "Знак", "Значение"),
-        ("Угол перекрытия колеса 1 (чертёж)", "φ_{α1}", f"{fixed(degrees(float(plan['phi1'].value)), 2)}°"),
-        ("Угол перекрытия колеса 2 (чертёж)", "φ_{α2}", f"{fixed(degrees(float(plan['phi2'].value)), 2)}°"),
-        ("Коэффициент перекрытия φ_{α1}/τ_1", "ε_α", fixed(drawn[0], 3)),
-        ("Коэффициент перекрытия φ_{α2}/τ_2", "ε_α", fixed(drawn[1], 3)),
-        ("Коэффициент перекрытия по формуле", "ε_α", fixed(gear.eps_alpha, 3)),
-        ("Расхождение, %", "Δ", fixed(difference, 2)),
-        ("Активная линия AB, мм", "g_α", fixed(gear.g_alpha * 1e3, 2)),
-        ("Основной шаг, мм", "p_b", fixed(gear.pb * 1e3, 2)),
-        (f"Скольжение на ножке колеса 1 (точка {entry})", "θ_1", fixed(gear.greatest_sliding[0], 2)),
-        (f"Скольжение на ножке колеса 2 (точка {leave})", "θ_2", fixed(gear.greatest_sliding[1], 2)),
+        (tr("Quantity"), tr("Symbol"), tr("Value")),
+        (tr("Angle of contact of wheel 1 (drawing)"), "φ_{α1}", f"{fixed(degrees(float(plan['phi1'].value)), 2)}°"),
+        (tr("Angle of contact of wheel 2 (drawing)"), "φ_{α2}", f"{fixed(degrees(float(plan['phi2'].value)), 2)}°"),
+        (tr("Contact ratio {fraction}").format(fraction="φ_{α1}/τ_1"), "ε_α", fixed(drawn[0], 3)),
+        (tr("Contact ratio {fraction}").format(fraction="φ_{α2}/τ_2"), "ε_α", fixed(drawn[1], 3)),
+        (tr("Contact ratio by the formula"), "ε_α", fixed(gear.eps_alpha, 3)),
+        (tr("Difference, %"), "Δ", fixed(difference, 2)),
+        (tr("Path of contact AB, mm"), "g_α", fixed(gear.g_alpha * 1e3, 2)),
+        (tr("Base pitch, mm"), "p_b", fixed(gear.pb * 1e3, 2)),
+        *((tr("Sliding at the dedendum of wheel {wheel} (point {point})").format(wheel=i, point=point), f"θ_{i}",
+           fixed(gear.greatest_sliding[i - 1], 2)) for i, point in ((1, entry), (2, leave))),
     ]
     if gear.profile == "rack":
-        rows += [(f"ρ на колесе {w.number}: граничная ≤ нижняя, мм", f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
+        rows += [(tr("ρ of wheel {wheel}: limit ≤ lowest, mm").format(wheel=w.number), f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
                   f"{fixed(w.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
-        rows += [("Толщина зубьев у вершины, модулей (≥ 0,2)", "s_{a1}; s_{a2}",
+        rows += [(tr("Tooth thickness at the tip, in modules (≥ 0.2)"), "s_{a1}; s_{a2}",
                   "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
-    inner = canvas.title(box, "Качественные показатели")
+    inner = canvas.title(box, tr("Quality indices"))
     end = ruled_table(canvas, Box(box.x0, box.y0 + 46, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
     one, two = gear.wheels
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
     notes = [
-        f"Принято: масштаб картины зацепления {ratio(scale)[2:]};",
-        f"отрезки P_{{w}}N_1 и P_{{w}}N_2 разделены на {gear.parts(one, scale)} и {gear.parts(two, scale)} части;",
-        *([f"ордината скоростей в полюсе {number(float(gear.sliding['yV1'].value[3]))} мм;"]
+        tr("Taken: scale of the gear meshing {scale};").format(scale=proportion(scale)),
+        tr("segments P_{{w}}N_1 and P_{{w}}N_2 divided into {one} and {two} parts;").format(
+            one=gear.parts(one, scale), two=gear.parts(two, scale)),
+        *([tr("ordinate of the velocities at the pitch point {length} mm;").format(
+            length=number(float(gear.sliding["yV1"].value[3])))]
           if "gear-sliding" in canvas.scales or gear.profile == "fillet" else []),
-        f"ведущее колесо {gear.driver}.",
+        tr("driving wheel {wheel}.").format(wheel=gear.driver),
         *(f"{text[0].upper()}{text[1:]}." for text in gear.warnings),
     ]
     for k, text in enumerate(notes):
         y = end - 8 - 7 * k
         if y > box.y0:
-            canvas.text(complex(box.x0, y), text, 3.5)
+            canvas.put(fitted(text, box.width, 3.5), complex(box.x0, y), 0.0, text)

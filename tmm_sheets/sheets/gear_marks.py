@@ -11,7 +11,9 @@ import numpy as np
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
+from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box, Role
+from tmm_sheets.drawing.tables import needs
 from tmm_sheets.sheets.player import Stage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
@@ -91,8 +93,13 @@ def hatch_between(canvas: Canvas, edge: Any, inner: Any, step: float = 1.3) -> N
 
 @in_role("table")
 def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], widths: Sequence[float], tallest: float) -> float:
-    """Ruled table across the box with the names left; a row with one value spans the value columns. Returns its bottom."""
+    """Ruled table across the box with the names left; a row with one value spans the value columns. Returns its bottom.
+
+    ``widths`` are the least ones of the columns of values.
+    """
     row = min(tallest, box.height / len(rows))
+    needed = needs([cells[1:] for cells in rows if len(cells) > len(widths)], 3.5)
+    widths = [max(least, need + 2.0) for least, need in zip(widths, needed, strict=True)]
     edges = [box.x0, box.x1 - sum(widths)]
     for w in widths:
         edges.append(edges[-1] + w)
@@ -103,10 +110,11 @@ def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], width
         base = y - row / 2 - 1.75
         for j, cell in enumerate(cells):
             if j == 0 and i:
-                canvas.text(complex(edges[0] + 2, base), cell, 3.5)
+                canvas.put(fitted(cell, edges[1] - edges[0] - 3.0, 3.5), complex(edges[0] + 2, base), 0.0, cell)
                 continue
             right = edges[-1] if j == len(cells) - 1 else edges[j + 1]
-            canvas.text(complex((edges[j] + right) / 2, base), cell, 3.5, "centre")
+            laid = fitted(cell, right - edges[j] - 1.0, 3.5)
+            canvas.put(laid, complex((edges[j] + right - laid.width) / 2, base), 0.0, cell)
         for x in edges[1 : len(cells)]:
             canvas.line(complex(x, y), complex(x, y - row), "thin")
     canvas.line(complex(box.x0, bottom), complex(box.x1, bottom), "main")

@@ -16,6 +16,7 @@ from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import Frame, ratio, standard
 from tmm_sheets.sheets.gear_marks import Window, gap
 from tmm_sheets.sheets.player import Stage, stage
+from tmm_sheets.words import tr
 
 MARGIN = 16.0
 """Room for the names of the circles beside the window, mm."""
@@ -57,7 +58,7 @@ class _RackPicture:
         inner = box.inset(0, 0, MARGIN, 16 + NOTES)
         scale = standard((PITCHES * pi * m, inner.width), (top + bottom, inner.height))
         canvas.scales["gear-rack"] = scale
-        inner = canvas.title(box, f"Станочное зацепление колеса {self.wheel.number}", ratio(scale))
+        inner = canvas.title(box, tr("Generation of wheel {wheel} by the rack").format(wheel=self.wheel.number), ratio(scale))
         # What height is left goes to the wheel, whose centre may come to stand on the picture.
         self.pole = complex((inner.x0 + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)
         low = max(inner.y0, self.pole.imag - min(self.rack.r / scale.mu + 12, 2.2 * bottom / scale.mu))
@@ -89,9 +90,9 @@ class _RackPicture:
         reference = self.height(0.0)
         self.window.line(s, "WT", complex(w.x0, self.pole.imag), complex(w.x1, self.pole.imag), "thin")
         self.window.line(s, "M", complex(w.x0, reference), complex(w.x1, reference), "centre")
-        names = [(self.pole.imag, "начальная прямая рейки"), (reference, "делительная прямая рейки")]
+        names = [(self.pole.imag, tr("pitch line of the rack")), (reference, tr("reference line of the rack"))]
         if abs(reference - self.pole.imag) < 0.3:
-            names = [(reference, "делительная и начальная прямая рейки")]
+            names = [(reference, tr("reference and pitch line of the rack"))]
         for k, (y, text) in enumerate(names):
             at = complex(w.x0 + 36 + 6 * k, w.y1 - 6 - 6 * k)
             c.text(at + 1.0, text, 3.5)
@@ -158,7 +159,7 @@ class _RackPicture:
             flank = (shape.flank - shape.centre) / shape.axis
             k = int(np.argmin(abs(abs(flank) - start)))
             point = complex(self.at((flank[k] if shape.side > 0 else np.conj(flank[k])) * right))
-            c.label(point, "подрез", away=-1 + 0.5j, height=3.5, gap=8)
+            c.label(point, tr("undercut"), away=-1 + 0.5j, height=3.5, gap=8)
 
     def dimensions(self, c: Canvas) -> None:
         """Shift, addendum, clearance, pitch and tip radius of the rack."""

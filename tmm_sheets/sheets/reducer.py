@@ -11,11 +11,13 @@ import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.gear_marks import ruled_table, spread
 from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.words import tr
 
 COLUMN = 19.0
 """Distance of two columns of wheels of the axial view, mm."""
@@ -56,7 +58,7 @@ class _Scheme:
         beside = inner.width - self.width - NARROWEST - 24
         self.mu = standard((self.top + self.bottom, inner.height - 16), (2 * self.side, beside))
         canvas.scales["reducer-scheme"] = self.mu
-        self.box = canvas.title(box, "Схема редуктора, картина скоростей и вид с торца", ratio(self.mu))
+        self.box = canvas.title(box, tr("Scheme of the reducer, picture of velocities and end view"), ratio(self.mu))
         spare = self.box.height - (self.top + self.bottom) / self.mu.mu
         self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
         self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
@@ -94,21 +96,21 @@ class _Scheme:
             self.wheel(one, at, self.offset)
             self.wheel(two, at, 0.0, label=-1)
             self.bearing(x + 6, other)
-            self.arrow(complex(x, other), "n_{вх}", -1)
+            self.arrow(complex(x, other), tr("n_{in}"), -1)
             c.line(complex(at - 11, self.axis), complex(at, self.axis), "main")
             self.bearing(at - 8, self.axis)
             x = at
         else:
             c.line(complex(x, self.axis), complex(x + STUB, self.axis), "main")
             self.bearing(x + 6, self.axis)
-            self.arrow(complex(x, self.axis), "n_{вх}", -1)
+            self.arrow(complex(x, self.axis), tr("n_{in}"), -1)
             x += STUB
         for k, stage in enumerate(self.stages):
             x = self.stage(stage, x, first=k == 0)
         if self.before:
             c.line(complex(x, self.axis), complex(x + STUB, self.axis), "main")
             self.bearing(x + STUB - 6, self.axis)
-            self.arrow(complex(x + STUB, self.axis), "n_{вых}", 1)
+            self.arrow(complex(x + STUB, self.axis), tr("n_{out}"), 1)
             return
         one, two = self.pair
         at = x + COLUMN * 0.6
@@ -118,7 +120,7 @@ class _Scheme:
         self.wheel(two, at, self.offset, label=-1)
         c.line(complex(at - FACE, other), complex(at + STUB, other), "main")
         self.bearing(at + STUB - 5, other)
-        self.arrow(complex(at + STUB, other), "n_{вых}", 1)
+        self.arrow(complex(at + STUB, other), tr("n_{out}"), 1)
 
     def arrow(self, at: complex, text: str, side: int) -> None:
         """Name of a shaft's speed at its free end."""
@@ -288,7 +290,7 @@ class _Scheme:
         c, plan = self.canvas, self.reducer.velocities
         ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
         low, high = (f([v.real for v in ends.values()]) for f in (min, max))
-        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, WIDEST)), "(м/с)/мм")
+        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, WIDEST)), tr("(m/s)/mm"))
         c.scales["reducer-velocities"] = mu
         whole = mu.mm(high - low)
         zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
@@ -348,9 +350,10 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     room, tall = box.width - 30, box.height - 44
     # A speed n takes n/mu_n mm, and with the picture's scale factors H = 30 mu_V/(pi mu_l mu_n).
     least = max((high - low) / room, 30 / pi * picture.mu / (heights.mu * tall))
-    mu = Scale("μ_n", handy(least), "(об/мин)/мм")
+    mu = Scale("μ_n", handy(least), tr("rpm/mm"))
     distance = 30 / pi * picture.mu / (heights.mu * mu.mu)
-    inner = canvas.title(box, "План частот вращения", f"{mu};  H = {fixed(distance, 1)} мм")
+    inner = canvas.title(box, tr("Plan of the speeds of rotation"), tr("{scale};  H = {distance} mm").format(
+        scale=mu, distance=fixed(distance, 1)))
     canvas.scales["reducer-speeds"] = picture
     plan = reducer.speeds(distance * heights.mu)
     zero = (inner.x0 + inner.x1) / 2 - mu.mm(low + high) / 2
@@ -361,7 +364,7 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     pen.line(complex(zero + mu.mm(low) - 10, y), complex(zero + mu.mm(high) + 10, y), "axis")
     pen.arrow_head(complex(zero + mu.mm(high) + 12, y), 1)
     pen.line(origin, pole, "thin")
-    canvas.label(complex(zero + mu.mm(high) + 12, y), "n, об/мин", away=-1j, height=3.5, gap=1.5)
+    canvas.label(complex(zero + mu.mm(high) + 12, y), tr("n, rpm"), away=-1j, height=3.5, gap=1.5)
     for name, size, away, height in (("P", 0.9, -1j, 5.0), ("0", 0.8, -1 + 1j, 3.5)):
         s.dot(name, size, "main")
         canvas.label(s.at(name), name, away=away, height=height)
@@ -383,12 +386,12 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     """Table of the chosen tooth set and the runners-up."""
     reducer = project.reducer
     names = reducer.teeth_names
-    head = ["№", *(f"z_{n[1:]}" for n in names), "u", "Δu, %", "η"]
+    head = [tr("No."), *(f"z_{n[1:]}" for n in names), "u", "Δu, %", "η"]
     rows = [head]
     for i, found in enumerate(reducer.sets):
         rows.append([str(i + 1), *(str(found[z].value) for z in names), fixed(found["u"].value, 3),
                      fixed(found["u_deviation"].value * 100, 2), fixed(found["eta"].value, 3)])
-    inner = canvas.title(box, "Подбор чисел зубьев (1 — принято)")
+    inner = canvas.title(box, tr("Choice of the tooth numbers (1 is taken)"))
     wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
     widths = [w * box.width / sum(wide) for w in wide]
     canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(8.0, inner.height / len(rows)), height=3.5)
@@ -399,20 +402,22 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     r = project.reducer
     chosen, held = ({step.name: step.value for step in plan} for plan in (r.sets[0], r.conditions))
     rows: list[tuple[str, ...]] = [
-        ("Показатель", "Значение"),
-        ("Требуемое передаточное отношение", fixed(chosen["u_asked"], 3)),
-        ("Простая ступень × планетарная", f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}"),
-        ("Полученное; отклонение", f"{fixed(chosen['u'], 3)}; {fixed(chosen['u_deviation'] * 100, 2)} %"),
-        ("Соосность, зубьев", f"{held['coaxiality_left']} = {held['coaxiality_right']}"),
-        (f"Сборка при q = {held['q']} (целое)", number(held["assembly"], 6)),
-        ("Соседство, модулей", f"{fixed(held['between'], 2)} > {fixed(held['width'], 2)}"),
-        ("КПД: пара; планетарная; весь", f"{number(chosen['eta_pair'])}; {fixed(chosen['eta_planetary'], 3)}; "
+        (tr("Quantity"), tr("Value")),
+        (tr("Ratio asked for"), fixed(chosen["u_asked"], 3)),
+        (tr("Simple stage × planetary part"), f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}"),
+        (tr("Ratio found; deviation"), f"{fixed(chosen['u'], 3)}; {fixed(chosen['u_deviation'] * 100, 2)} %"),
+        (tr("Coaxiality, teeth"), f"{held['coaxiality_left']} = {held['coaxiality_right']}"),
+        (tr("Assembly with q = {planets} (whole)").format(planets=held["q"]), number(held["assembly"], 6)),
+        (tr("Neighbourhood, modules"), f"{fixed(held['between'], 2)} > {fixed(held['width'], 2)}"),
+        (tr("Efficiency: pair; planetary part; whole"), f"{number(chosen['eta_pair'])}; {fixed(chosen['eta_planetary'], 3)}; "
          f"{fixed(chosen['eta'], 3)}"),
     ]
     first, second = r.simple
-    rows += [("Колёса 1 и 2 картины зацепления",
-              f"{first.number} (z = {first.teeth}) и {second.number} (z = {second.teeth})")]
-    inner = canvas.title(box, "Условия и показатели редуктора")
+    rows += [(tr("Wheels 1 and 2 of the gear meshing"),
+              tr("{one} (z = {teeth}) and {two} (z = {teeth2})").format(
+                  one=first.number, teeth=first.teeth, two=second.number, teeth2=second.teeth))]
+    inner = canvas.title(box, tr("Conditions and results of the reducer"))
     end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), 8.0)
     for k, text in enumerate(r.warnings):
-        canvas.text(complex(box.x0, end - 6 - 6 * k), f"{text[0].upper()}{text[1:]}.", 3.5)
+        said = f"{text[0].upper()}{text[1:]}."
+        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 6 - 6 * k), 0.0, said)

@@ -31,7 +31,7 @@ from tmm_sheets.methods.linkage.loads import (
 from tmm_sheets.task import synthesis_refs
 from tmm_sheets.task.schema import ForceTable, GroupTable, LinkTable, MomentTable
 from tmm_sheets.task.variant import Variant
-from tmm_sheets.words import tell
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.synthesis import Synthesis
@@ -136,7 +136,7 @@ def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> Loads:
     CannotBuild
         when the sense of the working strokes is not told or unknown, or a diagram over the angle has no fixed direction.
     """
-    of, plan = Givens(variant), Plan("load-diagrams", "Диаграммы нагрузок", "N")
+    of, plan = Givens(variant), Plan("load-diagrams", tr("Load diagrams"), "N")
     return Loads((*(_force(of, plan, i, f, mechanism, cycle) for i, f in enumerate(variant.force)),
                   *(_moment(of, plan, i, m, mechanism, cycle) for i, m in enumerate(variant.moment))), plan)
 

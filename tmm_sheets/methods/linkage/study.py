@@ -135,11 +135,10 @@ class Study:
             # The force plan gives a vector along the line of action, the lever its signed size there.
             by_statics = plan.add("along", ALONG_LINE, by_statics, line)
         else:
-            for name, step in (("M", by_statics), ("M_р", by_lever)):
-                plan.add(name, IN_SENSE, step, self.mechanism.crank.sense)
+            plan.add("M", IN_SENSE, by_statics, self.mechanism.crank.sense)
+            plan.add("M_р", IN_SENSE, by_lever, self.mechanism.crank.sense, symbol=tr("M_l"))
         plan.add("Δ", DIFFERENCE, by_statics, by_lever)
         return plan
-
 
     def mean_driving(self, course: Step, turned: Any) -> Step:
         """Mean moment of the crank over the cycle, N m: step ``M_д``, by trapezia from its values at angles ``turned``, rad."""
