@@ -38,9 +38,13 @@ def told(capsys, *arguments):
 
 
 def texts(catalogue):
-    """Translations by context and text."""
-    return {(m.context.decode() if isinstance(m.context, bytes) else m.context, tuple(m.id) if m.pluralizable else m.id): tuple(m.string) if m.pluralizable else m.string
-            for m in catalogue if m.id}  # fmt: skip
+    """Translations by context and text; a compiled catalogue has its contexts as bytes."""
+    found = {}
+    for m in catalogue:
+        if m.id:
+            context = m.context.decode() if isinstance(m.context, bytes) else m.context
+            found[context, tuple(m.id) if m.pluralizable else m.id] = tuple(m.string) if m.pluralizable else m.string
+    return found
 
 
 # --- catalogues -----------------------------------------------------------------------------------------------------
