@@ -23,6 +23,7 @@ from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import places
 from tmm_sheets.sheets.arrangement import arrangement as arrange
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -70,8 +71,8 @@ def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
         found: Callable[..., None] = getattr(import_module(f"tmm_sheets.sheets.{module}"), function)
     except (AttributeError, ValueError):
         path = template(f"sheets/{arrangement}.toml")
-        raise BadInput(Problem(f'there is no view "{draw}"', str(path), field="view.draw",
-                               hint="a view is named module.function, as in the shipped arrangements")) from None
+        raise BadInput(Problem(tell('there is no view "{draw}"').format(draw=draw), str(path), field="view.draw",
+                               hint=tell("a view is named module.function, as in the shipped arrangements"))) from None
     return found
 
 
@@ -95,7 +96,7 @@ def attempt(project: Project, numbers: Iterable[int], around: Callable[[int], Ab
             with around(n):
                 found.drawn[n] = composed(project, n)
         except CannotBuild as e:
-            found.refused[f"sheet {n} ({project.sheets[n - 1]})"] = e
+            found.refused[tell("sheet {n} ({name})").format(n=n, name=project.sheets[n - 1])] = e
     return found
 
 
@@ -103,7 +104,7 @@ def every(project: Project, say: Callable[[str], None] = lambda _: None, numbers
     """Draw sheets of a project, all unless told; CannotBuild when none of them can be drawn."""
     @contextmanager
     def told(n: int) -> Iterator[None]:
-        say(f"sheet {n}")
+        say(tell("sheet {n}").format(n=n))
         yield
 
     found = attempt(project, numbers or range(1, len(project.variant.drawable()) + 1), told)

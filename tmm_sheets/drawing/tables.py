@@ -1,0 +1,32 @@
+"""Widths of the columns of a table: every text is to have room in its column."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tmm_sheets.drawing.lettering import SIZES, letter
+
+GAP = 1.0
+"""What a column is wider than its widest text, mm."""
+
+
+def needs(rows: Sequence[Sequence[str]], height: float) -> list[float]:
+    """Least widths of the columns, mm, with letters of a height."""
+    return [max(letter(cell, height).width for cell in column) + GAP for column in zip(*rows, strict=True)]
+
+
+def widened(widths: Sequence[float], rows: Sequence[Sequence[str]], height: float) -> list[float]:
+    """Widths of the same sum where those columns whose texts do not fit take what they need from those that have it to spare.
+
+    Where there is not enough to spare with letters of this height, the next smaller ones of the standard down to 2.5 mm decide.
+    """
+    for size in (size for size in reversed(SIZES) if 2.5 <= size <= height):
+        need = needs(rows, size)
+        lack = sum(max(n - w, 0.0) for n, w in zip(need, widths, strict=True))
+        spare = sum(max(w - n, 0.0) for n, w in zip(need, widths, strict=True))
+        if not lack:
+            return list(widths)
+        if lack <= spare:
+            return [n if w < n else w - (w - n) * lack / spare for n, w in zip(need, widths, strict=True)]
+    share = sum(widths) / sum(need)
+    return [n * share for n in need]
