@@ -241,7 +241,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw: Flywheel = project.flywheel
     s = fw.scales
     angle, turn = fw.inertia_angle, fw.inertia_turn
-    left = canvas.title(box.inset(0, 0, 0, 2), tr("Graph of the reduced moment of inertia J^{red}(φ_1)"), f"{s.inertia}, {angle}")
+    left = canvas.title(box.inset(0, 0, 0, 2), tr("Graph of the reduced moment of inertia J^red(φ_1)"), f"{s.inertia}, {angle}")
     canvas.of = fw.inertia_plan.name
     g = _inertia_graph(fw, box, options)
     length = angle.mm(turn)
@@ -262,7 +262,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     pen.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
     pen.text(g(length + graphs.OVER) - 2, "φ_1", 5, "right")
     pen.arrow(g(-4j), g(1j * reach), "axis", 3.0)
-    canvas.text(g(1j * reach) - 2 + 2j, tr("J^{red}, kg·m^2"), 3.5, "right")
+    canvas.text(g(1j * reach) - 2 + 2j, tr("J^red, kg·m^2"), 3.5, "right")
 
 
 def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -295,7 +295,7 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     low, high = _energy_range(fw)
     pen = of.pen("points", "axis")
     pen.arrow(g(-12.0), g(reach), "axis", 3.0)
-    pen.label(g(reach), tr("J^{red}, kg·m^2"), -1 + 1j, 3.5, 1.5, leader=False)
+    pen.label(g(reach), tr("J^red, kg·m^2"), -1 + 1j, 3.5, 1.5, leader=False)
     pen.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
     pen.text(g(1j * (high + graphs.OVER)) + 2, tr("ΔE, J"), 3.5)
     beside = abs(fw.ab_mm) < 12.0
@@ -423,7 +423,7 @@ def inertia_table(project: Any, canvas: Canvas, box: Box, options: Options) -> N
         caption = name.replace("²", "^2")
         quantity = caption if "," in caption else tr("{quantity}, J").format(quantity=caption)
         rows.append(graphs.row(quantity, np.resize(values, len(fw.labels))))
-    rows.append(graphs.row(tr("J^{red}, kg·m^2"), fw.J_reduced))
+    rows.append(graphs.row(tr("J^red, kg·m^2"), fw.J_reduced))
     graphs.table(canvas, box, tr("Reduced moment of inertia"), rows)
 
 

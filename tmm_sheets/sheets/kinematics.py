@@ -528,6 +528,6 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
     for g, found in zip(reversed(m.groups), decompose(m), strict=True):
         outer_i, outer_j = found.outer
-        rows.append([g.name, "II", "2", f"{found.kind.number} ({found.form})", f"{outer_i}, {found.inner}, {outer_j}"])
+        rows.append([g.name, "II", "2", f"{found.kind.number} ({tr(found.form)})", f"{outer_i}, {found.inner}, {outer_j}"])
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
     canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)

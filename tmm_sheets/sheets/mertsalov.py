@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Options = dict[str, Any]
 ENERGIES = ("ΔT", "T_{II}", "T_I")
 INERTIA = "I_{II}"
-OF_SIXBAR = (marked("E_{links}"), marked("E_f"), marked("I_{links}"))
+OF_SIXBAR = (marked("E_links"), marked("E_f"), marked("I_links"))
 """Signs that templates/sheets/sixbar_2.toml takes instead."""
 NAMED = 3
 """So many terms of the inertia are lettered at their curves; more are numbered, with a legend under the heading."""
@@ -250,7 +250,7 @@ def _held(fw: Mertsalov) -> str:
     """What carries the running: all of the first group, or without a flywheel the crank and the rotor alone."""
     if fw.needed:
         return "I_I"
-    return tr("(I_{cr} + I_r·u^2)") if fw.J_rotor else tr("I_{cr}")
+    return tr("(I_cr + I_r·u^2)") if fw.J_rotor else tr("I_cr")
 
 
 def _extremes(fw: Mertsalov) -> tuple[str, str]:
