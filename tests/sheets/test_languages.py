@@ -5,7 +5,7 @@ from functools import cache
 
 import pytest
 
-from tests.project_files import from_file
+from tests import project_files
 from tmm_sheets import words
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.lettering import SIZES, index_size
@@ -38,14 +38,14 @@ def drawn(kind, language):
     with words.on_paper(language):
         one = project(name, language)
         if kind == "kinematics":
-            one = from_file(name, sheets=["kinematics"])
+            one = project_files.project(project_files.from_file(name), {"project.sheets": ["kinematics"]})
         assert one.sheets[n - 1] == kind
         return one, composed(one, n)
 
 
-def texts(kind, language):
-    """Texts outside of the title block, which has names of people and of the institution."""
-    return [m.text for m in drawn(kind, language)[1].drawing.marks if isinstance(m, Text) and m.of != "title block"]
+def lettering(kind, language):
+    """Lettering outside of the title block, which has names of people and of the institution."""
+    return [m for m in drawn(kind, language)[1].drawing.marks if isinstance(m, Text) and m.of != "title block"]
 
 
 def names(one):
@@ -59,19 +59,19 @@ def names(one):
 @kinds
 def test_an_english_sheet_has_no_cyrillic_but_names(kind):
     given = names(drawn(kind, "en")[0])
-    said = {run for text in texts(kind, "en") for run in re.findall("[\u0400-\u04ff№]+", text)}
+    said = {run for m in lettering(kind, "en") for run in re.findall("[\u0400-\u04ff№]+", m.text)}
     assert [run for run in said if not any(run in name for name in given)] == []
 
 
 @kinds
 def test_a_ukrainian_sheet_has_no_russian_letters(kind):
-    assert [text for text in texts(kind, "uk") if re.search("[ыэёъЫЭЁЪ]", text)] == []
+    assert [m.text for m in lettering(kind, "uk") if re.search("[ыэёъЫЭЁЪ]", m.text)] == []
 
 
 @kinds
 @languages
 def test_letters_have_sizes_of_the_standard(kind, language):
-    heights = {round(m.height, 6) for m in drawn(kind, language)[1].drawing.marks if isinstance(m, Text)}
+    heights = {round(m.height, 6) for m in lettering(kind, language)}
     assert sorted(h for h in heights if not any(abs(h - size) < 1e-6 for size in STANDARD)) == []
 
 
@@ -84,6 +84,6 @@ def test_every_view_keeps_its_place_and_every_label_finds_one(kind, language):
 
 @pytest.mark.parametrize(("language", "sign", "other"), [("en", "[.]", ","), ("uk", ",", "[.]")])
 def test_numbers_have_the_sign_of_the_language(language, sign, other):
-    said = texts("flywheel", language)
+    said = [m.text for m in lettering("flywheel", language)]
     assert any(re.search(rf"\d{sign}\d", text) for text in said)
     assert [text for text in said if re.search(rf"\d{other}\d", text)] == []
