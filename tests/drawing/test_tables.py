@@ -3,7 +3,7 @@
 import pytest
 
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.tables import GAP, widened
+from tmm_sheets.drawing.tables import GAP, size_in, widened
 
 WIDE, NARROW = "Balancing moment by the lever, N·m", "12"
 
@@ -43,3 +43,11 @@ def test_no_room_at_all_is_shared():
 def test_sizes_are_those_of_the_standard(room, height, size):
     """``room`` in widths of the line in letters of 5 mm."""
     assert size_for([WIDE, NARROW], room * letter(WIDE, 5.0).width, height) == size
+
+
+@pytest.mark.parametrize("row", [4.0, 4.5, 5.5, 6.0, 6.29, 6.3, 7.0])
+def test_indices_keep_clear_of_the_lines_of_their_row(row):
+    size = size_in(row)
+    laid, room = letter("M_{r}^{red}", size), (row - size) / 2
+    assert max(laid.descent, laid.ascent - size) < room or row < 4.5
+    assert size == 3.5 or row < 6.3

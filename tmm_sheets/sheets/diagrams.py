@@ -14,7 +14,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
@@ -94,7 +94,7 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Opt
     rows = [heads, *([label, *(c[i] for c in columns)] for i, label in enumerate(project.cycle.labels))]
     row = min(left.height / len(rows), 7.0)
     first = 12.0
-    height = 3.5 if row >= 5.5 else 2.5
+    height = size_in(row)
     width = (left.width - first) / len(every)
     canvas.table(complex(box.x0, left.y1), widened([first, *[width] * len(every)], rows, height), rows, row, height)
 
@@ -136,7 +136,7 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.
     row = min(left.height / len(rows), 7.5)
     width = box.width / 2 - 10.0
     widths = [10.0, 0.58 * width, 0.42 * width]
-    height = 3.5 if row >= 5.5 else 2.5
+    height = size_in(row)
     canvas.table(complex(box.x0, left.y1), widened(widths * 2, rows, height), rows, row, height)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, size
 from tmm_sheets.sheets.linkage import indexed
@@ -36,7 +36,7 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     if row < 4.0:
         raise CannotBuild(tell("the tables of the given position need more room: {row:.1f} mm for a row").format(row=row),
                           tell("make the place of given_position.values higher in templates/sheets"))
-    height = 3.5 if row >= 5.5 else 2.5
+    height = size_in(row)
     y = box.y1
     for text, rows in tables:
         canvas.text(complex(box.centre.real, y - 5.5), text, 3.5, "centre")

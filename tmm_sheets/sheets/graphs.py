@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, PlacedFrame
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import tell
@@ -114,7 +114,8 @@ def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
     columns = len(rows[0]) - 1
     high = min(left.height / len(rows), 11.0)
     width = (box.width - first) / columns
-    height = 3.5 if high >= 6 and max(letter(cell, 3.5).width for line in rows for cell in line[1:]) <= width - 1 else 2.5
+    wide = max(letter(cell, 3.5).width for line in rows for cell in line[1:]) <= width - 1
+    height = size_in(high) if wide else 2.5
     canvas.table(complex(box.x0, left.y1), widened([first, *[width] * columns], rows, height), rows, high, height)
 
 

@@ -16,7 +16,7 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
@@ -511,7 +511,7 @@ def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: s
     cells = [[tr("No."), *(name for name, _ in columns)]]
     cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), decimals) for _, v in columns)]
               for i, label in cycle.drawn]
-    height = 3.5 if row >= 5.5 else 2.5
+    height = size_in(row)
     widths = widened([10.0] + [(place.width - 10.0) / len(columns)] * len(columns), cells, height)
     canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
 

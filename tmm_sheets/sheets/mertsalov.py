@@ -18,7 +18,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
 from tmm_sheets.sheets.player import Stage, stage
@@ -205,7 +205,7 @@ def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> 
     rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(fw.labels)]
     left = canvas.title(box.inset(0, 0, 0, 2), tr("Results by positions"))
     high = min(left.height / len(rows), 7.0)
-    height = 3.5 if high >= 5.5 else 2.5
+    height = size_in(high)
     widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
     canvas.table(complex(box.x0, left.y1), widths, rows, high, height, header=2)
 
