@@ -11,6 +11,7 @@ next character literally. ``F̅_{21}^τ``, ``μ_l = 0,0025 м/мм``, ``z\_1``.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
@@ -266,3 +267,10 @@ def letter(markup: str, height: float) -> Lettering:
         right = max(right, bar.b.real)
         top = max(top, bar.b.imag + 0.05 * height)
     return Lettering(right, top, -bottom, tuple(setter.runs), tuple(setter.bars))
+
+
+def size_for(lines: Iterable[str], room: float, height: float, least: float = 2.5) -> float:
+    """The largest size of the standard up to ``height``, mm, with which no line is wider than ``room``; ``least`` where none is."""
+    texts = list(lines)
+    sizes = [size for size in reversed(SIZES) if least <= size <= height]
+    return next((size for size in sizes if all(letter(text, size).width <= room for text in texts)), least)

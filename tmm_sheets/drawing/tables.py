@@ -8,6 +8,13 @@ from tmm_sheets.drawing.lettering import SIZES, letter
 
 GAP = 1.0
 """What a column is wider than its widest text, mm."""
+INDICES = 1.8
+"""Height of a row in heights of its letters with which indices above and below keep clear of its lines."""
+
+
+def size_in(row: float) -> float:
+    """Size of the letters in rows of a height, mm: 3.5 where their indices have room, 2.5 in lower ones."""
+    return 3.5 if row >= INDICES * 3.5 else 2.5
 
 
 def needs(rows: Sequence[Sequence[str]], height: float) -> list[float]:

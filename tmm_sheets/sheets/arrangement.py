@@ -10,6 +10,7 @@ from typing import Any
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.resources import template
+from tmm_sheets.words import marked, tell
 
 
 @dataclass(frozen=True)
@@ -59,17 +60,20 @@ class Arrangement:
                 return arrangement(self.without[part]).fitted(parts)
         views = tuple(v for v in self.views if v.needs not in missing)
         if not any(v.needs for v in views):
-            lacks, hints = zip(*(MISSING[part] for part in missing), strict=True)
-            raise CannotBuild(f"the project has no {' and no '.join(lacks)}", f"{'; '.join(hints)}, or leave the sheet out")
+            lacks, hints = zip(*(map(tell, MISSING.get(part, MISSING_TABLE)) for part in missing), strict=True)
+            raise CannotBuild("; ".join(said.format(part=part) for said, part in zip(lacks, missing, strict=True)),
+                              tell("{hints}, or leave the sheet out").format(
+                                  hints="; ".join(said.format(part=part) for said, part in zip(hints, missing, strict=True))))
         return replace(self, views=views)
 
 
 MISSING = {
-    "positions": ("mechanism", "add [crank], [points] and [[group]] to the project file"),
-    "forces": ("forces and no masses", "add [[link]] with masses or a [[force]] to the project file"),
-    **{part: (f"[{part}]", f"add the table [{part}] to the project file") for part in ("flywheel", "gear", "reducer", "cam")},
+    "positions": (marked("the project has no mechanism"), marked("add [crank], [points] and [[group]] to the project file")),
+    "forces": (marked("the project has no forces and no masses"),
+               marked("add [[link]] with masses or a [[force]] to the project file")),
 }
-"""What to say of a missing part and what to try."""
+MISSING_TABLE = (marked("the project has no [{part}]"), marked("add the table [{part}] to the project file"))
+"""What to say of a missing part and what to try: of all others that a table of the project file makes."""
 
 
 def arrangement(name: str) -> Arrangement:
@@ -83,7 +87,8 @@ def arrangement(name: str) -> Arrangement:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         known = ", ".join(sorted(p.stem for p in path.parent.glob("*.toml")))
-        raise BadInput(f"there is no arrangement {name!r}", hint=f"templates/sheets has {known}") from None
+        raise BadInput(tell("there is no arrangement {name!r}").format(name=name),
+                       hint=tell("templates/sheets has {known}").format(known=known)) from None
     except tomllib.TOMLDecodeError as e:
         raise BadInput(Problem(str(e), str(path))) from None
     if isinstance(data.get("like"), str):
@@ -93,4 +98,5 @@ def arrangement(name: str) -> Arrangement:
         views = tuple(View(v.pop("draw"), Box(*map(float, v.pop("box"))), v) for v in data.get("view", []))
         return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})))
     except (KeyError, TypeError, ValueError) as e:
-        raise BadInput(Problem(f"expected title and [[view]] tables with draw and box, found {e!r}", str(path))) from None
+        raise BadInput(Problem(tell("expected title and [[view]] tables with draw and box, found {found!r}").format(found=e),
+                               str(path))) from None

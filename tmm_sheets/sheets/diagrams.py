@@ -14,10 +14,13 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
+from tmm_sheets.sheets.linkage import indexed
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -69,7 +72,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) 
     width = box.width / len(columns)
     room = Box(0, 0, width, box.height)
     angle = _angle(project, room)
-    left = canvas.title(box, "Кинематические диаграммы", str(angle))
+    left = canvas.title(box, tr("Kinematic diagrams"), str(angle))
     for n, quantities in enumerate(columns):
         x = box.x0 + n * width
         height = left.height / len(quantities)
@@ -85,21 +88,21 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Opt
         return
     # The same quantities of one output stand together.
     every.sort(key=lambda row: row[0][1:])
-    left = canvas.title(box, "Кинематика выходного звена" if len(every) == 3 else "Кинематика выходных звеньев")
-    heads = ["№", *(f"{symbol}, {unit}" for symbol, unit, _ in every)]
+    left = canvas.title(box, tr("Motion of the output link") if len(every) == 3 else tr("Motion of the output links"))
+    heads = [tr("No."), *(f"{symbol}, {unit}" for symbol, unit, _ in every)]
     columns = [graphs.column(values) for _, _, values in every]
     rows = [heads, *([label, *(c[i] for c in columns)] for i, label in enumerate(project.cycle.labels))]
     row = min(left.height / len(rows), 7.0)
     first = 12.0
-    height = 3.5 if row >= 5.5 else 2.5
+    height = size_in(row)
     width = (left.width - first) / len(every)
-    canvas.table(complex(box.x0, left.y1), [first, *[width] * len(every)], rows, row, height)
+    canvas.table(complex(box.x0, left.y1), widened([first, *[width] * len(every)], rows, height), rows, row, height)
 
 
 def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Balancing moment over the whole cycle by kinetostatics, positive in the sense of rotation; its mean drives the machine."""
     if project.driver is not None:
-        raise CannotBuild(*_NO_MOMENT)
+        raise CannotBuild(*map(tell, _NO_MOMENT))
     edges = [0.0, *(b for b in project.reduced.breaks if 0 < b < project.cycle.period), project.cycle.period]
     turned = project.motion.turned
     # At a dead point the load is switched: the curve has two ends there, a hair to both sides.
@@ -109,43 +112,45 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     step, course = project.study.balance["M"], project.study_at(every, tuple("" for _ in every)).balance["M"]
     values, at = _row(course, every), _row(step, project.cycle.turned)
     angle = _angle(project, box)
-    left = canvas.title(box, "График уравновешивающего момента", str(angle))
+    left = canvas.title(box, tr("Graph of the balancing moment"), str(angle))
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
     mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None else \
         project.study.mean_driving(course, every)
-    moment = DiagramQuantity("graph-M", "M_{ур}", "Н·м", (Curve("", step, every, values, at),))
-    _graph(project, canvas, left, angle, moment, level=("M_д", float(mean.value)))
+    moment = DiagramQuantity("graph-M", indexed(tr("Mb")), tr("N·m"), (Curve("", step, every, values, at),))
+    _graph(project, canvas, left, angle, moment, level=(tr("M_d"), float(mean.value)))
 
 
 def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever, in columns side by side."""
     if project.driver is not None:
-        raise CannotBuild(*_NO_MOMENT)
+        raise CannotBuild(*map(tell, _NO_MOMENT))
     labels, study = project.cycle.labels, project.study
     by_statics, by_lever = (_row(study.balance[name], study.turned) for name in ("M", "M_р"))
-    left = canvas.title(box, "Уравновешивающий момент, Н·м")
+    left = canvas.title(box, tr("Balancing moment, N·m"))
     half = (len(labels) + 1) // 2
     cells = [[label, *graphs.column([a, b, np.max(np.abs(by_statics))])[:2]]
              for label, a, b in zip(labels, by_statics, by_lever, strict=True)]
     cells += [["", "", ""]] * (2 * half - len(cells))
-    heads = ["№", "Силовой расчёт", "Рычаг"]
+    heads = [tr("No."), tr("Force analysis"), tr("Lever")]
     rows = [heads + heads, *(cells[i] + cells[half + i] for i in range(half))]
     row = min(left.height / len(rows), 7.5)
     width = box.width / 2 - 10.0
     widths = [10.0, 0.58 * width, 0.42 * width]
-    canvas.table(complex(box.x0, left.y1), widths * 2, rows, row, 3.5 if row >= 5.5 else 2.5)
+    height = size_in(row)
+    canvas.table(complex(box.x0, left.y1), widened(widths * 2, rows, height), rows, row, height)
 
 
-_NO_MOMENT = ("the diagram of the balancing moment needs a crank driven by a moment", 'write kind = "moment" in [balancing]')
+_NO_MOMENT = (marked("the diagram of the balancing moment needs a crank driven by a moment"),
+              marked('write kind = "moment" in [balancing]'))
 
 
 def _of_points(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]:
-    units = (("graph-S", "S", "м"), ("graph-V", "V", "м/с"), ("graph-a", "a", "м/с^2"))
+    units = (("graph-S", "S", tr("m")), ("graph-V", "V", tr("m/s")), ("graph-a", "a", tr("m/s^2")))
     return _quantities(project, [project.motion.point(name) for name in names], units)
 
 
 def _of_links(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]:
-    units = (("graph-psi", "ψ", "рад"), ("graph-omega", "ω", "с^{−1}"), ("graph-epsilon", "ε", "с^{−2}"))
+    units = (("graph-psi", "ψ", tr("rad")), ("graph-omega", "ω", tr("s^{−1}")), ("graph-epsilon", "ε", tr("s^{−2}")))
     return _quantities(project, [project.motion.link(name) for name in names], units)
 
 
@@ -175,7 +180,7 @@ def _angle(project: Project, box: Box) -> Scale:
     """Scale of the angle axis: half millimetres between the positions, so that the division is handy."""
     n = len(project.cycle.labels)
     length = floor(2 * (box.width - _LEFT - _RIGHT) / n) / 2 * n
-    return Scale("μ_φ", project.cycle.period / length, "рад/мм")
+    return Scale("μ_φ", project.cycle.period / length, tr("rad/mm"))
 
 
 def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQuantity,
@@ -183,15 +188,16 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
     high = max(0.0, *(float(np.max(c.values)) for c in q.curves))
     low = min(0.0, *(float(np.min(c.values)) for c in q.curves))
     above, below = 10.0, 6.0
-    unit = f"({q.unit})/мм" if "/" in q.unit or "{" in q.unit else f"{q.unit}/мм"
-    scale = pick(project, canvas, q.key, f"μ_{q.letter[0]}", unit, (high - low) / (box.height - above - below))
+    per_mm = tr("({unit})/mm") if "/" in q.unit or "{" in q.unit else tr("{unit}/mm")
+    least = (high - low) / (box.height - above - below)
+    scale = pick(project, canvas, q.key, f"μ_{q.letter[0]}", per_mm.format(unit=q.unit), least)
     length = angle.mm(project.cycle.period)
     top, bottom = scale.mm(high), scale.mm(low)
     spare = box.height - above - below - (top - bottom)
     o = complex(box.x0 + _LEFT + max(box.width - _LEFT - _RIGHT - length, 0) / 2, box.y0 + below + spare / 2 - bottom)
     canvas.of = q.key
     if level is None:
-        canvas.begin(box, f"График {q.letter}")
+        canvas.begin(box, tr("Graph of {quantity}").format(quantity=q.letter))
     at = Frame(scale, o, angle)
     frames = [canvas.placed(c.step.plan, "", o, at.mu) for c in q.curves]
     axis = (q.curves[0].step.path, "", frames[0])
@@ -212,7 +218,7 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
         if level is not None:
             y = o + 1j * scale.mm(level[1])
             canvas.line(y, y + length, "axis")
-            canvas.label(y + 0.9 * length, f"{level[0]} = {fixed(level[1], 1)} Н·м", 1j, 3.5, 0.8)
+            canvas.label(y + 0.9 * length, f"{level[0]} = {fixed(level[1], 1)} {q.unit}", 1j, 3.5, 0.8)
         _numbers(project, canvas, o, angle.mm(project.cycle.turned), length, q, drawn)
     for c in q.curves if len(q.curves) > 1 else ():
         peak = int(np.argmax(np.abs(c.values)))

@@ -18,6 +18,7 @@ import numpy as np
 from tmm_sheets.construction import condition, rules
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import kinematic_frames
+from tmm_sheets.words import marked, tell, tell_n, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.box import Box
@@ -131,31 +132,66 @@ def warn(project: Project, canvas: Canvas, box: Box, plan: Plan, drawn: Iterable
         canvas.note(box, said(project, flat))
 
 
+_CANNOT = {
+    "line": (marked("At position {at} point {name} cannot be drawn"), marked("At positions {at} point {name} cannot be drawn"),
+             marked("At position {at} point {name} cannot be drawn better than to {mm} mm"),
+             marked("At positions {at} point {name} cannot be drawn better than to {mm} mm")),
+    "arcs": (marked("At position {at} the arcs at point {name} cannot be drawn"),
+             marked("At positions {at} the arcs at point {name} cannot be drawn"),
+             marked("At position {at} the arcs at point {name} cannot be drawn better than to {mm} mm"),
+             marked("At positions {at} the arcs at point {name} cannot be drawn better than to {mm} mm")),
+    "velocities": (marked("On the velocity polygon at position {at} point {name} cannot be found"),
+                   marked("On the velocity polygon at positions {at} point {name} cannot be found"),
+                   marked("On the velocity polygon at position {at} point {name} cannot be found better than to {mm} mm"),
+                   marked("On the velocity polygon at positions {at} point {name} cannot be found better than to {mm} mm")),
+    "accelerations": (marked("On the acceleration polygon at position {at} point {name} cannot be found"),
+                      marked("On the acceleration polygon at positions {at} point {name} cannot be found"),
+                      marked("On the acceleration polygon at position {at} point {name} cannot be found better than to {mm} mm"),
+                      marked("On the acceleration polygon at positions {at} point {name} cannot be found better than to {mm} mm")),
+    "link": (marked("On the force polygon of link {links} at position {at} vertex {name} cannot be found"),
+             marked("On the force polygon of link {links} at positions {at} vertex {name} cannot be found"),
+             marked("On the force polygon of link {links} at position {at} vertex {name} cannot be found better than to {mm} mm"),
+             marked("On the force polygon of link {links} at positions {at} vertex {name} cannot be found better than to {mm} mm")),
+    "group": (marked("On the force polygon of group {links} at position {at} vertex {name} cannot be found"),
+              marked("On the force polygon of group {links} at positions {at} vertex {name} cannot be found"),
+              marked("On the force polygon of group {links} at position {at} vertex {name} cannot be found better than to {mm} mm"),
+              marked("On the force polygon of group {links} at positions {at} vertex {name} cannot be found better than to "
+                     "{mm} mm")),
+}
+"""What is said of a point by what it is found with: at one position, at several; the same with its error."""
+
+
 def said(project: Project, flat: Flat) -> str:
-    """The warning in Russian, lettering markup."""
+    """The warning in the language of the paper, lettering markup."""
     from tmm_sheets.sheets import linkage
 
     labels = _labels(project)
     several = len(flat.positions) > 1
-    name = linkage.indexed(flat.step.name)
-    at = f"положени{'ях' if several else 'и'} {_listed(project, flat.positions)}"
-    if flat.plan.name == "positions":
-        verb, what = "провести", f"В {at} {'точку' if flat.step.rule is rules.LINE_LINE else 'засечку точки'} {name}"
-    else:
-        on = {"velocities": "плане скоростей", "accelerations": "плане ускорений"}.get(flat.plan.name)
-        point = "точку" if on else "вершину"
-        verb, what = "найти", f"На {on or flat.plan.title.replace('План', 'плане', 1)} в {at} {point} {name}"
-    how = f"нельзя {verb}" + ("" if flat.mm is None else f" точнее {fixed(flat.mm, 1)} мм")
+    links: tuple[str, ...] = ()
+    kind = flat.plan.name
+    if kind == "positions":
+        kind = "line" if flat.step.rule is rules.LINE_LINE else "arcs"
+    elif kind not in _CANNOT:
+        links = next(fp.links for fp in project.study.forces.plans.values() if fp.plan is flat.plan)
+        kind = "group" if len(links) > 1 else "link"
+    what = tr(_CANNOT[kind][several + 2 * (flat.mm is not None)]).format(
+        at=_listed(project, flat.positions), name=linkage.indexed(flat.step.name), links="–".join(links),
+        mm=fixed(flat.mm or 0.0, 1))
     angle = degrees(flat.angle)
-    where = f"в положении {labels[flat.worst]} " if several else ""
-    under = f"под углом {fixed(angle, 0 if angle >= 10 else 1)}°" if angle >= 0.1 else "под углом меньше 0,1°"
-    why = f"{where}линии сходятся {under}"
-    if flat.better is None:
-        advice = "на этом ходе нет положения лучше"
+    small = angle < 0.1
+    if several:
+        why = tr("at position {worst} the lines meet at less than {angle}°") if small else \
+            tr("at position {worst} the lines meet at {angle}°")
     else:
-        purpose = "для силового расчёта возьмите положение" if _analysed(project, flat.worst) else "точнее в положении"
-        advice = f"{purpose} {labels[flat.better]} ({fixed(flat.better_mm, 1)} мм)"
-    return f"{what} {how}: {why}; {advice}"
+        why = tr("the lines meet at less than {angle}°") if small else tr("the lines meet at {angle}°")
+    why = why.format(worst=labels[flat.worst], angle=fixed(max(angle, 0.1), 0 if angle >= 10 else 1))
+    if flat.better is None:
+        advice = tr("no position of this stroke is better")
+    else:
+        advice = tr("for the force analysis take position {better} ({mm} mm)") if _analysed(project, flat.worst) else \
+            tr("position {better} is better ({mm} mm)")
+        advice = advice.format(better=labels[flat.better], mm=fixed(flat.better_mm, 1))
+    return f"{what}: {why}; {advice}"
 
 
 def _labels(project: Project) -> dict[int, str]:
@@ -177,7 +213,7 @@ def _listed(project: Project, positions: tuple[int, ...]) -> str:
 
 
 def lines(project: Project) -> Iterator[str]:
-    """The same for the command line, in English, for the position plans: those of velocities cross at the same angles."""
+    """The same for the person at the machine, for the position plans: those of velocities cross at the same angles."""
     plan, labels = project.study.positions.plan, _labels(project)
     places = [i for i, _ in project.cycle.drawn]
     if not any((np.broadcast_to(c, (len(labels),))[places] > FLAT).any() for c in condition.crossings(plan).values()):
@@ -186,9 +222,18 @@ def lines(project: Project) -> Iterator[str]:
     if "mu_l" not in kept:  # no sheet draws it
         return
     for flat in find(project, plan, places, {"positions": kept["mu_l"][0]}):
-        which = f"position{'s' if len(flat.positions) > 1 else ''} {_listed(project, flat.positions)}"
-        size = "not be drawn" if flat.mm is None else f"be drawn no better than {flat.mm:.1f} mm"
-        instead = "no position of this stroke is better" if flat.better is None else \
-            f"position {labels[flat.better]} is better ({flat.better_mm:.1f} mm)"
-        yield (f"{which}: point {flat.step.name} can {size}, its lines cross under {degrees(flat.angle):.1f} deg "
-               f"at position {labels[flat.worst]}; {instead}")
+        numbers = {"at": _listed(project, flat.positions), "name": flat.step.name, "mm": flat.mm, "worst": labels[flat.worst],
+                   "angle": degrees(flat.angle)}
+        n = min(len(flat.positions), 2)
+        what = tell_n("position {at}: point {name} can not be drawn, its lines cross under {angle:.1f} deg at position "
+                      "{worst}",
+                      "positions {at}: point {name} can not be drawn, its lines cross under {angle:.1f} deg at position "
+                      "{worst}", n) \
+            if flat.mm is None else \
+            tell_n("position {at}: point {name} can be drawn no better than {mm:.1f} mm, its lines cross under {angle:.1f} deg at "
+                   "position {worst}",
+                   "positions {at}: point {name} can be drawn no better than {mm:.1f} mm, its lines cross under {angle:.1f} deg at "
+                   "position {worst}", n)
+        instead = tell("no position of this stroke is better") if flat.better is None else \
+            tell("position {better} is better ({mm:.1f} mm)").format(better=labels[flat.better], mm=flat.better_mm)
+        yield f"{what.format(**numbers)}; {instead}"

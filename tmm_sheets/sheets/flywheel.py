@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import times
+from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -42,10 +43,11 @@ def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     fw: Flywheel = project.flywheel
     s, r = fw.scales, fw.reduced
     names = list(r.forces_at(fw.samples[:1]))
-    one, many, letter_of, unit = ("момента", "моментов", "M", "Н·м") if r.forces_are_moments else ("силы", "сил", "F", "Н")
-    shown = ", ".join(f"{n}(φ_1)" for n in names)
-    title = f"График {one} {shown}" if len(names) == 1 else f"Графики {many} {shown}"
-    graphs.heading(canvas, box, options, title, f"{s.force}")
+    one, many, letter_of, unit = (
+        (tr("Graph of the moment {shown}"), tr("Graphs of the moments {shown}"), "M", tr("N·m")) if r.forces_are_moments else
+        (tr("Graph of the force {shown}"), tr("Graphs of the forces {shown}"), "F", tr("N")))
+    title = one if len(names) == 1 else many
+    graphs.heading(canvas, box, options, title.format(shown=", ".join(f"{n}(φ_1)" for n in names)), f"{s.force}")
     g = graphs.Graph(complex(options["axis"], box.y0 + _BELOW))
     top = 0.0
     of = stage(canvas, r.numbered.plan, None, g.place(s.angle.mu, s.force.mu))
@@ -89,9 +91,11 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     varying, constant = indices(fw)
     # Of very many intervals (a digitised diagram) one between any two numbers stands for all.
     drawn = [n for n in fw.intervals if len(fw.intervals) <= CROWD * len(fw.labels) or n[-1:] not in ascii_lowercase]
-    left_out = f"; показаны {len(drawn)} из {len(fw.intervals)} лучей" if len(drawn) < len(fw.intervals) else ""
-    graphs.heading(canvas, box, options, "Графики приведённых моментов сил",
-                   f"{s.moment}, {s.angle}, H = {number(s.pole)} мм{left_out}")
+    every = len(drawn) == len(fw.intervals)
+    factors = tr("{moment}, {angle}, H = {pole} mm") if every else \
+        tr("{moment}, {angle}, H = {pole} mm; {shown} of {count} rays are shown")
+    graphs.heading(canvas, box, options, tr("Graphs of the reduced moments of forces"),
+                   factors.format(moment=s.moment, angle=s.angle, pole=number(s.pole), shown=len(drawn), count=len(fw.intervals)))
     line = _moment_curve(fw)
     level = s.moment.mm(fw.M_constant)
     low = min(0.0, level, float(line.imag.min()))
@@ -106,7 +110,7 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     points = fw.moment_plan["M"].value
     # Where the curve runs along the axis its numbers stand on the side the graph leaves free.
     body = line.imag[int(np.argmax(np.abs(line.imag)))]
-    axes(fw, of, "M", g, low, high, "M, Н·м", np.where(np.abs(points.imag) < 1.0, body, points.imag))
+    axes(fw, of, "M", g, low, high, tr("M, N·m"), np.where(np.abs(points.imag) < 1.0, body, points.imag))
     uprights(of, "M")
     pole = plan["P"].value
     rays = stage(canvas, plan, None, g.place())
@@ -119,8 +123,8 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     size = np.abs(line.imag)
     peak = int(np.argmax(size))
     falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
-    canvas.label(g(falling), f"M_{varying}^пр", 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
-    canvas.label(g(0.78 * length + 1j * level), f"M_{constant}^пр", -1j if level > 0 else 1j, height=5)
+    canvas.label(g(falling), tr("M_{index}^{{red}}").format(index=varying), 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
+    canvas.label(g(0.78 * length + 1j * level), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
 
 
 def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any) -> None:
@@ -177,7 +181,7 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw: Flywheel = project.flywheel
     s = fw.scales
     varying, constant = indices(fw)
-    graphs.heading(canvas, box, options, "Графики работ", f"{s.work}")
+    graphs.heading(canvas, box, options, tr("Graphs of work"), f"{s.work}")
     canvas.of = fw.work_plan.name
     ends = np.array([e.value for e in fw.work_ends])
     end = fw.driving_plan["K"].value
@@ -195,14 +199,16 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         heights = (0.0, ends[k].imag, x * end.imag / end.real)
         uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
         canvas.tracing("construction", fw.total_plan["ΣA"].path, label).line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
-    axes(fw, of, "A(φ)", g, low, high, "A, Дж", np.zeros(len(fw.labels)))
+    axes(fw, of, "A(φ)", g, low, high, tr("A, J"), np.zeros(len(fw.labels)))
     k = len(curve) // 2
     canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
     drive.letters("K", "K", 1j if end.imag > 0 else -1j)
     share = fixed(100 * fw.work_error, 2)
-    note = (f"A_{varying}({fw.labels[-1]}) = {fixed(float(fw.work[-1]), 1)} Дж по ординатам середин интервалов,",
-            f"по площади графика {fixed(float(fw.work_converged[-1]), 1)} Дж ({'' if share.startswith('−') else '+'}{share} %)")
+    note = (tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
+                index=varying, label=fw.labels[-1], work=fixed(float(fw.work[-1]), 1)),
+            tr("by the area of the graph {work} J ({share} %)").format(
+                work=fixed(float(fw.work_converged[-1]), 1), share=share if share.startswith("−") else f"+{share}"))
     graphs.note(canvas, Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high), note,
                 [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])])
 
@@ -212,22 +218,22 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     fw = _with_tangents(project)
     s = fw.scales
     ratio = s.work.mu / s.energy.mu
-    graphs.heading(canvas, box, options, "График суммарной работы A_Σ(φ_1) = ΔE(φ_1)",
-             f"{s.energy}{_enlarged(ratio)}")
+    graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), _enlarged(s.energy, ratio))
     canvas.of = fw.total_plan.name
     g = _energy_graph(fw, box, options)
     curve = s.angle.mm(fw.samples) + 1j * fw.energy_curve(fw.samples)
     of = stage(canvas, fw.total_plan, None, g.place())
     of.curve("points", g(curve))
     uprights(of, "points")
-    axes(fw, of, "points", g, curve.imag.min(), curve.imag.max(), "ΔE, Дж", fw.total_plan["points"].value.imag)
+    axes(fw, of, "points", g, curve.imag.min(), curve.imag.max(), tr("ΔE, J"), fw.total_plan["points"].value.imag)
 
 
-def _enlarged(ratio: float) -> str:
-    """What the ordinates are against those of the graph of works, to be said behind the scale factor."""
+def _enlarged(scale: Scale, ratio: float) -> str:
+    """The scale factor, and what the ordinates are against those of the graph of works."""
     if abs(ratio - 1) < 1e-9:
-        return ""
-    return f" (ординаты увеличены в {times(ratio)})" if ratio > 1 else f" (ординаты уменьшены в {times(1 / ratio)})"
+        return str(scale)
+    said = tr("{scale} (ordinates enlarged {times})") if ratio > 1 else tr("{scale} (ordinates reduced {times})")
+    return said.format(scale=scale, times=times(max(ratio, 1 / ratio)))
 
 
 def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -235,7 +241,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw: Flywheel = project.flywheel
     s = fw.scales
     angle, turn = fw.inertia_angle, fw.inertia_turn
-    left = canvas.title(box.inset(0, 0, 0, 2), "График приведённого момента инерции J^пр(φ_1)", f"{s.inertia}, {angle}")
+    left = canvas.title(box.inset(0, 0, 0, 2), tr("Graph of the reduced moment of inertia J^red(φ_1)"), f"{s.inertia}, {angle}")
     canvas.of = fw.inertia_plan.name
     g = _inertia_graph(fw, box, options)
     length = angle.mm(turn)
@@ -256,7 +262,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     pen.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
     pen.text(g(length + graphs.OVER) - 2, "φ_1", 5, "right")
     pen.arrow(g(-4j), g(1j * reach), "axis", 3.0)
-    canvas.text(g(1j * reach) - 2 + 2j, "J^пр, кг·м^2", 3.5, "right")
+    canvas.text(g(1j * reach) - 2 + 2j, tr("J^red, kg·m^2"), 3.5, "right")
 
 
 def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -289,9 +295,9 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     low, high = _energy_range(fw)
     pen = of.pen("points", "axis")
     pen.arrow(g(-12.0), g(reach), "axis", 3.0)
-    pen.label(g(reach), "J^пр, кг·м^2", -1 + 1j, 3.5, 1.5, leader=False)
+    pen.label(g(reach), tr("J^red, kg·m^2"), -1 + 1j, 3.5, 1.5, leader=False)
     pen.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
-    pen.text(g(1j * (high + graphs.OVER)) + 2, "ΔE, Дж", 3.5)
+    pen.text(g(1j * (high + graphs.OVER)) + 2, tr("ΔE, J"), 3.5)
     beside = abs(fw.ab_mm) < 12.0
     for name, end in (("max", "a"), ("min", "b")):
         cut, u = plan[end].value, plan[f"t_{name}"].value
@@ -315,11 +321,11 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
 
 def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
     """Title of the diagram with its scale factors on as few lines as the gap allows; returns what is left below."""
-    name = "Диаграмма энергомасс"
+    name = tr("Energy-mass diagram")
     if letter(name, 5.0).width <= gap.width - 2 >= letter(", ".join(factors), 5.0).width:
         return canvas.title(gap, name, ", ".join(factors))
     lines = [name, *factors] if letter(name, 5.0).width <= gap.width - 2 else [*name.split(), *factors]
-    height = max(min(5.0, *(5.0 * (gap.width - 2) / letter(line, 5.0).width for line in lines)), 2.5)
+    height = size_for(lines, gap.width - 2, 5.0)
     step = 1.6 * height
     canvas.lines(complex(gap.centre.real, gap.y1 - step), lines, step, height, "centre")
     return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * step - 3.0)
@@ -344,7 +350,7 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
     d, b, h = 1000 * w.diameter, 1000 * w.width, 1000 * w.thickness if rim else 0.0
     outer = d + h
     scale = standard(((outer + b) * 1e-3, box.width - 56), (outer * 1e-3, box.height - 36))
-    left = canvas.title(box, "Эскиз маховика", ratio(scale))
+    left = canvas.title(box, tr("Sketch of the flywheel"), ratio(scale))
     k = 1e-3 / scale.mu
     gap = (box.width - (outer + b) * k - 20) / 3
     centre = complex(box.x0 + gap + outer * k / 2, (left.y0 + left.y1) / 2 - 2)
@@ -385,14 +391,16 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
 
 
 def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
-    left = canvas.title(box, "Маховик не требуется")
+    left = canvas.title(box, tr("No flywheel is needed"))
     there, delta = fw.J_first - fw.J_flywheel, fw.running(fw.J_running).delta
-    held = "J_{кр} + J_р·u^2" if fw.J_rotor else "J_{кр}"
-    lines = [f"J_м = {number(fw.J_flywheel, 4)} кг·м^2 ≤ 0",
-             f"{held} = {number(there, 4)} кг·м^2;  необходимо {number(max(fw.J_first, 0.0), 4)} кг·м^2"]
+    held = tr("J_{{cr}} + J_r·u^2 = {there} kg·m^2;  needed {needed} kg·m^2") if fw.J_rotor else \
+        tr("J_{{cr}} = {there} kg·m^2;  needed {needed} kg·m^2")
+    lines = [tr("J_f = {J} kg·m^2 ≤ 0").format(J=number(fw.J_flywheel, 4)),
+             held.format(there=number(there, 4), needed=number(max(fw.J_first, 0.0), 4))]
     if not np.isnan(delta):
-        lines.append(f"Без маховика δ = {number(delta, 4)} {'≤' if delta <= fw.data.delta else '>'} {number(fw.data.delta)}")
-    height = min(5.0, *(5.0 * left.width / letter(line, 5.0).width for line in lines))
+        lines.append(tr("Without a flywheel δ = {found} {sign} {permitted}").format(
+            found=number(delta, 4), sign="≤" if delta <= fw.data.delta else ">", permitted=number(fw.data.delta)))
+    height = size_for(lines, left.width, 5.0)
     canvas.lines(left.centre + 2.0j * height * (len(lines) / 2 - 1), lines, 2.0 * height, height, "centre")
 
 
@@ -400,21 +408,23 @@ def disagreement(fw: Flywheel) -> list[str]:
     """Lines for the sheet where the drawn construction and the limit do not agree whether a flywheel is needed."""
     if fw.needed == (fw.J_flywheel_converged > 0):
         return []
-    return [f"По построению маховик {'нужен' if fw.needed else 'не нужен'}, в пределе n → ∞ – "
-            f"{'не нужен' if fw.needed else 'нужен'}:",
-            f"|J_м| меньше погрешности построения {number(abs(fw.J_flywheel - fw.J_flywheel_converged), 2)} кг·м^2"]
+    error = number(abs(fw.J_flywheel - fw.J_flywheel_converged), 2)
+    return [tr("By the construction a flywheel is needed, in the limit n → ∞ it is not:") if fw.needed else
+            tr("By the construction no flywheel is needed, in the limit n → ∞ it is:"),
+            tr("|J_f| is less than the error of the construction {error} kg·m^2").format(error=error)]
 
 
 def inertia_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Table of the terms of the reduced moment of inertia at the positions."""
     fw: Flywheel = project.flywheel
-    rows = [["Положение", *fw.labels]]
+    rows = [[tr("Position"), *fw.labels]]
     for name, values in fw.reduced.inertia_terms.items():
         # A square over an index; terms without a unit are doubled energies. The position that closes the cycle may be left out.
         caption = name.replace("²", "^2")
-        rows.append(graphs.row(caption if "," in caption else f"{caption}, Дж", np.resize(values, len(fw.labels))))
-    rows.append(graphs.row("J^пр, кг·м^2", fw.J_reduced))
-    graphs.table(canvas, box, "Приведённый момент инерции", rows)
+        quantity = caption if "," in caption else tr("{quantity}, J").format(quantity=caption)
+        rows.append(graphs.row(quantity, np.resize(values, len(fw.labels))))
+    rows.append(graphs.row(tr("J^red, kg·m^2"), fw.J_reduced))
+    graphs.table(canvas, box, tr("Reduced moment of inertia"), rows)
 
 
 def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -422,13 +432,14 @@ def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     fw: Flywheel = project.flywheel
     varying, constant = indices(fw)
     rows = [
-        ["Положение", *fw.labels],
-        graphs.row(f"M_{varying}^пр, Н·м", fw.M_reduced),
-        graphs.row(f"A_{varying}, Дж", fw.work),
-        graphs.row(f"A_{constant}, Дж", fw.total_plan["A_K"].value),
-        graphs.row("ΔE, Дж", fw.delta_E),
+        [tr("Position"), *fw.labels],
+        graphs.row(tr("M_{index}^{{red}}, N·m").format(index=varying), fw.M_reduced),
+        graphs.row(tr("A_{index}, J").format(index=varying), fw.work),
+        graphs.row(tr("A_{index}, J").format(index=constant), fw.total_plan["A_K"].value),
+        graphs.row(tr("ΔE, J"), fw.delta_E),
     ]
-    graphs.table(canvas, box, f"Работы за цикл, M_{constant}^пр = {fixed(fw.M_constant, 1)} Н·м", rows)
+    graphs.table(canvas, box, tr("Works of the cycle, M_{index}^{{red}} = {moment} N·m").format(
+        index=constant, moment=fixed(fw.M_constant, 1)), rows)
 
 
 def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -437,48 +448,53 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     s, d = fw.scales, fw.data
     omega, psi = fw.reduced.omega1, fw.psi
     slope = {name: float(fw.energy_mass_plan.asides[f"tg ψ_{name}"].value) for name in ("max", "min")}
-    below = "" if fw.ab_mm >= 0 else " (a ниже b)"
     length = fixed(fw.ab_mm, 2) if abs(fw.ab_mm) >= 10 else number(fw.ab_mm, 4)
-    segment, rotor = "|ab|" if fw.ab_mm >= 0 else "ab", " − J_р·u^2" if fw.J_rotor else ""
+    drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
+    inertia = tr("J_f = {segment}·μ_E/(δ·ω_1^2) − J_r·u^2 = {length}·{mu}/({delta}·{omega}^2) − {rotor} = {J} kg·m^2") \
+        if fw.J_rotor else tr("J_f = {segment}·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {J} kg·m^2")
+    tangent = tr("tan ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {slope};  ψ_{name} = {angle}°")
     rows = [
-        f"ω_1 = {fixed(omega, 3)} с^{{−1}};  δ = {number(d.delta)};  ρ = {number(d.density)} кг/м^3",
-        *(f"tg ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {fixed(slope[name], 4)};  ψ_{name} = {fixed(degrees(a), 2)}°"
+        tr("ω_1 = {omega} s^{{−1}};  δ = {delta};  ρ = {density} kg/m^3").format(
+            omega=fixed(omega, 3), delta=number(d.delta), density=number(d.density)),
+        *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], 4), angle=fixed(degrees(a), 2))
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
-        f"{segment} = {length} мм{below}",
-        f"J_м = {segment}·μ_E/(δ·ω_1^2){rotor} = {length}·{number(s.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2)"
-        f"{f' − {number(fw.J_rotor, 4)}' if rotor else ''} = {number(fw.J_flywheel, 5)} кг·м^2",
-        f"При n → ∞ положений: J_м = {number(fw.J_flywheel_converged, 7)} кг·м^2 ({_difference(fw)})",
+        drawn.format(length=length),
+        inertia.format(segment="|ab|" if fw.ab_mm >= 0 else "ab", length=length, mu=number(s.energy.mu), delta=number(d.delta),
+                       omega=fixed(omega, 3), rotor=number(fw.J_rotor, 4), J=number(fw.J_flywheel, 5)),
+        _converged(fw),
         *disagreement(fw),
         *_sizes(fw),
     ]
-    left = canvas.title(box, "Расчёт маховика")
+    left = canvas.title(box, tr("Flywheel design"))
     step = min(left.height / len(rows), 13.0)
-    widest = max(letter(row, 5.0).width for row in rows)
-    height = 5.0 if step >= 8 and widest <= box.width else 3.5
+    height = size_for(rows, box.width, 5.0 if step >= 8 else 3.5)
     canvas.lines(complex(box.x0, left.y1 - step + 3), rows, step, height)
 
 
-def _difference(fw: Flywheel) -> str:
-    """How far drawn and converged are apart: in percent, beside a small converged one in kg m2."""
-    if fw.needed and abs(fw.difference_percent) < 100:
-        return f"отличие {fixed(fw.difference_percent, 2)} %"
-    return f"отличие {number(fw.J_flywheel - fw.J_flywheel_converged, 3)} кг·м^2"
+def _converged(fw: Flywheel) -> str:
+    """The converged flywheel and how far the drawn one is from it: in percent, beside a small converged one in kg m2."""
+    said = tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {difference} %)") \
+        if fw.needed and abs(fw.difference_percent) < 100 else \
+        tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {apart} kg·m^2)")
+    return said.format(J=number(fw.J_flywheel_converged, 7), difference=fixed(fw.difference_percent, 2),
+                       apart=number(fw.J_flywheel - fw.J_flywheel_converged, 3))
 
 
 def _sizes(fw: Flywheel) -> list[str]:
     """Sizes and mass of the wheel as formulas, or that none is needed."""
     w, d = fw.wheel, fw.data
     if w is None:
-        return ["J_м ≤ 0: маховик не требуется"]
-    rim = w.form == "rim"
-    return [
-        f"{'Обод со спицами' if rim else 'Диск'}:  κ = B/D = {number(d.width_ratio)}"
-        + (f";  c = H/D = {number(d.thickness_ratio)}" if rim else ""),
-        f"D = ({'4J_м/(πρκc)' if rim else '32J_м/(πρκ)'})^{{1/5}} = {fixed(w.diameter, 3)} м",
-        f"B = κD = {fixed(w.width, 3)} м" + (f";  H = cD = {fixed(w.thickness, 3)} м" if rim else ""),
-        f"m = {4 if rim else 8}J_м/D^2 = {number(w.mass, 4)} кг",
-        f"V = ω_1·D/2 = {fixed(w.speed, 2)} м/с {'<' if w.speed < 30 else '≥'} 30 м/с",
-    ]
+        return [tr("J_f ≤ 0: no flywheel is needed")]
+    said = (tr("Rim with spokes:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
+            tr("D = (4J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
+            tr("m = 4J_f/D^2 = {mass} kg")) if w.form == "rim" else \
+        (tr("Disc:  κ = B/D = {width_ratio}"), tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m"),
+         tr("m = 8J_f/D^2 = {mass} kg"))
+    numbers = {"width_ratio": number(d.width_ratio), "thickness_ratio": number(d.thickness_ratio),
+               "diameter": fixed(w.diameter, 3), "width": fixed(w.width, 3), "thickness": fixed(w.thickness, 3),
+               "mass": number(w.mass, 4), "speed": fixed(w.speed, 2)}
+    speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s")
+    return [line.format(**numbers) for line in (*said, speed)]
 
 
 # --- parts shared by the views --------------------------------------------------------------------------
@@ -488,17 +504,20 @@ def by_method(project: Any, method: str, hint: str) -> Any:
     """The project's flywheel, which a view must find by its own method."""
     fw = project.flywheel
     if fw.method != method:
-        raise CannotBuild(f'this view belongs to flywheel.method = "{method}", not "{fw.method}"', hint)
+        raise CannotBuild(tell('this view belongs to flywheel.method = "{wanted}", not "{found}"').format(
+            wanted=method, found=fw.method), hint)
     return fw
 
 
 def _with_tangents(project: Any) -> Wittenbauer:
-    return cast("Wittenbauer", by_method(project, "wittenbauer", "take the views of mertsalov in the arrangement of the sheet"))
+    hint = tell("take the views of mertsalov in the arrangement of the sheet")
+    return cast("Wittenbauer", by_method(project, "wittenbauer", hint))
 
 
 def indices(fw: Flywheel) -> tuple[str, str]:
     """Indices of the varying moment and of the constant one: resistance and drive, for an engine exchanged."""
-    return ("с", "д") if fw.reduced.resisting else ("д", "с")
+    resisting, driving = tr_in("index of moment and work", "r"), tr_in("index of moment and work", "d")
+    return (resisting, driving) if fw.reduced.resisting else (driving, resisting)
 
 
 def _stretches(fw: Flywheel) -> list[tuple[float, float]]:

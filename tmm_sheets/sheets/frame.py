@@ -14,7 +14,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, plain
-from tmm_sheets.words import tr
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -104,11 +104,13 @@ def pick(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str,
         digit = 10.0 ** (floor(log10(least)) - 3)
         shown = plain(ceil(least / digit * (1 - 1e-9)) * digit, 4)  # rounded down it would be refused once more
         raise CannotBuild(
-            f"scale factor {name} = {wanted:g}: the view does not fit in its place, it needs {shown} or more",
-            f"take {handy(least):g}, leave scales.{name} out of the project file, or make its place larger in templates/sheets")
+            tell("scale factor {name} = {wanted:g}: the view does not fit in its place, it needs {least} or more").format(
+                name=name, wanted=wanted, least=shown),
+            tell("take {handy:g}, leave scales.{name} out of the project file, or make its place larger in "
+                 "templates/sheets").format(handy=handy(least), name=name))
     if wanted is None and not least > 0:
-        raise CannotBuild(f"plan {name}: there is nothing to draw, all its vectors are zero",
-                          "give the links masses or add a [[force]], or leave this view out of the arrangement")
+        raise CannotBuild(tell("plan {name}: there is nothing to draw, all its vectors are zero").format(name=name),
+                          tell("give the links masses or add a [[force]], or leave this view out of the arrangement"))
     scale = Scale(symbol, handy(least) if wanted is None else wanted, unit)
     canvas.scales[name] = scale
     canvas.chosen.add(name)

@@ -8,9 +8,11 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, size
 from tmm_sheets.sheets.linkage import indexed
+from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -23,25 +25,26 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     """Tables of the values at the given position (manual 003, section 4, works 3-6)."""
     label = project.cycle.labels[project.force_index]
     tables = [
-        (f"Скорости и ускорения (положение {label})", _points(project)),
-        ("Звенья: угловые величины и инерционная нагрузка", _links(project)),
+        (tr("Velocities and accelerations (position {label})").format(label=label), _points(project)),
+        (tr("Links: angular quantities and inertia loads"), _links(project)),
     ]
     loads = _loads(project)
     if len(loads) > 1:
-        tables.append(("Технологические нагрузки", loads))
+        tables.append((tr("Technological loads"), loads))
     title = 8.0
     row = min((box.height - title * len(tables)) / sum(len(rows) for _, rows in tables), ROW)
     if row < 4.0:
-        raise CannotBuild(f"the tables of the given position need more room: {row:.1f} mm for a row",
-                          "make the place of given_position.values higher in templates/sheets")
-    height = min(3.5, 0.55 * row)
+        raise CannotBuild(tell("the tables of the given position need more room: {row:.1f} mm for a row").format(row=row),
+                          tell("make the place of given_position.values higher in templates/sheets"))
+    height = size_in(row)
     y = box.y1
     for text, rows in tables:
         canvas.text(complex(box.centre.real, y - 5.5), text, 3.5, "centre")
         columns = len(rows[0])
         first = 0.12 if columns > 3 else 0.3
         widths = [first] + [(1 - first) / (columns - 1)] * (columns - 1)
-        drawn = canvas.table(complex(box.x0, y - title), [w * box.width for w in widths], rows, row, height)
+        widths = widened([w * box.width for w in widths], rows, height)
+        drawn = canvas.table(complex(box.x0, y - title), widths, rows, row, height)
         y = drawn.y0
 
 
@@ -53,7 +56,7 @@ def _points(project: Project) -> list[list[str]]:
     of_speed, of_acceleration = (size((step.value for step in of.values()), k) for of in (speed, acceleration))
     cells = [[indexed(name), _size(speed[name], k, of_speed), _size(acceleration[name], k, of_acceleration)] for name in names]
     half = (len(cells) + 1) // 2
-    head = ["Точка", "V, м/с", "a, м/с²"]
+    head = [tr("Point"), tr("V, m/s"), tr("a, m/s²")]
     return [head * 2, *([*left, *right] for left, right in zip(cells[:half], [*cells[half:], ["", "", ""]], strict=False))]
 
 
@@ -63,7 +66,7 @@ def _links(project: Project) -> list[list[str]]:
     loads, couples, _ = study.loads
     omega, epsilon, forces = study.velocities.omega, study.accelerations.epsilon, study.forces
     of_omega, of_epsilon = (size((step.value for step in of.values()), k) for of in (omega, epsilon))
-    rows = [["Звено", "ω, 1/с", "ε, 1/с²", "F_и, Н", "M_и, Н·м"]]
+    rows = [[tr("Link"), tr("ω, 1/s"), tr("ε, 1/s²"), tr("F_i, N"), tr("M_i, N·m")]]
     for name, link in m.links.items():
         inertia = next((load.vector for load in loads.get(name, ()) if load.role == "inertia"), None)
         couple = next((c for c in couples.get(name, ()) if link.inertia), None)
@@ -77,11 +80,12 @@ def _loads(project: Project) -> list[list[str]]:
     turned = project.cycle.turned[project.force_index]
     written: dict[str, Any] = {load.name: load for load in project.variant.force}
     written |= {load.name: load for load in project.variant.moment}
-    rows = [["Нагрузка", "Величина", "Данные"]]
+    rows = [[tr("Load"), tr("Magnitude"), tr("Data")]]
     for load in project.applied:
-        unit = "Н" if load.point is not None else "Н·м"
+        unit = tr("N") if load.point is not None else tr("N·m")
+        data = tr_in("load", "taken") if written[load.name].accepted else tr_in("load", "given")
         value = float(np.ravel(load.magnitude(turned))[0])
-        rows.append([indexed(load.name), f"{number(value)} {unit}", "принято" if written[load.name].accepted else "задано"])
+        rows.append([indexed(load.name), f"{number(value)} {unit}", data])
     return rows
 
 

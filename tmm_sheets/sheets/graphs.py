@@ -12,8 +12,10 @@ import numpy as np
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, PlacedFrame
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
+from tmm_sheets.words import tell
 
 Options = dict[str, Any]
 OVER = 8.0
@@ -46,18 +48,18 @@ def one(values: Any) -> float:
 def check_room(box: Box, top: float, view: str) -> None:
     """Refuse a place that ends below what has to be drawn."""
     if top > box.y1 + 0.5:
-        raise CannotBuild(f"view {view} needs {top - box.y1:.0f} mm more height than its place has",
-                          "make its box in the arrangement larger; for a four-stroke engine take the arrangement engine_2")
+        raise CannotBuild(
+            tell("view {view} needs {lack:.0f} mm more height than its place has").format(view=view, lack=top - box.y1),
+            tell("make its box in the arrangement larger; for a four-stroke engine take the arrangement engine_2"))
 
 
 def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str) -> None:
     """Title and scale factor on one line over the angle axis: the left column has no height to give away."""
     x0 = options["axis"]
-    name, scale = letter(title, 5.0), letter(factor, 5.0)
-    height = 5.0
-    if x0 + name.width + scale.width + 8 > box.x1:
-        height = 3.5
-        scale = letter(factor, 3.5)
+    for size, height in ((5.0, 5.0), (5.0, 3.5), (3.5, 3.5), (3.5, 2.5), (2.5, 2.5)):
+        name, scale = letter(title, size), letter(factor, height)
+        if x0 + name.width + scale.width + 8 <= box.x1:
+            break
     start = (x0 + box.x1 - name.width - scale.width - 8) / 2
     canvas.put(name, complex(start, box.y1 - 6.0))
     canvas.text(complex(start + name.width + 8, box.y1 - 6.0), factor, height)
@@ -112,8 +114,9 @@ def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
     columns = len(rows[0]) - 1
     high = min(left.height / len(rows), 11.0)
     width = (box.width - first) / columns
-    height = 3.5 if high >= 6 and max(letter(cell, 3.5).width for line in rows for cell in line[1:]) <= width - 1 else 2.5
-    canvas.table(complex(box.x0, left.y1), [first, *[width] * columns], rows, high, height)
+    wide = max(letter(cell, 3.5).width for line in rows for cell in line[1:]) <= width - 1
+    height = size_in(high) if wide else 2.5
+    canvas.table(complex(box.x0, left.y1), widened([first, *[width] * columns], rows, height), rows, high, height)
 
 
 def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) -> None:

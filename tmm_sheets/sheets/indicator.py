@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.sheets.frame import pick
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -42,7 +43,8 @@ class Indicator:
     def text(self) -> str:
         """Sign of the ordinate in lettering markup, with its unit."""
         name = f"{'p' if self.area != 1 else self.force.name[0]}_{{{self.force.name[1:]}}}"
-        return f"{name}, {'МПа' if self.area != 1 else 'Н'}"
+        said = tr("{quantity}, MPa") if self.area != 1 else tr("{quantity}, N")
+        return said.format(quantity=name)
 
     def ordinate(self, turned: Any, side: int = 0) -> Any:
         """Pressure, MPa, or force, N."""
@@ -101,7 +103,7 @@ def draw(project: Project, s: Stage) -> None:
     turned = _angles(project)
     top = max(float(np.max(one.ordinate(turned))) for one in shown)
     pressure = shown[0].area != 1
-    scale = pick(project, canvas, "indicator", "μ_p" if pressure else "μ_F", "МПа/мм" if pressure else "Н/мм", top / HEIGHT)
+    scale = pick(project, canvas, "indicator", "μ_p" if pressure else "μ_F", tr("MPa/mm") if pressure else tr("N/mm"), top / HEIGHT)
     pos = project.study_at(turned, tuple("" for _ in turned)).positions
     for one in shown:
         name, load = str(one.force.point), f"loads/{one.force.name}"

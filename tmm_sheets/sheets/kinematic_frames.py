@@ -15,6 +15,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import indicator
 from tmm_sheets.sheets.frame import Frame, ScaleBook, extent, fit_frame, pick
+from tmm_sheets.words import tell, tell_n, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -39,8 +40,10 @@ def check_number(project: Project) -> None:
     """Refuse more positions than can be told apart on paper."""
     count = len(project.cycle.drawn)
     if count > MOST:
-        message = f"{count} positions of one turn cannot be told apart on a sheet, {MOST} at most"
-        hint = "number fewer; solve --positions gives the numbers at any number of them"
+        message = tell_n("{count} position of one turn cannot be told apart on a sheet, {most} at most",
+                         "{count} positions of one turn cannot be told apart on a sheet, {most} at most", count).format(
+                             count=count, most=MOST)
+        hint = tell("number fewer; solve --positions gives the numbers at any number of them")
         raise CannotBuild(str(project.variant.problem(message, "cycle", "positions", hint=hint)))
 
 
@@ -88,7 +91,7 @@ def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, 
     beside, reach = indicator.reach(project)
     z.append(np.asarray(beside))
     d.append(np.asarray(reach))
-    return fit_frame(project, canvas, "positions", "μ_l", "м/мм", np.concatenate(z), np.concatenate(d), inside)
+    return fit_frame(project, canvas, "positions", "μ_l", tr("m/mm"), np.concatenate(z), np.concatenate(d), inside)
 
 
 def plan_points(plan: Plan, i: int) -> dict[str, complex]:
@@ -153,8 +156,9 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
         if need <= readable or (wanted is not None and need < inf):
             break
     if not need < inf:
-        raise CannotBuild("the velocity plans have no room for their lettering", "make their place larger in templates/sheets")
-    scale = pick(project, canvas, "velocities", "μ_V", "(м/с)/мм", need)
+        raise CannotBuild(tell("the velocity plans have no room for their lettering"),
+                          tell("make their place larger in templates/sheets"))
+    scale = pick(project, canvas, "velocities", "μ_V", tr("(m/s)/mm"), need)
     per_row = -(-len(shown) // rows)
     return VelocityLayout(shown, spans, -(-len(shown) // per_row), per_row, inside, scale, beyond, every)
 
@@ -200,10 +204,13 @@ def left_out(project: Project, sheets: Iterable[int]) -> Iterator[str]:
     for view in (view for n in sheets for view in _views(project, n) if view.draw == "kinematics.velocity_plans"):
         layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
         for i, times in layout.beyond:
-            yield (f"position {project.cycle.labels[i]} is next to a dead point: its velocity plan is not drawn, "
-                   f"it is {times:.3g} times as large as usual")
+            yield tell("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large "
+                       "as usual").format(label=project.cycle.labels[i], times=times)
         if layout.every > 1:
-            yield f"there is no room for {len(project.cycle.drawn)} velocity plans: one in {layout.every} is drawn"
+            count = len(project.cycle.drawn)
+            yield tell_n("there is no room for {count} velocity plan: one in {every} is drawn",
+                         "there is no room for {count} velocity plans: one in {every} is drawn", count).format(
+                             count=count, every=layout.every)
 
 
 def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
@@ -211,7 +218,7 @@ def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
     real = plan_extent(project.study.accelerations.plan, project.force_index)
     inside = box.inset(9.0, 8.0, 9.0, 24.0)
     need = max(real.width / inside.width, real.height / inside.height)
-    scale = pick(project, canvas, "accelerations", "μ_a", "(м/с²)/мм", need)
+    scale = pick(project, canvas, "accelerations", "μ_a", tr("(m/s²)/mm"), need)
     return Frame(scale, inside.centre - scale.mm(real.centre))
 
 

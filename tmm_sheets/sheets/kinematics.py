@@ -13,15 +13,16 @@ from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick, together
 from tmm_sheets.sheets.player import Stage, play, stage
-from tmm_sheets.words import tr
+from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Segment
@@ -37,7 +38,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     cycle, k, pos = project.cycle, project.force_index, project.study.positions
     graph = kinematic_frames.graph_height(project, options)
     frame = kinematic_frames.positions(project, canvas, box, options)
-    canvas.title(box, "Планы положений механизма", str(frame.scale))
+    canvas.title(box, tr("Positions of the mechanism"), str(frame.scale))
     flat_crossings.warn(project, canvas, box, pos.plan, (i for i, _ in cycle.drawn))
     canvas.scales["dead-positions"] = frame.scale
     every = stage(canvas, pos.plan, None, frame)
@@ -246,7 +247,8 @@ def _strokes(project: Project, s: Stage) -> None:
     count = project.variant.cycle.working if project.variant.cycle else None
     first = cycle.world(cycle.turned[0])
     last = cycle.world(cycle.turned[count] if count else cycle.strokes.end)
-    for text, a, b, at in (("φ_п", first, last, 0.5), ("φ_о", last, first + cycle.sense * 2 * pi, 0.2)):
+    working, idle = tr_in("angle of the crank", "φ_w"), tr_in("angle of the crank", "φ_i")
+    for text, a, b, at in ((working, first, last, 0.5), (idle, last, first + cycle.sense * 2 * pi, 0.2)):
         # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
         lo, hi = min(a, b), max(a, b)
         share = at if b > a else 1 - at
@@ -262,19 +264,20 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     magnitude = np.asarray(force.magnitude(turned, 0))
     top = float(magnitude.max())
     y0 = box.y0 + 5.0
-    scale = pick(project, canvas, "force-graph", "μ_F", "Н/мм", top / (box.height - 18.0))
+    scale = pick(project, canvas, "force-graph", "μ_F", tr("N/mm"), top / (box.height - 18.0))
     high = y0 + top / scale.mu
     a, b = s.frame(strokes.origin), s.frame(strokes.origin + strokes.path * strokes.length)
     left, right = sorted((a.real, b.real))
     way = linkage.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
-    tip = min(right + 14.0, box.x1 - 1.5 - letter(f"{way}, м", 3.5).width)
+    ways = tr("{quantity}, m").format(quantity=way)
+    tip = min(right + 14.0, box.x1 - 1.5 - letter(ways, 3.5).width)
     load, back = f"loads/{force.name}", a.real > b.real  # the way is counted from where the stroke begins
     graph = canvas.placed("loads", "", complex(a.real, y0), (s.frame.mu[0], scale.mu), pi * back, back)
     pen = canvas.tracing("axis", load, "", graph)
     pen.arrow(complex(left, y0), complex(left, high + 9.0), "axis", 3.5)
     pen.arrow(complex(left, y0), complex(tip, y0), "axis", 3.5)
-    pen.text(complex(left - 2.0, high + 5.0), f"{linkage.indexed(force.name)}, Н", 3.5, "right")
-    pen.text(complex(tip + 1.5, y0 - 1.2), f"{way}, м", 3.5)
+    pen.text(complex(left - 2.0, high + 5.0), tr("{quantity}, N").format(quantity=linkage.indexed(force.name)), 3.5, "right")
+    pen.text(complex(tip + 1.5, y0 - 1.2), ways, 3.5)
     # Beside the end of the graph, or above it where there is no room.
     room = box.x1 - letter(str(scale), 3.5).width
     canvas.text(complex(min(right + 3.0, room), high + (0.0 if right + 3.0 <= room else 2.5)), str(scale), 3.5)
@@ -313,7 +316,7 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     plan = project.study.velocities.plan
     layout = kinematic_frames.velocities(project, canvas, box, options)
     many = len(layout.shown) > 1
-    canvas.title(box, "Планы скоростей" if many else "План скоростей", str(layout.scale))
+    canvas.title(box, tr("Velocity polygons") if many else tr("Velocity polygon"), str(layout.scale))
     flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
     _left_out(project, canvas, box, layout)
     tiny: dict[str, list[str]] = {}
@@ -321,14 +324,15 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         middle = place.centre + 4.0j
         canvas.of = f"velocity plan {label}"
         if many:
-            canvas.begin(place, f"План скоростей, положение {label}")
+            canvas.begin(place, tr("Velocity polygon, position {label}").format(label=label))
         s = stage(canvas, plan, index, Frame(layout.scale, middle - layout.scale.mm(span.centre)))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
-        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
+        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), tr("Position {label}").format(label=label), 3.5, "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
-        canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {_with_positions(tiny) if many else ', '.join(tiny)}")
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(
+            space=TOGETHER, vectors=_with_positions(tiny) if many else ", ".join(tiny)))
 
 
 def _with_positions(tiny: dict[str, list[str]]) -> str:
@@ -336,16 +340,18 @@ def _with_positions(tiny: dict[str, list[str]]) -> str:
     there: dict[tuple[str, ...], list[str]] = {}
     for name, labels in tiny.items():
         there.setdefault(tuple(labels), []).append(name)
-    return "; ".join(f"{', '.join(names)} (положени{'я' if len(at) > 1 else 'е'} {', '.join(at)})" for at, names in there.items())
+    one, several = tr("{vectors} (position {at})"), tr("{vectors} (positions {at})")
+    return "; ".join((several if len(at) > 1 else one).format(vectors=", ".join(names), at=", ".join(at))
+                     for at, names in there.items())
 
 
 def _left_out(project: Project, canvas: Canvas, box: Box, layout: kinematic_frames.VelocityLayout) -> None:
     """Notes on the plans that are not drawn."""
     for i, ratio in layout.beyond:
-        canvas.note(box, f"План скоростей положения {project.cycle.labels[i]} (рядом с мёртвым) не начерчен: "
-                         f"он в {times(round(ratio))} больше обычного")
+        said = tr("The velocity polygon of position {label} (next to a dead one) is not drawn: it is {times} the usual size")
+        canvas.note(box, said.format(label=project.cycle.labels[i], times=times(round(ratio))))
     if layout.every > 1:
-        canvas.note(box, f"Начерчены планы скоростей для каждого {layout.every}-го положения")
+        canvas.note(box, tr("One velocity polygon of every {count} positions is drawn").format(count=layout.every))
 
 
 def _draw_plan(s: Stage, pole: str, symbols_at: bool = False) -> list[str]:
@@ -413,11 +419,11 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
     """Acceleration plan of the chosen position with normal and Coriolis segments."""
     acc, k = project.study.accelerations, project.force_index
     frame = kinematic_frames.accelerations(project, canvas, box)
-    canvas.title(box, f"План ускорений (положение {project.cycle.labels[k]})", str(frame.scale))
+    canvas.title(box, tr("Acceleration polygon (position {label})").format(label=project.cycle.labels[k]), str(frame.scale))
     flat_crossings.warn(project, canvas, box, acc.plan)
     tiny = _draw_plan(stage(canvas, acc.plan, k, frame), "π", symbols_at=True)
     if tiny:
-        canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {', '.join(tiny)}")
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny)))
 
 
 COLUMNS = 7
@@ -442,10 +448,10 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
                if np.ndim(w.value) and link in vel.reference]
     left, right = _table_places(box, len(lengths), stacked=bool(options.get("stacked")))
     if lengths:
-        _table_over_positions(project, canvas, left, "Длины отрезков, мм", lengths, 1)
+        _table_over_positions(project, canvas, left, tr("Lengths of the segments, mm"), lengths, 1)
     speeds = [*linear.items(), *turning]
     if speeds:
-        title = "Линейные, м/с, и угловые, рад/с, скорости" if turning else "Линейные скорости, м/с"
+        title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
         _table_over_positions(project, canvas, right, title, speeds, 3)
 
 
@@ -501,26 +507,27 @@ def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: s
     """A column for each quantity, a row for each position that is drawn; a dash where there is no number."""
     cycle = project.cycle
     row = min((place.height - 15.0) / (len(cycle.drawn) + 2), 7.5)
-    canvas.text(complex(place.centre.real, place.y1 - 5.0), title, 3.5, "centre")
-    cells = [["№", *(name for name, _ in columns)]]
+    canvas.text(complex(place.centre.real, place.y1 - 5.0), title, size_for([title], place.width, 3.5), "centre")
+    cells = [[tr("No."), *(name for name, _ in columns)]]
     cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), decimals) for _, v in columns)]
               for i, label in cycle.drawn]
-    widths = [10.0] + [(place.width - 10.0) / len(columns)] * len(columns)
-    canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, min(3.5, row * 0.5))
+    height = size_in(row)
+    widths = widened([10.0] + [(place.width - 10.0) / len(columns)] * len(columns), cells, height)
+    canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
 
 
 def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Structure of the mechanism: mobility by Chebyshev, formula of structure, Assur groups."""
     m = project.mechanism
     moving, pairs = len(m.links), len(m.pairs)
-    inside = canvas.title(box, "Структура механизма")
+    inside = canvas.title(box, tr("Structure of the mechanism"))
     lines = (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure)
     canvas.lines(complex(box.x0 + 2.0, inside.y1 - 6.0), lines, 7.0)
     if not m.groups:
         return
-    rows = [["Группа", "Класс", "Порядок", "Вид", "Пары"]]
+    rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
     for g, found in zip(reversed(m.groups), decompose(m), strict=True):
         outer_i, outer_j = found.outer
         rows.append([g.name, "II", "2", f"{found.kind.number} ({tr(found.form)})", f"{outer_i}, {found.inner}, {outer_j}"])
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
-    canvas.table(complex(box.x0, inside.y1 - 16.5), [w * box.width for w in widths], rows, 7.0, 3.5)
+    canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)

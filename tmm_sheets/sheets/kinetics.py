@@ -15,14 +15,16 @@ from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
+from tmm_sheets.drawing.tables import widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, together
 from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -94,8 +96,8 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     m = project.mechanism
     nth = int(options.get("group", 1))
     if not 1 <= nth <= len(m.groups):
-        raise CannotBuild(f"the mechanism has no group {nth} to draw, it has {len(m.groups)}",
-                          "take an arrangement with the view kinetics.groups, or leave kinetics.group out of it")
+        raise CannotBuild(tell("the mechanism has no group {nth} to draw, it has {count}").format(nth=nth, count=len(m.groups)),
+                          tell("take an arrangement with the view kinetics.groups, or leave kinetics.group out of it"))
     g = tuple(reversed(m.groups))[nth - 1]
     share = float(options.get("scheme", 0.42))
     left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
@@ -224,10 +226,10 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     hinges, centres = _scheme_points(project, g, drawn)
     points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.points[g.kind.about(g)].at(k))
-    frame = _loaded_frame(project, canvas, (f"scheme-{'-'.join(g.links)}", "μ_l", "м/мм"), box.inset(3.0, 5.0, 3.0, 19.0),
+    frame = _loaded_frame(project, canvas, (f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm")), box.inset(3.0, 5.0, 3.0, 19.0),
                           [*(complex(p.at(k)) for p in points), *(force.at for force in shown)], shown, about)
     canvas.of = f"group {g.name}"
-    canvas.title(box, f"Группа Ассура {g.name} ({g.kind.number}-й вид)", str(frame.scale))
+    canvas.title(box, tr("Assur group {name} (kind {number})").format(name=g.name, number=g.kind.number), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if g.kind.ram(g) is None:
         linkage.draw_guides(s, pos, g.links)
@@ -297,13 +299,14 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
     for part in forces.from_moments:
         if part.link in g.links:
             value = newtons(clean(abs(complex(part.vector.at(k))), forces.force_size(k)))
-            said.append(f"ΣM_{part.centre} = 0: F_{{{pair_index(part.link, part.source)}}}^τ = {value} Н")
+            said.append(tr("ΣM_{centre} = 0: F_{{{index}}}^τ = {value} N").format(
+                centre=part.centre, index=pair_index(part.link, part.source), value=value))
     about = g.kind.about(g)
     for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")
         length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
         if 0.05 < length < max(box.width, box.height):
-            said.append(f"ΣM_{about} = 0: h_{{{pair}}} = {fixed(length, 1)} мм")
+            said.append(tr("ΣM_{centre} = 0: h_{{{index}}} = {value} mm").format(centre=about, index=pair, value=fixed(length, 1)))
     if said:
         _fitted(canvas, complex(box.x0 + 2.0, box.y0), "; ".join(said), 3.5, box.width - 4.0, "left")
 
@@ -382,9 +385,9 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     size = project.study.forces.force_size(k)
     sides = [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), size)]
     if not sides:
-        _fitted(canvas, canvas.title(box, fp.plan.title).centre, "В этом положении сил нет", 3.5, box.width - 4.0)
+        _fitted(canvas, canvas.title(box, fp.plan.title).centre, tr("There are no forces in this position"), 3.5, box.width - 4.0)
         return
-    frame = fit_frame(project, canvas, fp.plan.name, "μ_F", "Н/мм", list(points.values()), [0j] * len(points), inside)
+    frame = fit_frame(project, canvas, fp.plan.name, "μ_F", tr("N/mm"), list(points.values()), [0j] * len(points), inside)
     canvas.title(box, fp.plan.title, str(frame.scale))
     flat_crossings.warn(project, canvas, box, fp.plan)
     s = stage(canvas, fp.plan, k, frame)
@@ -396,11 +399,13 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
         s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
     if tiny:
-        canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
+        canvas.note(box, tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())))
     terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
     _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
-    found = [f"{sign.replace(BAR, '')} = {newtons(clean(fp.plan.length(tail, head).at(k), size))} Н" for sign, tail, head in asked]
+    found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
+                                                 value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
+             for sign, tail, head in asked]
     _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
 
 
@@ -411,7 +416,7 @@ def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre:
         a, b = s.at(tail), s.at(head)
         if abs(b - a) < SHORTEST:
             value = newtons(s.value(s.plan.length(tail, head)))
-            tiny[tail.name, head.name] = f"{sign} = {value} Н".replace(" ", TOGETHER)
+            tiny[tail.name, head.name] = tr("{quantity} = {value} N").format(quantity=sign, value=value).replace(" ", TOGETHER)
             continue
         s.vector(tail, head)
         middle, n = (a + b) / 2, 1j * (b - a)
@@ -434,8 +439,7 @@ def _equation(canvas: Canvas, at: complex, terms: list[str], width: float) -> No
 
 
 def _fitted(canvas: Canvas, at: complex, text: str, height: float, width: float, align: Align = "centre") -> None:
-    w = letter(text, height).width
-    canvas.text(at, text, height if w <= width else max(height * width / w, 2.5), align)
+    canvas.text(at, text, size_for([text], width, height), align)
 
 
 def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -454,9 +458,9 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     wheel = [] if driver is None else [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
     away = _clear(pivot, ends, shown)
     turning = (18.0 if driver is not None else 32.0) * away  # the arrows of rotation, with their signs
-    frame = _loaded_frame(project, canvas, ("scheme-crank", "μ_l", "м/мм"), left.inset(3.0, 3.0, 3.0, 19.0),
+    frame = _loaded_frame(project, canvas, ("scheme-crank", "μ_l", tr("m/mm")), left.inset(3.0, 3.0, 3.0, 19.0),
                           [pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
-    canvas.title(left, "Начальное звено", str(frame.scale))
+    canvas.title(left, tr("Input link"), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if driver is not None and pos.contact is not None:  # pitch circle of the wheel on the shaft, and its pitch point
         play(s, [pos.contact], "centre", only="circle")
@@ -470,7 +474,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     symbols.rotation_arrow(s.pen(study.velocities.omega[c.link], "symbol"), s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
-        _turning(s, s.at(centre), 24.0, away, Couple(linkage.indexed(project.balancing), 0j, float(moment.at(k)), moment))
+        _turning(s, s.at(centre), 24.0, away, Couple(_balancing(project), 0j, float(moment.at(k)), moment))
     _crank_couples(project, s, left, s.at(centre), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
 
@@ -487,10 +491,10 @@ def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: comp
     said = []
     for n, couple in _couples(project, project.mechanism.crank.link):
         _turning(s, at, 34.0 + 10.0 * n, away, couple)
-        said.append(f"{couple.symbol} = {number(abs(couple.value), 5)} Н·м")
+        said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
     if said and project.driver is None and forces.balancing is not None:
         moment = number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))
-        said.append(f"{linkage.indexed(project.balancing)} = {moment} Н·м")
+        said.append(tr("{quantity} = {value} N·m").format(quantity=_balancing(project), value=moment))
     if said:
         _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
 
@@ -501,13 +505,13 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     points = [complex(step.at(k)) for step in lv.points.values()]
     shown = acting((Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k)), h.force, h.arm) for h in lv.hung),
                    project.study.forces.force_size(k))
-    frame = _loaded_frame(project, canvas, ("lever", "μ_V", "(м/с)/мм"), box.inset(2.0, 2.0, 2.0, 19.0), [0j, *points], shown, 0j,
-                          [(force.at, 0j) for force in shown])
+    frame = _loaded_frame(project, canvas, ("lever", "μ_V", tr("(m/s)/mm")), box.inset(2.0, 2.0, 2.0, 19.0), [0j, *points], shown,
+                          0j, [(force.at, 0j) for force in shown])
     plain: Scale | None = canvas.scales.get("velocities")
     text = str(frame.scale)
     if plain is not None and plain.mu > frame.scale.mu * 1.01:
-        text += f" (увеличен в {times(plain.mu / frame.scale.mu)})"
-    canvas.title(box, f"Рычаг Жуковского (положение {project.cycle.labels[k]})", text)
+        text = tr("{scale} (enlarged {times})").format(scale=text, times=times(plain.mu / frame.scale.mu))
+    canvas.title(box, tr("Zhukovsky lever (position {label})").format(label=project.cycle.labels[k]), text)
     turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
     for seg in lv.velocities.plan.segments:
         turned.pen(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}").line(turned.at(seg.tail), turned.at(seg.head), "axis")
@@ -537,16 +541,21 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     forces: Kinetostatics = study.forces
     assert forces.balancing is not None
     assert study.lever.balancing is not None
-    force, sign = project.driver is not None, linkage.indexed(project.balancing)
+    force, sign = project.driver is not None, _balancing(project)
     kind = forces.force_size(k) if force else forces.moment_size(k)
     kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing))
-    unit = "Н" if force else "Н·м"
+    unit = tr("N") if force else tr("N·m")
     difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
-    rows = [["Уравновешивающая сила" if force else "Уравновешивающий момент", "Значение"],
-            [f"Силовой расчёт: {sign}, {unit}", fixed(kinetic, 2)],
-            [f"Рычаг Жуковского: {sign}, {unit}", fixed(hung, 2)],
-            ["Расхождение, %", number(difference, 2, 100.0)]]
+    rows = [[tr("Balancing force") if force else tr("Balancing moment"), tr("Value")],
+            [tr("Force analysis: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(kinetic, 2)],
+            [tr("Zhukovsky lever: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(hung, 2)],
+            [tr("Difference, %"), number(difference, 2, 100.0)]]
     row = min(box.height / len(rows), 9.0)
-    canvas.table(complex(box.x0, box.y1), [box.width * 0.66, box.width * 0.34], rows, row, 3.5)
+    canvas.table(complex(box.x0, box.y1), widened([box.width * 0.66, box.width * 0.34], rows, 3.5), rows, row, 3.5)
+
+
+def _balancing(project: Project) -> str:
+    """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" is what one without has."""
+    return linkage.indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
 
 

@@ -10,9 +10,10 @@ import numpy as np
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.numbers import fixed, number
+from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.frame import Frame, pick
 from tmm_sheets.sheets.linkage import indexed
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.loads import Applied
@@ -32,13 +33,14 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
         return
     cycle = project.cycle
     turned = _angles(shown, cycle.period)
-    kind, unit = ("F", "Н") if shown[0].point is not None else ("M", "Н·м")
+    kind, unit = ("F", tr("N")) if shown[0].point is not None else ("M", tr("N·m"))
     inside = box.inset(10.0, 8.0, 14.0, 24.0)
     top = max(float(np.max(f.magnitude(turned))) for f in shown)
-    scale = pick(project, canvas, "loads", f"μ_{kind}", f"{unit}/мм", top / inside.height)
-    canvas.title(box, f"Технологическая нагрузка{' (принято)' if _accepted(project, shown) else ''}",
-                 f"{scale}, μ_φ = {number(cycle.period / inside.width)} рад/мм")
-    at = Frame(scale, complex(inside.x0, inside.y0), Scale("μ_φ", cycle.period / inside.width, "рад/мм"))
+    scale = pick(project, canvas, "loads", f"μ_{kind}", tr("{unit}/mm").format(unit=unit), top / inside.height)
+    angle = Scale("μ_φ", cycle.period / inside.width, tr("rad/mm"))
+    title = tr("Technological load (taken)") if _accepted(project, shown) else tr("Technological load")
+    canvas.title(box, title, f"{scale}, {angle}")
+    at = Frame(scale, complex(inside.x0, inside.y0), angle)
     if (said := _many_strokes(project, shown)) is not None:
         canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
     frame, o = canvas.placed("loads", "", at.origin, at.mu), at.origin
@@ -76,7 +78,8 @@ def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
     if strokes is None or len(strokes.runs) <= 2 or not any(f.motion is not None and f.point == strokes.output for f in shown):
         return None
     a, b = (fixed(degrees(x) % degrees(cycle.period), 1) for x in (strokes.begin, strokes.end))
-    return f"Точка {strokes.output} меняет направление {times(len(strokes.runs))} за оборот; рабочий ход φ = {a}°…{b}°"
+    return tr("Point {point} turns back {times} a turn; working stroke φ = {begin}°…{end}°").format(
+        point=strokes.output, times=times(len(strokes.runs)), begin=a, end=b)
 
 
 def _sign(canvas: Canvas, f: Applied, turned: Any, at: Frame) -> None:

@@ -16,11 +16,13 @@ import numpy as np
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
 from tmm_sheets.sheets.player import Stage, stage
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
 Options = dict[str, Any]
 ENERGIES = ("ΔT", "T_{II}", "T_I")
 INERTIA = "I_{II}"
+OF_SIXBAR = (marked("E_links"), marked("E_f"), marked("I_links"))
+"""Signs that templates/sheets/sixbar_2.toml takes instead."""
 NAMED = 3
 """So many terms of the inertia are lettered at their curves; more are numbered, with a legend under the heading."""
 LEGEND = 6.0
@@ -36,12 +40,13 @@ LEGEND = 6.0
 
 
 def _procedure(project: Any) -> Mertsalov:
-    return cast("Mertsalov", flywheel.by_method(project, "mertsalov", "take the arrangement flywheel among the project's sheets"))
+    hint = tell("take the arrangement flywheel among the project's sheets")
+    return cast("Mertsalov", flywheel.by_method(project, "mertsalov", hint))
 
 
 def _signs(options: Options) -> tuple[str, str, str, str]:
-    change, second, first = options.get("energies", ENERGIES)
-    return change, second, first, options.get("inertia", INERTIA)
+    change, second, first = map(tr, options.get("energies", ENERGIES))
+    return change, second, first, tr(options.get("inertia", INERTIA))
 
 
 def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -72,8 +77,9 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw = _procedure(project)
     s = fw.scales
     _, second, _, sign = _signs(options)
-    mu_t = Scale("μ_T", float(fw.energy_plan.asides["μ_T"].value), "Дж/мм")
-    graphs.heading(canvas, box, options, f"Графики {sign}(φ_1) и {second}(φ_1)", f"{s.inertia}, {mu_t}")
+    mu_t = Scale("μ_T", float(fw.energy_plan.asides["μ_T"].value), tr("J/mm"))
+    graphs.heading(canvas, box, options, tr("Graphs of {inertia}(φ_1) and {energy}(φ_1)").format(inertia=sign, energy=second),
+                   f"{s.inertia}, {mu_t}")
     canvas.of = fw.inertia_plan.name
     g = graphs.Graph(complex(options["axis"], box.y0 + 8.0))
     x = s.angle.mm(fw.samples)
@@ -91,9 +97,10 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         canvas.label(g(x[k] + 1j * part[k]), name if len(parts) <= NAMED else str(n), -1 if k else 1 - 1j, 3.5)
     if len(parts) > NAMED:
         legend = ";  ".join(f"{n} – {name}" for n, (name, *_) in enumerate(parts, 1))
-        canvas.text(complex((box.x0 + box.x1) / 2, box.y1 - 13.0), legend, _height(legend, box.width), "centre")
+        canvas.text(complex((box.x0 + box.x1) / 2, box.y1 - 13.0), legend, size_for([legend], box.width, 3.5), "centre")
     flywheel.uprights(of, "points")
-    flywheel.axes(fw, of, "points", g, 0.0, float(curve.max()), f"{sign}, кг·м^2", np.ones(len(fw.labels)))
+    ordinate = tr("{quantity}, kg·m^2").format(quantity=sign)
+    flywheel.axes(fw, of, "points", g, 0.0, float(curve.max()), ordinate, np.ones(len(fw.labels)))
     k = int(np.argmax(curve))
     canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
     _tangent(fw, of.position(project.force_index), box)
@@ -139,7 +146,7 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     omega = _omega_scale(fw)
     ratio = s.work.mu / s.energy.mu
     against = "" if abs(ratio - 1) < 1e-9 else f" (μ_A/{number(ratio)})" if ratio > 1 else f" ({number(1 / ratio)}μ_A)"
-    graphs.heading(canvas, box, options, f"Графики {change}(φ_1), {first}(φ_1), ω_1(φ_1)",
+    graphs.heading(canvas, box, options, tr("Graphs of {change}(φ_1), {first}(φ_1), ω_1(φ_1)").format(change=change, first=first),
                    f"{Scale('μ_T', s.energy.mu, s.energy.unit)}" + f"{against}, {omega}")
     x = s.angle.mm(fw.samples)
     total, own = fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))
@@ -155,7 +162,8 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     for p, top, label in zip(points, upper, fw.labels, strict=True):
         below, above = (g(complex(p.real, f(0.0, p.imag, top))) for f in (min, max))
         canvas.tracing("construction", plan["T_I"].path, label).line(below, above, "thin")
-    flywheel.axes(fw, of, "points", g, low, high, f"{change}, {first}, Дж", np.where(upper > 1e-6, 1.0, -1.0))
+    ordinate = tr("{quantity}, J").format(quantity=f"{change}, {first}")
+    flywheel.axes(fw, of, "points", g, low, high, ordinate, np.where(upper > 1e-6, 1.0, -1.0))
     for name, end in (("max", "a"), ("min", "b")):
         # The tangent runs on beyond the point where it touches.
         of.line(f"M_{name}", of.at(end), of.at(f"M_{name}") + 10)
@@ -164,7 +172,7 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     of.pen("ab", "dimension").dimension(of.at("b"), of.at("a"), 9.0, f"|ab| = {fixed(fw.ab_mm, 1)}")
     axis, length, pen = speed.at("O"), s.angle.mm(fw.reduced.period), speed.pen("O", "axis")
     pen.line(axis - 5, axis + length + graphs.OVER, "centre")
-    pen.label(axis + length + 2, "ω_{1ср}", 1j, height=5)
+    pen.label(axis + length + 2, tr("ω_{1m}"), 1j, height=5)
     k = int(np.argmax(total))
     canvas.label(g(x[k] + 1j * total[k]), change, 1 + 1j, height=5)
     k = int(np.argmax(np.abs(np.gradient(own))))
@@ -185,19 +193,21 @@ def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> 
     varying, _ = flywheel.indices(fw)
     change, second, first, sign = _signs(options)
     columns = [
-        (f"M_{varying}^{{пр}}", "Н·м", fw.M_reduced), (f"A_{varying}", "Дж", fw.work), (change, "Дж", fw.delta_E),
-        (sign, "кг·м^2", fw.J_reduced), (second, "Дж", fw.T_second), (first, "Дж", fw.T_first),
-        ("y_ω", "мм", fw.speed_plan["y"].value), ("ω_1", "рад/с", fw.omega),
-        ("ε_1", "рад/с^2", fw.position_acceleration["ε1"].value),
+        (tr("M_{index}^{{red}}").format(index=varying), tr("N·m"), fw.M_reduced), (f"A_{varying}", tr("J"), fw.work),
+        (change, tr("J"), fw.delta_E), (sign, tr("kg·m^2"), fw.J_reduced), (second, tr("J"), fw.T_second),
+        (first, tr("J"), fw.T_first),
+        ("y_ω", tr("mm"), fw.speed_plan["y"].value), ("ω_1", tr("rad/s"), fw.omega),
+        ("ε_1", tr("rad/s^2"), fw.position_acceleration["ε1"].value),
     ]
     # The angular velocity hardly changes: a digit more shows it.
     cells = [graphs.column(values, 5 if name == "ω_1" else 4) for name, _, values in columns]
-    rows = [["№", *(name for name, _, _ in columns)], ["", *(unit for _, unit, _ in columns)]]
+    rows = [[tr("No."), *(name for name, _, _ in columns)], ["", *(unit for _, unit, _ in columns)]]
     rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(fw.labels)]
-    left = canvas.title(box.inset(0, 0, 0, 2), "Результаты по положениям")
+    left = canvas.title(box.inset(0, 0, 0, 2), tr("Results by positions"))
     high = min(left.height / len(rows), 7.0)
-    width = (box.width - 9.0) / len(columns)
-    canvas.table(complex(box.x0, left.y1), [9.0, *[width] * len(columns)], rows, high, 3.5 if high >= 5.5 else 2.5, header=2)
+    height = size_in(high)
+    widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
+    canvas.table(complex(box.x0, left.y1), widths, rows, high, height, header=2)
 
 
 def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -206,76 +216,95 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     d, omega, k = fw.data, fw.reduced.omega1, project.force_index
     _, _, _, sign = _signs(options)
     varying, constant = flywheel.indices(fw)
-    taken = " (принято)" if d.accepted else ""
-    fast, slow = fw.extremes
-    highest, lowest = (float(fw.speed_plan[f"[ω_{name}]"].value) for name in ("max", "min"))
     plan = fw.position_acceleration
-    label = fw.labels[k]
-    at = {name: float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1")}
-    steepest = size([plan["dJ/dφ"].value], k)
+    psi, slope, moment, inertia, epsilon = (float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1"))
     mu = _omega_scale(fw)
-    # Without a flywheel the crank and the rotor alone carry the running.
-    held, bound = ("I_I", "; ") if fw.needed else ("(I_{кр} + I_р·u^2)", " <")
-    if not fw.needed and not fw.J_rotor:
-        held = "I_{кр}"
+    held = _held(fw)
+    segment = {"length": fixed(fw.ab_mm, 2), "mu": number(fw.scales.energy.mu), "delta": number(d.delta), "omega": fixed(omega, 3),
+               "first": number(fw.J_first, 5)}
+    givens = tr("ω_{{1m}} = {omega} rad/s;  δ = {delta} (taken);  M_{index} = {moment} N·m") if d.accepted else \
+        tr("ω_{{1m}} = {omega} rad/s;  δ = {delta};  M_{index} = {moment} N·m")
     rows = [
-        f"ω_{{1ср}} = {fixed(omega, 4)} рад/с;  δ = {number(d.delta)}{taken};  M_{constant} = {fixed(fw.M_constant, 1)} Н·м",
-        f"I_I = |ab|·μ_T/(δ·ω_1^2) = {fixed(fw.ab_mm, 2)}·{number(fw.scales.energy.mu)}/({number(d.delta)}·{fixed(omega, 3)}^2) = "
-        f"{number(fw.J_first, 5)} кг·м^2",
-        f"I_м = I_I − (I_{{кр}} + I_р·u^2) = {number(fw.J_first, 5)} − {number(fw.J_first - fw.J_flywheel, 4, fw.J_first)} = "
-        f"{number(fw.J_flywheel, 5)} кг·м^2",
-        f"μ_ω = μ_T/({held}·ω_{{1ср}}) = {number(mu.mu)} {mu.unit}",
-        f"ω_{{max}} = {fixed(fast, 4)}{bound} ω_{{ср}}(1 + δ/2) = {fixed(highest, 4)} рад/с",
-        f"ω_{{min}} = {fixed(slow, 4)}{bound.replace('<', '>')} ω_{{ср}}(1 − δ/2) = {fixed(lowest, 4)} рад/с",
-        f"Положение {label}:  ψ = {fixed(degrees(at['ψ']), 2)}°;  d{sign}/dφ = tg ψ·μ_J/μ_φ = "
-        f"{number(at['dJ/dφ'], kind=steepest)} кг·м^2",
-        f"M = M_{constant} + M_{varying} = {fixed(at['M'], 1)} Н·м;  {held} + {sign} = {fixed(at['J'], 2)} кг·м^2",
-        f"ε_1 = (M − ω_1^2/2·d{sign}/dφ)/({held} + {sign}) = {fixed(at['ε1'], 3)} рад/с^2",
-    ]
-    motor, data = fw.motor, d.motor
-    if motor is not None and data is not None:
-        taken = " (η принято)" if data.accepted else ""
-        rows += [
-            f"P = M_{constant}·ω_1/η = {fixed(motor.power / 1000, 2)} кВт {'≤' if motor.strong else '>'} "
-            f"{number(motor.rated_power / 1000)} кВт ({data.name});  η = {number(data.efficiency)}{taken}",
-            f"[δ] = 2(n_с − n_н)/n_н = {fixed(motor.permitted, 4)} {'≥' if motor.steady else '<'} δ: "
-            + ("генераторного режима нет" if motor.steady else "двигатель переходит в генераторный режим"),
-        ]
-    rows += [*flywheel.disagreement(fw), _size(fw)]
-    left = canvas.title(box, "Расчёт маховика по методу Мерцалова")
+        givens.format(omega=fixed(omega, 4), delta=number(d.delta), index=constant, moment=fixed(fw.M_constant, 1)),
+        tr("I_I = |ab|·μ_T/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {first} kg·m^2").format(**segment),
+        tr("I_f = I_I − (I_{{cr}} + I_r·u^2) = {first} − {bare} = {flywheel} kg·m^2").format(
+            first=number(fw.J_first, 5), bare=number(fw.J_first - fw.J_flywheel, 4, fw.J_first),
+            flywheel=number(fw.J_flywheel, 5)),
+        tr("μ_ω = μ_T/({held}·ω_{{1m}}) = {mu} {unit}").format(held=held, mu=number(mu.mu), unit=mu.unit),
+        *_extremes(fw),
+        tr("Position {label}:  ψ = {psi}°;  d{sign}/dφ = tan ψ·μ_J/μ_φ = {slope} kg·m^2").format(
+            label=fw.labels[k], psi=fixed(degrees(psi), 2), sign=sign,
+            slope=number(slope, kind=size([plan["dJ/dφ"].value], k))),
+        tr("M = M_{constant} + M_{varying} = {moment} N·m;  {held} + {sign} = {inertia} kg·m^2").format(
+            constant=constant, varying=varying, moment=fixed(moment, 1), held=held, sign=sign, inertia=fixed(inertia, 2)),
+        tr("ε_1 = (M − ω_1^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
+            sign=sign, held=held, epsilon=fixed(epsilon, 3)),
+        *_motor(fw), *flywheel.disagreement(fw), _size(fw)]
+    left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):
-        canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, _height(line, box.width))
+        canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, size_for([line], box.width, 3.5))
+
+
+def _held(fw: Mertsalov) -> str:
+    """What carries the running: all of the first group, or without a flywheel the crank and the rotor alone."""
+    if fw.needed:
+        return "I_I"
+    return tr("(I_cr + I_r·u^2)") if fw.J_rotor else tr("I_cr")
+
+
+def _extremes(fw: Mertsalov) -> tuple[str, str]:
+    """Greatest and least angular velocity beside those that are permitted, which they keep to with the flywheel only."""
+    texts = (tr("ω_{{max}} = {found};  ω_m(1 + δ/2) = {permitted} rad/s"),
+             tr("ω_{{min}} = {found};  ω_m(1 − δ/2) = {permitted} rad/s")) if fw.needed else \
+        (tr("ω_{{max}} = {found} < ω_m(1 + δ/2) = {permitted} rad/s"), tr("ω_{{min}} = {found} > ω_m(1 − δ/2) = {permitted} rad/s"))
+    fast, slow = (said.format(found=fixed(found, 4), permitted=fixed(float(fw.speed_plan[f"[ω_{name}]"].value), 4))
+                  for said, found, name in zip(texts, fw.extremes, ("max", "min"), strict=True))
+    return fast, slow
+
+
+def _motor(fw: Mertsalov) -> list[str]:
+    """Whether the motor is strong enough and remains a motor; nothing where none is given."""
+    motor, data = fw.motor, fw.data.motor
+    if motor is None or data is None:
+        return []
+    power = tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency} (η taken)") if data.accepted else \
+        tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency}")
+    steady = tr("[δ] = 2(n_s − n_r)/n_r = {permitted} ≥ δ: it never runs as a generator") if motor.steady else \
+        tr("[δ] = 2(n_s − n_r)/n_r = {permitted} < δ: the motor runs as a generator at times")
+    return [power.format(index=flywheel.indices(fw)[1], needed=fixed(motor.power / 1000, 2), sign="≤" if motor.strong else ">",
+                         rated=number(motor.rated_power / 1000), name=data.name, efficiency=number(data.efficiency)),
+            steady.format(permitted=fixed(motor.permitted, 4))]
 
 
 def _size(fw: Mertsalov) -> str:
     """Sizes and mass of the wheel, or that none is needed."""
     w, d = fw.wheel, fw.data
     if w is None:
-        return "I_м ≤ 0: маховик не требуется; ω_{max}, ω_{min}, ε_1 – без него"
-    share = f"{number(d.rim_share)}·" if w.form == "rim" and d.rim_share < 1 else ""
-    form = f"D = (4·{share}I_м/(πρκc))^{{1/5}}" if w.form == "rim" else "D = (32I_м/(πρκ))^{1/5}"
-    return (f"{'Обод' if w.form == 'rim' else 'Диск'}:  {form} = {fixed(w.diameter, 3)} м;  B = {fixed(w.width, 3)} м;"
-            + (f"  H = {fixed(w.thickness, 3)} м;" if w.form == "rim" else "") + f"  m = {number(w.mass, 4)} кг")
-
-
-def _height(text: str, width: float, height: float = 3.5) -> float:
-    """Height of lettering that fits the width: the wanted one, or a little less."""
-    return min(height, max(2.5, height * width / letter(text, height).width))
+        return tr("I_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")
+    if w.form != "rim":
+        said = tr("Disc:  D = (32I_f/(πρκ))^{{1/5}} = {diameter} m;  B = {width} m;  m = {mass} kg")
+    elif d.rim_share < 1:
+        said = tr("Rim:  D = (4·{share}·I_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg")
+    else:
+        said = tr("Rim:  D = (4·I_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg")
+    return said.format(share=number(d.rim_share), diameter=fixed(w.diameter, 3), width=fixed(w.width, 3),
+                       thickness=fixed(w.thickness, 3), mass=number(w.mass, 4))
 
 
 def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
     fw = _procedure(project)
-    rows = [["Маховик", "I_I, кг·м^2", "ω_{max}, рад/с", "ω_{min}, рад/с", "δ"]]
+    rows = [[tr("Flywheel"), tr("I_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
     rows += [[c.name, fixed(c.first, 2), fixed(c.running.fastest, 4), fixed(c.running.slowest, 4), fixed(c.running.delta, 5)]
              for c in fw.compared]
-    left = canvas.title(box.inset(0, 0, 0, 2), "Сравнение методов с точным движением")
+    left = canvas.title(box.inset(0, 0, 0, 2), tr("Comparison of the methods with the exact running"))
     high = min((left.height - 12.0) / len(rows), 8.0)
     first = max(letter(line[0], 3.5).width for line in rows) + 3.0
-    place = canvas.table(complex(box.x0, left.y1), [first, *[(box.width - first) / 4] * 4], rows, high, 3.5)
+    widths = widened([first, *[(box.width - first) / 4] * 4], rows, 3.5)
+    place = canvas.table(complex(box.x0, left.y1), widths, rows, high, 3.5)
     _, _, _, sign = _signs(options)
     apart = float(fw.comparison_plan["ΔJ"].value)
-    text = (f"n → ∞: разность {fixed(apart, 3)} кг·м^2; теория: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = "
-            f"{fixed(fw.excess, 3)} кг·м^2")
-    canvas.text(complex(box.x0, place.y0 - 6.5), text, _height(text, box.width))
+    text = tr("n → ∞: difference {apart} kg·m^2; theory: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = {excess} kg·m^2").format(
+        apart=fixed(apart, 3), sign=sign, excess=fixed(fw.excess, 3))
+    canvas.text(complex(box.x0, place.y0 - 6.5), text, size_for([text], box.width, 3.5))

@@ -16,6 +16,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import polyline_inside
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Text, flat
+from tmm_sheets.words import marked, tell
 
 TOUCH = 2.0
 """So far lines of a view may come out of its box, mm: a quarter of the distance between views, and what indices need."""
@@ -23,7 +24,14 @@ BESIDE = 8.0
 """The same for labels, which find free places by themselves: the distance between views."""
 TIE = "construction"
 """Line type of what ties views together: projection lines from one diagram into another."""
-SIDES = ("at the left", "at the bottom", "at the right", "at the top")
+SIDES = (marked("at the left"), marked("at the bottom"), marked("at the right"), marked("at the top"))
+OVER = {
+    "": marked('view "{title}" leaves its place by {by:.1f} mm {side}'),
+    ", into the one beside it": marked('view "{title}" leaves its place by {by:.1f} mm {side}, into the one beside it'),
+    ", over the frame": marked('view "{title}" leaves its place by {by:.1f} mm {side}, over the frame'),
+    ", into the title block": marked('view "{title}" leaves its place by {by:.1f} mm {side}, into the title block'),
+}
+"""What is said of a view by what it comes over."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +48,13 @@ class Leaving:
     scales: tuple[tuple[str, float], ...] = ()
 
     def __str__(self) -> str:
-        smaller = " or ".join(f"scales.{name} = {handy(mu * 1.01):g}" for name, mu in self.scales)
-        hint = f"try {smaller} in the project file, or " if smaller else ""
-        return (f'view "{self.title}" leaves its place by {self.by:.1f} mm {self.side}{self.over}: '
-                f"{hint}make its box larger in templates/sheets")
+        smaller = [f"scales.{name} = {handy(mu * 1.01):g}" for name, mu in self.scales]
+        one = "".join(smaller) if len(smaller) < 2 else \
+            tell("{several} or {last}").format(several=", ".join(smaller[:-1]), last=smaller[-1])
+        what = tell(OVER[self.over]).format(title=self.title, by=self.by, side=tell(self.side))
+        hint = tell("try {scales} in the project file, or make its box larger in templates/sheets").format(scales=one) if smaller \
+            else tell("make its box larger in templates/sheets")
+        return f"{what}: {hint}"
 
 
 def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:

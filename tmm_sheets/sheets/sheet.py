@@ -71,8 +71,8 @@ def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
         found: Callable[..., None] = getattr(import_module(f"tmm_sheets.sheets.{module}"), function)
     except (AttributeError, ValueError):
         path = template(f"sheets/{arrangement}.toml")
-        raise BadInput(Problem(f'there is no view "{draw}"', str(path), field="view.draw",
-                               hint="a view is named module.function, as in the shipped arrangements")) from None
+        raise BadInput(Problem(tell('there is no view "{draw}"').format(draw=draw), str(path), field="view.draw",
+                               hint=tell("a view is named module.function, as in the shipped arrangements"))) from None
     return found
 
 
@@ -96,7 +96,7 @@ def attempt(project: Project, numbers: Iterable[int], around: Callable[[int], Ab
             with around(n):
                 found.drawn[n] = composed(project, n)
         except CannotBuild as e:
-            found.refused[f"sheet {n} ({project.sheets[n - 1]})"] = e
+            found.refused[tell("sheet {n} ({name})").format(n=n, name=project.sheets[n - 1])] = e
     return found
 
 

@@ -10,10 +10,11 @@ import numpy as np
 
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets.frame import Frame, fit_frame
 from tmm_sheets.sheets.player import Stage, stage
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -36,16 +37,15 @@ def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     right = Box(left.x1 + 4.0, box.y0, box.x1, box.y1)
     draw = _quick_return if project.variant.synthesis.kind == "quick return" else _engine
     draw(project, canvas, left)
-    inside = canvas.title(right, "Геометрический синтез")
+    inside = canvas.title(right, tr("Geometric synthesis"))
     step = min(LINE, inside.height / len(lines))
-    widest = max(letter(line, 3.5).width for line in lines)
-    height = 3.5 * min(1.0, right.width / widest)
+    height = size_for(lines, right.width, 3.5)
     canvas.lines(complex(right.x0, inside.y1 - 0.7 * step), lines, step, height)
 
 
 def _frame(project: Project, canvas: Canvas, box: Box, points: list[complex], around: tuple[complex, ...]) -> Frame:
     z = [p for p in points for _ in around]
-    return fit_frame(project, canvas, "synthesis", "μ_l", "м/мм", z, list(around) * len(points), box)
+    return fit_frame(project, canvas, "synthesis", "μ_l", tr("m/mm"), z, list(around) * len(points), box)
 
 
 def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
