@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
 
-from tmm_sheets.drawing.lettering import Lettering, letter
+from tmm_sheets.drawing.lettering import Lettering, letter, size_for
 from tmm_sheets.drawing.marks import Arc, Box, Dimension, Fill, Form, Line, Mark, PlacedFrame, Points, Polyline, Role, Text, Trace
 
 Align = Literal["left", "centre", "right"]
@@ -346,10 +346,9 @@ class Canvas:
         for i, cells in enumerate(rows):
             x = x0
             for w, cell in zip(widths, cells, strict=True):
-                laid = letter(cell, height)
-                if laid.width > w - 1.0:
-                    laid = letter(cell, height * (w - 1.0) / laid.width)
-                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - height / 2), 0.0, cell)
+                size = size_for(cell, w - 1.0, height)
+                laid = letter(cell, size)
+                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - size / 2), 0.0, cell)
                 x += w
         return Box(x0, y0, x0 + total, y1)
 

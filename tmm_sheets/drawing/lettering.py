@@ -141,6 +141,16 @@ def index_size(height: float) -> float:
     return 0.7 * height
 
 
+def standard_size(most: float, least: float = 2.5) -> float:
+    """The greatest height of GOST 2.304 that is not above ``most``, but ``least`` at least."""
+    return max((size for size in SIZES if size <= most * (1 + 1e-9)), default=least) if most >= least else least
+
+
+def size_for(markup: str, width: float, height: float, least: float = 2.5) -> float:
+    """The greatest standard height, not above ``height``, in which a line takes no more than ``width``; ``least`` at least."""
+    return next((size for size in reversed(SIZES) if least <= size <= height and letter(markup, size).width <= width), least)
+
+
 class _Setter:
     """Sets markup from left to right; the state is the place where the next letter goes."""
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number
@@ -319,7 +319,7 @@ def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
     if letter(name, 5.0).width <= gap.width - 2 >= letter(", ".join(factors), 5.0).width:
         return canvas.title(gap, name, ", ".join(factors))
     lines = [name, *factors] if letter(name, 5.0).width <= gap.width - 2 else [*name.split(), *factors]
-    height = max(min(5.0, *(5.0 * (gap.width - 2) / letter(line, 5.0).width for line in lines)), 2.5)
+    height = min(size_for(line, gap.width - 2, 5.0) for line in lines)
     step = 1.6 * height
     canvas.lines(complex(gap.centre.real, gap.y1 - step), lines, step, height, "centre")
     return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * step - 3.0)
@@ -392,7 +392,7 @@ def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
              f"{held} = {number(there, 4)} кг·м^2;  необходимо {number(max(fw.J_first, 0.0), 4)} кг·м^2"]
     if not np.isnan(delta):
         lines.append(f"Без маховика δ = {number(delta, 4)} {'≤' if delta <= fw.data.delta else '>'} {number(fw.data.delta)}")
-    height = min(5.0, *(5.0 * left.width / letter(line, 5.0).width for line in lines))
+    height = min(size_for(line, left.width, 5.0) for line in lines)
     canvas.lines(left.centre + 2.0j * height * (len(lines) / 2 - 1), lines, 2.0 * height, height, "centre")
 
 

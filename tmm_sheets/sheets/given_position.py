@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import standard_size
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, size
@@ -34,7 +35,7 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     if row < 4.0:
         raise CannotBuild(f"the tables of the given position need more room: {row:.1f} mm for a row",
                           "make the place of given_position.values higher in templates/sheets")
-    height = min(3.5, 0.55 * row)
+    height = standard_size(min(3.5, 0.55 * row))
     y = box.y1
     for text, rows in tables:
         canvas.text(complex(box.centre.real, y - 5.5), text, 3.5, "centre")

@@ -13,7 +13,7 @@ from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import letter, standard_size
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.mechanism.structure import decompose
@@ -505,7 +505,7 @@ def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: s
     cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), decimals) for _, v in columns)]
               for i, label in cycle.drawn]
     widths = [10.0] + [(place.width - 10.0) / len(columns)] * len(columns)
-    canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, min(3.5, row * 0.5))
+    canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, standard_size(min(3.5, row * 0.6)))
 
 
 def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
@@ -91,7 +91,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         canvas.label(g(x[k] + 1j * part[k]), name if len(parts) <= NAMED else str(n), -1 if k else 1 - 1j, 3.5)
     if len(parts) > NAMED:
         legend = ";  ".join(f"{n} – {name}" for n, (name, *_) in enumerate(parts, 1))
-        canvas.text(complex((box.x0 + box.x1) / 2, box.y1 - 13.0), legend, _height(legend, box.width), "centre")
+        canvas.text(complex((box.x0 + box.x1) / 2, box.y1 - 13.0), legend, size_for(legend, box.width, 3.5), "centre")
     flywheel.uprights(of, "points")
     flywheel.axes(fw, of, "points", g, 0.0, float(curve.max()), f"{sign}, кг·м^2", np.ones(len(fw.labels)))
     k = int(np.argmax(curve))
@@ -245,7 +245,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     left = canvas.title(box, "Расчёт маховика по методу Мерцалова")
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):
-        canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, _height(line, box.width))
+        canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, size_for(line, box.width, 3.5))
 
 
 def _size(fw: Mertsalov) -> str:
@@ -257,11 +257,6 @@ def _size(fw: Mertsalov) -> str:
     form = f"D = (4·{share}I_м/(πρκc))^{{1/5}}" if w.form == "rim" else "D = (32I_м/(πρκ))^{1/5}"
     return (f"{'Обод' if w.form == 'rim' else 'Диск'}:  {form} = {fixed(w.diameter, 3)} м;  B = {fixed(w.width, 3)} м;"
             + (f"  H = {fixed(w.thickness, 3)} м;" if w.form == "rim" else "") + f"  m = {number(w.mass, 4)} кг")
-
-
-def _height(text: str, width: float, height: float = 3.5) -> float:
-    """Height of lettering that fits the width: the wanted one, or a little less."""
-    return min(height, max(2.5, height * width / letter(text, height).width))
 
 
 def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -278,4 +273,4 @@ def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     apart = float(fw.comparison_plan["ΔJ"].value)
     text = (f"n → ∞: разность {fixed(apart, 3)} кг·м^2; теория: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = "
             f"{fixed(fw.excess, 3)} кг·м^2")
-    canvas.text(complex(box.x0, place.y0 - 6.5), text, _height(text, box.width))
+    canvas.text(complex(box.x0, place.y0 - 6.5), text, size_for(text, box.width, 3.5))
