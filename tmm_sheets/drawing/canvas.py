@@ -297,7 +297,7 @@ class Canvas:
         self.text(complex(x, y), text, height, "centre")
         if factor:
             y -= 8.0
-            self.text(complex(x, y), factor, 3.5 if len(factor) > 60 else 5.0, "centre")
+            self.text(complex(x, y), factor, size_for(factor, box.width - 2.0, 5.0), "centre")
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 
     @in_role("dimension")

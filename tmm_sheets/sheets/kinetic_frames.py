@@ -187,8 +187,11 @@ def on_lever(project: Project, k: int) -> list[Shown]:
 
 def lever_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[complex], list[complex]]:
     """Points of the lever with the forces on it, and what reaches from them."""
-    points = [complex(step.at(k)) for step in project.study.lever.points.values()]
-    return loaded([0j, *points], shown, 0j, [(force.at, 0j) for force in shown])
+    lv = project.study.lever
+    points = [complex(step.at(k)) for step in lv.points.values()]
+    # The velocity plan itself, turned: also what no force hangs on.
+    turned = [1j * complex(step.at(k)) for seg in lv.velocities.plan.segments for step in (seg.tail, seg.head)]
+    return loaded([0j, *points], shown, 0j, [*((force.at, 0j) for force in shown), *((z, 0j) for z in turned)])
 
 
 def couples_of(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
@@ -230,6 +233,16 @@ SCHEME, CRANK, LEVER = (3.0, 5.0, 3.0, 19.0), (3.0, 3.0, 3.0, 19.0), (2.0, 2.0, 
 """Room round loaded schemes, at the left, below, right and above (title and scale factor), mm."""
 AROUND = (12.0, 19.0, 12.0, 24.0)
 """Room round a force polygon at its left, below (equation and values), right and above (title and scale factor), mm."""
+
+
+def acting_sides(fp: ForcePlan, k: int, force_size: float) -> list[tuple[str, Step, Step, bool]]:
+    """Sides of a force polygon that are forces at all beside ``force_size``, N."""
+    return [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), force_size)]
+
+
+def terms(sides: Iterable[tuple[str, Step, Step, bool]]) -> list[str]:
+    """Terms of the vector equation of a force plan."""
+    return [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
 
 
 def polygon(fp: ForcePlan, k: int) -> tuple[dict[str, complex], Box]:

@@ -28,6 +28,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     SCHEME,
     Couple,
     Shown,
+    acting_sides,
     arrows,
     clear,
     couples_of,
@@ -39,6 +40,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     polygon,
     scheme,
     scheme_points,
+    terms,
 )
 from tmm_sheets.sheets.player import Stage, play, stage
 
@@ -234,7 +236,7 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     canvas.of = fp.plan.name
     inside = box.inset(*AROUND)
     size = project.study.forces.force_size(k)
-    sides = [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), size)]
+    sides = acting_sides(fp, k, size)
     if not sides:
         _fitted(canvas, canvas.title(box, fp.plan.title).centre, "В этом положении сил нет", 3.5, box.width - 4.0)
         return
@@ -251,8 +253,7 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм: {', '.join(tiny.values())}")
-    terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
-    _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
+    _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms(sides), box.width - 4.0)
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [f"{sign.replace(BAR, '')} = {newtons(clean(fp.plan.length(tail, head).at(k), size))} Н" for sign, tail, head in asked]
     _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)

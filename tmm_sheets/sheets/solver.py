@@ -18,9 +18,9 @@ from tmm_sheets.construction.scale import HANDY
 
 GAP = 6.0
 """Largest distance that is kept between views, mm: the room of a view left out goes to its neighbours."""
-STEPS = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0)
+STEPS = (60.0, 30.0, 15.0, 8.0, 4.0, 2.0)
 """How far borders move at a time, mm."""
-ROUNDS = 4
+ROUNDS = 2
 """How often all borders are tried with each step."""
 _SERIES = (*HANDY, 10.0)
 
@@ -35,45 +35,47 @@ def rounded_up(mu: float) -> float:
 class Need:
     """What a view needs of its place, mm.
 
-    ``span`` is what it draws to a scale, in its own unit; ``around`` what comes to it on paper whatever the scale: letters,
-    symbols, headings. ``least`` is the size below which it cannot be read, ``most`` from which on more room is of no use to it. ``plan``
-    tells, for what is neither, the share of a place of some width and height that it fills.
+    ``span`` is what it draws to a scale, in its own unit, ``around`` what comes to it on paper whatever the scale: letters,
+    symbols, headings. ``least`` is the size below which it cannot be read, ``most`` that from which on more room is of no use.
+    ``drawn`` tells, for what has no scale, the area it fills of a place of some width and height.
     """
 
     span: tuple[float, float] = (0.0, 0.0)
     around: tuple[float, float] = (0.0, 0.0)
     least: tuple[float, float] = (60.0, 40.0)
     most: tuple[float, float] = (inf, inf)
-    plan: Callable[[float, float], float] | None = None
+    drawn: Callable[[float, float], float] | None = None
 
-    def fill(self, width: float, height: float) -> float:
-        """Share of a place it fills, 0 .. 1."""
-        if self.plan is not None:
-            return self.plan(width, height)
-        if not max(self.span) > 0:
-            return min(1.0, self.most[0] / width) * min(1.0, self.most[1] / height)
-        free = width - self.around[0], height - self.around[1]
-        if not min(free) > 1.0:
-            return 0.0
+    def ink(self, width: float, height: float) -> float:
+        """Area that is drawn upon in a place of this size, mm^2."""
+        w, h = min(width, self.most[0]), min(height, self.most[1])
+        if self.drawn is not None:
+            return self.drawn(w, h)
+        free = w - self.around[0], h - self.around[1]
+        if not max(self.span) > 0 or not min(free) > 1.0:
+            return min(w, max(self.around[0], self.least[0])) * min(h, max(self.around[1], self.least[1]))
         mu = rounded_up(max(self.span[0] / free[0], self.span[1] / free[1]))
-        return (self.span[0] / mu + self.around[0]) * (self.span[1] / mu + self.around[1]) / (width * height)
+        return (self.span[0] / mu + self.around[0]) * (self.span[1] / mu + self.around[1])
 
-    def cost(self, width: float, height: float) -> float:
-        """What a place costs: its area, the more the less of it is filled; out of all proportion where it is too small."""
-        short = max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] - height, 0.0) / self.least[1]
-        return width * height / max(self.fill(width, height), 0.02) ** 2 * (1.0 + short) + TOO_SMALL * short
+    def short(self, width: float, height: float) -> float:
+        """How much a place is too small, in its own size."""
+        return max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] - height, 0.0) / self.least[1]
 
 
-TOO_SMALL = 1e8
+TOO_SMALL = 1e7
 """Price of a place that is too small by its own size, mm^2: more than that of any sheet."""
 
 
 @dataclass
 class Node:
-    """A view (``need``, and its number ``leaf``) or, along x (``axis`` 0) or downwards (1), several with ``gap`` between them."""
+    """Several parts along x (``axis`` 0) or downwards (1) with ``gap`` between them, or a view.
+
+    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have.
+    """
 
     need: Need | None = None
     leaf: int = -1
+    area: float = 1.0
     axis: int = 0
     children: list[Node] = field(default_factory=list)
     shares: list[float] = field(default_factory=list)
@@ -85,9 +87,10 @@ class Node:
         return [share * free for share in self.shares]
 
     def cost(self, width: float, height: float) -> float:
-        """Cost of all views in it."""
+        """What the places of its views cost: more, the less of what it is meant to have each of them fills."""
         if self.need is not None:
-            return self.need.cost(width, height)
+            # The square: what is worst counts most.
+            return self.area * (self.area / self.need.ink(width, height)) ** 2 + TOO_SMALL * self.need.short(width, height)
         return sum(self._of(child, size, width, height)
                    for child, size in zip(self.children, self.sizes(width, height), strict=True))
 

@@ -28,7 +28,7 @@ from tmm_sheets.methods.flywheel.running import Running
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
 
-SPACE = DiagramSpace(moment=130.0, work=160.0, energy=220.0, inertia=175.0, stack=480.0)
+SPACE = DiagramSpace(moment=130.0, work=160.0, energy=220.0, inertia=175.0, stack=470.0)
 """Room for the diagrams: all four stand one under another over a common angle axis, mm."""
 
 
