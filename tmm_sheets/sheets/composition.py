@@ -42,7 +42,10 @@ def arranged(project: Project, n: int) -> Arrangement:
     plan = whole.fitted(project.parts)
     if plan.name != whole.name:
         whole = arrangement(plan.name)
-    if any("axis" in view.options for view in plan.views) or not any(view.draw in NEEDS for view in plan.views):
+    # Whoever sets scale factors by hand has the boxes as they are written.
+    if project.variant.scales or any("axis" in view.options for view in plan.views):
+        return plan
+    if not any(view.draw in NEEDS for view in plan.views):
         return plan
     if "positions" in project.parts and len(project.cycle.drawn) > kinematic_frames.MOST:
         return plan  # as many positions fit on no sheet
@@ -92,6 +95,8 @@ def _parts(project: Project, view: View) -> list[tuple[View, Node]]:
         box = view.box._replace(y0=view.box.y1 - height)
         one = View("kinetics.group", box, {"scheme": 0.45})
         return [part for i in range(count) for part in _parts(project, replace(one, options={**one.options, "group": i + 1}))]
+    if "cam" in view.needs and not _of_cam(project, view):
+        return []
     if view.draw not in NEEDS:
         return [(view, _fixed(view.box))]
     try:
@@ -104,18 +109,7 @@ def _parts(project: Project, view: View) -> list[tuple[View, Node]]:
 # --- what each kind of view needs -----------------------------------------------------------------------------------------
 
 
-def _scaled(project: Project, name: str, size: tuple[float, float], around: tuple[float, float], least: tuple[float, float],
-            ) -> Need:
-    """Need of a plan of some size in its unit; with a scale factor from the project file its size on paper is known."""
-    mu = project.variant.scales.get(name)
-    if mu is not None:
-        on_paper = size[0] / mu + around[0] + 0.5, size[1] / mu + around[1] + 0.5
-        least = max(least[0], on_paper[0]), max(least[1], on_paper[1])
-        return Need(least=least, most=least, drawn=lambda w, h: w * h)
-    return Need(size, around, least)
-
-
-def _reaching(project: Project, name: str, box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
+def _reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
               least: tuple[float, float]) -> Need:
     """Need of points with what sticks out of each of them on paper, as it is in about the box of the arrangement."""
     z, d = np.ravel(np.asarray(z, dtype=complex)), np.ravel(np.asarray(d, dtype=complex))
@@ -126,7 +120,7 @@ def _reaching(project: Project, name: str, box: Box, z: Any, d: Any, inset: tupl
         mu, span = needed(x, offset, max(room, 40.0)), float(np.ptp(x[~np.isnan(x)]))
         size.append(span if mu > 0 else 0.0)
         around.append(edge + (max(room, 40.0) - span / mu if mu > 0 else float(np.ptp(offset))))
-    return _scaled(project, name, (size[0], size[1]), (around[0], around[1]), least)
+    return Need((size[0], size[1]), (around[0], around[1]), least)
 
 
 def _leaf(box: Box, need: Need, share: float = 1.0) -> Node:
@@ -136,7 +130,7 @@ def _leaf(box: Box, need: Need, share: float = 1.0) -> Node:
 def _positions(project: Project, view: View) -> Node:
     around = kinematic_frames.positions_around(project, view.options)
     z, d = kinematic_frames.positions_reach(project)
-    return _leaf(view.box, _reaching(project, "positions", view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0)), 1.5)
+    return _leaf(view.box, _reaching(view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0)), 1.5)
 
 
 def _velocities(project: Project, view: View) -> Node:
@@ -144,16 +138,15 @@ def _velocities(project: Project, view: View) -> Node:
     around = kinematic_frames.MARGIN, kinematic_frames.HEAD
     title = 22.0
     if len(spans) == 1:
-        need = _scaled(project, "velocities", (spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0))
+        need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0))
         return _leaf(view.box, need)
-    wanted = project.variant.scales.get("velocities")
 
     @cache
     def in_place(width: int, height: int) -> float:
         mu = kinematic_frames.most_room(spans, Box(0.0, 0.0, width, height - title))[0]
         if not 0 < mu < inf:
             return 1.0
-        mu = rounded_up(mu) if wanted is None else max(wanted, mu)
+        mu = rounded_up(mu)
         return sum((s.width / mu + around[0]) * (s.height / mu + around[1]) for s in spans) + title * width
 
     def drawn(width: float, height: float) -> float:
@@ -166,7 +159,7 @@ def _accelerations(project: Project, view: View) -> Node:
     real = kinematic_frames.plan_extent(project.study.accelerations.plan, project.force_index)
     left, below, right, above = kinematic_frames.ACCELERATIONS
     around = left + right, below + above
-    return _leaf(view.box, _scaled(project, "accelerations", (real.width, real.height), around, (88.0, 80.0)), 0.8)
+    return _leaf(view.box, Need((real.width, real.height), around, (88.0, 80.0)), 0.8)
 
 
 def _group(project: Project, view: View) -> Node | None:
@@ -177,8 +170,7 @@ def _group(project: Project, view: View) -> Node | None:
         return _fixed(view.box)
     g = tuple(reversed(project.mechanism.groups))[nth - 1]
     box, share = view.box, float(view.options.get("scheme", 0.45))
-    name = f"scheme-{'-'.join(g.links)}"
-    need = _reaching(project, name, box, *kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0))
+    need = _reaching(box, *kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0))
     plans = [_force_plan(project, forces.plans[of], k) for of in g.kind.force_plans(g)]
     return _parted(box, share, need, plans)
 
@@ -191,8 +183,8 @@ def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> Node:
 
     found = [node(axis, inner) for axis, inner in ((0, 1), (0, 0), (1, 0))]
     for tree in found:
-        for step in (16.0, 8.0, 4.0):
-            tree.settle(box.width, box.height, step)
+        for _ in range(2):
+            tree.settle(box.width, box.height, (16.0, 8.0, 4.0))
     return min(found, key=lambda tree: round(tree.cost(box.width, box.height), 3))
 
 
@@ -204,7 +196,7 @@ def _force_plan(project: Project, fp: Any, k: int) -> Need:
     half = " + ".join(parts[:(len(parts) + 1) // 2]) + " +"
     asked = sum(side[3] for side in sides) + sum(not any(seg.symbol == side[0] for side in fp.sides) for seg in fp.plan.segments)
     wide = max(78.0, letter(half, 2.5).width + 8.0, OF_VALUE * asked + 6.0)
-    return _scaled(project, fp.plan.name, (real.width, real.height), (left + right, below + above), (wide, 56.0))
+    return Need((real.width, real.height), (left + right, below + above), (wide, 56.0))
 
 
 OF_VALUE = 24.0
@@ -215,7 +207,7 @@ def _crank(project: Project, view: View) -> Node:
     k = project.force_index
     share = float(view.options.get("scheme", 0.5))
     reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
-    scheme = _reaching(project, "scheme-crank", view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0))
+    scheme = _reaching(view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0))
     plan = _force_plan(project, project.study.forces.plans[project.mechanism.crank.link], k)
     left = _leaf(view.box, scheme, share)
     return joined(0, [left, _leaf(view.box, plan, 1.0 - share)], [share, 1.0 - share], 4.0)
@@ -224,7 +216,7 @@ def _crank(project: Project, view: View) -> Node:
 def _lever(project: Project, view: View) -> Node:
     k = project.force_index
     reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
-    return _leaf(view.box, _reaching(project, "lever", view.box, *reach, kinetic_frames.LEVER, (112.0, 90.0)))
+    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 90.0)))
 
 
 def _rows(project: Project, view: View, count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> Node:
@@ -282,8 +274,6 @@ def _synthesis(project: Project, view: View) -> Node | None:
 def _cam(least: tuple[float, float], share: float) -> Callable[[Project, View], Node | None]:
     """Need of a view of the cam that takes what room there is; shares of its box below which it cannot be read."""
     def node(project: Project, view: View) -> Node | None:
-        if not _of_cam(project, view):
-            return None
         w, h = view.box.width, view.box.height
         need = Need(least=(least[0] * w, least[1] * h), drawn=lambda w, h: share * w * h)
         return _leaf(view.box, need)
@@ -298,8 +288,6 @@ def _of_cam(project: Project, view: View) -> bool:
 
 
 def _profile(project: Project, view: View) -> Node | None:
-    if not _of_cam(project, view):
-        return None
     from tmm_sheets.sheets import cam_profile
 
     sizes = cam_profile.figure_sizes(project.cam)
@@ -323,9 +311,9 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinematics.acceleration_plan": _accelerations, "kinematics.structure": _structure,
     "kinematics.velocity_tables": _velocity_tables, "kinetics.group": _group, "kinetics.crank": _crank,
     "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
-    "cam_profile.profile": _profile, "cam.motion": _cam((0.8, 0.8), 0.7), "cam.pressure": _cam((0.85, 0.6), 0.6),
-    "cam_profile.roller": _cam((0.9, 0.7), 0.6), "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.9, 0.8), 0.6),
-    "cam_zone.of_rocker": _cam((0.8, 0.8), 0.6), "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
+    "cam_profile.profile": _profile, "cam.pressure": _cam((0.88, 0.7), 0.6),
+    "cam_profile.roller": _cam((0.88, 0.8), 0.6), "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
+    "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),
     "given_position.values": _values, "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
 }
