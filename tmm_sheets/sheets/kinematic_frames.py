@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 GRAPH = 48.0
 """Height kept free over the position plans for the force graph, mm."""
-MARGIN = 28.0
+MARGIN = 25.0
 """Room for letters beside a velocity plan, mm."""
 HEAD = 16.0
 """Room for its number and letters over and below it, mm."""

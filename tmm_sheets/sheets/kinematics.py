@@ -13,7 +13,7 @@ from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
-from tmm_sheets.drawing.lettering import letter, standard_size
+from tmm_sheets.drawing.lettering import letter, size_for, standard_size
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.mechanism.structure import decompose
@@ -324,7 +324,8 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         s = stage(canvas, plan, index, Frame(layout.scale, middle - layout.scale.mm(span.centre)))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
-        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), f"Положение {label}", 3.5, "centre")
+        name = f"Положение {label}"
+        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), name, size_for(name, place.width, 3.5), "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
         canvas.note(box, f"Меньше 1{TOGETHER}мм, ≈{TOGETHER}0: {_with_positions(tiny) if many else ', '.join(tiny)}")
