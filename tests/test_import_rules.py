@@ -35,7 +35,7 @@ RULES = {
     "results": ("construction project sheets", "methods.linkage"),
     "catalogue": ("task", ""),
     "summary": ("mechanism project task", ""),
-    "explain": ("construction", "drawing project"),
+    "explain": ("construction drawing", "project"),
     "protocols": ("construction sheets", "project"),
     "record": ("construction drawing project results sheets", ""),
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),

@@ -51,7 +51,7 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
             told = "" if worst is None else tell("{condition:11.2f} in {step}").format(condition=worst[0], step=worst[1])
             lines.append(f"  {plan.name:28}{len(steps):7}{len(done):11}{len(steps) - len(done):9}{ms:11.3f}{told}")
     lines += _searches(project)
-    lines += ["", "{:5}{:>8}".format(tell("sheet"), tell("marks"))]
+    lines += ["", *_evenness(drawings), "", "{:5}{:>8}".format(tell("sheet"), tell("marks"))]
     for n, drawing in drawings.items():
         kinds = Counter(type(mark).__name__.lower() for mark in drawing.marks)
         lines.append(f"{n:5}{len(drawing.marks):8}   {', '.join(f'{count} {kind}' for kind, count in kinds.most_common())}")
@@ -62,6 +62,18 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
     lines += [f"{name:26}{1000 * seconds:8.1f}" for name, seconds in watch.phases.items()]
     lines.append("{:26}{:8.1f}".format(tell("together"), 1000 * sum(watch.phases.values())))
     return "\n".join(lines)
+
+
+def _evenness(drawings: Mapping[int, Drawing]) -> Iterator[str]:
+    """How evenly each sheet is filled: empty cells of 50 mm, and what its views use of their places."""
+    from tmm_sheets.drawing import evenness
+
+    yield "{:5}{:>14}{:>12}   {}".format(tell("sheet"), tell("empty cells"), tell("mean fill"), tell("least filled views"))
+    for n, drawing in drawings.items():
+        found = list(evenness.fills(drawing))
+        mean = sum(share for _, share in found) / max(len(found), 1)
+        least = ", ".join(f"{name} {share:.0%}" for name, share in sorted(found, key=lambda view: view[1])[:3])
+        yield f"{n:5}{evenness.empty_cells(drawing):14.0%}{mean:12.0%}   {least}"
 
 
 def _searches(project: Project) -> Iterator[str]:

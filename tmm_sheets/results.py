@@ -127,10 +127,10 @@ def _put_linkage(project: Project, tree: dict[str, Any], asked: list[str], found
 
 def _drawn_scales(project: Project, plans: set[str], *, by_angle: bool) -> dict[str, Any]:
     """Scale factors the sheets draw these plans with; none where a project asked angle by angle cannot be drawn."""
-    from tmm_sheets.sheets import kinematic_frames
+    from tmm_sheets.sheets import composition
 
     try:
-        found = kinematic_frames.scales(project, plans)
+        found = composition.scales(project, plans)
     except CannotBuild:
         if by_angle:
             return {}

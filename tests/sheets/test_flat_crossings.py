@@ -20,7 +20,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Fill, Text, flat
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import flat_crossings, kinematic_frames, sheet
+from tmm_sheets.sheets import composition, flat_crossings, sheet
 
 NEAR = str(Path(__file__).parent / "near.toml")
 CRANK, COUPLER, ROCKER, FRAME = 0.1, 0.33, 0.173, 0.4
@@ -152,7 +152,7 @@ def drawn_by_hand(phi, mu, rng, n=40_000):
 def test_errors_by_monte_carlo(project):
     """What the warning says and what it recommends, against compasses of our own; near tangency it is on the safe side."""
     rng = np.random.default_rng(2)
-    scale, _ = kinematic_frames.scales(project, {"positions"})["mu_l"]
+    scale, _ = composition.scales(project, {"positions"})["mu_l"]
     (found,) = flat_crossings.find(project, project.study.positions.plan, range(12), {"positions": scale})
     assert (found.step.name, found.positions, found.worst, found.better) == ("C", (5, 6, 7), 6, 4)
     assert found.angle == pytest.approx(pi - acos((COUPLER**2 + ROCKER**2 - 0.25) / (2 * COUPLER * ROCKER)), rel=1e-9)
@@ -192,7 +192,7 @@ def test_the_analysed_position_may_be_in_the_second_turn():
 
 def test_the_better_position_is_on_the_same_stroke():
     p = near({"cycle.output": "E", "cycle.working_sense": "+x"})
-    scale, _ = kinematic_frames.scales(p, {"positions"})["mu_l"]
+    scale, _ = composition.scales(p, {"positions"})["mu_l"]
     (found,) = flat_crossings.find(p, p.study.positions.plan, [5], {"positions": scale})
     working = p.cycle.strokes.working(p.cycle.turned, 1)
     assert working[found.worst] == working[found.better]

@@ -16,6 +16,7 @@ from tmm_sheets.drawing.marks import Text, flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet as sheets
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.composition import arranged
 from tmm_sheets.sheets.places import BESIDE, TOUCH, leaving
 from tmm_sheets.sheets.sheet import INSIDE, TITLE_BLOCK, composed
 
@@ -48,10 +49,11 @@ SHAPES = {
 def test_mechanisms_of_every_shape_keep_their_places(shape):
     mechanism, *place = SHAPES[shape]
     for position in range(0, 12, 3):
-        done = composed(project(mechanism, EVEN, MOMENT, masses(*place), {"cycle.force_position": str(position)}), 1)
+        opened = project(mechanism, EVEN, MOMENT, masses(*place), {"cycle.force_position": str(position)})
+        done = composed(opened, 1)
         assert not done.leaving
         assert not done.crowded
-        view = next(v for v in arrangement("kinematics_forces_wide").views if v.draw == "kinetics.lever")
+        view = next(v for v in arranged(opened, 1).views if v.draw == "kinetics.lever")
         lever = next(i for i, part in enumerate(done.parts) if part.title.startswith("Рычаг"))
         end = done.parts[lever + 1].first
         ink = np.concatenate([flat(mark) for mark in done.drawing.marks[done.parts[lever].first:end] if not isinstance(mark, Text)])
@@ -160,7 +162,7 @@ def test_build_says_so_and_is_done(tmp_path, capsys, monkeypatch):
     plan = arrangement("kinematics_forces_wide")
     small = tuple(replace(v, box=Box(v.box.x0, v.box.y1 - 46, v.box.x0 + 25, v.box.y1)) if v.draw == "kinetics.lever" else v
                   for v in plan.views)
-    monkeypatch.setattr(sheets, "arrange", lambda name: replace(plan, views=small))
+    monkeypatch.setattr(sheets, "arranged", lambda opened, n: replace(plan, views=small))
     assert run(["build", path, "-o", str(tmp_path / "out"), "--format", "dxf"]) == 0
     told = [line for line in capsys.readouterr().err.splitlines() if "leaves its place" in line]
     assert len(told) == 1

@@ -10,8 +10,11 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tell, tr_in, tr_n
 
-HANDY = (1.0, 2.0, 2.5, 4.0, 5.0)
-"""Mantissas that are handy for mental arithmetic (manuals 000 and 003 ask for such scales)."""
+HANDY = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+"""Mantissas that are handy for mental arithmetic, as manuals 000 and 003 ask: those of GOST 2.302 and the 3 and 6 of manual 000.
+
+No two neighbours are more than a factor of 1.5 apart, so that a plan takes at least two thirds of its room.
+"""
 
 STANDARD = (
     (1000, 1), (800, 1), (500, 1), (400, 1), (200, 1), (100, 1), (75, 1), (50, 1), (40, 1), (25, 1), (20, 1), (15, 1),
@@ -77,7 +80,7 @@ def times(ratio: float) -> str:
 
 
 def handy(least: float) -> float:
-    """Smallest number of the series (1, 2, 2.5, 4, 5) * 10^k that is not less than ``least``."""
+    """Smallest number of the series ``HANDY`` * 10^k that is not less than ``least``."""
     if not least > 0:
         raise ValueError(f"a scale factor must be positive, not {least}")
     power = floor(log10(least))

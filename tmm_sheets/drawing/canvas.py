@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
 
-from tmm_sheets.drawing.lettering import Lettering, fitted, letter
+from tmm_sheets.drawing.lettering import Lettering, fitted, letter, size_for
 from tmm_sheets.drawing.marks import Arc, Box, Dimension, Fill, Form, Line, Mark, PlacedFrame, Points, Polyline, Role, Text, Trace
 
 Align = Literal["left", "centre", "right"]
@@ -298,7 +298,7 @@ class Canvas:
         self.put(laid, complex(x - laid.width / 2, y), 0.0, text)
         if factor:
             y -= 8.0
-            self.text(complex(x, y), factor, 3.5 if len(factor) > 60 else 5.0, "centre")
+            self.text(complex(x, y), factor, size_for([factor], box.width - 2.0, 5.0), "centre")
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 
     @in_role("dimension")

@@ -242,9 +242,9 @@ def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]
         for what in (*composed.leaving, *composed.crowded)
     ]
     if drawn and opened.variant.crank is not None:
-        from tmm_sheets.sheets import kinematic_frames
+        from tmm_sheets.sheets import composition
 
-        told += kinematic_frames.left_out(opened, drawn)
+        told += composition.left_out(opened, drawn)
     return tuple(told)
 
 

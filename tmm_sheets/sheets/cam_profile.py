@@ -69,6 +69,39 @@ GUIDE = 22.0
 """What the guide of a translating follower and the end of its rod take above the roller, mm of paper."""
 
 
+def _figure(cam: Cam) -> tuple[Points, float, list[complex]]:
+    """Points round the figure of the profile, the height of the guide's lower edge, and the directions it may be turned to."""
+    inv = cam.inversion
+    radius = float(getattr(cam, "roller", 0.0))
+    outline = [cam.dense.centres.value, *([cam.dense.plan["B′"].value] if "B′" in inv.plan else [])]
+    ring = radius * np.exp(2j * pi * np.arange(16) / 16)
+    every = [(p[::4, None] + ring).ravel() for p in outline] if radius else [cam.dense.plan["F"].value]
+    swept = [abs(p) * np.exp(1j * (phase(p) + cam.right * np.linspace(0, turn, 33))) for p, turn in _arcs(inv, cam.right)]
+    if cam.kind == "rocker":
+        swept.append(complex(inv.plan["A_0"].value) * np.exp(1j * cam.right * np.linspace(0, cam.law.fall.end, 65)))
+    if cam.kind == "flat":
+        swept += [np.array(ends) for ends in _plates(cam)]
+    points = np.concatenate([*every, *swept])
+    marks = inv.axis.value
+    # The guide of a translating follower stands clear of the roller in position 0.
+    guide = max(float(marks.imag.max()), float(marks[0].imag) + radius)
+    turns = [1.0 + 0j]
+    if cam.kind == "rocker":
+        along = complex(np.exp(-1j * phase(complex(inv.plan["A_0"].value))))
+        turns += [1j, -1.0 + 0j, -1j, *(along * complex(np.exp(1j * k * pi / 12)) for k in np.argsort(np.arange(24) % 6))]
+    return points, guide, turns
+
+
+def figure_sizes(cam: Cam) -> list[tuple[float, float, float]]:
+    """Width and height of the figure, m, in every direction it may be turned to, and what stands over and under it, mm."""
+    points, guide, turns = _figure(cam)
+    beside = 28.0 + _table_size(cam)[1] + 6.0  # heading and table
+    if cam.kind == "rocker":
+        return [(float(np.ptp((points * turn).real)), float(np.ptp((points * turn).imag)), beside + 14.0) for turn in turns]
+    height = max(float(np.ptp(points.imag)), guide - float(points.imag.min()))
+    return [(float(np.ptp(points.real)), height, beside + GUIDE)]
+
+
 class _ProfilePicture:
     """Where the figure of the profile stands on paper: ``at`` turns points of the cam's frame, m, into millimetres.
 
@@ -83,22 +116,7 @@ class _ProfilePicture:
         self.kind = cam.kind
         inv = cam.inversion
         radius = float(getattr(cam, "roller", 0.0))
-        outline = [cam.dense.centres.value, *([cam.dense.plan["B′"].value] if "B′" in inv.plan else [])]
-        ring = radius * np.exp(2j * pi * np.arange(16) / 16)
-        every = [(p[::4, None] + ring).ravel() for p in outline] if radius else [cam.dense.plan["F"].value]
-        swept = [abs(p) * np.exp(1j * (phase(p) + cam.right * np.linspace(0, turn, 33))) for p, turn in _arcs(inv, cam.right)]
-        if self.kind == "rocker":
-            swept.append(complex(inv.plan["A_0"].value) * np.exp(1j * cam.right * np.linspace(0, cam.law.fall.end, 65)))
-        if self.kind == "flat":
-            swept += [np.array(ends) for ends in _plates(cam)]
-        points = np.concatenate([*every, *swept])
-        marks = inv.axis.value
-        # The guide of a translating follower stands clear of the roller in position 0.
-        self.guide = max(float(marks.imag.max()), float(marks[0].imag) + radius)
-        turns = [1.0 + 0j]
-        if self.kind == "rocker":
-            along = complex(np.exp(-1j * phase(complex(inv.plan["A_0"].value))))
-            turns += [1j, -1.0 + 0j, -1j, *(along * complex(np.exp(1j * k * pi / 12)) for k in np.argsort(np.arange(24) % 6))]
+        points, self.guide, turns = _figure(cam)
         margin, over = (7.0, 0.0) if self.kind == "rocker" else (0.0, GUIDE)
         self.turn = max(turns, key=lambda turn: 1 / self._fitted(points * turn, margin, over).mu)
         self.points = points * self.turn

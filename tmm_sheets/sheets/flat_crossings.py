@@ -17,7 +17,7 @@ import numpy as np
 
 from tmm_sheets.construction import condition, rules
 from tmm_sheets.numbers import fixed
-from tmm_sheets.sheets import kinematic_frames
+from tmm_sheets.sheets import composition, kinematic_frames
 from tmm_sheets.words import marked, tell, tell_n, tr
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def _errors(project: Project, plan: Plan, scales: dict[str, Any]) -> Errors:
     order = list(_KINEMATIC)
     before = {name: getattr(study, name).plan for name in (order if plan.name not in order else order[:order.index(plan.name)])}
     elsewhere = {name for name in before if name not in scales}
-    kept = kinematic_frames.scales(project, elsewhere) if elsewhere else {}
+    kept = composition.scales(project, elsewhere) if elsewhere else {}
     known = {name: scales[name] if name in scales else kept[_KINEMATIC[name]][0]
              for name in before if name in scales or _KINEMATIC[name] in kept}
     return Errors([*((before[name], scale.mu) for name, scale in known.items()), (plan, scales[plan.name].mu)])
@@ -218,7 +218,7 @@ def lines(project: Project) -> Iterator[str]:
     places = [i for i, _ in project.cycle.drawn]
     if not any((np.broadcast_to(c, (len(labels),))[places] > FLAT).any() for c in condition.crossings(plan).values()):
         return
-    kept = kinematic_frames.scales(project, {"positions"})
+    kept = composition.scales(project, {"positions"})
     if "mu_l" not in kept:  # no sheet draws it
         return
     for flat in find(project, plan, places, {"positions": kept["mu_l"][0]}):

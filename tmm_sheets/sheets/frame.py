@@ -141,7 +141,7 @@ def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit:
     (arrows, blocks, labels).
     """
     z, d = np.ravel(np.asarray(points, dtype=complex)), np.ravel(np.asarray(offsets, dtype=complex))
-    need = max(_need(z.real, d.real, box.width), _need(z.imag, d.imag, box.height))
+    need = max(needed(z.real, d.real, box.width), needed(z.imag, d.imag, box.height))
     if not need > 0:  # a single point has no scale of its own: that of the position plans will do
         plans = canvas.scales.get("positions")
         need = plans.mu if plans is not None else 1.0
@@ -149,7 +149,7 @@ def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit:
     return Frame(scale, box.centre - extent([scale.mm(z) + d]).centre)
 
 
-def _need(x: Any, offset: Any, room: float) -> float:
+def needed(x: Any, offset: Any, room: float) -> float:
     """Least scale factor with which ``x / mu + offset`` takes no more than ``room``: the extent is convex in 1/mu.
 
     0.0 where any will do. Where the offsets alone take more than the room, they may overlap in it: they are left out.

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import inf
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,11 +19,10 @@ from tmm_sheets.words import tell, tell_n, tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import View
 
 GRAPH = 48.0
 """Height kept free over the position plans for the force graph, mm."""
-MARGIN = 22.0
+MARGIN = 25.0
 """Room for letters beside a velocity plan, mm."""
 HEAD = 16.0
 """Room for its number and letters over and below it, mm."""
@@ -32,6 +30,8 @@ SMALLEST = 10.0
 """Size from which on the largest of the velocity plans can be read, mm."""
 BEYOND = 10.0
 """A velocity plan so many times as large as usual would leave nothing to see of the others."""
+ACCELERATIONS = 9.0, 8.0, 9.0, 24.0
+"""Room round the acceleration plan at the left, below, right and above, mm."""
 MOST = 72
 """Most positions of one turn that are drawn: one each 5 degrees."""
 
@@ -73,11 +73,21 @@ def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, 
 
     ``graph`` = false leaves the force graph over them out.
     """
-    pos = project.study.positions
-    m, c = pos.mechanism, pos.mechanism.crank
+    inside = box.inset(*positions_around(project, options))
+    return fit_frame(project, canvas, "positions", "μ_l", tr("m/mm"), *positions_reach(project), inside)
+
+
+def positions_around(project: Project, options: dict[str, Any]) -> tuple[float, float, float, float]:
+    """Room round the position plans at the left, below, right and above, mm: title, scale factor, force graph."""
     graph = graph_height(project, options)
     below = bool(graph) and graph_below(project)
-    inside = box.inset(8.0, 4.0 + (graph if below else 0.0), 8.0, 20.0 + (0.0 if below else graph))
+    return 8.0, 4.0 + (graph if below else 0.0), 8.0, 20.0 + (0.0 if below else graph)
+
+
+def positions_reach(project: Project) -> tuple[Any, Any]:
+    """Points of all position plans and of the crank circle, m, and what sticks out of each on paper, mm."""
+    pos = project.study.positions
+    m, c = pos.mechanism, pos.mechanism.crank
     centre = m.fixed[c.pivot]
     z = [np.asarray([centre + c.length * u for u in (1, -1, 1j, -1j)])]
     d = [np.asarray([16.0 + 0j, -16.0, 9.0j, -9.0j])]
@@ -91,7 +101,7 @@ def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, 
     beside, reach = indicator.reach(project)
     z.append(np.asarray(beside))
     d.append(np.asarray(reach))
-    return fit_frame(project, canvas, "positions", "μ_l", tr("m/mm"), np.concatenate(z), np.concatenate(d), inside)
+    return np.concatenate(z), np.concatenate(d)
 
 
 def plan_points(plan: Plan, i: int) -> dict[str, complex]:
@@ -139,7 +149,7 @@ class VelocityLayout:
 def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> VelocityLayout:
     """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone.
 
-    ``rows`` are as many as asked for, or more where that many leave no room for the plans.
+    They stand in as many rows as make them largest.
     """
     cycle, k = project.cycle, project.force_index
     inside = box.inset(0, 2.0, 0, 20.0)
@@ -152,7 +162,7 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
         shown = [at for n, at in enumerate(drawn) if n % every == 0 or at[0] == k]
         spans = [plan_extent(project.study.velocities.plan, i) for i, _ in shown]
         readable = max(max(s.width, s.height) for s in spans) / SMALLEST
-        need, rows = _fewest_rows(spans, int(options.get("rows", 2)), inside, wanted or readable)
+        need, rows = most_room(spans, inside)
         if need <= readable or (wanted is not None and need < inf):
             break
     if not need < inf:
@@ -174,10 +184,16 @@ def beyond_drawing(project: Project) -> list[tuple[int, float]]:
     return [(i, size / usual) for i, size in sizes.items() if size > BEYOND * usual]
 
 
-def _fewest_rows(spans: list[Box], asked: int, inside: Box, limit: float) -> tuple[float, int]:
-    """Rows, as many as asked for or more, that do with a scale factor of ``limit``, or else those with the least need, and it."""
-    choices = [(_need(spans, rows, inside), rows) for rows in range(min(asked, len(spans)), len(spans) + 1)]
-    return next((choice for choice in choices if choice[0] <= limit), min(choices))
+def most_room(spans: list[Box], inside: Box) -> tuple[float, int]:
+    """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes all the room."""
+    return min((_need(spans, rows, inside), rows) for rows in range(1, len(spans) + 1))
+
+
+def velocity_spans(project: Project, options: dict[str, Any]) -> list[Box]:
+    """Extents of the velocity plans to be drawn, in their unit; ``only`` = "force" shows the analysed one alone."""
+    beyond = [] if options.get("only") == "force" else [i for i, _ in beyond_drawing(project)]
+    shown = [project.force_index] if options.get("only") == "force" else [i for i, _ in project.cycle.drawn if i not in beyond]
+    return [plan_extent(project.study.velocities.plan, i) for i in shown]
 
 
 def _need(spans: list[Box], rows: int, inside: Box) -> float:
@@ -192,53 +208,10 @@ def _ratio(real: float, room: float) -> float:
     return real / room if room > 0 else inf
 
 
-def _views(project: Project, n: int) -> tuple[View, ...]:
-    """Views of sheet ``n`` (from 1)."""
-    from tmm_sheets.sheets.arrangement import arrangement
-
-    return arrangement(project.sheets[n - 1]).fitted(project.parts).views
-
-
-def left_out(project: Project, sheets: Iterable[int]) -> Iterator[str]:
-    """What some sheets leave out of the velocity plans, and why, for the command line."""
-    for view in (view for n in sheets for view in _views(project, n) if view.draw == "kinematics.velocity_plans"):
-        layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
-        for i, times in layout.beyond:
-            yield tell("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large "
-                       "as usual").format(label=project.cycle.labels[i], times=times)
-        if layout.every > 1:
-            count = len(project.cycle.drawn)
-            yield tell_n("there is no room for {count} velocity plan: one in {every} is drawn",
-                         "there is no room for {count} velocity plans: one in {every} is drawn", count).format(
-                             count=count, every=layout.every)
-
-
 def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
     """Frame of the acceleration plan at the analysed position."""
     real = plan_extent(project.study.accelerations.plan, project.force_index)
-    inside = box.inset(9.0, 8.0, 9.0, 24.0)
+    inside = box.inset(*ACCELERATIONS)
     need = max(real.width / inside.width, real.height / inside.height)
     scale = pick(project, canvas, "accelerations", "μ_a", tr("(m/s²)/mm"), need)
     return Frame(scale, inside.centre - scale.mm(real.centre))
-
-
-def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
-    """Scale factors of the kinematic plans of a project as its sheets have them, with the sheet's number; draws nothing.
-
-    ``parts`` are the plans asked for: positions, velocities, accelerations.
-    """
-    found: dict[str, tuple[Scale, int]] = {}
-    if len(project.cycle.drawn) > MOST:
-        return found  # as many plans fit on no sheet
-    for n in range(1, len(project.sheets) + 1):
-        kept = SimpleNamespace(scales={}, chosen=set())
-        for view in _views(project, n):
-            if view.draw == "kinematics.position_plans" and "positions" in parts:
-                positions(project, kept, view.box, view.options)
-            elif view.draw == "kinematics.velocity_plans" and "velocities" in parts:
-                velocities(project, kept, view.box, view.options)
-            elif view.draw == "kinematics.acceleration_plan" and "accelerations" in parts:
-                accelerations(project, kept, view.box)
-        for scale in kept.scales.values():
-            found.setdefault(scale.symbol.replace("μ", "mu"), (scale, n))
-    return found

@@ -328,7 +328,8 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         s = stage(canvas, plan, index, Frame(layout.scale, middle - layout.scale.mm(span.centre)))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
-        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), tr("Position {label}").format(label=label), 3.5, "centre")
+        name = tr("Position {label}").format(label=label)
+        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), name, size_for([name], place.width, 3.5), "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_sheets.construction.indices import pair_index
-from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
@@ -22,49 +21,40 @@ from tmm_sheets.drawing.tables import widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
-from tmm_sheets.sheets.frame import SHORTEST, Frame, extent, fit_frame, joined, together
+from tmm_sheets.sheets.frame import SHORTEST, fit_frame, joined, together
+from tmm_sheets.sheets.kinetic_frames import (
+    AROUND,
+    CRANK,
+    LEVER,
+    SCHEME,
+    Couple,
+    Shown,
+    acting_sides,
+    arrows,
+    clear,
+    couples_of,
+    crank_scheme,
+    lever_scheme,
+    on_crank,
+    on_lever,
+    outer_forces,
+    polygon,
+    scheme,
+    scheme_points,
+    terms,
+)
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load
-    from tmm_sheets.mechanism.groups.hints import OuterReaction
+    from tmm_sheets.mechanism.groups.force_plan import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
 BAR = "\u0305"
-LONG, SHORT = 26.0, 13.0
-"""Longest and shortest force arrow on a loaded scheme, mm (schemes show directions, plans show magnitudes)."""
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A force on a scheme: sheet markup, the point in the plan's unit, the vector, N, its step and that of its moment or arm."""
-
-    symbol: str
-    at: complex
-    vector: complex
-    step: Step
-    arm: Step
-
-    @property
-    def whole(self) -> bool:
-        """Whether it is no part of a reaction that was split."""
-        return "^" not in self.symbol
-
-    @property
-    def along(self) -> complex:
-        """Unit vector of the force."""
-        return self.vector / abs(self.vector)
-
-    def foot(self, about: complex) -> complex:
-        """Foot of the perpendicular from a point on the line of action, in the plan's unit."""
-        return self.at + float(((about - self.at) * np.conj(self.along)).real) * self.along
-
-
 GAP = 4.0
 """Distance of groups that share a place, mm."""
 STACKED = 90.0
@@ -82,6 +72,9 @@ def groups(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     shares = options.get("scheme", 0.42)
     height = (box.height - GAP * (count - 1)) / count
     for i in range(count):
+        if "groups" in options:
+            group(project, canvas, box, {"group": i + 1, "places": options["groups"][i]})
+            continue
         top = box.y1 - i * (height + GAP)
         share = shares[min(i, len(shares) - 1)] if isinstance(shares, list) else shares
         group(project, canvas, Box(box.x0, top - height, box.x1, top), {"group": i + 1, "scheme": share})
@@ -100,20 +93,27 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                           tell("take an arrangement with the view kinetics.groups, or leave kinetics.group out of it"))
     g = tuple(reversed(m.groups))[nth - 1]
     share = float(options.get("scheme", 0.42))
-    left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
-    right = Box(left.x1 + 6.0, box.y0, box.x1, box.y1)
-    if options.get("stacked"):
-        left = Box(box.x0, box.y1 - share * box.height, box.x1, box.y1)
-        right = Box(box.x0, box.y0, box.x1, left.y0 - 2.0)
-    _scheme(project, canvas, left, g, k)
     names = g.kind.force_plans(g)
-    if right.height / len(names) < STACKED and len(names) > 1:
-        width = (right.width + GAP) / len(names)
-        places = [Box(right.x0 + i * width, right.y0, right.x0 + (i + 1) * width - GAP, right.y1) for i in range(len(names))]
+    if "places" in options:
+        left, *places = options["places"]
     else:
-        places = _stacked(right, [forces.plans[name] for name in names], k)
+        left, places = _parted(box, share, [forces.plans[name] for name in names], k, stacked=bool(options.get("stacked")))
+    _scheme(project, canvas, left, g, k)
     for name, place in zip(names, places, strict=True):
         _force_plan(project, canvas, place, forces.plans[name], k)
+
+
+def _parted(box: Box, share: float, plans: list[ForcePlan], k: int, *, stacked: bool) -> tuple[Box, list[Box]]:
+    """Place of a loaded scheme, its share of the whole, and of the force plans beside or, ``stacked``, below it."""
+    left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
+    right = Box(left.x1 + 6.0, box.y0, box.x1, box.y1)
+    if stacked:
+        left = Box(box.x0, box.y1 - share * box.height, box.x1, box.y1)
+        right = Box(box.x0, box.y0, box.x1, left.y0 - 2.0)
+    if right.height / len(plans) < STACKED and len(plans) > 1:
+        width = (right.width + GAP) / len(plans)
+        return left, [Box(right.x0 + i * width, right.y0, right.x0 + (i + 1) * width - GAP, right.y1) for i in range(len(plans))]
+    return left, _stacked(right, plans, k)
 
 
 def _stacked(box: Box, plans: list[ForcePlan], k: int) -> list[Box]:
@@ -122,7 +122,7 @@ def _stacked(box: Box, plans: list[ForcePlan], k: int) -> list[Box]:
     width = box.width - left - right
     wanted = []
     for fp in plans:
-        real = _polygon(fp, k)[1]
+        real = polygon(fp, k)[1]
         wanted.append(width * real.height / real.width if real.width > 0 else box.height)
     free = box.height - len(plans) * (below + above)
     spare = (free - sum(wanted)) / len(plans)
@@ -134,100 +134,16 @@ def _stacked(box: Box, plans: list[ForcePlan], k: int) -> list[Box]:
     return places
 
 
-@dataclass(frozen=True)
-class Couple:
-    """A couple on a scheme: sheet markup, the point it is drawn at, N m, its step."""
-
-    symbol: str
-    at: complex
-    value: float
-    step: Step
-
-
-FAR = 0.75
-"""Largest distance of a guide's reaction from its block, in sizes of the mechanism; beyond it a force and a couple are shown."""
-
-
-def _outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Shown], list[Couple]]:
-    """External and inertia forces of a group's links and the reactions of the links outside it."""
-    forces = project.study.forces
-    about = project.study.positions.points[g.kind.about(g)]
-    shown = [_shown(forces, load, about, k) for link in g.links for load in forces.loads[link]
-             if load.source not in g.links]
-    couples: list[Couple] = []
-    for reaction in g.kind.outer_reactions(g):
-        if reaction.guide is None:
-            shown += _hinge(project, reaction, k)
-        else:
-            force, beside = _guided(project, str(g.inner), reaction, k)
-            shown.append(force)
-            couples += beside
-    return acting(shown, forces.force_size(k)), couples
-
-
-def _shown(forces: Kinetostatics, load: Load, about: Step, k: int) -> Shown:
-    """A load as it is shown, its arm about a point."""
-    arm = forces.sum_about(about, load.vector) or load.vector
-    return Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k)), load.vector, arm)
-
-
-def _hinge(project: Project, reaction: OuterReaction, k: int) -> list[Shown]:
-    """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
-    study = project.study
-    name = pair_index(reaction.link, project.mechanism.owner(reaction.point))
-    at, step = complex(study.positions.points[reaction.point].at(k)), study.forces.reactions[f"F{name}"]
-    total = complex(step.at(k))
-    part = study.forces.tangential_part(reaction.link, reaction.point)
-    if part is None:
-        return [Shown(f"F̅_{{{name}}}", at, total, step, step)]
-    tangential = complex(part.at(k))
-    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, step),
-            Shown(f"F̅_{{{name}}}^τ", at, tangential, part, step)]
-
-
-def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tuple[Shown, list[Couple]]:
-    """Reaction of a guide at the point of its line, near ``foot``, where it balances the moments about the reaction's point.
-
-    A force and a couple where that point lies off the sheet, or where there is none.
-    """
-    pos, forces, m = project.study.positions, project.study.forces, project.mechanism
-    guide = str(reaction.guide)
-    name = pair_index(reaction.link, m.guides[guide].link)
-    step, turning = forces.reactions[f"F{name}"], forces.couples[f"F{name}"]
-    f, u, couple = complex(step.at(k)), complex(pos.guide_directions[guide].at(k)), float(np.real(turning.at(k)))
-    at, origin = (complex(pos.points[p].at(k)) for p in (foot, reaction.point))
-    at -= u * ((at - origin) * np.conj(u)).real
-    across = (np.conj(u) * f).imag
-    offset = couple / across if across else 0.0
-    acts = not is_zero(f, forces.force_size(k))
-    couples = []
-    if not is_zero(couple, forces.moment_size(k)) and (not acts or abs(offset) > FAR * _size(pos, k)):
-        couples.append(Couple(f"M_{{{name}}}", at, couple, turning))
-        offset = 0.0
-    return Shown(f"F̅_{{{name}}}", at + u * offset, f if acts else 0j, step, forces.arms[f"h{name}"]), couples
-
-
-def _size(pos: Positions, k: int) -> float:
-    """Largest distance of two points of the mechanism, m."""
-    members = [complex(step.at(k)) for step in pos.points.values()]
-    return max(abs(a - b) for a in members for b in members)
-
-
-def acting(shown: Iterable[Shown], force_size: float) -> list[Shown]:
-    """Those that are forces at all beside ``force_size``, N."""
-    return [s for s in shown if not is_zero(s.vector, force_size)]
-
-
 def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int) -> None:
     """Loaded scheme of a group: its links, all forces and couples on it, the arms of its moment equations."""
     pos = project.study.positions
-    shown, couples = _outer_forces(project, g, k)
+    shown, couples = outer_forces(project, g, k)
     drawn = [shape for shape in linkage.shapes(pos) if shape.link in g.links]
-    hinges, centres = _scheme_points(project, g, drawn)
+    hinges, centres = scheme_points(project, g, drawn)
     points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.points[g.kind.about(g)].at(k))
-    frame = _loaded_frame(project, canvas, (f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm")), box.inset(3.0, 5.0, 3.0, 19.0),
-                          [*(complex(p.at(k)) for p in points), *(force.at for force in shown)], shown, about)
+    around = scheme(project, g, k)
+    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm"), *around, box.inset(*SCHEME))
     canvas.of = f"group {g.name}"
     canvas.title(box, tr("Assur group {name} (kind {number})").format(name=g.name, number=g.kind.number), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
@@ -247,27 +163,12 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     _link_couples(project, s, drawn)
 
 
-def _scheme_points(project: Project, g: StructuralGroup, drawn: Iterable[linkage.Shape]) -> tuple[list[str], list[str]]:
-    """Hinges and blocks of a group's links, and their centres of mass that are none of these."""
-    hinges = list(dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n))
-    centres = (project.mechanism.links[link].centre for link in g.links)
-    return hinges, [str(c) for c in centres if c and c not in hinges]
-
-
 def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) -> None:
     """Couples of the links round their centres of mass, or their first points."""
     for shape in drawn:
         centre = project.mechanism.links[shape.link].centre or shape.block or shape.bar[0]
-        for n, c in _couples(project, shape.link):
+        for n, c in couples_of(project, shape.link):
             _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
-
-
-def _loaded_frame(project: Project, canvas: Canvas, scale: tuple[str, str, str], place: Box, points: Iterable[complex],
-                  shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = ()) -> Frame:
-    """Frame of points with forces and their arms about a point, and of ``more``: points with what reaches from them, mm."""
-    rest = [*((force.foot(about), 0j) for force in shown if force.whole), *more]
-    z, d = _reach(points, shown)
-    return fit_frame(project, canvas, *scale, [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)], place)
 
 
 def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
@@ -281,15 +182,6 @@ def _link_numbers(s: Stage, pos: Positions, drawn: Iterable[linkage.Shape]) -> N
         names = linkage.along_bar(s, pos, shape) if shape.bar else (str(shape.block),)
         a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
         s.letters(pos.directions[shape.link], shape.link, 1 + 0.3j, 5.0, 2.0 if shape.bar else 6.5, a + 0.3 * (b - a))
-
-
-def _couples(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
-    """Place in the list of each couple on a link that is not zero, and the couple."""
-    k, forces = project.force_index, project.study.forces
-    for n, step in enumerate(forces.link_couples.get(link, ())):
-        value = float(np.real(step.at(k)))
-        if not is_zero(value, forces.moment_size(k)):
-            yield n, Couple(symbol(step.symbol or step.name).replace(BAR, ""), 0j, value, step)
 
 
 def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:
@@ -311,35 +203,9 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
         _fitted(canvas, complex(box.x0 + 2.0, box.y0), "; ".join(said), 3.5, box.width - 4.0, "left")
 
 
-def _arrows(shown: Iterable[Shown]) -> list[tuple[Shown, complex]]:
-    """Arrow of each force in mm; forces along one ray from one point get different lengths."""
-    forces = sorted(shown, key=lambda s: abs(s.vector))
-    size = max((abs(a.at - b.at) for a in forces for b in forces), default=0.0)
-    found: list[tuple[Shown, complex]] = []
-    for s in forces:
-        length = SHORT + (LONG - SHORT) * (abs(s.vector) / abs(forces[-1].vector)) ** 0.5
-        for other, arrow in found:
-            if abs(other.at - s.at) <= 0.01 * size and abs(s.along - other.along) < 0.2 and length < abs(arrow) + 9.0:
-                length = abs(arrow) + 9.0
-        found.append((s, length * s.along))
-    return found
-
-
-def _reach(points: Iterable[complex], shown: Iterable[Shown]) -> tuple[list[complex], list[complex]]:
-    """Points and what sticks out of them on paper: arrows with their labels, symbols of pairs."""
-    z, d = [], []
-    for s, arrow in _arrows(shown):
-        z.append(s.at)
-        d.append(arrow * (1 + 7.0 / abs(arrow)))
-    for p in points:
-        z += [p, p, p, p]
-        d += [11.0 + 0j, -11.0 + 0j, 8.0j, -11.0j]
-    return z, d
-
-
 def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
     """Arrows with their tails at the points they act at."""
-    for force, arrow in _arrows(shown):
+    for force, arrow in arrows(shown):
         tail, u = s.frame(force.at), force.along
         pen = s.pen(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else "")
         pen.arrow(tail, tail + arrow, "vector")
@@ -367,23 +233,13 @@ def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable
         busy.append(at)
 
 
-AROUND = (12.0, 19.0, 12.0, 24.0)
-"""Room round a force polygon at its left, below (equation and values), right and above (title and scale factor), mm."""
-
-
-def _polygon(fp: ForcePlan, k: int) -> tuple[dict[str, complex], Box]:
-    """Vertices of a force polygon and the rectangle round them, N."""
-    points = {n: complex(step.at(k)) for n, step in fp.plan.steps.items() if step.rule.gives == "point"}
-    return points, extent([np.array(list(points.values()))])
-
-
 def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
     """Force polygon with numbered vertices, its equation and the values found."""
-    points, _ = _polygon(fp, k)
+    points, _ = polygon(fp, k)
     canvas.of = fp.plan.name
     inside = box.inset(*AROUND)
     size = project.study.forces.force_size(k)
-    sides = [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), size)]
+    sides = acting_sides(fp, k, size)
     if not sides:
         _fitted(canvas, canvas.title(box, fp.plan.title).centre, tr("There are no forces in this position"), 3.5, box.width - 4.0)
         return
@@ -400,8 +256,7 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())))
-    terms = [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
-    _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms, box.width - 4.0)
+    _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms(sides), box.width - 4.0)
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
                                                  value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
@@ -447,19 +302,13 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
     forces, pos = study.forces, study.positions
     share = float(options.get("scheme", 0.5))
-    left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
-    right = Box(left.x1 + 4.0, box.y0, box.x1, box.y1)
+    left, right = options.get("places", (Box(box.x0, box.y0, box.x0 + share * box.width, box.y1),
+                                         Box(box.x0 + share * box.width + 4.0, box.y0, box.x1, box.y1)))
     centre, pins = pos.points[c.pivot], [pos.points[name] for name in linkage.crank_pins(pos)]
     pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
-    from_frame = pair_index(c.link, project.mechanism.frame)
-    step = forces.reactions[f"F{from_frame}"]
-    shown = [_shown(forces, load, centre, k) for load in forces.loads[c.link]]
-    shown = acting([*shown, Shown(f"F̅_{{{from_frame}}}", pivot, complex(step.at(k)), step, step)], forces.force_size(k))
-    wheel = [] if driver is None else [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
-    away = _clear(pivot, ends, shown)
-    turning = (18.0 if driver is not None else 32.0) * away  # the arrows of rotation, with their signs
-    frame = _loaded_frame(project, canvas, ("scheme-crank", "μ_l", tr("m/mm")), left.inset(3.0, 3.0, 3.0, 19.0),
-                          [pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
+    shown = on_crank(project, k)
+    away = clear(pivot, ends, shown)
+    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", tr("m/mm"), *crank_scheme(project, k, shown), left.inset(*CRANK))
     canvas.title(left, tr("Input link"), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if driver is not None and pos.contact is not None:  # pitch circle of the wheel on the shaft, and its pitch point
@@ -479,17 +328,11 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     _force_plan(project, canvas, right, forces.plans[c.link], k)
 
 
-def _clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:
-    """Direction from the crank's pivot into the widest angle between its arms, base, forces and their arms."""
-    lines = [force.vector if force.at == pivot else force.foot(pivot) - pivot for force in shown]
-    return linkage.widest_gap([*(z - pivot for z in pins), -1j, *lines], 6)
-
-
 def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: complex) -> None:
     """Couples on the crank, its inertia couple among them, as arrows and with their values."""
     k, forces = project.force_index, project.study.forces
     said = []
-    for n, couple in _couples(project, project.mechanism.crank.link):
+    for n, couple in couples_of(project, project.mechanism.crank.link):
         _turning(s, at, 34.0 + 10.0 * n, away, couple)
         said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
     if said and project.driver is None and forces.balancing is not None:
@@ -503,10 +346,8 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
     k, lv = project.force_index, project.study.lever
     points = [complex(step.at(k)) for step in lv.points.values()]
-    shown = acting((Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k)), h.force, h.arm) for h in lv.hung),
-                   project.study.forces.force_size(k))
-    frame = _loaded_frame(project, canvas, ("lever", "μ_V", tr("(m/s)/mm")), box.inset(2.0, 2.0, 2.0, 19.0), [0j, *points], shown,
-                          0j, [(force.at, 0j) for force in shown])
+    shown = on_lever(project, k)
+    frame = fit_frame(project, canvas, "lever", "μ_V", tr("(m/s)/mm"), *lever_scheme(project, k, shown), box.inset(*LEVER))
     plain: Scale | None = canvas.scales.get("velocities")
     text = str(frame.scale)
     if plain is not None and plain.mu > frame.scale.mu * 1.01:

@@ -22,7 +22,7 @@ from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import places
-from tmm_sheets.sheets.arrangement import arrangement as arrange
+from tmm_sheets.sheets.composition import arranged
 from tmm_sheets.words import marked, of_file, tell, tr
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def compose(project: Project, n: int) -> Drawing:
 def composed(project: Project, n: int) -> Composed:
     """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
     sheets = project.variant.sheets
-    plan = arrange(sheets[n - 1]).fitted(project.parts)
+    plan = arranged(project, n)
     if {"positions", "flywheel"} & {view.needs for view in plan.views}:
         from tmm_sheets.sheets.kinematic_frames import check_number
 

@@ -189,9 +189,9 @@ def has_circle(law: PositionFunction) -> bool:
 
 
 def _coarser(least: float) -> list[float]:
-    """The four smallest handy scale factors that are not less than ``least``."""
+    """The smallest handy scale factors that are not less than ``least``, up to about five times as large."""
     series = [handy(least)]
-    while len(series) < 4:
+    while len(series) < 7:
         series.append(handy(series[-1] * 1.001))
     return series
 

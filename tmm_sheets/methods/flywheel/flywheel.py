@@ -11,8 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise, product
-from math import prod
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -1016,15 +1015,28 @@ def _alone(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
 
 
 def _stacked(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
-    """The same for graphs one under another: of all that fit together those with the greatest product of heights."""
-    rooms = (space.moment, space.work, space.energy, space.inertia)
+    """The same for graphs one under another: of all that fit together those with the greatest product of heights.
+
+    The moments are what everything else comes from: where they can, they get ``READABLE`` first.
+    """
     series = []
-    for span, room in zip(spans, rooms, strict=True):
+    for span, room in zip(spans, (space.moment, space.work, space.energy, space.inertia), strict=True):
         series.append([handy(span / room)])
-        for _ in range(9):
+        for _ in range(STEPS):
             series[-1].append(_next_handy(series[-1][-1]))
-    fitting = [mu for mu in product(*series) if sum(s / m for s, m in zip(spans, mu, strict=True)) <= space.stack
-               and space.pole[0] <= mu[1] / (mu[0] * mu_phi) <= space.pole[1]]
-    mu_m, mu_a, mu_e, mu_j = min(fitting, key=prod)
+    mu = np.meshgrid(*series, indexing="ij", sparse=True)
+    heights = [span / m for span, m in zip(spans, mu, strict=True)]
+    pole = mu[1] / (mu[0] * mu_phi)
+    fitting = (sum(heights) <= space.stack) & (pole >= space.pole[0]) & (pole <= space.pole[1])
+    readable = fitting & (heights[0] >= READABLE)
+    products = np.where(readable if readable.any() else fitting, np.prod(np.broadcast_arrays(*heights), axis=0), 0.0)
+    best = np.unravel_index(int(np.argmax(products)), products.shape)
+    mu_m, mu_a, mu_e, mu_j = (of[int(i)] for of, i in zip(series, best, strict=True))
     return mu_m, mu_a, mu_e, mu_j
+
+
+READABLE = 80.0
+"""Height of the graphs of the moments together from which on they read well, mm."""
+STEPS = 17
+"""So many steps of the series of scale factors are nearly two decades."""
 

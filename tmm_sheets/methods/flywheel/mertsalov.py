@@ -29,7 +29,7 @@ from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
 from tmm_sheets.words import marked, tr
 
-SPACE = DiagramSpace(moment=100.0, work=130.0, energy=220.0, inertia=175.0, stack=480.0)
+SPACE = DiagramSpace(moment=130.0, work=160.0, energy=220.0, inertia=175.0, stack=470.0)
 """Room for the diagrams: all four stand one under another over a common angle axis, mm."""
 
 

@@ -1,0 +1,140 @@
+"""Places of views: what lies gets a wide place, what stands a high one; what is left out gives its room away; always the same."""
+
+import numpy as np
+import pytest
+
+from tests import project_files as files
+from tmm_sheets import catalogue
+from tmm_sheets.box import Box
+from tmm_sheets.construction.scale import HANDY, handy
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import kinematic_frames
+from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
+from tmm_sheets.sheets.sheet import INSIDE
+from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
+
+ROOM = Box(0.0, 0.0, 400.0, 300.0)
+
+
+def leaves(*needs):
+    return [Node(need, leaf=i, area=60000.0) for i, need in enumerate(needs)]
+
+
+def drawn(need, box):
+    """Size on paper at the factor of the series that fits."""
+    mu = handy(max(s / (room - a) for s, room, a in zip(need.span, (box.width, box.height), need.around, strict=True)))
+    return [s / mu + a for s, a in zip(need.span, need.around, strict=True)]
+
+
+@pytest.mark.parametrize("least", [0.00101, 0.0999, 1.0, 1.5000000001, 7.99, 8.01, 123.0])
+def test_the_quick_series_is_the_series(least):
+    assert rounded_up(least) == pytest.approx(handy(least), rel=1e-12)
+
+
+def test_no_two_factors_are_far_apart():
+    series = np.array([*HANDY, 10.0])
+    assert (series[1:] / series[:-1]).max() <= 1.5
+
+
+def test_what_lies_gets_a_wide_place_and_what_stands_a_high_one():
+    """Two views in equal columns or rows; of the common side the one needs little, the other much."""
+    for axis in (0, 1):
+        flat, square = ((1.0, 6.0), (3.0, 3.0)) if axis == 0 else ((6.0, 1.0), (3.0, 3.0))
+        tree = joined(axis, leaves(Need(flat, (20.0, 20.0)), Need(square, (20.0, 20.0))), [1.0, 1.0])
+        found = solve(tree, ROOM)
+        sizes = [box.height if axis else box.width for box in (found[0], found[1])]
+        assert sizes[1] > 1.5 * sizes[0]
+
+
+def test_places_do_not_overlap_and_fill_the_room():
+    column = joined(1, leaves(Need((2.0, 1.0)), Need((1.0, 2.0))), [1, 1])
+    tree = joined(0, [column, Node(Need(), leaf=2, area=40000.0)], [1, 1])
+    found = solve(tree, ROOM)
+    assert sorted(found) == [0, 1, 2]
+    boxes = list(found.values())
+    for i, a in enumerate(boxes):
+        assert INSIDE.width > a.width > 0 < a.height
+        assert all(a.x1 <= b.x0 or b.x1 <= a.x0 or a.y1 <= b.y0 or b.y1 <= a.y0 for b in boxes[i + 1:])
+    assert (min(b.x0 for b in boxes), max(b.x1 for b in boxes)) == (ROOM.x0, ROOM.x1)
+    assert (min(b.y0 for b in boxes), max(b.y1 for b in boxes)) == (ROOM.y0, ROOM.y1)
+
+
+def test_least_sizes_are_kept():
+    tree = joined(0, leaves(Need((5.0, 1.0), least=(60.0, 40.0)), Need(least=(150.0, 40.0))), [1.0, 1.0])
+    assert solve(tree, ROOM)[1].width >= 150.0
+
+
+def test_what_has_nothing_to_draw_gives_its_room_away():
+    """A force plan of no length: only its heading is left."""
+    tree = joined(1, leaves(Need((0.0, 0.0), (24.0, 43.0), (80.0, 43.0)), Need((3.0, 4.0), (20.0, 20.0))), [1.0, 1.0])
+    found = solve(tree, ROOM)
+    assert 43.0 <= found[0].height < 60.0
+
+
+def test_one_view_has_the_whole_room():
+    assert solve(leaves(Need((1.0, 1.0)))[0], ROOM) == {0: ROOM}
+
+
+def test_boxes_are_cut_into_rows_and_columns():
+    boxes = [Box(0, 0, 10, 30), Box(14, 16, 30, 30), Box(14, 0, 30, 12)]
+    tree = cut(boxes, leaves(Need(), Need(), Need()))
+    assert (tree.axis, len(tree.children), tree.children[1].axis, tree.gap) == (0, 2, 1, 4.0)
+    assert [child.leaf for child in tree.children[1].children] == [1, 2]
+
+
+def test_a_whirl_of_boxes_is_left_as_it_is():
+    whirl = [Box(0, 0, 20, 10), Box(20, 0, 30, 20), Box(10, 20, 30, 30), Box(0, 10, 10, 30), Box(10, 10, 20, 20)]
+    assert cut(whirl, leaves(*[Need()] * 5)) is None
+
+
+def test_a_lying_mechanism_has_a_wide_place_and_a_standing_one_a_high_one():
+    """Task 8:3 lies, 1.6 times as wide as high; the rocker of 4:3 stands."""
+    for name, wide in (("sixbar/8:3", True), ("sixbar/4:3", False)):
+        box = next(v.box for v in arranged(Project(catalogue.read(name)), 1).views if v.draw == "kinematics.position_plans")
+        assert (box.width > 1.3 * box.height) == wide
+
+
+@pytest.mark.parametrize("name", ["sixbar/8:3", "sixbar/1:1", "lugansk/shaper", "transport/press@05-ЭПС-123", "press"])
+def test_the_next_larger_scale_would_not_fit(name):
+    """The position plans at the next smaller factor of the series come out of their place."""
+    from types import SimpleNamespace
+
+    project = Project(catalogue.read(name))
+    view = next(v for v in arranged(project, 1).views if v.draw == "kinematics.position_plans")
+    frame = kinematic_frames.positions(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
+    before = max(float(f"{m}e{k}") for m in HANDY for k in range(-6, 1) if float(f"{m}e{k}") < frame.scale.mu * (1 - 1e-9))
+    z, d = kinematic_frames.positions_reach(project)
+    left, below, right, above = kinematic_frames.positions_around(project, view.options)
+    for mu, fits in ((frame.scale.mu, True), (before, False)):
+        on_paper = z / mu + d
+        inside = np.ptp(on_paper.real) <= view.box.width - left - right + 1e-9 and \
+            np.ptp(on_paper.imag) <= view.box.height - below - above + 1e-9
+        assert inside == fits
+
+
+@pytest.mark.parametrize("name", ["sixbar/8:3", "sixbar/10:5", "lugansk/shaper", "transport/crusher@12-СДМ-1908", "press"])
+def test_places_stay_inside_the_frame_apart_and_off_the_title_block(name):
+    project = Project(catalogue.read(name))
+    for n in range(1, len(project.sheets) + 1):
+        views = arranged(project, n).views
+        parts = [box for v in views for box in v.options.get("places", [v.box])]
+        for i, box in enumerate(parts):
+            assert INSIDE.x0 <= box.x0 < box.x1 <= INSIDE.x1
+            assert INSIDE.y0 <= box.y0 < box.y1 <= INSIDE.y1
+            if views[0].draw.startswith("kinematics") and "axis" not in str([v.options for v in views]):
+                for other in [*parts[i + 1:], TITLE_BLOCK]:
+                    assert box.x1 <= other.x0 or other.x1 <= box.x0 or box.y1 <= other.y0 or other.y1 <= box.y0
+
+
+def test_the_same_project_has_the_same_places():
+    one, other = (arranged(Project(catalogue.read("lugansk/shaper")), 1).views for _ in range(2))
+    assert one == other
+
+
+def test_a_view_left_out_gives_its_room_to_its_neighbours():
+    """A project of lengths alone has no forces and no synthesis: what stands instead of them fills the sheet all the same."""
+    project = files.project(files.FOUR_BAR, files.EVEN)
+    plan = arranged(project, 1)
+    assert not any(v.draw.startswith(("kinetics", "synthesis")) for v in plan.views)
+    area = sum(v.box.width * v.box.height for v in plan.views)
+    assert area > 0.9 * ((832.0 - 25.0) * (586.0 - 8.0) - TITLE_BLOCK.width * TITLE_BLOCK.height)

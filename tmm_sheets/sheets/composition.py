@@ -1,0 +1,360 @@
+"""Places of the views of a project's sheets: the arrangement's order and proportions, borders where the views need them.
+
+What each kind of view needs is told from the points of its plans; nothing is drawn for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from functools import cache, lru_cache
+from math import ceil, inf
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.sheets import kinematic_frames, kinetic_frames
+from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
+from tmm_sheets.sheets.frame import needed, standard
+from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
+from tmm_sheets.words import tell, tell_n
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.scale import Scale
+    from tmm_sheets.project import Project
+
+TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
+"""Place of the title block among the views."""
+DESIGNATION = Box(20.0, 573.0, 92.0, 589.0)
+"""Place of the turned designation, over the views in the upper left corner (GOST 2.104)."""
+
+
+@lru_cache(maxsize=16)
+def arranged(project: Project, n: int) -> Arrangement:
+    """Arrangement of sheet ``n`` (from 1) with every view in the place the sheet has for it.
+
+    Raises :class:`CannotBuild` where the project has nothing for any of its views.
+    """
+    whole = arrangement(project.sheets[n - 1])
+    plan = whole.fitted(project.parts)
+    if plan.name != whole.name:
+        whole = arrangement(plan.name)
+    # Whoever sets scale factors by hand has the boxes as they are written.
+    if project.variant.scales or any("axis" in view.options for view in plan.views):
+        return plan
+    if not any(view.draw in NEEDS for view in plan.views):
+        return plan
+    if "positions" in project.parts and len(project.cycle.drawn) > kinematic_frames.MOST:
+        return plan  # as many positions fit on no sheet
+    there = [(view, parts) for view in plan.views if (parts := _parts(project, view))]
+    columns = [joined(1, [node for _, node in parts], [1.0] * len(parts)) for _, parts in there]
+    tree = cut([*(view.box for view, _ in there), TITLE_BLOCK], [*columns, _fixed(TITLE_BLOCK)])
+    if tree is None:
+        return plan
+    for number, leaf in enumerate(_leaves(tree)):
+        leaf.leaf = number
+    boxes = [view.box for view in whole.views]
+    room = Box(min(b.x0 for b in boxes), TITLE_BLOCK.y0, TITLE_BLOCK.x1, max(b.y1 for b in boxes))
+    found = {number: _below_designation(box) for number, box in solve(tree, room).items()}
+    return replace(plan, views=tuple(_placed(view, node, found) for _, parts in there for view, node in parts))
+
+
+def _leaves(node: Node) -> Iterator[Node]:
+    if node.need is not None:
+        yield node
+    for child in node.children:
+        yield from _leaves(child)
+
+
+def _fixed(box: Box) -> Node:
+    """What keeps the size it has."""
+    size = (box.width, box.height)
+    return Node(Need(least=size, most=size, drawn=lambda w, h: w * h), area=box.width * box.height)
+
+
+def _below_designation(box: Box) -> Box:
+    over = box.x0 < DESIGNATION.x1 and box.y1 > DESIGNATION.y0
+    return box._replace(y1=DESIGNATION.y0) if over else box
+
+
+def _placed(view: View, node: Node, found: dict[int, Box]) -> View:
+    """A view in its new place; one of several parts with the places of these as its option ``places``."""
+    parts = [found[leaf.leaf] for leaf in _leaves(node)]
+    box = Box(min(b.x0 for b in parts), min(b.y0 for b in parts), max(b.x1 for b in parts), max(b.y1 for b in parts))
+    return replace(view, box=box, options={**view.options, "places": parts} if len(parts) > 1 else view.options)
+
+
+def _parts(project: Project, view: View) -> list[tuple[View, Node]]:
+    """Nodes of a view, which may stand for several one under another; none for one with nothing to draw."""
+    if view.draw == "kinetics.groups":
+        count = len(project.mechanism.groups)
+        height = view.box.height / max(count, 1)
+        box = view.box._replace(y0=view.box.y1 - height)
+        one = View("kinetics.group", box, {"scheme": 0.45})
+        return [part for i in range(count) for part in _parts(project, replace(one, options={**one.options, "group": i + 1}))]
+    if "cam" in view.needs and not _of_cam(project, view):
+        return []
+    if view.draw not in NEEDS:
+        return [(view, _fixed(view.box))]
+    try:
+        node = NEEDS[view.draw](project, view)
+    except CannotBuild:
+        node = _fixed(view.box)  # drawing it will say why
+    return [(view, node)] if node is not None else []
+
+
+# --- what each kind of view needs -----------------------------------------------------------------------------------------
+
+
+def _reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
+              least: tuple[float, float]) -> Need:
+    """Need of points with what sticks out of each of them on paper, as it is in about the box of the arrangement."""
+    z, d = np.ravel(np.asarray(z, dtype=complex)), np.ravel(np.asarray(d, dtype=complex))
+    inside = box.inset(*inset)
+    size, around = [], []
+    for x, offset, room, edge in ((z.real, d.real, inside.width, inset[0] + inset[2]),
+                                  (z.imag, d.imag, inside.height, inset[1] + inset[3])):
+        mu, span = needed(x, offset, max(room, 40.0)), float(np.ptp(x[~np.isnan(x)]))
+        size.append(span if mu > 0 else 0.0)
+        around.append(edge + (max(room, 40.0) - span / mu if mu > 0 else float(np.ptp(offset))))
+    return Need((size[0], size[1]), (around[0], around[1]), least)
+
+
+def _leaf(box: Box, need: Need, share: float = 1.0) -> Node:
+    return Node(need, area=share * box.width * box.height)
+
+
+def _positions(project: Project, view: View) -> Node:
+    around = kinematic_frames.positions_around(project, view.options)
+    z, d = kinematic_frames.positions_reach(project)
+    return _leaf(view.box, _reaching(view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0)), 1.5)
+
+
+def _velocities(project: Project, view: View) -> Node:
+    spans = kinematic_frames.velocity_spans(project, view.options)
+    around = kinematic_frames.MARGIN, kinematic_frames.HEAD
+    title = 22.0
+    if len(spans) == 1:
+        need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0))
+        return _leaf(view.box, need)
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        mu = kinematic_frames.most_room(spans, Box(0.0, 0.0, width, height - title))[0]
+        if not 0 < mu < inf:
+            return 1.0
+        mu = rounded_up(mu)
+        return sum((s.width / mu + around[0]) * (s.height / mu + around[1]) for s in spans) + title * width
+
+    def drawn(width: float, height: float) -> float:
+        return in_place(round(width), round(height))
+
+    return _leaf(view.box, Need(least=(0.7 * view.box.width, 0.7 * view.box.height), drawn=drawn), 1.5)
+
+
+def _accelerations(project: Project, view: View) -> Node:
+    real = kinematic_frames.plan_extent(project.study.accelerations.plan, project.force_index)
+    left, below, right, above = kinematic_frames.ACCELERATIONS
+    around = left + right, below + above
+    return _leaf(view.box, Need((real.width, real.height), around, (88.0, 80.0)), 0.8)
+
+
+def _group(project: Project, view: View) -> Node | None:
+    """Loaded scheme and force plans: side by side, or the plans one under another, or the scheme over them: what fills most."""
+    k, forces = project.force_index, project.study.forces
+    nth = int(view.options.get("group", 1))
+    if not 1 <= nth <= len(project.mechanism.groups):
+        return _fixed(view.box)
+    g = tuple(reversed(project.mechanism.groups))[nth - 1]
+    box, share = view.box, float(view.options.get("scheme", 0.45))
+    need = _reaching(box, *kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0))
+    plans = [_force_plan(project, forces.plans[of], k) for of in g.kind.force_plans(g)]
+    return _parted(box, share, need, plans)
+
+
+def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> Node:
+    def node(axis: int, inner: int) -> Node:
+        each = (1.0 - share) / len(plans)
+        of_plans = joined(inner, [_leaf(box, need, each) for need in plans], [1.0] * len(plans), 4.0)
+        return joined(axis, [_leaf(box, scheme, share), of_plans], [share, 1.0 - share], 4.0)
+
+    found = [node(axis, inner) for axis, inner in ((0, 1), (0, 0), (1, 0))]
+    for tree in found:
+        for _ in range(2):
+            tree.settle(box.width, box.height, (16.0, 8.0, 4.0))
+    return min(found, key=lambda tree: round(tree.cost(box.width, box.height), 3))
+
+
+def _force_plan(project: Project, fp: Any, k: int) -> Need:
+    real = kinetic_frames.polygon(fp, k)[1]
+    left, below, right, above = kinetic_frames.AROUND
+    sides = kinetic_frames.acting_sides(fp, k, project.study.forces.force_size(k))
+    parts = kinetic_frames.terms(sides)
+    half = " + ".join(parts[:(len(parts) + 1) // 2]) + " +"
+    asked = sum(side[3] for side in sides) + sum(not any(seg.symbol == side[0] for side in fp.sides) for seg in fp.plan.segments)
+    wide = max(78.0, letter(half, 2.5).width + 8.0, OF_VALUE * asked + 6.0)
+    return Need((real.width, real.height), (left + right, below + above), (wide, 56.0))
+
+
+OF_VALUE = 24.0
+"""Room of one force with its value in the line under a force plan, mm, about."""
+
+
+def _crank(project: Project, view: View) -> Node:
+    k = project.force_index
+    share = float(view.options.get("scheme", 0.5))
+    reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
+    scheme = _reaching(view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0))
+    plan = _force_plan(project, project.study.forces.plans[project.mechanism.crank.link], k)
+    left = _leaf(view.box, scheme, share)
+    return joined(0, [left, _leaf(view.box, plan, 1.0 - share)], [share, 1.0 - share], 4.0)
+
+
+def _lever(project: Project, view: View) -> Node:
+    k = project.force_index
+    reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
+    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 90.0)))
+
+
+def _rows(project: Project, view: View, count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> Node:
+    """Need of a table with so many rows under its heading: rows from the least height to the usual one."""
+    need = Need(least=(widths[0], head + row[0] * count), most=(widths[1], head + row[1] * count), drawn=lambda w, h: w * h)
+    return Node(need, area=need.least[0] * need.most[1])
+
+
+def _structure(project: Project, view: View) -> Node:
+    return _rows(project, view, len(project.mechanism.groups) + 1, 26.0, (7.0, 7.0), (122.0, 170.0))
+
+
+def _motion_table(project: Project, view: View) -> Node | None:
+    if not project.diagrams:
+        return None
+    count = len(project.cycle.labels) + 1
+    return _rows(project, view, count, 9.0, (5.6 if count <= 26 else 4.0, 7.0), (100.0, 170.0))
+
+
+def _velocity_tables(project: Project, view: View) -> Node:
+    over = 2 if view.options.get("stacked") else 1
+    count = over * (len(project.cycle.drawn) + 2)
+    return _rows(project, view, count, 10.0 * over, (4.6, 7.5), (0.8 * view.box.width, inf))
+
+
+def _results(project: Project, view: View) -> Node:
+    return _rows(project, view, 4, 0.0, (7.0, 9.0), (128.0, 170.0))
+
+
+def _values(project: Project, view: View) -> Node:
+    points, links = len(project.study.positions.points), len(project.mechanism.links)
+    loads = len(project.applied)
+    count = 1 + ceil((points - len(project.mechanism.fixed)) / 2) + 1 + links + (1 + loads if loads else 0)
+    tables = 3 if loads else 2
+    return _rows(project, view, count, 8.0 * tables, (4.6, 7.0), (140.0, 200.0))
+
+
+def _motion(project: Project, view: View) -> Node | None:
+    if not project.diagrams:
+        return None
+    return _leaf(view.box, Need(least=(180.0, 150.0), drawn=lambda w, h: 0.75 * w * h), 0.8)
+
+
+def _loads(project: Project, view: View) -> Node | None:
+    pressures = {f.name for f in project.variant.force if f.bore is not None}
+    if all(f.name in pressures for f in project.applied):
+        return None
+    return _leaf(view.box, Need(least=(150.0, 70.0), most=(inf, 110.0), drawn=lambda w, h: 0.7 * w * h))
+
+
+def _synthesis(project: Project, view: View) -> Node | None:
+    return _fixed(view.box) if project.variant.synthesis is not None else None
+
+
+def _cam(least: tuple[float, float], share: float) -> Callable[[Project, View], Node | None]:
+    """Need of a view of the cam that takes what room there is; shares of its box below which it cannot be read."""
+    def node(project: Project, view: View) -> Node | None:
+        w, h = view.box.width, view.box.height
+        need = Need(least=(least[0] * w, least[1] * h), drawn=lambda w, h: share * w * h)
+        return _leaf(view.box, need)
+
+    return node
+
+
+def _of_cam(project: Project, view: View) -> bool:
+    """Whether a view is meant for this kind of cam."""
+    traits = project.cam.traits
+    return bool(traits.issuperset(view.options.get("when", ())) and traits.isdisjoint(view.options.get("unless", ())))
+
+
+def _profile(project: Project, view: View) -> Node | None:
+    from tmm_sheets.sheets import cam_profile
+
+    sizes = cam_profile.figure_sizes(project.cam)
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        most = 1.0
+        for w, h, over in sizes:
+            try:
+                mu = standard((w, width - 20.0), (h, height - over)).mu
+            except CannotBuild:
+                continue
+            most = max(most, (w / mu + 20.0) * (h / mu + over))
+        return most
+
+    return _leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
+
+
+NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
+    "kinematics.position_plans": _positions, "kinematics.velocity_plans": _velocities,
+    "kinematics.acceleration_plan": _accelerations, "kinematics.structure": _structure,
+    "kinematics.velocity_tables": _velocity_tables, "kinetics.group": _group, "kinetics.crank": _crank,
+    "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
+    "cam_profile.profile": _profile, "cam.pressure": _cam((0.88, 0.7), 0.6),
+    "cam_profile.roller": _cam((0.88, 0.8), 0.6), "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
+    "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
+    "cam_zone.plate": _cam((0.9, 0.8), 0.6),
+    "given_position.values": _values, "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
+}
+"""Views that tell what they need; others keep the size of their boxes."""
+
+
+# --- what follows from the places, without drawing ------------------------------------------------------------------------
+
+
+def left_out(project: Project, sheets: Iterable[int]) -> Iterator[str]:
+    """What some sheets leave out of the velocity plans, and why, for the command line."""
+    for view in (view for n in sheets for view in arranged(project, n).views if view.draw == "kinematics.velocity_plans"):
+        layout = kinematic_frames.velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
+        for i, times in layout.beyond:
+            yield tell("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large "
+                       "as usual").format(label=project.cycle.labels[i], times=times)
+        if layout.every > 1:
+            count = len(project.cycle.drawn)
+            yield tell_n("there is no room for {count} velocity plan: one in {every} is drawn",
+                         "there is no room for {count} velocity plans: one in {every} is drawn", count).format(
+                             count=count, every=layout.every)
+
+
+def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
+    """Scale factors of the kinematic plans of a project as its sheets have them, with the sheet's number; draws nothing.
+
+    ``parts`` are the plans asked for: positions, velocities, accelerations.
+    """
+    found: dict[str, tuple[Scale, int]] = {}
+    if len(project.cycle.drawn) > kinematic_frames.MOST:
+        return found  # as many plans fit on no sheet
+    for n in range(1, len(project.sheets) + 1):
+        kept = SimpleNamespace(scales={}, chosen=set())
+        for view in arranged(project, n).views:
+            if view.draw == "kinematics.position_plans" and "positions" in parts:
+                kinematic_frames.positions(project, kept, view.box, view.options)
+            elif view.draw == "kinematics.velocity_plans" and "velocities" in parts:
+                kinematic_frames.velocities(project, kept, view.box, view.options)
+            elif view.draw == "kinematics.acceleration_plan" and "accelerations" in parts:
+                kinematic_frames.accelerations(project, kept, view.box)
+        for scale in kept.scales.values():
+            found.setdefault(scale.symbol.replace("μ", "mu"), (scale, n))
+    return found

@@ -1,0 +1,257 @@
+"""What the force study shows on a sheet and how much room that needs, found from its vectors alone: nothing is drawn for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.plan import symbol
+from tmm_sheets.numbers import is_zero
+from tmm_sheets.sheets import linkage
+from tmm_sheets.sheets.frame import extent
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load
+    from tmm_sheets.mechanism.groups.hints import OuterReaction
+    from tmm_sheets.mechanism.model import StructuralGroup
+    from tmm_sheets.methods.linkage.forces import Kinetostatics
+    from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.project import Project
+
+BAR = "\u0305"
+LONG, SHORT = 26.0, 13.0
+"""Longest and shortest force arrow on a loaded scheme, mm (schemes show directions, plans show magnitudes)."""
+@dataclass(frozen=True)
+class Shown:
+    """A force on a scheme: sheet markup, the point in the plan's unit, the vector, N, its step and that of its moment or arm."""
+
+    symbol: str
+    at: complex
+    vector: complex
+    step: Step
+    arm: Step
+
+    @property
+    def whole(self) -> bool:
+        """Whether it is no part of a reaction that was split."""
+        return "^" not in self.symbol
+
+    @property
+    def along(self) -> complex:
+        """Unit vector of the force."""
+        return self.vector / abs(self.vector)
+
+    def foot(self, about: complex) -> complex:
+        """Foot of the perpendicular from a point on the line of action, in the plan's unit."""
+        return self.at + float(((about - self.at) * np.conj(self.along)).real) * self.along
+
+
+@dataclass(frozen=True)
+class Couple:
+    """A couple on a scheme: sheet markup, the point it is drawn at, N m, its step."""
+
+    symbol: str
+    at: complex
+    value: float
+    step: Step
+
+
+FAR = 0.75
+"""Largest distance of a guide's reaction from its block, in sizes of the mechanism; beyond it a force and a couple are shown."""
+def outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Shown], list[Couple]]:
+    """External and inertia forces of a group's links and the reactions of the links outside it."""
+    forces = project.study.forces
+    about = project.study.positions.points[g.kind.about(g)]
+    shown = [shown_load(forces, load, about, k) for link in g.links for load in forces.loads[link]
+             if load.source not in g.links]
+    couples: list[Couple] = []
+    for reaction in g.kind.outer_reactions(g):
+        if reaction.guide is None:
+            shown += _hinge(project, reaction, k)
+        else:
+            force, beside = _guided(project, str(g.inner), reaction, k)
+            shown.append(force)
+            couples += beside
+    return acting(shown, forces.force_size(k)), couples
+
+
+def shown_load(forces: Kinetostatics, load: Load, about: Step, k: int) -> Shown:
+    """A load as it is shown, its arm about a point."""
+    arm = forces.sum_about(about, load.vector) or load.vector
+    return Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k)), load.vector, arm)
+
+
+def _hinge(project: Project, reaction: OuterReaction, k: int) -> list[Shown]:
+    """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
+    study = project.study
+    name = pair_index(reaction.link, project.mechanism.owner(reaction.point))
+    at, step = complex(study.positions.points[reaction.point].at(k)), study.forces.reactions[f"F{name}"]
+    total = complex(step.at(k))
+    part = study.forces.tangential_part(reaction.link, reaction.point)
+    if part is None:
+        return [Shown(f"F̅_{{{name}}}", at, total, step, step)]
+    tangential = complex(part.at(k))
+    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, step),
+            Shown(f"F̅_{{{name}}}^τ", at, tangential, part, step)]
+
+
+def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tuple[Shown, list[Couple]]:
+    """Reaction of a guide at the point of its line, near ``foot``, where it balances the moments about the reaction's point.
+
+    A force and a couple where that point lies off the sheet, or where there is none.
+    """
+    pos, forces, m = project.study.positions, project.study.forces, project.mechanism
+    guide = str(reaction.guide)
+    name = pair_index(reaction.link, m.guides[guide].link)
+    step, turning = forces.reactions[f"F{name}"], forces.couples[f"F{name}"]
+    f, u, couple = complex(step.at(k)), complex(pos.guide_directions[guide].at(k)), float(np.real(turning.at(k)))
+    at, origin = (complex(pos.points[p].at(k)) for p in (foot, reaction.point))
+    at -= u * ((at - origin) * np.conj(u)).real
+    across = (np.conj(u) * f).imag
+    offset = couple / across if across else 0.0
+    acts = not is_zero(f, forces.force_size(k))
+    couples = []
+    if not is_zero(couple, forces.moment_size(k)) and (not acts or abs(offset) > FAR * _size(pos, k)):
+        couples.append(Couple(f"M_{{{name}}}", at, couple, turning))
+        offset = 0.0
+    return Shown(f"F̅_{{{name}}}", at + u * offset, f if acts else 0j, step, forces.arms[f"h{name}"]), couples
+
+
+def _size(pos: Positions, k: int) -> float:
+    """Largest distance of two points of the mechanism, m."""
+    members = [complex(step.at(k)) for step in pos.points.values()]
+    return max(abs(a - b) for a in members for b in members)
+
+
+def acting(shown: Iterable[Shown], force_size: float) -> list[Shown]:
+    """Those that are forces at all beside ``force_size``, N."""
+    return [s for s in shown if not is_zero(s.vector, force_size)]
+
+
+def scheme_points(project: Project, g: StructuralGroup, drawn: Iterable[linkage.Shape]) -> tuple[list[str], list[str]]:
+    """Hinges and blocks of a group's links, and their centres of mass that are none of these."""
+    hinges = list(dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n))
+    centres = (project.mechanism.links[link].centre for link in g.links)
+    return hinges, [str(c) for c in centres if c and c not in hinges]
+
+
+def loaded(points: Iterable[complex], shown: list[Shown], about: complex,
+           more: Iterable[tuple[complex, complex]] = ()) -> tuple[list[complex], list[complex]]:
+    """Points with forces and their arms about a point, and what reaches from each on paper, mm; ``more`` are further ones."""
+    rest = [*((force.foot(about), 0j) for force in shown if force.whole), *more]
+    z, d = _reach(points, shown)
+    return [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)]
+
+
+def scheme(project: Project, g: StructuralGroup, k: int) -> tuple[list[complex], list[complex]]:
+    """The same for the loaded scheme of a group."""
+    pos = project.study.positions
+    shown, _ = outer_forces(project, g, k)
+    hinges, centres = scheme_points(project, g, [shape for shape in linkage.shapes(pos) if shape.link in g.links])
+    points = [complex(pos.points[name].at(k)) for name in (*hinges, *dict.fromkeys(centres))]
+    return loaded([*points, *(force.at for force in shown)], shown, complex(pos.points[g.kind.about(g)].at(k)))
+
+
+def on_crank(project: Project, k: int) -> list[Shown]:
+    """Forces on the initial link, that of the frame the last."""
+    forces, c = project.study.forces, project.mechanism.crank
+    centre = project.study.positions.points[c.pivot]
+    from_frame = pair_index(c.link, project.mechanism.frame)
+    step = forces.reactions[f"F{from_frame}"]
+    shown = [shown_load(forces, load, centre, k) for load in forces.loads[c.link]]
+    return acting([*shown, Shown(f"F̅_{{{from_frame}}}", complex(centre.at(k)), complex(step.at(k)), step, step)],
+                  forces.force_size(k))
+
+
+def crank_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[complex], list[complex]]:
+    """Points of the initial link's scheme and what reaches from them, the arrows of rotation with their signs among it."""
+    c, driver, pos = project.mechanism.crank, project.driver, project.study.positions
+    pivot, ends = complex(pos.points[c.pivot].at(k)), [complex(pos.points[name].at(k)) for name in linkage.crank_pins(pos)]
+    wheel = [] if driver is None else [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
+    turning = (18.0 if driver is not None else 32.0) * clear(pivot, ends, shown)
+    return loaded([pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
+
+
+def on_lever(project: Project, k: int) -> list[Shown]:
+    """Forces hung on Zhukovsky's lever."""
+    lv = project.study.lever
+    return acting((Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k)), h.force, h.arm) for h in lv.hung),
+                  project.study.forces.force_size(k))
+
+
+def lever_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[complex], list[complex]]:
+    """Points of the lever with the forces on it, and what reaches from them."""
+    lv = project.study.lever
+    points = [complex(step.at(k)) for step in lv.points.values()]
+    # The velocity plan itself, turned: also what no force hangs on.
+    turned = [1j * complex(step.at(k)) for seg in lv.velocities.plan.segments for step in (seg.tail, seg.head)]
+    return loaded([0j, *points], shown, 0j, [*((force.at, 0j) for force in shown), *((z, 0j) for z in turned)])
+
+
+def couples_of(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
+    """Place in the list of each couple on a link that is not zero, and the couple."""
+    k, forces = project.force_index, project.study.forces
+    for n, step in enumerate(forces.link_couples.get(link, ())):
+        value = float(np.real(step.at(k)))
+        if not is_zero(value, forces.moment_size(k)):
+            yield n, Couple(symbol(step.symbol or step.name).replace(BAR, ""), 0j, value, step)
+
+
+def arrows(shown: Iterable[Shown]) -> list[tuple[Shown, complex]]:
+    """Arrow of each force in mm; forces along one ray from one point get different lengths."""
+    forces = sorted(shown, key=lambda s: abs(s.vector))
+    size = max((abs(a.at - b.at) for a in forces for b in forces), default=0.0)
+    found: list[tuple[Shown, complex]] = []
+    for s in forces:
+        length = SHORT + (LONG - SHORT) * (abs(s.vector) / abs(forces[-1].vector)) ** 0.5
+        for other, arrow in found:
+            if abs(other.at - s.at) <= 0.01 * size and abs(s.along - other.along) < 0.2 and length < abs(arrow) + 9.0:
+                length = abs(arrow) + 9.0
+        found.append((s, length * s.along))
+    return found
+
+
+def _reach(points: Iterable[complex], shown: Iterable[Shown]) -> tuple[list[complex], list[complex]]:
+    """Points and what sticks out of them on paper: arrows with their labels, symbols of pairs."""
+    z, d = [], []
+    for s, arrow in arrows(shown):
+        z.append(s.at)
+        d.append(arrow * (1 + 7.0 / abs(arrow)))
+    for p in points:
+        z += [p, p, p, p]
+        d += [11.0 + 0j, -11.0 + 0j, 8.0j, -11.0j]
+    return z, d
+
+
+SCHEME, CRANK, LEVER = (3.0, 5.0, 3.0, 19.0), (3.0, 3.0, 3.0, 19.0), (2.0, 2.0, 2.0, 19.0)
+"""Room round loaded schemes, at the left, below, right and above (title and scale factor), mm."""
+AROUND = (12.0, 19.0, 12.0, 24.0)
+"""Room round a force polygon at its left, below (equation and values), right and above (title and scale factor), mm."""
+
+
+def acting_sides(fp: ForcePlan, k: int, force_size: float) -> list[tuple[str, Step, Step, bool]]:
+    """Sides of a force polygon that are forces at all beside ``force_size``, N."""
+    return [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), force_size)]
+
+
+def terms(sides: Iterable[tuple[str, Step, Step, bool]]) -> list[str]:
+    """Terms of the vector equation of a force plan."""
+    return [f"{sign}({tail.name}–{head.name})" for sign, tail, head, _ in sides]
+
+
+def polygon(fp: ForcePlan, k: int) -> tuple[dict[str, complex], Box]:
+    """Vertices of a force polygon and the rectangle round them, N."""
+    points = {n: complex(step.at(k)) for n, step in fp.plan.steps.items() if step.rule.gives == "point"}
+    return points, extent([np.array(list(points.values()))])
+
+
+def clear(pivot: complex, pins: Iterable[complex], shown: Iterable[Shown]) -> complex:
+    """Direction from the crank's pivot into the widest angle between its arms, base, forces and their arms."""
+    lines = [force.vector if force.at == pivot else force.foot(pivot) - pivot for force in shown]
+    return linkage.widest_gap([*(z - pivot for z in pins), -1j, *lines], 6)
