@@ -134,6 +134,11 @@ def tell_n(one: str, many: str, n: int) -> str:
     return _catalogue(_reader.get()).ngettext(one, many, n)
 
 
-def decimal_sign() -> str:
-    """What stands before the decimals on the paper."""
-    return "." if _paper.get() == "en" else ","
+def every(text: str) -> tuple[str, ...]:
+    """The text in all languages: what somebody may have written who has another one than the reader."""
+    return tuple(dict.fromkeys(_catalogue(language).gettext(text) for language in LANGUAGES))
+
+
+def decimal_sign(language: str = "") -> str:
+    """What stands before the decimals in a language; on the paper if none is told."""
+    return "." if (language or _paper.get()) == "en" else ","
