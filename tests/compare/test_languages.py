@@ -221,7 +221,7 @@ def test_what_is_read_beside_is_told_in_the_same_language(language, message, tmp
 ])  # fmt: skip
 def test_plural_forms(templates, count, ru, uk, tmp_path):
     lines = templates["ru"].splitlines()
-    rows = [k for k, line in enumerate(lines) if line.startswith("results/")][:count]
+    rows = [k for k, line in enumerate(lines) if line.startswith("cam-profile/")][:count]
     for k in rows:
         lines[k] += "5"
     path = tmp_path / "m.csv"

@@ -113,7 +113,7 @@ def _row(j: Judged) -> tuple[str, ...]:
 def _with_unit(j: Judged) -> str:
     """The measured number; one that no sheet has in the notation of computers."""
     x = j.line.value
-    written = told(rounded(x, 5)) if x == 0 or 1e-7 < abs(x) < 1e9 else plain(x, 3)
+    written = told(rounded(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else plain(x, 3))
     return f"{written} {said_unit(j.entry.unit)}" if j.entry.unit else written
 
 

@@ -20,6 +20,7 @@ _LATIN: Mapping[str, str] = {
     "Дж": "J", "град": "deg", "кН": "kN",
 }
 """Russian and Ukrainian units."""
+_CYRILLIC = re.compile("|".join(sorted(_LATIN, key=len, reverse=True)))
 
 
 def said(unit: str) -> str:
@@ -30,7 +31,7 @@ def said(unit: str) -> str:
 def latin(unit: str) -> str:
     """One spelling of a unit in any language: Latin letters, no spaces, dots and brackets."""
     bare = re.sub(r"[\s·⋅*^()?.]+", "", unit).replace("²", "2").replace("³", "3")
-    bare = re.sub(r"[а-яА-Я]+", lambda word: _LATIN.get(word[0], word[0]), bare)
+    bare = _CYRILLIC.sub(lambda name: _LATIN[name[0]], bare)
     return "rev/min" if bare == "rpm" else bare
 
 
