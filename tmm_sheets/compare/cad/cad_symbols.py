@@ -48,6 +48,16 @@ def arrows(state: Comparison) -> None:
             _check_head(state, n, head, finding, ours)
 
 
+def heads_of_dimensions(state: Comparison) -> None:
+    """Claim the arrow heads of dimensions that are not compared, where these would stand: they are no extra ink."""
+    for n, e in enumerate(state.elements):
+        finding = state.found.get(n)
+        if e.role == "dimension" and finding is not None and finding.verdict is None and len(state.areas):
+            for head in e.fills:
+                off = np.abs(state.areas - complex(head.mean()))
+                state.used_areas.update(np.flatnonzero(off < 2.0).tolist())
+
+
 def _check_head(state: Comparison, n: int, head: Points, finding: CadFinding, ours: Points) -> None:
     """Check one head; ``ours`` are the middles of all heads there should be."""
     tip = _tip(state, n, head, finding)

@@ -55,6 +55,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     misplaced.incomplete(state)
     cad_symbols.filled(state)
     cad_symbols.arrows(state)
+    cad_symbols.heads_of_dimensions(state)
     _leading_elsewhere(state)
     say(tell("looking for what is extra"))
     extras = cad_extras.extra(state)
