@@ -115,6 +115,8 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
         if key not in found.scales:
             continue
         mu = found.scales[key].mu
+        letters = {s.head.name: re.sub(r"[\u0305{}]", "", s.symbol) for s in of.plan.segments
+                   if s.head.rule is accelerations.CORIOLIS}  # its index is a letter of the language
         for k in positions:
             label = study.labels[k]
             vectors = [(re.sub(r"[\u0305{}]", "", s.symbol), s.tail, s.head) for s in of.plan.segments]
@@ -122,7 +124,8 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
             for name, tail, head in vectors:
                 drawn = length(of.plan, found.scales, k, tail, head, name)
                 terms = tuple((s, i, g * mu) for s, i, g in drawn.terms)
-                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, name, unit, "result", drawn.value * mu,
+                called = letters.get(head.name, name)
+                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, called, unit, "result", drawn.value * mu,
                                      terms, key, mu))
                 found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float, key)
             for link, step in turning.items():
