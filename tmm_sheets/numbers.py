@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from math import degrees, floor, isfinite, log10
 from typing import Any
 
-from tmm_sheets.words import decimal_sign
+from tmm_sheets.words import decimal_sign, reader
 
 NOISE = 1e-9
 """Share of the size of its kind below which a number is zero."""
@@ -51,10 +51,15 @@ def number(x: float, digits: int = 4, kind: float = 0.0) -> str:
 
     ``kind`` is the size of its kind, in the same unit: what is nothing beside it is written 0.
     """
+    return written(rounded(x, digits, kind))
+
+
+def rounded(x: float, digits: int = 4, kind: float = 0.0) -> str:
+    """The same with the signs of a computer's number, for :func:`told`."""
     if is_zero(x, kind):
         return "0"
     text = f"{x:.{max(digits - 1 - floor(log10(abs(x))), 0)}f}"
-    return written(text.rstrip("0").rstrip(".") if "." in text else text)
+    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def fixed(x: float, decimals: int = 2) -> str:
@@ -82,6 +87,11 @@ def plain(x: float, digits: int = 6, kind: float = 0.0) -> str:
     return f"{0.0 if is_zero(x, kind) else x:.{digits}g}"
 
 
-def written(text: str) -> str:
-    """A computer's number as it is written on paper: true minus, decimal comma where the language has one."""
-    return text.replace(".", decimal_sign()).replace("-", "−")
+def written(text: str, language: str = "") -> str:
+    """A computer's number as a language writes it, that of the paper if none is told: true minus, decimal comma or point."""
+    return text.replace(".", decimal_sign(language)).replace("-", "−")
+
+
+def told(text: str) -> str:
+    """A computer's number as the reader of messages and reports writes it."""
+    return written(text, reader())

@@ -157,6 +157,11 @@ def both(said: Sequence[str]) -> str:
     return tell("{several} and {last}").format(several=", ".join(said[:-1]), last=said[-1]) if said[1:] else "".join(said)
 
 
-def decimal_sign() -> str:
-    """What stands before the decimals on the paper."""
-    return "." if _paper.get() == "en" else ","
+def every(text: str) -> tuple[str, ...]:
+    """The text in all languages: what somebody may have written who has another one than the reader."""
+    return tuple(dict.fromkeys(_catalogue(language).gettext(text) for language in LANGUAGES))
+
+
+def decimal_sign(language: str = "") -> str:
+    """What stands before the decimals in a language; on the paper if none is told."""
+    return "." if (language or _paper.get()) == "en" else ","

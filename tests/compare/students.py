@@ -213,7 +213,7 @@ def turning(found: Measurables, rng: np.random.Generator) -> Plant | None:
     """An angular velocity computed wrong by 20 to 50 %, at a position where something was drawn with it."""
     plans = {plan.name: plan for plan, _ in found.plans}
     labels = {e.label for e in found.entries.values() if e.plan == "accelerations"}
-    speeds = [e for e in found.entries.values() if e.unit == "рад/с" and e.quantity in plans["velocities"]]
+    speeds = [e for e in found.entries.values() if e.unit == "rad/s" and e.quantity in plans["velocities"]]
     fastest = max((e.value for e in speeds), default=0.0)
     e = _one_of([e for e in speeds if e.label in labels and e.quantity != "ω1" and e.value > 0.1 * fastest], rng)
     return Plant("velocities", e.label, e.quantity, times=rng.uniform(1.2, 1.5)) if e else None
@@ -243,7 +243,7 @@ def ordinate(found: Measurables, rng: np.random.Generator) -> Plant | None:
 
 def wheel(found: Measurables, rng: np.random.Generator) -> Plant | None:
     """A result of the flywheel computed wrong by 20 to 50 %, and gone on with."""
-    e = _one_of([e for e in found.entries.values() if e.title == "Маховик" and e.kind == "result" and e.terms], rng)
+    e = _one_of([e for e in found.entries.values() if e.title == "Flywheel" and e.kind == "result" and e.terms], rng)
     return Plant(e.plan, "", e.quantity, times=rng.uniform(1.2, 1.5), entry=e.id) if e else None
 
 

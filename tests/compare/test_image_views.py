@@ -134,6 +134,15 @@ def test_lines_side_by_side_are_not_taken_for_one_another():
         assert abs(off) < 0.6
 
 
+def test_long_vectors_side_by_side_do_not_grow():
+    """Three vectors of 200 mm 1 mm apart, the outer ones 0.025 mm off, a tenth of the pencil: off by less than the tolerance."""
+    along = np.arange(-100.0, 100.1, 2.0)
+    p = np.concatenate([along + 1j * y for y in (-1.0, 0.0, 1.0)])
+    off = np.repeat((-0.025, 0.0, 0.025), len(along))
+    step = placing._step(p, np.full(len(p), 1j), off, np.ones(len(p), bool), 0.2, free=True)
+    assert np.abs(step(p) - p).max() < 0.5
+
+
 def test_symbols_and_lettering_keep_their_size_in_another_scale():
     where = Placing(1.5 * np.exp(0.1j), 20 - 10j)
     ours = {kind: next(e for e in known() if e.view.name == PLAN and e.kind == kind) for kind in ("text", "circle", "line")}

@@ -194,16 +194,16 @@ def cam(tmp_path_factory):
 
 def rows(path):
     lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if not line.startswith(('#', '"#'))]
-    return list(csv.DictReader(lines, delimiter=";"))
+    return list(csv.DictReader(lines))
 
 
 def test_template_has_no_answers(cam):
     """Nothing but scale factors stands in the column to be filled in."""
     table = rows(cam)
     assert len(table) > 60
-    assert all(bool(r["измерено"]) == r["обозначение"].startswith("mu/") for r in table)
-    assert all(r["единица"] or r["план"] == "" for r in table)
-    assert len({r["обозначение"] for r in table}) == len(table)
+    assert all(bool(r["measured"]) == r["id"].startswith("mu/") for r in table)
+    assert all(r["unit"] or r["plan"] == "" for r in table)
+    assert len({r["id"] for r in table}) == len(table)
 
 
 def test_a_filled_file_is_not_overwritten(cam, capsys):
@@ -216,12 +216,12 @@ def test_a_filled_file_is_not_overwritten(cam, capsys):
 def test_measured(cam, tmp_path, capsys):
     """Table, summary, notes and JSON."""
     path, target = tmp_path / "m.csv", tmp_path / "m.json"
-    path.write_text("id,измерено\nresults/r0,100\nresults/rho_min,5 cm\n".replace("100", "99999"), encoding="utf-8")
+    path.write_text("id\tизмерено\nresults/r0\t99999\nresults/rho_min\t5 cm\n", encoding="utf-8")
     assert run(["compare", "lugansk/cam_flat", "--measured", str(path), "--json", str(target)]) == 0
     out = capsys.readouterr()
     assert re.search(r"^! +r0 .*red, START", out.out, re.MULTILINE)
     assert "2 numbers: " in out.out
-    assert "columns separated by commas" in out.err
+    assert "columns separated by tabs" in out.err
     tree = json.loads(target.read_text(encoding="utf-8"))
     assert {n["id"] for n in tree["numbers"]} == {"results/r0", "results/rho_min"}
     assert tree["summary"]["red"] >= 1

@@ -2,14 +2,15 @@
 
 import pytest
 
+from tests.compare.languages import to_reader
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.compare.measured.measured_file import read, template
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput
 
 HEAD = "обозначение;план;положение;величина;шаги;единица;измерено"
-UNITS = {"velocities/1/pb": "мм", "velocities/2/pb": "мм", "velocities/2/pb3": "мм", "positions/2/angle-AB": "°",
-         "results/2/V_B": "м/с", "results/2/omega3": "рад/с", "results/F21": "Н", "results/1'/h50": "м"}
+UNITS = {"velocities/1/pb": "mm", "velocities/2/pb": "mm", "velocities/2/pb3": "mm", "positions/2/angle-AB": "°",
+         "results/2/V_B": "m/s", "results/2/omega3": "rad/s", "results/F21": "N", "results/1'/h50": "m"}
 
 
 @pytest.fixture
@@ -51,7 +52,8 @@ def values(result):
 
 def test_template_is_read_back(tmp_path, found):
     """Byte order mark, semicolons, decimal commas, no exact values; empty it is refused, filled in it is read without a word."""
-    data = template("press", found)
+    with to_reader("ru"):
+        data = template("press", found)
     assert data.startswith(b"\xef\xbb\xbf# ")
     text = data.decode("utf-8-sig")
     assert "mu/velocities;масштабные коэффициенты;;μ_V;;(м/с)/мм;0,02" in text
@@ -100,7 +102,7 @@ def test_units_of_the_column(filled, name, unit, value, expected):
 
 def test_mended_and_said(filled):
     """Points, other separators, code pages, a missing heading, look-alike letters."""
-    assert [note.partition(":")[2] for note in filled(row("velocities/2/pb", "4.65 cm")).notes] == ["2: 4.65 cm taken as 46.5 мм"]
+    assert [note.partition(":")[2] for note in filled(row("velocities/2/pb", "4.65 cm")).notes] == ["2: 4.65 cm taken as 46.5 mm"]
     tabs = filled(row("velocities/2/pb", "46,5").replace(";", "\t"), head=HEAD.replace(";", "\t"))
     assert values(tabs) == {"velocities/2/pb": 46.5}
     assert any("tabs" in note for note in tabs.notes)
@@ -143,15 +145,15 @@ def test_problems_name_line_and_column(filled):
         (3, "обозначение"), (4, "измерено"), (5, "измерено"), (6, "измерено"), (7, "измерено")]
     assert "did you mean velocities/2/pb" in found[0].hint
     assert "expected a number" in found[1].message
-    assert "expected м/с, not мм" in found[2].message
+    assert "expected m/s, not мм" in found[2].message
     assert "expected one number" in found[4].message
     assert "a sheet can have" in problems(filled, row("velocities/2/pb", "1e300"))[0].message
     assert all(p.file.endswith("measured.csv") for p in found)
 
 
 @pytest.mark.parametrize(("head", "text"), [
-    ("обозначение;план;величина", 'the column "измерено" is missing'),
-    ("план;измерено", 'the column "обозначение" is missing'),
+    ("обозначение;план;величина", 'the column "measured" is missing'),
+    ("план;измерено", 'the column "id" is missing'),
     ("обозначение;измеренно", 'did you mean "измеренно"'),
     ("просто слова", "no separator"),
 ])

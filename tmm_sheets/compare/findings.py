@@ -8,6 +8,8 @@ from typing import Any, TypeVar
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.report import Verdict
+from tmm_sheets.numbers import told
+from tmm_sheets.words import marked, tell
 
 SHOWN = 60
 """Most rows of a table in the terminal; the JSON has all."""
@@ -43,33 +45,76 @@ def worst(findings: Iterable[Found]) -> list[Found]:
     return sorted(bad, key=lambda f: (f.verdict != "red", -f.share, f.element.number))
 
 
+_KINDS = {
+    "line": marked("line"), "arc": marked("arc"), "circle": marked("circle"), "curve": marked("curve"), "hatch": marked("hatching"),
+    "fill": marked("filled area"), "dot": marked("dot"), "arrow": marked("arrow"),
+}
+
+
 def called(e: Element) -> str:
     """An element in a table: what it is and what it is called."""
     if e.kind == "text":
-        return "text"
+        return tell("text")
     dot, arrow = e.kind == "circle" and e.fills, e.kind == "line" and e.arrow
-    what = "dot" if dot else "arrow" if arrow else "hatching" if e.kind == "hatch" else e.kind
-    return f"{what} {e.name}".strip()
+    return f"{tell(_KINDS['dot' if dot else 'arrow' if arrow else e.kind])} {e.name}".strip()
+
+
+_WAYS = {
+    (0, 1): marked("{by} mm too far up"), (0, -1): marked("{by} mm too far down"),
+    (1, 0): marked("{by} mm too far right"), (-1, 0): marked("{by} mm too far left"),
+    (1, 1): marked("{by} mm too far up and right"), (-1, 1): marked("{by} mm too far up and left"),
+    (1, -1): marked("{by} mm too far down and right"), (-1, -1): marked("{by} mm too far down and left"),
+}
+"""What a shift is said to be, by its signs to the right and upwards."""
 
 
 def shifted(by: complex) -> str:
     """A shift, mm, in words; a component of less than a quarter is left out."""
-    ways = ((by.imag, "up", "down"), (by.real, "right", "left"))
-    return f"{_mm(by)} too far " + " and ".join(one if x > 0 else other for x, one, other in ways if abs(x) > 0.25 * abs(by))
+    right, up = (0 if abs(x) <= 0.25 * abs(by) else 1 if x > 0 else -1 for x in (by.real, by.imag))
+    return tell(_WAYS[right, up]).format(by=millimetres(by))
 
 
 def turned(by: float) -> str:
     """A turn, degrees counter-clockwise, in words."""
-    return f"turned by {abs(by):.2f}° {'counter-clockwise' if by > 0 else 'clockwise'}"
+    said = tell("turned by {by}° counter-clockwise") if by > 0 else tell("turned by {by}° clockwise")
+    return said.format(by=told(f"{abs(by):.2f}"))
 
 
-def excess(by: float, more: str = "large", less: str = "small") -> str:
-    """An excess, mm, in words."""
-    return f"{_mm(by)} too {more if by > 0 else less}"
+def too_large(by: float) -> str:
+    """An excess of a size, mm, in words."""
+    return (tell("{by} mm too large") if by > 0 else tell("{by} mm too small")).format(by=millimetres(by))
 
 
-def _mm(by: complex) -> str:
-    return f"{abs(by):.{1 if abs(by) >= 1 else 2}f} mm"
+def too_long(by: float) -> str:
+    """An excess of a length, mm, in words."""
+    return (tell("{by} mm too long") if by > 0 else tell("{by} mm too short")).format(by=millimetres(by))
+
+
+def of_radius(by: float, wanted: float) -> str:
+    """An excess of a radius that should be ``wanted``, mm, in words."""
+    said = (tell("radius {by} mm too large ({found} for {wanted})") if by > 0 else
+            tell("radius {by} mm too small ({found} for {wanted})"))
+    return said.format(by=millimetres(by), found=told(f"{wanted + by:.1f}"), wanted=told(f"{wanted:.1f}"))
+
+
+def missing_part(size: float) -> str:
+    """That so much of a line, mm, is not there."""
+    return tell("{size} mm of it missing").format(size=told(f"{size:.1f}"))
+
+
+def farthest(by: float, at: complex) -> str:
+    """How far a line is off at most, mm, and where on the sheet."""
+    return tell("up to {by} mm off at {place}").format(by=told(f"{by:.2f}"), place=place(at))
+
+
+def place(at: complex) -> str:
+    """A place on the sheet, mm."""
+    return told(f"({at.real:.0f}, {at.imag:.0f})")
+
+
+def millimetres(by: complex) -> str:
+    """The size of a deviation, mm, as it is written."""
+    return told(f"{abs(by):.{1 if abs(by) >= 1 else 2}f}")
 
 
 def origin(e: Element) -> dict[str, Any]:
@@ -83,5 +128,5 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     widths = [max(len(row[k]) for row in (head, *shown)) for k in range(len(head))]
     out = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (head, *shown)]
     if len(rows) > SHOWN:
-        out.append(f"... and {len(rows) - SHOWN} more; --json has all")
+        out.append(tell("... and {n} more; --json has all").format(n=len(rows) - SHOWN))
     return out

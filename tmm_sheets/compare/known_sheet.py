@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets.compare.elements import Element, elements
 from tmm_sheets.errors import BadInput
 from tmm_sheets.sheets.sheet import Composed, composed
+from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -41,6 +42,7 @@ def sheet_numbers(project: Project, asked: int | None) -> range:
     if asked is None:
         return range(1, count + 1)
     if not 1 <= asked <= count:
-        raise BadInput(f"--sheet {asked}: {project.variant.project.name} has {count} sheet{'s' * (count > 1)}",
-                       f"--sheet 1 to --sheet {count}" if count > 1 else "give --sheet 1, or leave it out")
+        said = tell_n("--sheet {asked}: {project} has {n} sheet", "--sheet {asked}: {project} has {n} sheets", count)
+        hint = tell("--sheet 1 to --sheet {n}") if count > 1 else tell("give --sheet 1, or leave it out")
+        raise BadInput(said.format(asked=asked, project=project.variant.project.name, n=count), hint.format(n=count))
     return range(asked, asked + 1)

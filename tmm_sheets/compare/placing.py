@@ -76,13 +76,15 @@ def moved(e: Element, by: Placing) -> Element:
     """An element where a placing, without mirror, has it; symbols, arrow heads and lettering keep their size.
 
     A symbol of a view in another scale (the block of a slider, a support) becomes a hatching: it is drawn as large as ever, but
-    which of its points stays in place is up to whoever draws it, so it is not measured.
+    which of its points stays in place is up to whoever draws it, so it is not measured. A dimension is not either, as it may stand
+    anywhere, but it grows with what it tells the size of.
     """
     size, angle = by.scale, float(np.angle(by.turn))
     if by.scaled and (e.kind == "text" or (e.kind == "circle" and e.radius <= HINGE)):
         by, size = by.unscaled(complex(e.points.mean()) if e.kind == "text" else e.centre), 1.0
     elif by.scaled and symbol(e):
-        by, size = by.unscaled(e.middle), 1.0
+        if e.role != "dimension":
+            by, size = by.unscaled(e.middle), 1.0
         e = replace(e, kind="hatch", pieces=e.pieces or (e.points,))
     return replace(
         e, points=by(e.points), centre=complex(by(e.centre)), radius=e.radius * size, start=e.start + angle, end=e.end + angle,

@@ -7,14 +7,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from tmm_sheets.words import marked, tell
+
 Verdict = Literal["green", "amber", "red"]
 """Within the tolerance of a pencil; within twice that; beyond."""
+_COLOURS: Mapping[Verdict, str] = {"green": marked("green"), "amber": marked("amber"), "red": marked("red")}
 
 
 def verdict(deviation: float, tolerance: float) -> Verdict:
     """Judge a deviation against the error a careful draughtsman may make there, in the same unit."""
     share = abs(deviation) / tolerance
     return "green" if share <= 1 else "amber" if share <= 2 else "red"
+
+
+def said_verdict(verdict: Verdict | None) -> str:
+    """A verdict in the reader's words; nothing for none."""
+    return tell(_COLOURS[verdict]) if verdict is not None else ""
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from tmm_sheets import texts
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.words import tell, tell_n
 
 
 @dataclass(frozen=True)
@@ -49,8 +50,8 @@ class ViewPlace:
         turn = (at[1] - at[0]) / (self.ours[1] - self.ours[0]) if len(at) == 2 else 1 + 0j
         if self.mu is not None:
             if self.view.mu is None:
-                raise BadInput(f'view "{self.view.name}": our sheet gives it no scale factor of its own to compare mu with',
-                               "leave mu out and give two points")
+                said = tell('view "{view}": our sheet gives it no scale factor of its own to compare mu with')
+                raise BadInput(said.format(view=self.view.name), tell("leave mu out and give two points"))
             turn *= self.view.mu / self.mu / abs(turn)
         return Placing(turn, at[0] - turn * self.ours[0])
 
@@ -66,18 +67,19 @@ def read(path: Path, views: Sequence[ElementView]) -> tuple[ViewPlace, ...]:
     try:
         data = tomllib.loads(texts.cleaned(texts.decoded(path.read_bytes()).text))
     except OSError as e:
-        raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path))) from None
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path))) from None
     except (tomllib.TOMLDecodeError, texts.NotText) as e:
-        raise BadInput(Problem(str(e), str(path), hint="it is a TOML file with a [[view]] table for each view")) from None
+        raise BadInput(Problem(str(e), str(path), hint=tell("it is a TOML file with a [[view]] table for each view"))) from None
     tables = data.get("view")
     if not isinstance(tables, list) or not tables or not all(isinstance(t, dict) for t in tables):
-        raise BadInput(Problem("has no [[view]] table", str(path), field="view",
-                               hint="each view needs name, ours = [[x, y], [x, y]], theirs = [[x, y], [x, y]]"))
+        raise BadInput(Problem(tell("has no [[view]] table"), str(path), field="view",
+                               hint=tell("each view needs name, ours = [[x, y], [x, y]], theirs = [[x, y], [x, y]]")))
     problems: list[Problem] = []
     found = [_Table(t, f"view[{k}]", str(path), problems).place(views) for k, t in enumerate(tables, 1)]
     places = tuple(p for p in found if p is not None)
     count = Counter(p.view.name for p in places)
-    problems += [Problem(f'view "{name}" is given twice', str(path)) for name in sorted(count) if count[name] > 1]
+    twice = tell('view "{view}" is given twice')
+    problems += [Problem(twice.format(view=name), str(path)) for name in sorted(count) if count[name] > 1]
     if problems:
         raise BadInput(problems)
     return places
@@ -96,12 +98,12 @@ class _Table:
         """The place it gives, None where something is wrong."""
         before = len(self.problems)
         for key in sorted(self.values.keys() - {"name", "ours", "theirs", "mu"}):
-            self._wrong(key, "is not known here", "a view has name, ours, theirs and mu")
+            self._wrong(key, tell("is not known here"), tell("a view has name, ours, theirs and mu"))
         view = self._view(views)
         ours, theirs = _points(self.values.get("ours")), _points(self.values.get("theirs"))
         for key, points in (("ours", ours), ("theirs", theirs)):
             if points is None:
-                self._wrong(key, "expected points [[x, y], [x, y]]")
+                self._wrong(key, tell("expected points [[x, y], [x, y]]"))
         mu = self._mu()
         if ours is not None and theirs is not None:
             self._check_points(ours, theirs, mu)
@@ -117,8 +119,8 @@ class _Table:
         if view is None:
             names = [v.name for v in views]
             near = get_close_matches(str(self.values.get("name")), names, n=3, cutoff=0.4)
-            self._wrong("name", f'the sheet has no view "{self.values.get("name")}"',
-                        "it has " + ", ".join(f'"{n}"' for n in near or names))
+            self._wrong("name", tell('the sheet has no view "{view}"').format(view=self.values.get("name")),
+                        tell("it has {views}").format(views=", ".join(f'"{n}"' for n in near or names)))
         return view
 
     def _mu(self) -> float | None:
@@ -126,17 +128,20 @@ class _Table:
         if mu is None:
             return None
         if not isinstance(mu, int | float) or isinstance(mu, bool) or not 0 < mu < inf:
-            self._wrong("mu", f"expected a positive number, not {mu!r}")
+            self._wrong("mu", tell("expected a positive number, not {value}").format(value=repr(mu)))
             return None
         return float(mu)
 
     def _check_points(self, ours: Sequence[complex], theirs: Sequence[complex], mu: float | None) -> None:
         if len(ours) != len(theirs):
-            self._wrong("theirs", f"{len(theirs)} points, ours has {len(ours)}")
+            said = tell_n("{n} point, ours has {ours}", "{n} points, ours has {ours}", len(theirs))
+            self._wrong("theirs", said.format(n=len(theirs), ours=len(ours)))
         elif len(ours) != 2 and not (len(ours) == 1 and mu is not None):
-            self._wrong("ours", f"{len(ours)} points given, expected two (or one with mu)")
+            said = tell_n("{n} point given, expected two (or one with mu)", "{n} points given, expected two (or one with mu)",
+                          len(ours))
+            self._wrong("ours", said.format(n=len(ours)))
         elif len(ours) == 2 and (abs(ours[1] - ours[0]) < 1 or theirs[0] == theirs[1]):
-            self._wrong("ours", "the two points are one", "take points far apart")
+            self._wrong("ours", tell("the two points are one"), tell("take points far apart"))
 
 
 def _named(name: Any, views: Sequence[ElementView]) -> ElementView | None:

@@ -18,7 +18,8 @@ from tmm_sheets.compare.findings import worst
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.numbers import decimal
+from tmm_sheets.numbers import decimal, told
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -27,7 +28,7 @@ LOST = 0.2
 """Share of a sheet's lines that must be found; a drawing with fewer is not of this sheet."""
 DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}
 """Scales of GOST 2.302 by mm of the sheet per mm drawn."""
-UNIT_NAMES = {1000.0: "metres", 25.4: "inches", 10.0: "centimetres", 1.0: "millimetres"}
+UNIT_NAMES = {1000.0: marked("metres"), 25.4: marked("inches"), 10.0: marked("centimetres"), 1.0: marked("millimetres")}
 """Units by mm."""
 
 
@@ -38,7 +39,7 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     Parameters and errors are those of :func:`examine`.
     """
     found = examine(project, sheet, path, views, pencil, say)
-    say("overlay")
+    say(tell("overlay"))
     outcome, laid = found.outcome, found.laid
     gone = cad_report.gone(outcome)
     shown = [f for f in worst(outcome.findings) if f.element.view not in gone]
@@ -70,19 +71,19 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
         If the file cannot be read as DXF, there is no such sheet, or the drawing is of none of them.
     """
     numbers = sheet_numbers(project, sheet)
-    say(f"reading {path.name}")
+    say(tell("reading {file}").format(file=path.name))
     ink = cad_file.read(path)
     known = []
     for n in numbers:
-        say(f"sheet {n}")
+        say(tell("sheet {n}").format(n=n))
         known.append(known_sheet(project, n))
     if views is not None and len(numbers) > 1:
-        raise BadInput("--views needs --sheet N: its views are those of one sheet")
-    say("laying it over the sheet")
+        raise BadInput(tell("--views needs --sheet N: its views are those of one sheet"))
+    say(tell("laying it over the sheet"))
     laid = lay(known, ink)
     given = view_places.read(views, views_of(laid.known.sheet)) if views is not None else ()
     space = laid.space.placed(laid.placing)
-    say("placing the views")
+    say(tell("placing the views"))
     places = layout.find(laid.known.elements, space.lines, space.writings, [(p, laid.placing) for p in given], say)
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
     if not _of_this_sheet(outcome):
@@ -94,18 +95,18 @@ def _how(laid: Laid, unit: float | None) -> Iterator[str]:
     """What was done to a drawing to lay it over the sheet."""
     degrees = laid.placing.degrees
     if laid.placing.mirrored:
-        yield "the drawing is mirrored; it was turned over for the comparison"
+        yield tell("the drawing is mirrored; it was turned over for the comparison")
     quarter = round(degrees / 90) % 4
     if quarter:
-        yield f"the drawing lies turned by {(-90 * quarter) % 360} degrees; it was turned back"
+        yield tell("the drawing lies turned by {degrees}°; it was turned back").format(degrees=(-90 * quarter) % 360)
     rest = (degrees + 45) % 90 - 45
     if abs(rest) > 0.02:
-        yield f"the drawing is askew by {decimal(-rest)} degrees; it was straightened"
+        yield tell("the drawing is askew by {degrees}°; it was straightened").format(degrees=told(decimal(-rest)))
     declared = 1.0 if laid.space.paper else unit  # paper space is in millimetres
     if abs(laid.placing.scale / (declared or 1.0) - 1) > 1e-3:
         yield _scaled(laid.placing.scale, declared)
     if laid.space.paper:
-        yield f"compared is {laid.space.name}, with what its viewports show"
+        yield tell("compared is {space}, with what its viewports show").format(space=laid.space.name)
 
 
 def _scaled(scale: float, declared: float | None) -> str:
@@ -114,11 +115,14 @@ def _scaled(scale: float, declared: float | None) -> str:
     drawn_at = next((said for r, said in DRAWN_AT.items() if abs(scale / unit / r - 1) < 1e-3), None)
     units = next((name for mm, name in UNIT_NAMES.items() if abs(scale / mm - 1) < 1e-3), None)
     if units is not None and (drawn_at is None or declared != 1.0):
-        declares = UNIT_NAMES.get(unit, f"units of {unit:g} mm") if declared else "no units"
-        return f"the drawing is in {units} though the file declares {declares}; it was scaled accordingly"
+        declares = (tell("no units") if not declared else tell(UNIT_NAMES[unit]) if unit in UNIT_NAMES else
+                    tell("units of {unit} mm").format(unit=told(f"{unit:g}")))
+        said = tell("the drawing is in {units} though the file declares {declares}; it was scaled accordingly")
+        return said.format(units=tell(units), declares=declares)
     if drawn_at is not None:
-        return f"the drawing is at scale {drawn_at}; it was scaled to 1:1"
-    return f"one unit of the drawing is {scale:.6g} mm of the sheet; it was scaled accordingly"
+        return tell("the drawing is at scale {scale}; it was scaled to 1:1").format(scale=told(drawn_at))
+    said = tell("one unit of the drawing is {size} mm of the sheet; it was scaled accordingly")
+    return said.format(size=told(f"{scale:.6g}"))
 
 
 def _judged_lines(outcome: CadOutcome) -> list[CadFinding]:
@@ -141,13 +145,15 @@ def _of_this_sheet(outcome: CadOutcome) -> bool:
 
 def _refuse(project: Project, laid: Laid, outcome: CadOutcome, ink: CadInk, asked: int | None, path: Path) -> None:
     """Say that the drawing is not of this sheet, and of which it may be."""
-    hint = "is it the right project and variant? a drawing with a layout of its own can be told with --views where its views are"
+    hint = tell("is it the right project and variant? a drawing with a layout of its own can be told with --views where its "
+                "views are")
     count = len(project.variant.sheets)
     if asked is not None and count > 1:
         other, fit = fitting([known_sheet(project, n) for n in range(1, count + 1) if n != asked], ink)
         if fit > max(laid.share + 0.15, 0.4):
-            hint = f"it looks like sheet {other}: use --sheet {other}, or leave --sheet out"
-    what = f"sheet {laid.known.n}" if asked is not None or count == 1 else f"any of the {count} sheets"
+            hint = tell("it looks like sheet {n}: use --sheet {n}, or leave --sheet out").format(n=other)
+    said = tell("only {share} % of the lines of sheet {n} are in this drawing") if asked is not None or count == 1 else tell(
+        "only {share} % of the lines of any of the {count} sheets are in this drawing")
     hint = "; ".join((*ink.notes, hint))
-    share = _green(_judged_lines(outcome))
-    raise BadInput(Problem(f"only {share:.0%} of the lines of {what} are in this drawing", str(path), hint=hint))
+    share = round(100 * _green(_judged_lines(outcome)))
+    raise BadInput(Problem(said.format(share=share, n=laid.known.n, count=count), str(path), hint=hint))

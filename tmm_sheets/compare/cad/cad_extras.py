@@ -14,9 +14,12 @@ from tmm_sheets.compare.cad.cad_findings import ExtraStroke
 from tmm_sheets.compare.cad.cad_ink import normal
 from tmm_sheets.compare.cad.line_fit import lines, shapes
 from tmm_sheets.compare.cad.overlaps import Left, left, pieces
+from tmm_sheets.compare.findings import farthest, place
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
+from tmm_sheets.numbers import told
+from tmm_sheets.words import tell
 
 SHORT = 12.0
 """Strokes shorter than this may belong to lettering, mm."""
@@ -195,11 +198,11 @@ def _too_long(state: Comparison, n: int, size: float, chain: list[Left]) -> None
     r = chain[0]
     piece = state.theirs.b[r.piece] - state.theirs.a[r.piece]
     at = complex(state.theirs.a[r.piece] + (r.a + r.b) / 2 * piece / abs(piece))
-    what = f"{size:.1f} mm too long at ({at.real:.0f}, {at.imag:.0f})"
+    what = tell("{by} mm too long at {place}").format(by=told(f"{size:.1f}"), place=place(at))
     loop = _loop(state, n, size, at, chain) if e.kind != "line" else None
     if loop is not None:
         size, at = loop
-        what = f"up to {size:.2f} mm off at ({at.real:.0f}, {at.imag:.0f})"
+        what = farthest(size, at)
     deviation = max(old.deviation, size)
     judged = verdict(deviation, state.tolerance)
     if judged == "red" and e.style in LOOSE_STYLES and old.verdict != "red":

@@ -26,6 +26,7 @@ from tmm_sheets.compare.cad.overlaps import Interval
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -53,8 +54,8 @@ BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
 CURVES = {"ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
 """Entities flattened by themselves: as paths they would become Bezier curves, off by 0.03 % of the radius."""
 PRIMITIVE = {"LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"}
-AS_DXF = "save the drawing as DXF (AutoCAD: DXFOUT or Save as; KOMPAS: Сохранить как, DXF)"
-SMALLER = "save only the sheet itself: without other drawings, unused blocks purged, arrays and dense hatchings removed"
+AS_DXF = marked("save the drawing as DXF (AutoCAD: DXFOUT or Save as; KOMPAS: Save as, DXF)")
+SMALLER = marked("save only the sheet itself: without other drawings, unused blocks purged, arrays and dense hatchings removed")
 BINARY = b"AutoCAD Binary DXF"
 """How a binary DXF file begins."""
 OTHERS = {b"%PDF": "PDF", b"\x89PNG": "PNG", b"\xff\xd8\xff": "JPEG", b"PK\x03\x04": "ZIP", b"KF\x1a": "KOMPAS"}
@@ -75,7 +76,7 @@ def read(path: Path) -> CadInk:
     document, notes = _open(path)
     unit = UNITS.get(int(document.header.get("$INSUNITS", 0)))
     reader = _DxfReader(document, path)
-    model = reader.space("model space", document.modelspace())
+    model = reader.space(tell("model space"), document.modelspace())
     spaces = [model]
     for layout in document.layouts:
         if not layout.is_modelspace:
@@ -86,8 +87,8 @@ def read(path: Path) -> CadInk:
     good = tuple(s for s in spaces if not s.empty)
     if not good:
         said = "; ".join(notes)
-        raise BadInput(Problem(f"nothing is drawn in it{f' ({said})' if said else ''}", str(path),
-                               hint="save the drawing with its layers on and thawed"))
+        what = tell("nothing is drawn in it ({notes})") if said else tell("nothing is drawn in it")
+        raise BadInput(Problem(what.format(notes=said), str(path), hint=tell("save the drawing with its layers on and thawed")))
     return CadInk(good, unit, tuple(notes))
 
 
@@ -110,14 +111,16 @@ def _open(path: Path) -> tuple[Document, list[str]]:
             whole = _completed(path.read_bytes())
             document, auditor = recover.readfile(path) if whole is None else recover.read(BytesIO(whole))
         except (*damage, RecursionError) as e:
-            raise BadInput(Problem(f"this is not a DXF file or it is damaged beyond repair ({e or type(e).__name__})", str(path),
-                                   hint=AS_DXF)) from None
+            said = tell("this is not a DXF file or it is damaged beyond repair ({why})").format(why=str(e) or type(e).__name__)
+            raise BadInput(Problem(said, str(path), hint=tell(AS_DXF))) from None
     # Nearly every program writes something this library mends; only what was lost is worth a word.
     if whole is not None:
-        return document, ["the file ends in the middle: what there is of it was compared"]
+        return document, [tell("the file ends in the middle: what there is of it was compared")]
     lost = len(auditor.errors)
-    told = f"the file is damaged: {lost} error{'s' * (lost > 1)} could not be mended, part of it may be lost"
-    return document, [told if lost else "the file was damaged and was mended"]
+    if not lost:
+        return document, [tell("the file was damaged and was mended")]
+    return document, [tell_n("the file is damaged: {n} error could not be mended, part of it may be lost",
+                             "the file is damaged: {n} errors could not be mended, part of it may be lost", lost).format(n=lost)]
 
 
 def _head(path: Path) -> bytes:
@@ -125,25 +128,28 @@ def _head(path: Path) -> bytes:
     try:
         size = path.stat().st_size
         if size > LARGEST:
-            raise CannotBuild(f"{path}: {size / 1e6:.0f} MB are more than can be handled ({LARGEST / 1e6:.0f})", SMALLER)
+            said = tell("{file}: {size} MB are more than can be handled ({most})")
+            raise CannotBuild(said.format(file=path, size=round(size / 1e6), most=round(LARGEST / 1e6)), tell(SMALLER))
         with path.open("rb") as file:
             return file.read(1 << 16)
     except OSError as e:
-        raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path))) from None
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path))) from None
 
 
 def _refuse_others(path: Path, head: bytes) -> None:
     """Say of a file that is no DXF what it is."""
     if not head:
-        raise BadInput(Problem("the file is empty", str(path), hint=AS_DXF))
+        raise BadInput(Problem(tell("the file is empty"), str(path), hint=tell(AS_DXF)))
     if head.startswith(b"AC10"):
-        raise BadInput(Problem("this is a DWG file, only DXF can be read", str(path), hint=AS_DXF))
+        raise BadInput(Problem(tell("this is a DWG file, only DXF can be read"), str(path), hint=tell(AS_DXF)))
     for mark, name in OTHERS.items():
         if head.startswith(mark):
-            also = "; photographs and scans are compared with --image" if name in ("PDF", "PNG", "JPEG") else ""
-            raise BadInput(Problem(f"this is a {name} file, not DXF", str(path), hint=AS_DXF + also))
+            hints = [tell(AS_DXF)]
+            if name in ("PDF", "PNG", "JPEG"):
+                hints.append(tell("photographs and scans are compared with --image"))
+            raise BadInput(Problem(tell("this is a {kind} file, not DXF").format(kind=name), str(path), hint="; ".join(hints)))
     if b"SECTION" not in head:
-        raise BadInput(Problem("this is not a DXF file", str(path), hint=AS_DXF))
+        raise BadInput(Problem(tell("this is not a DXF file"), str(path), hint=tell(AS_DXF)))
 
 
 @contextmanager
@@ -232,13 +238,13 @@ class _DxfReader:
         found = []
         if self.unread:
             what = ", ".join(f"{n} {kind}" for kind, n in sorted(self.unread.items()))
-            found.append(f"left out, not lines or text: {what}")
+            found.append(tell("left out, not lines or text: {what}").format(what=what))
         if self.nowhere:
-            found.append(f"left out, with coordinates that are no numbers: {self.nowhere} entities")
+            found.append(tell("left out, with coordinates that are no numbers: {n} entities").format(n=self.nowhere))
         if self.skipped:
-            found.append(f"left out, on layers that are off or frozen: {self.skipped} entities")
+            found.append(tell("left out, on layers that are off or frozen: {n} entities").format(n=self.skipped))
         if self.raised:
-            found.append("some of the drawing has heights (z): it is seen from above")
+            found.append(tell("some of the drawing has heights (z): it is seen from above"))
         return found
 
     def count(self, parts: int = 0, points: int = 0) -> None:
@@ -246,8 +252,10 @@ class _DxfReader:
         self.parts += parts
         self.points += points
         if self.parts > MOST_PARTS or self.points > MOST_POINTS:
-            what = f"{MOST_PARTS} entities" if self.parts > MOST_PARTS else f"{MOST_POINTS} points"
-            raise CannotBuild(f"{self.file}: with its blocks, arrays and curves taken apart it has more than {what}", SMALLER)
+            said = (tell("{file}: with its blocks, arrays and curves taken apart it has more than {parts} entities")
+                    if self.parts > MOST_PARTS else
+                    tell("{file}: with its blocks, arrays and curves taken apart it has more than {points} points"))
+            raise CannotBuild(said.format(file=self.file, parts=MOST_PARTS, points=MOST_POINTS), tell(SMALLER))
 
     def space(self, name: str, layout: Any) -> DrawingSpace:
         """Everything drawn in a layout."""
@@ -256,7 +264,7 @@ class _DxfReader:
         try:
             self.count(parts=self._weight(layout))
         except RecursionError:
-            raise CannotBuild(f"{self.file}: its blocks are nested too deeply", SMALLER) from None
+            raise CannotBuild(tell("{file}: its blocks are nested too deeply").format(file=self.file), tell(SMALLER)) from None
         parts = list(self._parts(layout))
         fine = self._fine(e for _, e, _ in parts)
         attributes = {e.dxf.text for _, e, _ in parts if e.dxftype() == "ATTRIB"}
@@ -310,7 +318,8 @@ class _DxfReader:
 
     def paper(self, layout: Any, model: DrawingSpace) -> DrawingSpace:
         """A sheet of paper space together with what its viewports show of the model."""
-        space = replace(self.space(f'layout "{words(layout.name, self.document.encoding)}"', layout), paper=True)
+        name = tell('layout "{name}"').format(name=words(layout.name, self.document.encoding))
+        space = replace(self.space(name, layout), paper=True)
         for port in layout.query("VIEWPORT"):
             if port.dxf.get("id", 1) == 1 or not port.dxf.get("status", 1) or port.dxf.layer.lower() in self.hidden:
                 continue

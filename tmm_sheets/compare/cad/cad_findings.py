@@ -10,6 +10,14 @@ from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.findings import Finding
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
+from tmm_sheets.words import marked, tell
+
+STYLES = {
+    "main": marked("main lines"), "curve": marked("curves (main lines)"), "vector": marked("vectors (main lines)"),
+    "thin": marked("thin lines"), "construction": marked("construction lines"), "centre": marked("centre lines"),
+    "hidden": marked("hidden lines"), "axis": marked("coordinate axes"), "twodot": marked("dash-two-dots lines"),
+}
+"""Styles of lines whose type and width are compared, as they are told."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,20 +65,25 @@ class LookFinding:
     Attributes
     ----------
     view : their view, None if they are in several
-    lines : the kinds of lines they are on the sheet
+    styles : those of their lines on the sheet
     what : how they are drawn
     elements, entities : their numbers and those of the entities of the drawing
     places : their lines, mm, the longest first
     """
 
     view: ElementView | None
-    lines: str
+    styles: tuple[str, ...]
     what: str
     elements: tuple[int, ...]
     entities: tuple[int, ...]
     places: tuple[Points, ...]
 
     verdict: ClassVar[Verdict] = "amber"
+
+    @property
+    def lines(self) -> str:
+        """Their kinds of lines in words."""
+        return ", ".join(tell(STYLES[style]) for style in self.styles)
 
 
 @dataclass(frozen=True)

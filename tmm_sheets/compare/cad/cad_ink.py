@@ -13,6 +13,7 @@ from tmm_sheets.compare.cad.cad_patterns import Pattern
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
+from tmm_sheets.words import tell
 
 
 class Entity(NamedTuple):
@@ -44,7 +45,7 @@ class Entity(NamedTuple):
         return max(self.weight or 0.0, self.broad) if self.broad else self.weight
 
     def __str__(self) -> str:
-        return f'{self.kind} {self.handle} on layer "{self.layer}"'
+        return tell('{kind} {handle} on layer "{layer}"').format(kind=self.kind, handle=self.handle, layer=self.layer)
 
 
 class DrawnStroke(NamedTuple):

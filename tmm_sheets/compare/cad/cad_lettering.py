@@ -15,6 +15,7 @@ from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
 from tmm_sheets.compare.elements import grown
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
+from tmm_sheets.words import tell
 
 
 def lettering(state: Comparison) -> None:
@@ -30,8 +31,8 @@ def lettering(state: Comparison) -> None:
             shift = complex(np.mean([state.space.writings[i].at for i in answer.writings])) - wanted[k].middle
             state.found[n] = state.finding(n, 0.0, "", shift=shift, entities=entities)
         else:
-            state.found[n] = state.finding(n, 4 * state.tolerance, f'reads "{answer.says}" instead of "{state.elements[n].text}"',
-                                          entities=entities)
+            said = tell('reads "{found}" instead of "{wanted}"').format(found=answer.says, wanted=state.elements[n].text)
+            state.found[n] = state.finding(n, 4 * state.tolerance, said, entities=entities)
         _bars(state, n)
         state.lettered.append(grown(wanted[k].points, 0.8))
     _strokes_of_letters(state, [n for k, n in enumerate(numbers) if k not in got])
@@ -68,7 +69,8 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[int]) -> None:
             state.found[n] = _other_letters(state, n)
             state.lettered.append(grown(want.points, 0.8))
         else:
-            state.found[n] = state.finding(n, 2 * state.tolerance, f'text "{state.elements[n].text}" missing', missing=True)
+            said = tell('text "{text}" missing').format(text=state.elements[n].text)
+            state.found[n] = state.finding(n, 2 * state.tolerance, said, missing=True)
 
 
 def _letters(state: Comparison, n: int) -> Iterator[Points]:
@@ -96,7 +98,7 @@ def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:
 
 
 def _other_letters(state: Comparison, n: int) -> CadFinding:
-    return state.finding(n, 4 * state.tolerance, f'the letters are not those of "{state.elements[n].text}"')
+    return state.finding(n, 4 * state.tolerance, tell('the letters are not those of "{text}"').format(text=state.elements[n].text))
 
 
 def _covered(near: Overlaps, ours: KnownLines, count: int) -> npt.NDArray[np.float64]:

@@ -14,13 +14,15 @@ from typing import NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_comparison import Comparison
-from tmm_sheets.compare.cad.cad_findings import LookFinding
+from tmm_sheets.compare.cad.cad_findings import STYLES, LookFinding
 from tmm_sheets.compare.cad.cad_ink import Entity
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes, of_strokes
 from tmm_sheets.compare.cad.overlaps import Interval, gaps, overlaps, union
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.drawing.dashes import cut
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.numbers import told
+from tmm_sheets.words import marked, tell
 
 BROAD = {"main", "curve", "vector"}
 """Styles of main lines. Axes are not judged: by GOST 2.319 those of diagrams may be main lines as well."""
@@ -29,7 +31,7 @@ NOT_THIN, NOT_MAIN = 2 / 3, 0.6
 """Shares of s above which a thin line is too wide, and below which a main line is too thin."""
 TOLD_APART = 1.3
 """How many times as wide as thin lines main lines must be to be told apart from them."""
-DASHES: Mapping[str, tuple[float, float]] = MappingProxyType({"dashed": (2.0, 8.0), "dash-dot": (5.0, 30.0),
+DASHES: Mapping[Pattern, tuple[float, float]] = MappingProxyType({"dashed": (2.0, 8.0), "dash-dot": (5.0, 30.0),
                                                               "dash-two-dots": (5.0, 30.0)})
 """Lengths of the long strokes by GOST 2.303, mm."""
 OUTSIDE = 1.6
@@ -42,9 +44,18 @@ LEAST = 5.0
 """Least ink, mm, that proves an element wrong; less for short elements."""
 FEW = 3
 """From so many lines on that are drawn continuous, with not one in its pattern, they are told in one row."""
-CALLED = {"main": "main lines", "curve": "curves (main lines)", "vector": "vectors (main lines)", "thin": "thin lines",
-          "construction": "construction lines", "centre": "centre lines", "hidden": "hidden lines", "axis": "coordinate axes",
-          "twodot": "dash-two-dots lines"}  # fmt: skip
+PATTERNS: Mapping[Pattern, str] = MappingProxyType({
+    "continuous": marked("continuous"), "dashed": marked("dashed"), "dash-dot": marked("dash-dot"),
+    "dash-two-dots": marked("dash-two-dots"), "other": marked("other"),
+})
+WRONG_DASHES: Mapping[Pattern, str] = MappingProxyType({
+    "dashed": marked("dashed lines have strokes of {size} mm: GOST 2.303 asks for {least} to {most} mm (scale of line types, "
+                     "LTSCALE)"),
+    "dash-dot": marked(
+        "dash-dot lines have strokes of {size} mm: GOST 2.303 asks for {least} to {most} mm (scale of line types, LTSCALE)"),
+    "dash-two-dots": marked(
+        "dash-two-dots lines have strokes of {size} mm: GOST 2.303 asks for {least} to {most} mm (scale of line types, LTSCALE)"),
+})
 
 
 class InkStretch(NamedTuple):
@@ -63,7 +74,8 @@ def looks(state: Comparison) -> tuple[tuple[LookFinding, ...], tuple[str, ...]]:
     """Elements drawn with a wrong type or width of line, by view, and notes on the drawing as a whole."""
     ink = _along(state)
     widths, notes = _wrong_widths(state, ink)
-    found = sorted((*widths, *_wrong_types(state, ink)), key=lambda x: (-1 if x.view is None else x.view.n, x.lines))
+    found = sorted((*widths, *_wrong_types(state, ink)),
+                   key=lambda x: (-1 if x.view is None else x.view.n, [STYLES[style] for style in x.styles]))
     return tuple(found), (*notes, *_wrong_dashes(state, ink))
 
 
@@ -80,24 +92,26 @@ def _wrong_types(state: Comparison, ink: ByElement) -> list[LookFinding]:
         found, wanted = _pattern(state, n, rows), _pattern_of(style)
         right += patterned and found == wanted
         if found is not None and found != wanted:
-            wrong.setdefault((state.elements[n].view, style, f"drawn {found} instead of {wanted}"), []).append(n)
+            what = tell("drawn {found} instead of {wanted}").format(found=tell(PATTERNS[found]), wanted=tell(PATTERNS[wanted]))
+            wrong.setdefault((state.elements[n].view, style, what), []).append(n)
             plain += [n] if found == "continuous" else []
     if not right and len(plain) >= FEW:
         wrong = {key: found for key, found in wrong.items() if not set(found) & set(plain)}
-        wrong[None, "", "drawn continuous, as everything in the drawing"] = plain
+        wrong[None, "", tell("drawn continuous, as everything in the drawing")] = plain
     return [_look(state, ink, view, style, what, found) for (view, style, what), found in wrong.items()]
 
 
 def _wrong_widths(state: Comparison, ink: ByElement) -> tuple[list[LookFinding], list[str]]:
     """A finding for each view and style; or a note that widths cannot be compared, or are all alike."""
     if all(state.space.entities[row.entity].width is None for rows in ink.values() for row in rows):
-        return [], ["no line has a width of its own: widths are not compared (those of plot styles are not in a DXF file)"]
+        return [], [tell("no line has a width of its own: widths are not compared (those of plot styles are not in a DXF file)")]
     s, t = _typical(state, ink, BROAD), _typical(state, ink, THIN)
     if s is None:
         return [], []
     if t is not None and s < TOLD_APART * t:
-        return [], [f"main lines ({s:.2g} mm) are not wider than thin ones ({t:.2g} mm): GOST 2.303 asks for s = 0.5 to 1.4 mm "
-                    "and s/3 to s/2"]
+        said = tell("main lines ({main} mm) are not wider than thin ones ({thin} mm): GOST 2.303 asks for s = {least} to {most} mm "
+                    "and s/3 to s/2")
+        return [], [said.format(main=told(f"{s:.2g}"), thin=told(f"{t:.2g}"), least=told("0.5"), most=told("1.4"))]
     widths: dict[tuple[ElementView, str], list[tuple[int, float]]] = {}
     for n, rows in ink.items():
         width = _wrong_width(state, n, rows, s)
@@ -117,7 +131,7 @@ def _along(state: Comparison) -> dict[int, list[InkStretch]]:
     found = {}
     for n, e in enumerate(state.elements):
         outcome = state.found[n]
-        if e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills) or e.style not in CALLED:
+        if e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills) or e.style not in STYLES:
             continue
         if outcome.missing or outcome.verdict is None or not state.paths[n]:
             continue
@@ -210,8 +224,7 @@ def _wrong_dashes(state: Comparison, ink: ByElement) -> Iterator[str]:
         sizes = [state.space.entities[k].dash for k in entities if state.space.entities[k].pattern == pattern]
         size = float(np.median(sizes)) if sizes else least
         if not least / OUTSIDE <= size <= most * OUTSIDE:
-            yield (f"{pattern} lines have strokes of {size:.3g} mm: GOST 2.303 asks for {least:g} to {most:g} mm (scale of line "
-                   "types, LTSCALE)")
+            yield tell(WRONG_DASHES[pattern]).format(size=told(f"{size:.3g}"), least=told(f"{least:g}"), most=told(f"{most:g}"))
 
 
 def _wide(e: Entity) -> float:
@@ -244,10 +257,11 @@ def _wrong_width(state: Comparison, n: int, rows: list[InkStretch], s: float) ->
 
 def _said(style: str, widths: list[float], s: float) -> str:
     low, high = min(widths), max(widths)
-    mm = f"{low:.2g}" if high - low < 0.005 else f"{low:.2g} to {high:.2g}"
+    mm = (tell("{low} to {high}") if high - low >= 0.005 else "{low}").format(low=told(f"{low:.2g}"), high=told(f"{high:.2g}"))
     if style in BROAD:
-        return f"drawn thin, {mm} mm, where main lines are {s:.2g} mm"
-    return f"drawn thick, {mm} mm, where {s / 3:.2g} to {s / 2:.2g} mm would be thin"
+        return tell("drawn thin, {width} mm, where main lines are {main} mm").format(width=mm, main=told(f"{s:.2g}"))
+    said = tell("drawn thick, {width} mm, where {least} to {most} mm would be thin")
+    return said.format(width=mm, least=told(f"{s / 3:.2g}"), most=told(f"{s / 2:.2g}"))
 
 
 def _look(state: Comparison, ink: ByElement, view: ElementView | None, style: str, what: str, found: list[int]) -> LookFinding:
@@ -255,8 +269,8 @@ def _look(state: Comparison, ink: ByElement, view: ElementView | None, style: st
     found = sorted(found, key=lambda n: -state.whole(n))
     styles = dict.fromkeys(state.elements[n].style for n in found) if not style else [style]
     entities = tuple(dict.fromkeys(row.entity for n in found for row in ink[n]))
-    return LookFinding(view, ", ".join(CALLED[x] for x in styles), what, tuple(state.elements[n].number for n in found), entities,
-                tuple(p for n in found for p in state.paths[n]))
+    return LookFinding(view, tuple(styles), what, tuple(state.elements[n].number for n in found), entities,
+                       tuple(p for n in found for p in state.paths[n]))
 
 
 # --- stretches --------------------------------------------------------------------------------------------------------

@@ -13,7 +13,10 @@ from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.laying import Laid
 from tmm_sheets.compare.cad.layout import Layout
 from tmm_sheets.compare.elements import ElementView
-from tmm_sheets.compare.findings import called, origin, table, worst
+from tmm_sheets.compare.findings import called, origin, place, table, worst
+from tmm_sheets.compare.report import said_verdict
+from tmm_sheets.numbers import told
+from tmm_sheets.words import marked, tell, tell_n
 
 MANY = 4
 """Most numbers of elements in a row on line types and widths."""
@@ -53,46 +56,67 @@ def gone(outcome: CadOutcome) -> set[ElementView]:
 def _found_by(entities: Sequence[Entity]) -> str:
     if not entities:
         return ""
-    more = f" and {len(entities) - 1} more" if len(entities) > 1 else ""
-    return f"{entities[0]}{more}"
+    said = tell("{entity} and {n} more") if len(entities) > 1 else "{entity}"
+    return said.format(entity=entities[0], n=len(entities) - 1)
 
 
 def text(name: str, path: Path, found: Examined, pencil: float) -> str:
     """The report for the terminal on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     laid, outcome = found.laid, found.outcome
     lost = gone(outcome)
-    which = f"{name}, sheet {laid.known.n}: {path.name} ({laid.space.name})"
-    out = [f"{which}, {len(outcome.findings)} elements, tolerance {pencil:g} mm", ""]
+    said = tell_n("{project}, sheet {sheet}: {file} ({space}), {n} element, tolerance {tolerance} mm",
+                  "{project}, sheet {sheet}: {file} ({space}), {n} elements, tolerance {tolerance} mm", len(outcome.findings))
+    out = [said.format(project=name, sheet=laid.known.n, file=path.name, space=laid.space.name, n=len(outcome.findings),
+                       tolerance=told(f"{pencil:g}")), ""]
     rows = _deviations(found, lost)
     if rows:
-        out += [*table(("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows), ""]
-    out += [f'missing altogether: view "{v.name}", {sum(f.element.view == v for f in outcome.findings)} elements'
-            for v in sorted(lost, key=lambda v: v.n)]
+        out += [*table(_said("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows), ""]
+    out += [_missing(v, sum(f.element.view == v for f in outcome.findings)) for v in sorted(lost, key=lambda v: v.n)]
     for title, head, rows in (
-        ("extra, on no element of the sheet:", ("no.", "what", "about, mm", "verdict", "in the drawing"), _extras(outcome)),
-        ("of another type or width of line:", ("no.", "view", "lines", "what", "verdict", "in the drawing"), _looks(found)),
+        (tell("extra, on no element of the sheet:"), ("no.", "what", "about, mm", "verdict", "in the drawing"), _extras(outcome)),
+        (tell("of another type or width of line:"), ("no.", "view", "lines", "what", "verdict", "in the drawing"), _looks(found)),
     ):
         if rows:
-            out += [title, *table(head, rows), ""]
+            out += [title, *table(_said(*head), rows), ""]
     return "\n".join([*out, _summary(outcome, lost)])
+
+
+_HEADS = (
+    marked("no."), marked("view"), marked("element"), marked("deviation"), marked("verdict"), marked("in the drawing"),
+    marked("what"), marked("about, mm"), marked("lines"),
+)
+"""What stands above the columns, for the catalogues."""
+
+
+def _said(*head: str) -> tuple[str, ...]:
+    return tuple(map(tell, head))
+
+
+def _missing(view: ElementView, size: int) -> str:
+    said = tell_n('missing altogether: view "{view}", {n} element', 'missing altogether: view "{view}", {n} elements', size)
+    return said.format(view=view.name, n=size)
 
 
 def _summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
     there = [f for f in outcome.findings if f.element.view not in lost]
     colours = Counter(f.verdict for f in there)
     most = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
-    skipped = f", {colours[None]} not compared" if colours[None] else ""
-    views = f"; {len(lost)} of {len({f.element.view for f in outcome.findings})} views missing" if lost else ""
-    unlike = len({n for look in outcome.looks for n in look.elements})
-    looks = f"; {unlike} of another type or width of line" if outcome.looks else ""
-    return (f"{colours['green']} green (up to {most:.2f} mm), {colours['amber']} amber, {colours['red']} red{skipped}; "
-            f"{len(outcome.extras)} extra{views}{looks}")
+    said = [tell("{green} green (up to {most} mm), {amber} amber, {red} red, {skipped} not compared") if colours[None] else
+            tell("{green} green (up to {most} mm), {amber} amber, {red} red"), tell("{extra} extra")]
+    if lost:
+        said.append(tell("{lost} of {views} views missing"))
+    if outcome.looks:
+        said.append(tell("{unlike} of another type or width of line"))
+    return "; ".join(said).format(
+        green=colours["green"], amber=colours["amber"], red=colours["red"], skipped=colours[None], most=told(f"{most:.2f}"),
+        extra=len(outcome.extras), lost=len(lost), views=len({f.element.view for f in outcome.findings}),
+        unlike=len({n for look in outcome.looks for n in look.elements}))
 
 
 def _deviations(found: Examined, lost: set[ElementView]) -> list[tuple[str, ...]]:
     """A row for every element that is not green, except those of missing views."""
     entities = found.laid.space.entities
-    return [(str(f.element.number), f.element.view.name, called(f.element), f.what, str(f.verdict),
+    return [(str(f.element.number), f.element.view.name, called(f.element), f.what, said_verdict(f.verdict),
              _found_by([entities[k] for k in f.entities])) for f in worst(found.outcome.findings) if f.element.view not in lost]
 
 
@@ -100,8 +124,10 @@ def _extras(outcome: CadOutcome) -> list[tuple[str, ...]]:
     """A row for everything extra."""
     rows: list[tuple[str, ...]] = []
     for k, x in enumerate(outcome.extras, 1):
-        what = f'text "{x.text}"' if x.text else f"{x.length:.1f} mm of line" + (f" in {x.count} entities" if x.count > 1 else "")
-        rows.append((f"+{k}", what, f"({x.at.real:.0f}, {x.at.imag:.0f})", str(x.verdict), str(x.entity)))
+        said = (tell('text "{text}"') if x.text else tell("{length} mm of line in {n} entities") if x.count > 1 else
+                tell("{length} mm of line"))
+        what = said.format(text=x.text, length=told(f"{x.length:.1f}"), n=x.count)
+        rows.append((f"+{k}", what, place(x.at), said_verdict(x.verdict), str(x.entity)))
     return rows
 
 
@@ -110,9 +136,11 @@ def _looks(found: Examined) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for k, look in enumerate(found.outcome.looks, 1):
         size, first = len(look.elements), ", ".join(map(str, look.elements[:MANY]))
-        which = f"{look.lines}, {size}: no. {first}, ..." if size > MANY else f"{look.lines}: no. {first}"
+        said = tell("{lines}, {n}: no. {numbers}, ...") if size > MANY else tell("{lines}: no. {numbers}")
+        which = said.format(lines=look.lines, n=size, numbers=first)
         where = _found_by([found.laid.space.entities[i] for i in look.entities])
-        rows.append((f"~{k}", look.view.name if look.view is not None else "all views", which, look.what, str(look.verdict), where))
+        view = look.view.name if look.view is not None else tell("all views")
+        rows.append((f"~{k}", view, which, look.what, said_verdict(look.verdict), where))
     return rows
 
 
@@ -149,8 +177,8 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
             "turn": _rounded(f.turn), "size": _rounded(f.size), "missing": f.missing, "what": f.what, "at": _point(f.at),
             "entities": [entity(laid.space.entities[k]) for k in f.entities],
         } for f in outcome.findings],
-        "extra": [{"number": k, "what": x.text or "line", "length": round(x.length, 3), "at": _point(x.at), "verdict": x.verdict,
-                   "count": x.count, "entity": entity(x.entity)} for k, x in enumerate(outcome.extras, 1)],
+        "extra": [{"number": k, "what": x.text or tell("line"), "length": round(x.length, 3), "at": _point(x.at),
+                   "verdict": x.verdict, "count": x.count, "entity": entity(x.entity)} for k, x in enumerate(outcome.extras, 1)],
         "looks": [{"number": k, "view": look.view.name if look.view is not None else None, "lines": look.lines, "what": look.what,
                    "verdict": look.verdict, "elements": list(look.elements),
                    "entities": [entity(laid.space.entities[i]) for i in look.entities]} for k, look in enumerate(outcome.looks, 1)],

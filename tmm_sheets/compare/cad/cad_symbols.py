@@ -15,6 +15,8 @@ from tmm_sheets.compare.cad.overlaps import overlaps
 from tmm_sheets.compare.findings import shifted
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
+from tmm_sheets.numbers import told
+from tmm_sheets.words import tell
 
 
 def filled(state: Comparison) -> None:
@@ -32,7 +34,7 @@ def filled(state: Comparison) -> None:
             state.found[n] = state.finding(n, counted, shifted(shift) if abs(shift) > state.tolerance else "", shift=shift,
                                           entities=(state.space.areas[k].entity,))
         else:
-            what = "the dot is missing" if e.kind == "circle" else "not filled"
+            what = tell("the dot is missing") if e.kind == "circle" else tell("not filled")
             state.found[n] = state.finding(n, 2 * state.tolerance, what, missing=True)
 
 
@@ -44,6 +46,16 @@ def arrows(state: Comparison) -> None:
         finding = state.found.get(n)
         if finding is not None and not finding.missing and finding.verdict is not None:
             _check_head(state, n, head, finding, ours)
+
+
+def heads_of_dimensions(state: Comparison) -> None:
+    """Claim the arrow heads of dimensions that are not compared, where these would stand: they are no extra ink."""
+    for n, e in enumerate(state.elements):
+        finding = state.found.get(n)
+        if e.role == "dimension" and finding is not None and finding.verdict is None and len(state.areas):
+            for head in e.fills:
+                off = np.abs(state.areas - complex(head.mean()))
+                state.used_areas.update(np.flatnonzero(off < 2.0).tolist())
 
 
 def _check_head(state: Comparison, n: int, head: Points, finding: CadFinding, ours: Points) -> None:
@@ -59,7 +71,7 @@ def _check_head(state: Comparison, n: int, head: Points, finding: CadFinding, ou
     elif finding.verdict == "green" and off > state.tolerance:
         # In hand drawings the line goes on under the head: only the head tells where it ends.
         state.found[n] = replace(finding, deviation=off, verdict=verdict(off, state.tolerance),
-                                 what=f"the tip is {off:.2f} mm off", at=tip, reach=5.0)
+                                 what=tell("the tip is {by} mm off").format(by=told(f"{off:.2f}")), at=tip, reach=5.0)
 
 
 def _tip(state: Comparison, n: int, head: Points, finding: CadFinding) -> complex:
@@ -82,9 +94,9 @@ def _without_head(state: Comparison, n: int, tip: complex, ours: Points) -> None
     strange = [int(k) for k in at_tail if np.abs(ours - state.areas[k]).min() > 0.7]
     if strange and e.kind == "line" and len(state.elements[n].fills) == 1:
         state.used_areas.update(strange)
-        what, deviation = "points the other way", e.length
+        what, deviation = tell("points the other way"), e.length
     else:
-        what, deviation = "no arrow head", 2 * state.tolerance
+        what, deviation = tell("no arrow head"), 2 * state.tolerance
     deviation = max(deviation, finding.deviation)
     said = ", ".join(x for x in (finding.what, what) if x)
     state.found[n] = replace(finding, verdict=verdict(deviation, state.tolerance), deviation=deviation, what=said)
@@ -134,7 +146,7 @@ def hatching(state: Comparison) -> None:
             if not own:
                 state.zones.append(box)
         else:
-            state.found[n] = state.finding(n, 2 * state.tolerance, "not hatched", missing=True)
+            state.found[n] = state.finding(n, 2 * state.tolerance, tell("not hatched"), missing=True)
 
 
 def _inside(z: Points, box: Points) -> npt.NDArray[np.bool_]:

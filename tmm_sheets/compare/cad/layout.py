@@ -15,7 +15,8 @@ from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.view_places import ViewPlace
 from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.numbers import decimal
+from tmm_sheets.numbers import decimal, told
+from tmm_sheets.words import tell
 
 MOST = 800
 """Most points of a view that are compared."""
@@ -107,10 +108,11 @@ class _ViewFinder:
             move = max(move, near.placing.inverse(), key=lambda m: self._inked(v, m))
         share = self._inked(v, move)
         if share < WRONG and len(self.points[v]) >= ENOUGH:
-            self.notes.append(f'"{v.name}" is not where --views says: {share:.0%} of its lines are there; it was looked for')
+            said = tell('"{view}" is not where --views says: {share} % of its lines are there; it was looked for')
+            self.notes.append(said.format(view=v.name, share=round(100 * share)))
         else:
             self.moves[v], self.share[v] = move, share
-            self.notes.append(f"{_where(v, move)}, as --views says")
+            self.notes.append(tell('"{view}" stands {place}, as --views says').format(view=v.name, place=_where(v, move)))
 
     def _place_near(self, v: ElementView) -> bool:
         """Place a view near its place or where its texts are; False if it must be sought elsewhere and is large enough for that."""
@@ -132,7 +134,7 @@ class _ViewFinder:
         if not sure or still or self._score(v, best) < self._score(v, Placing()) + 0.12:
             return False
         self.moves[v], self.share[v] = best, inked
-        self.notes.append(f"{_where(v, best)}; compared there")
+        self.notes.append(tell('"{view}" stands {place}; compared there').format(view=v.name, place=_where(v, best)))
         return True
 
     def _inked(self, v: ElementView, move: Placing) -> float:
@@ -175,7 +177,7 @@ class _ViewFinder:
         for v in sorted(lost, key=lambda v: -len(self.points[v])):
             if len(free.a) < 4:
                 return
-            self.say(f'looking for view "{v.name}"')
+            self.say(tell('looking for view "{view}"').format(view=v.name))
             found = search(self.points[v], free, [1 / r for r in SCALES], (0,), enough=0.95, tries=6)
             back = found.placing.inverse()
             scale = min(SCALES, key=lambda r: abs(back.scale / r - 1))
@@ -208,10 +210,11 @@ def _where(view: ElementView, move: Placing) -> str:
     """Where a view is, compared with our sheet, in words."""
     c = view.box.centre
     shift = complex(move(c)) - c
-    said = [f"{abs(part):.1f} mm {words[part < 0]}" for part, words in ((shift.real, ("to the right", "to the left")),
-                                                                      (shift.imag, ("higher", "lower"))) if abs(part) >= 0.05]
+    ways = ((shift.real, tell("{by} mm to the right"), tell("{by} mm to the left")),
+            (shift.imag, tell("{by} mm higher"), tell("{by} mm lower")))
+    said = [(less if part < 0 else more).format(by=told(f"{abs(part):.1f}")) for part, more, less in ways if abs(part) >= 0.05]
     if abs(move.scale - 1) > 1e-3:
-        said.append(f"{move.scale:.4g} times as large")
+        said.append(tell("{times} times as large").format(times=told(f"{move.scale:.4g}")))
     if abs(move.degrees) > 0.05:
-        said.append(f"turned {decimal(move.degrees, sign=True)}°")
-    return f'"{view.name}" stands {", ".join(said) or "in its place"}'
+        said.append(tell("turned {degrees}°").format(degrees=told(decimal(move.degrees, sign=True))))
+    return ", ".join(said) or tell("in its place")

@@ -25,6 +25,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.links import links
 from tmm_sheets.compare.placing import BESIDE, Placing, symbol
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.words import tell
 
 
 def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[ElementView, Placing], tolerance: float,
@@ -40,13 +41,13 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     say : told what is being done
     """
     state = Comparison(elements, space, moves, tolerance)
-    say("comparing lines")
+    say(tell("comparing lines"))
     _not_compared(state)
     _right(state)
-    say("comparing lettering")
+    say(tell("comparing lettering"))
     cad_lettering.lettering(state)
     cad_symbols.hatching(state)
-    say("looking for what was meant")
+    say(tell("looking for what was meant"))
     rest = left(state.theirs, state.claimed())
     misplaced.circles(state, rest)
     misplaced.straight(state, rest)
@@ -54,13 +55,14 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     misplaced.incomplete(state)
     cad_symbols.filled(state)
     cad_symbols.arrows(state)
+    cad_symbols.heads_of_dimensions(state)
     _leading_elsewhere(state)
-    say("looking for what is extra")
+    say(tell("looking for what is extra"))
     extras = cad_extras.extra(state)
     for n in range(len(state.elements)):
         if n not in state.found:
             state.found[n] = state.finding(n, 0.0, "")
-    say("comparing line types and widths")
+    say(tell("comparing line types and widths"))
     looks, notes = cad_looks.looks(state)
     return CadOutcome(tuple(state.found[n] for n in range(len(state.elements))), extras, looks, notes)
 
@@ -69,7 +71,7 @@ def _not_compared(state: Comparison) -> None:
     """In a view of another scale symbols keep their size: they are not compared."""
     for n, e in enumerate(state.elements):
         if e.view in state.moved and state.moved[e.view].scaled and symbol(e):
-            state.found[n] = CadFinding(e, None, 0.0, "a symbol in a view of another scale", e.middle, 5.0)
+            state.found[n] = CadFinding(e, None, 0.0, tell("a symbol in a view of another scale"), e.middle, 5.0)
             if e.role != "dimension":
                 state.zones.append(Box.around(e.points, BESIDE).corners)
 
@@ -79,7 +81,7 @@ def _leading_elsewhere(state: Comparison) -> None:
     leading = links(state.elements)
     for n, e in enumerate(state.elements):
         if e.number in leading and e.view in state.moved and state.found[n].missing:
-            state.found[n] = CadFinding(e, None, 0.0, "leads to another view, which stands elsewhere", e.middle, 5.0)
+            state.found[n] = CadFinding(e, None, 0.0, tell("leads to another view, which stands elsewhere"), e.middle, 5.0)
 
 
 def _right(state: Comparison) -> None:

@@ -11,10 +11,12 @@ import numpy.typing as npt
 
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, JOINT, LOOSE_STYLES, SIZE_OF_SYMBOL, Comparison
 from tmm_sheets.compare.cad.overlaps import Circle, Left, Numbers, OverlapRun, Overlaps, circle, gaps, overlaps, pieces, runs, union
-from tmm_sheets.compare.findings import excess, shifted, turned
+from tmm_sheets.compare.findings import farthest, missing_part, of_radius, place, shifted, too_long, turned
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.numbers import told
+from tmm_sheets.words import tell
 
 FARTHEST = 25.0
 """A line whose ends are farther off than this, mm, is another line."""
@@ -49,9 +51,9 @@ def _take_circle(state: Comparison, n: int, c: Circle) -> None:
     missing = (1 - c.part) * 2 * pi * c.radius if c.part < FULL else 0.0
     said = [shifted(shift)] if abs(shift) > state.tolerance else []
     if counted > state.tolerance:
-        said.append(f"radius {excess(size)} ({c.radius:.1f} for {e.radius:.1f})")
+        said.append(of_radius(size, e.radius))
     if missing > 0.5:
-        said.append(f"{missing:.1f} mm of it missing")
+        said.append(missing_part(missing))
     state.found[n] = state.finding(n, max(abs(shift) + counted, missing), ", ".join(said), shift=shift, size=size,
                                    entities=state.entities_of_strokes(c.strokes))
     state.claim([(j, 0.0, float(state.theirs.length[j])) for j in state.of_strokes(c.strokes)], n)
@@ -192,9 +194,9 @@ def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: O
     if abs(np.radians(turn)) * abs(q - p) / 2 > max(state.tolerance, 0.3 * across):
         said.append(turned(turn))
     if abs(size) > state.tolerance:
-        said.append(excess(size, "long", "short"))
+        said.append(too_long(size))
     elif abs((shift * np.conj(u)).real) > state.tolerance:
-        said.append(f"{abs((shift * np.conj(u)).real):.2f} mm along itself")
+        said.append(tell("{by} mm along itself").format(by=told(f"{abs((shift * np.conj(u)).real):.2f}")))
     state.found[n] = state.finding(n, deviation, ", ".join(said), shift=shift, turn=turn, size=size,
                                    entities=state.entities_of(rest[k].piece for k in run.parts))
     state.claim([(rest[k].piece, rest[k].a, rest[k].b) for k in run.parts], n)
@@ -235,9 +237,9 @@ def _take_curve(state: Comparison, n: int, near: Overlaps, base: Numbers, rest: 
     said = []
     if worst > state.tolerance:
         at = state.at(n, float(t[there][np.abs(off[there]).argmax()]))
-        said.append(f"up to {worst:.2f} mm off at ({at.real:.0f}, {at.imag:.0f})")
+        said.append(farthest(worst, at))
     if missing > 0:
-        said.append(f"{missing:.1f} mm of it missing")
+        said.append(missing_part(missing))
     kept = np.unique(using[there])
     stretches = [rest[near.theirs[k]] for k in kept]
     shift = _common_shift(state.units(n, t)[there], off[there])
@@ -274,15 +276,16 @@ def incomplete(state: Comparison) -> None:
         e, whole = state.elements[n], state.whole(n)
         if _missing(state, n) == np.inf:
             if not (e.kind == "circle" and e.radius <= HINGE and e.fills):  # dots are sought among the filled areas
-                state.found[n] = state.finding(n, whole, "missing", missing=True)
+                state.found[n] = state.finding(n, whole, tell("missing"), missing=True)
             continue
         a, b = max(gaps(state.inked[n], whole), key=lambda g: g[1] - g[0])
         at = state.at(n, (a + b) / 2)
-        where = "too short" if a == 0 or b == whole else "a gap"
+        said = tell("too short: {size} mm missing at {place}") if a == 0 or b == whole else tell(
+            "a gap: {size} mm missing at {place}")
         mine = state.in_place.only(state.in_place_of == n)
-        state.found[n] = state.finding(n, max(b - a, state.tolerance),
-                                       f"{where}: {b - a:.1f} mm missing at ({at.real:.0f}, {at.imag:.0f})", size=-(b - a),
-                                       entities=state.entities_of(mine.theirs), at=at)
+        what = said.format(size=told(f"{b - a:.1f}"), place=place(at))
+        state.found[n] = state.finding(n, max(b - a, state.tolerance), what, size=-(b - a), entities=state.entities_of(mine.theirs),
+                                       at=at)
         state.claims.append(mine)
 
 

@@ -8,7 +8,7 @@ with the numbers that are in order as witnesses. A number whose deviation explai
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from math import atan, degrees, hypot, isfinite, radians, tan
 from statistics import NormalDist
 from typing import Any
@@ -22,7 +22,8 @@ from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, fact
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.numbers import number
+from tmm_sheets.numbers import rounded, told
+from tmm_sheets.words import tell, tell_n
 
 CURVED = 0.05
 """Share of what a mistake explains that may be off: its displacement is not known better."""
@@ -79,7 +80,9 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
             origin = _origin(j, computed)
             j.follows = origin if origin is not j else None
         if j.verdict == "red" and not j.starts and j.follows is None:
-            j.remark = j.remark or f"one of {len(judged)} numbers may be off so far by chance"
+            said = tell_n("one of {n} number may be off so far by chance", "one of {n} numbers may be off so far by chance",
+                          len(judged))
+            j.remark = j.remark or said.format(n=len(judged))
     return judged
 
 
@@ -139,11 +142,11 @@ def _of_squares(e: Measurable, errors: Errors, reading: float, ratio: float) -> 
 def _remark(judged: Judged, measured: float, tolerance: float) -> str:
     """What is recognised at sight: a degenerate construction, a wrong sign, a slip of the pen."""
     if tolerance == float("inf"):
-        return "the construction degenerates here: no tolerance"
+        return tell("the construction degenerates here: no tolerance")
     if judged.verdict != "red":
         return ""
     if judged.entry.signed and abs(-measured - judged.exact) <= tolerance:
-        return "the sign is wrong"
+        return tell("the sign is wrong")
     return "" if judged.entry.kind == "angle" else _slip(measured, judged.exact, tolerance)
 
 
@@ -157,7 +160,7 @@ def _slip(measured: float, exact: float, tolerance: float) -> str:
     """Slips of the pen that are recognised at sight: a factor of two or ten, metres for millimetres."""
     for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01, 1000.0, 0.001):
         if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
-            return f"{factor:g} times the exact value"
+            return tell("{times} times the exact value").format(times=told(f"{factor:g}"))
     return ""
 
 
@@ -189,10 +192,16 @@ def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) 
             computed[id(j)] = needs
         elif abs(j.deviation) > ROUNDED * abs(j.exact) + j.line.half_digit:
             j.inconsistent = True
-            own = ", ".join(f"{n.entry.quantity} = {number(n.line.value, 5)}" for n in needs)
-            said = f"does not follow from your own {own}: that gives {number(expected, 4)}"
+            said = _own_gives(needs, expected)
             j.remark = f"{j.remark}; {said}" if j.remark else said
     return computed
+
+
+def _own_gives(own: Iterable[Judged], value: float) -> str:
+    """That a number does not follow from some of the student's own, which give another value."""
+    numbers = ", ".join(f"{j.entry.quantity} = {told(rounded(j.line.value, 5))}" for j in own)
+    said = tell("does not follow from your own {numbers}: that gives {value}")
+    return said.format(numbers=numbers, value=told(rounded(value, 4)))
 
 
 # --- scale factors ------------------------------------------------------------------------------------------------------------
@@ -221,7 +230,8 @@ def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list
     if times <= 0 or abs(times - 1) < 0.01 or len(explained) < needed:
         return []
     first = off[0]
-    first.starts, first.scale = True, f"all lengths of this plan are {times:.3g} times the exact ones: another scale factor?"
+    said = tell("all lengths of this plan are {times} times the exact ones: another scale factor?")
+    first.starts, first.scale = True, said.format(times=told(f"{times:.3g}"))
     for j in explained:
         if j is not first and j.verdict != "green":
             j.follows = first
@@ -428,8 +438,7 @@ def _against_own(own: OwnNumbers, found: Measurables, beyond: float) -> None:
         of, part, influence = (own.reasons(j) or [(j, 0.0, 0.0)])[0]
         if influence > PLOTTED * j.tolerance and of.verdict == "green" and abs(expected - part) < SHARE * j.tolerance:
             j.off_own = j.starts = True
-            j.remark = (f"does not follow from your own {of.entry.quantity} = {number(of.line.value, 5)}: "
-                        f"that gives {number(j.exact + expected, 4)}")
+            j.remark = _own_gives([of], j.exact + expected)
 
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:

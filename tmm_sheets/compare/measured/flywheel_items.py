@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.measurable import RESULTS, Measurables, measured_step, scalar, size
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.methods.integration import CHORD
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.project import Project
 
-TITLE = "Маховик"
+TITLE = marked("Flywheel")
 MOMENT, WORK, ENERGY, INERTIA = "moment", "work", "energy", "inertia"
 """Keys of the scale factors: diagrams of one quantity have one."""
 NEAR = 1e-3
@@ -60,7 +62,8 @@ def collect(project: Project, found: Measurables) -> None:
         for k, label in enumerate(plan.labels[:-1]):
             step = plan["ω1"]
             entry_id = f"{RESULTS}/{label}/omega_I"
-            found.add(size("Угловая скорость начального звена", entry_id, label, "ω_I", "рад/с", k, step, by=step))
+            title = tell("Angular velocity of the driving link")
+            found.add(size(title, entry_id, label, "ω_I", units.ANGULAR_SPEED, k, step, by=step))
 
 
 def _between_positions(f: Flywheel, found: Measurables) -> None:
@@ -75,12 +78,13 @@ def _between_positions(f: Flywheel, found: Measurables) -> None:
 
 def _results(f: Flywheel, found: Measurables) -> None:
     moment = f.driving_plan["M"]
-    scalar(found, TITLE, "M_const", float(moment.value), "Н·м", [(moment, 0, 1 + 0j)], scale=MOMENT, signed=False)
-    steps = {"J_I": (f.first_plan["J_I"], "кг·м²"), "J_flywheel": (f.first_plan["J_м"], "кг·м²")}
+    scalar(found, tell(TITLE), "M_const", float(moment.value), units.MOMENT, [(moment, 0, 1 + 0j)], scale=MOMENT, signed=False)
+    steps = {"J_I": (f.first_plan["J_I"], units.INERTIA), "J_flywheel": (f.first_plan["J_м"], units.INERTIA)}
     if f.wheel is not None:
         sizes = f.wheel.plan
-        steps |= {name: (sizes[name], "кг" if name == "m" else "м") for name in "DBHm" if name in sizes}
+        steps |= {name: (sizes[name], units.MASS if name == "m" else units.METRES) for name in "DBHm" if name in sizes}
     read = Errors([]).displaced(f.ab, 0, NEAR)
     for name, (step, unit) in steps.items():
         value = float(step.value)
-        scalar(found, TITLE, name, value, unit, [(step, 0, 1 + 0j)], scale=ENERGY, reading=abs(float(read(step)) - value) / NEAR)
+        scalar(found, tell(TITLE), name, value, unit, [(step, 0, 1 + 0j)], scale=ENERGY,
+               reading=abs(float(read(step)) - value) / NEAR)

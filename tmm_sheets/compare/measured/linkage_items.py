@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.compare.measured.measurable import (
-    DEGREES,
-    MILLIMETRES,
     PROTRACTOR,
     RESULTS,
     Measurable,
@@ -21,13 +19,28 @@ from tmm_sheets.compare.measured.measurable import (
     measured_step,
     size,
 )
+from tmm_sheets.compare.measured.measured_units import (
+    ACCELERATION,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    DEGREES,
+    ENERGY,
+    FORCE,
+    INERTIA,
+    METRES,
+    MILLIMETRES,
+    MOMENT,
+    SPEED,
+)
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.linkage import accelerations
 from tmm_sheets.methods.linkage.forces import MOMENTS
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan, Segment
@@ -99,13 +112,17 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
     # The tables of a flywheel have all positions of the cycle, also those that are drawn but once.
     indices = list(range(len(study.labels))) if project.variant.flywheel is not None else of_velocities
     kinds: list[tuple[Any, str, Mapping[str, Step], str, str, str, str, list[int], str]] = [
-        (study.velocities, "V", study.velocities.omega, "ω", "м/с", "рад/с", "velocities", indices, "Скорости"),
-        (study.accelerations, "a", study.accelerations.epsilon, "ε", "м/с²", "рад/с²", "accelerations", [force], "Ускорения"),
+        (study.velocities, "V", study.velocities.omega, "ω", SPEED, ANGULAR_SPEED, "velocities", indices,
+         tell("Velocities")),
+        (study.accelerations, "a", study.accelerations.epsilon, "ε", ACCELERATION, ANGULAR_ACCELERATION,
+         "accelerations", [force], tell("Accelerations")),
     ]
     for of, letter, turning, greek, unit, angular, key, positions, title in kinds:
         if key not in found.scales:
             continue
         mu = found.scales[key].mu
+        letters = {s.head.name: re.sub(r"[\u0305{}]", "", s.symbol) for s in of.plan.segments
+                   if s.head.rule is accelerations.CORIOLIS}  # its index is a letter of the language
         for k in positions:
             label = study.labels[k]
             vectors = [(_name(s), s.tail, s.head) for s in of.plan.segments]
@@ -113,7 +130,8 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
             for name, tail, head in vectors:
                 drawn = length(of.plan, found.scales, k, tail, head, name)
                 terms = tuple((s, i, g * mu) for s, i, g in drawn.terms)
-                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, name, unit, "result", drawn.value * mu,
+                called = letters.get(head.name, name)
+                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, called, unit, "result", drawn.value * mu,
                                      terms, key, mu))
                 found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float, key)
             for link, step in turning.items():
@@ -128,7 +146,7 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
 def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> None:
     """Reduced moments and energies: values of their steps, which stand on the velocity plans."""
     study, r = project.study, project.reduced
-    title, unit = "Приведённый момент сил", "Н·м"
+    title, unit = tell("Reduced moment of forces"), MOMENT
     total = r.numbered.moment()
     moving = {id(step): name for name, step in (*study.velocities.points.items(), *study.velocities.omega.items())}
     powers = [step for step in total.args if isinstance(step, Step)]
@@ -146,7 +164,7 @@ def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> No
             if moment:
                 working.append(entry)
         found.check(f"{RESULTS}/{label}/M_red", working, lambda *moments: float(sum(moments)))
-        found.add(_value(f"{RESULTS}/{label}/M_red", title, label, "M_пр", unit, k, total))
+        found.add(_value(f"{RESULTS}/{label}/M_red", title, label, tr("M_red"), unit, k, total))
     _energies(project, found, indices)
 
 
@@ -162,7 +180,7 @@ def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> N
     study, r = project.study, project.reduced
     vel, mu = study.velocities, found.scales["velocities"].mu
     total, plan = r.numbered.inertia, r.numbered.plan
-    title, unit = "Удвоенные кинетические энергии звеньев", "кг·м²/с²"
+    title, unit = tell("Kinetic energies of the links, doubled"), ENERGY
     for k in indices:
         label, energies = study.labels[k], []
         squares: list[tuple[float, Step, int, float]] = []
@@ -181,7 +199,7 @@ def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> N
                 squares.append((turning, vel.omega[n], k, 0.0))
                 found.add(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)))
         found.check(f"{RESULTS}/{label}/J_red", energies, lambda *parts: float(sum(parts)) / r.omega1**2)
-        found.add(_value(f"{RESULTS}/{label}/J_red", "Приведённый момент инерции", label, "J_пр", "кг·м²", k, total,
+        found.add(_value(f"{RESULTS}/{label}/J_red", tell("Reduced moment of inertia"), label, tr("J_red"), INERTIA, k, total,
                          tuple((factor / r.omega1**2, step, at, per_mm) for factor, step, at, per_mm in squares)))
 
 
@@ -193,8 +211,8 @@ def _forces(project: Project, found: Measurables) -> None:
     label = project.study.labels[k]
     for name, step in project.study.forces.arms.items():
         value = complex(value_at(step, k))
-        found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, "Плечи реакций", label, name, "м", "result", abs(value),
-                             ((step, k, 1 + 0j if value.real >= 0 else -1 + 0j),), head=step))
+        found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, tell("Arms of reactions"), label, name, METRES, "result",
+                             abs(value), ((step, k, 1 + 0j if value.real >= 0 else -1 + 0j),), head=step))
     _balancing(project, found)
     _arms(project, found, k, label)
     _lever(project, found)
@@ -207,10 +225,11 @@ def _loads(project: Project, found: Measurables) -> None:
     given = {a.name for a in study.applied}
     for step in study.loads[2]:
         if step.rule.gives in ("force", "number") and step.name not in given:
-            unit = "Н" if step.rule.gives == "force" else "Н·м"
-            found.add(size("Силы тяжести и инерции", f"{RESULTS}/{label}/{step.name}", label, step.name, unit, k, step, by=step))
+            unit = FORCE if step.rule.gives == "force" else MOMENT
+            entry = f"{RESULTS}/{label}/{step.name}"
+            found.add(size(tell("Weights and forces of inertia"), entry, label, letter_of(step), unit, k, step, by=step))
     for step in (part.vector for part in study.forces.from_moments):
-        found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
+        found.add(size(tell("Reactions"), f"{RESULTS}/{label}/{step.name}", label, letter_of(step), FORCE, k, step, by=step))
 
 
 def _force_plans(project: Project, found: Measurables) -> None:
@@ -233,17 +252,20 @@ def _force_plans(project: Project, found: Measurables) -> None:
                     side = sides[step.name]
                     found.check(f"{RESULTS}/{label}/{step.name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float,
                                 plan.name)
-                found.add(size("Реакции", f"{RESULTS}/{label}/{step.name}", label, step.name, "Н", k, step, by=step))
+                path = f"{RESULTS}/{label}/{step.name}"
+                found.add(size(tell("Reactions"), path, label, letter_of(step), FORCE, k, step, by=step))
 
 
 def _balancing(project: Project, found: Measurables) -> None:
     """The balancing moment or force by both ways."""
     study, k = project.study, project.force_index
     label, name = study.labels[k], project.balancing
-    unit = "Н" if study.driver is not None else "Н·м"
-    for way, mark, step in (("по плану сил", "", study.forces.balancing), ("по рычагу", "-lever", study.lever.balancing)):
+    unit = FORCE if study.driver is not None else MOMENT
+    for title, mark, step in ((tell("Balancing by the force plan"), "", study.forces.balancing),
+                              (tell("Balancing by the lever"), "-lever", study.lever.balancing)):
         if step is not None:
-            found.add(size(f"Уравновешивание {way}", f"{RESULTS}/{label}/{name}{mark}", label, name, unit, k, step, by=step))
+            called = letter_of(step) if step.name == name else name
+            found.add(size(title, f"{RESULTS}/{label}/{name}{mark}", label, called, unit, k, step, by=step))
 
 
 def _lever(project: Project, found: Measurables) -> None:
@@ -255,7 +277,8 @@ def _lever(project: Project, found: Measurables) -> None:
     for name, step in lever.points.items():
         found.add(length(lever.plan, found.scales, k, lever.plan["p"], step, f"p{name}"))
     for h in lever.hung:
-        found.add(magnitude(measured_step(lever.plan, found.scales, k, h.arm, h.arm.name.replace("\u0305", ""))))
+        found.add(magnitude(measured_step(lever.plan, found.scales, k, h.arm, h.arm.name.replace("\u0305", ""),
+                                          called=(h.arm.symbol or h.arm.name).replace("\u0305", ""))))
 
 
 def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
@@ -276,5 +299,6 @@ def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
             value, mu = float(np.real(value_at(arm, k))), found.scales[key].mu
             name = f"h_{force.name}({about.name})"
             sign = 1.0 if value >= 0 else -1.0
-            found.add(Measurable(f"arms/{label}/{name}", "arms", "Плечи сил", label, name, MILLIMETRES, "length", abs(value) / mu,
+            found.add(Measurable(f"arms/{label}/{name}", "arms", tell("Arms of forces"), label,
+                                 f"h_{letter_of(force)}({letter_of(about)})", MILLIMETRES, "length", abs(value) / mu,
                                  ((arm, k, complex(sign / mu)),), key, 1.0, head=arm))

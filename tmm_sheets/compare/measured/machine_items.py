@@ -10,8 +10,6 @@ import numpy as np
 
 from tmm_sheets.compare.measured.measurable import (
     CALCULATED,
-    DEGREES,
-    MILLIMETRES,
     RESULTS,
     Measurable,
     Measurables,
@@ -19,12 +17,14 @@ from tmm_sheets.compare.measured.measurable import (
     measured_step,
     scalar,
 )
+from tmm_sheets.compare.measured.measured_units import DEGREES, MILLIMETRES, TURNS
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.cams.cam_motion import ACROSS, ORDINATE
 from tmm_sheets.methods.gears.rack import TAKEN
 from tmm_sheets.methods.integration import CHORD
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -75,9 +75,9 @@ def gear(project: Project, found: Measurables) -> None:
     for name, told in pair.results().items():
         value = told.value
         if name in GEAR_ANGLES:
-            scalar(found, "Зубчатая передача", name, degrees(value), DEGREES)
+            scalar(found, tell("Gear pair"), name, degrees(value), DEGREES)
         else:
-            scalar(found, "Зубчатая передача", name, value, "" if name in GEAR_NUMBERS else MILLIMETRES)
+            scalar(found, tell("Gear pair"), name, value, "" if name in GEAR_NUMBERS else MILLIMETRES)
 
 
 def _sliding(plan: Plan, found: Measurables) -> None:
@@ -99,11 +99,11 @@ def _sliding(plan: Plan, found: Measurables) -> None:
 def reducer(project: Project, found: Measurables) -> None:
     """Results of the reducer."""
     results: Mapping[str, Any] = project.reducer.results()
-    for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", "об/мин")):
+    for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", TURNS)):
         for name, told in results[group].items():
-            scalar(found, "Редуктор", f"reducer-{name}", told.value, unit)
+            scalar(found, tell("Reducer"), f"reducer-{name}", told.value, unit)
     for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q"):
-        scalar(found, "Редуктор", f"reducer-{name}", results[name].value, "")
+        scalar(found, tell("Reducer"), f"reducer-{name}", results[name].value, "")
 
 
 def cam(project: Project, found: Measurables) -> None:
@@ -130,7 +130,7 @@ def cam(project: Project, found: Measurables) -> None:
             mu = found.scales[step.plan].mu if step.plan in found.scales else 0.0
             # A roller is chosen in whole half millimetres: no small error of what it is chosen by moves it.
             terms = [] if name == "r_roller" else [(step, 0, 1000 + 0j)]
-            scalar(found, "Кулачок", name, 1000 * float(step.value), MILLIMETRES, terms,
+            scalar(found, tell("Cam"), name, 1000 * float(step.value), MILLIMETRES, terms,
                    scale=step.plan if mu else "", reading=1000 * mu)
             if mu:
                 found.check(f"{RESULTS}/{name}", [f"{step.plan}/{step.name}"], lambda x: 1000 * x, step.plan)

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from tmm_sheets.compare.measured.measured_units import DEGREES, MILLIMETRES
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.protocol import spoken
+from tmm_sheets.construction.protocol import letter_of, spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
 
@@ -29,8 +30,6 @@ CALCULATED = 0.005
 """What a number computed with three digits may be off by, as a share of it."""
 RESULTS = "results"
 """In place of a plan's name for what is computed from the measured lengths."""
-MILLIMETRES, DEGREES = "мм", "°"
-
 
 _PLAIN = str.maketrans({
     "ω": "omega", "ε": "epsilon", "π": "pi", "ψ": "psi", "φ": "phi", "α": "alpha", "ρ": "rho", "δ": "delta", "Δ": "d", "μ": "mu",
@@ -58,9 +57,9 @@ class Measurable:
     label
         number of the position.
     quantity
-        as it stands on the plan: |pb3|, V_D.
+        as it stands on the plan, in the language of the sheets: |pb3|, V_D.
     unit
-        of the number to be written.
+        of the number to be written, by its English name.
     kind
         a length on paper, an angle, or a result.
     value
@@ -108,7 +107,7 @@ class Measurable:
     @property
     def steps(self) -> str:
         """Names of the steps it is measured between."""
-        return " ".join(dict.fromkeys(spoken(step.name) for step, _, _ in self.terms if not step.name.startswith("∂")))
+        return " ".join(dict.fromkeys(letter_of(step) for step, _, _ in self.terms if not step.name.startswith("∂")))
 
 
 @dataclass(frozen=True)
@@ -168,20 +167,22 @@ def length(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: St
                       head=last)
 
 
-def measured_step(plan: Plan, scales: Mapping[str, Scale], k: int, step: Step, name: str = "", key: str = "") -> Measurable:
-    """A step that is a length, an angle or, of a diagram, a point whose ordinate is measured."""
+def measured_step(plan: Plan, scales: Mapping[str, Scale], k: int, step: Step, name: str = "", key: str = "",
+                  called: str = "") -> Measurable:
+    """A step that is a length, an angle or, of a diagram, a point whose ordinate is measured; ``called`` so on paper."""
     key = key or plan.name
     label = plan.labels[k] if len(plan.labels) > 1 and np.ndim(step.value) else ""
+    called = called or (spoken(name) if name else letter_of(step))
     name = name or step.name
     entry_id = "/".join(filter(None, (plan.name, label, name)))
     value = complex(value_at(step, k))
     if step.rule.gives in ("angle", "inclination"):
-        return Measurable(entry_id, plan.name, plan.title, label, spoken(name), DEGREES, "angle", degrees(value.real),
+        return Measurable(entry_id, plan.name, plan.title, label, called, DEGREES, "angle", degrees(value.real),
                           ((step, k, complex(degrees(1))),), reading=degrees(1 / PROTRACTOR), head=step)
     mu = 1.0 if plan.unit == "mm" else scales[key].mu
     along = 1j if step.rule.gives == "point" else 1 + 0j
     real = value.imag if step.rule.gives == "point" else value.real
-    return Measurable(entry_id, plan.name, plan.title, label, spoken(name), MILLIMETRES, "length", real / mu,
+    return Measurable(entry_id, plan.name, plan.title, label, called, MILLIMETRES, "length", real / mu,
                       ((step, k, along / mu),), key, 1.0, head=step, signed=True)
 
 

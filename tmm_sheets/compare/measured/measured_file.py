@@ -1,8 +1,9 @@
 """The CSV file of measured numbers: written as a template, read back as people fill it in.
 
-Written with semicolons, decimal commas and a byte order mark: that is what a Russian Excel opens with a double click, columns,
-letters and numbers in their places; LibreOffice asks and has them, too. Read is more: commas, tabs, decimal points, code page 1251,
-UTF-16, a missing heading, units written into the cell. What is mended is said. Ids are ASCII, for no code page to spoil.
+Written with a byte order mark, and with semicolons and decimal commas: that is what a Russian or Ukrainian Excel opens with a
+double click, columns, letters and numbers in their places; for English with commas and points. LibreOffice asks and has them, too.
+Read is more: tabs, code page 1251, UTF-16, a missing heading, headings of any language, units written into the cell. What is mended
+is said. Ids are ASCII, for no code page to spoil.
 """
 
 from __future__ import annotations
@@ -10,33 +11,38 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from math import degrees, isfinite
+from math import isfinite
 from pathlib import Path
 from typing import Literal
 
 from tmm_sheets import texts
-from tmm_sheets.compare.measured.measurable import DEGREES, MILLIMETRES, Measurable, Measurables, plain
+from tmm_sheets.compare.measured import measured_units as units
+from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.numbers import written
+from tmm_sheets.numbers import told
+from tmm_sheets.words import decimal_sign, every, marked, reader, tell, tell_n
 
 Column = Literal["id", "plan", "position", "quantity", "steps", "unit", "measured", "factor"]
 COLUMNS: Mapping[Column, str] = {
-    "id": "обозначение", "plan": "план", "position": "положение", "quantity": "величина", "steps": "шаги", "unit": "единица",
-    "measured": "измерено",
+    "id": marked("id"), "plan": marked("plan"), "position": marked("position"), "quantity": marked("quantity"),
+    "steps": marked("steps of the plan"), "unit": marked("unit"), "measured": marked("measured"),
 }
 """Headings as they are written."""
 OTHER_NAMES: Mapping[str, Column] = {
-    **{title: column for column, title in COLUMNS.items()},
-    "id": "id", "ид": "id", "код": "id", "plan": "plan", "position": "position", "quantity": "quantity", "steps": "steps",
-    "unit": "unit", "ед": "unit", "ед.": "unit", "единицы": "unit", "measured": "measured", "value": "measured",
-    "значение": "measured", "измерено мм": "measured", "измерено, мм": "measured", "масштаб": "factor", "мю": "factor",
-    "μ": "factor", "mu": "factor", "scale": "factor",
+    "ид": "id", "код": "id", "steps": "steps", "ед": "unit", "ед.": "unit", "единицы": "unit", "од": "unit", "од.": "unit",
+    "value": "measured", "значение": "measured", "значення": "measured", "измерено мм": "measured", "измерено, мм": "measured",
+    "виміряно, мм": "measured", "measured, mm": "measured", "масштаб": "factor", "мю": "factor", "μ": "factor", "mu": "factor",
+    "scale": "factor",
 }
-"""Headings as they may be written, in small letters."""
+"""Headings as they may be written besides, in small letters."""
+OF_PROJECT = marked("project: {project}")
+"""The remark that says which project a file is of."""
+NOT_MEASURED = marked("not measured")
+"""What may stand in place of a number, besides dashes and nothing."""
 FACTOR = "mu"
 """In place of a plan's name in the id of a line that states a scale factor."""
 LARGEST = 5_000_000
@@ -49,12 +55,6 @@ SHOWN = 20
 """Problems told at once."""
 
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d{1,3})?")
-_RADIAN = degrees(1)
-_LENGTHS: Mapping[str, float] = {"мм": 1.0, "mm": 1.0, "см": 10.0, "cm": 10.0, "м": 1000.0, "m": 1000.0}
-_ANGLES: Mapping[str, float] = {"°": 1.0, "град": 1.0, "град.": 1.0, "deg": 1.0, "рад": _RADIAN, "rad": _RADIAN}
-_LATIN: Mapping[str, str] = {
-    "м": "m", "с": "s", "рад": "rad", "Н": "N", "кг": "kg", "мм": "mm", "об": "rev", "мин": "min", "Дж": "J",
-}
 
 
 @dataclass(frozen=True)
@@ -85,25 +85,27 @@ class Filled:
 
 
 def template(project: str, found: Measurables) -> bytes:
-    """The file to be filled in: scale factors as the sheets have them, then a line for each quantity; no exact values."""
+    """The file to be filled in: scale factors as the sheets have them, then a line for each quantity; no exact values.
+
+    Cells are separated by semicolons, as where the comma is in numbers; where that is a point, by commas.
+    """
     out = io.StringIO()
-    rows = csv.writer(out, delimiter=";", lineterminator="\r\n")
-    rows.writerow([f"# проект: {project}"])
-    rows.writerow([f"# Заполните столбец «{COLUMNS['measured']}», чего не мерили – оставьте пустым. Длины – в мм чертежа."])
-    rows.writerow([f"# Строки {FACTOR}/...: масштабные коэффициенты листов. Чертили в своём масштабе – впишите свои."])
-    rows.writerow(COLUMNS.values())
+    rows = csv.writer(out, delimiter=";" if decimal_sign(reader()) == "," else ",", lineterminator="\r\n")
+    measured = tell(COLUMNS["measured"])
+    rows.writerow([f"# {tell(OF_PROJECT).format(project=project)}"])
+    rows.writerow([tell("# Fill in the column “{column}”; leave empty what you have not measured. Lengths are mm of the drawing.")
+                   .format(column=measured)])
+    rows.writerow([tell("# Lines {lines}: scale factors of the sheets. If you drew to others, write yours.")
+                   .format(lines=f"{FACTOR}/...")])
+    rows.writerow([tell(heading) for heading in COLUMNS.values()])
     used = {e.scale for e in found.entries.values() if e.scale}
     for key, scale in found.scales.items():
-        if key in used and scale.unit != "мм/мм":
+        if key in used and units.latin(scale.unit) != "mm/mm":
             first = f"{FACTOR}/{plain(key)}"
-            rows.writerow([first, "масштабные коэффициенты", "", scale.symbol, "", scale.unit, _written(scale.mu)])
+            rows.writerow([first, tell("scale factors"), "", scale.symbol, "", scale.unit, told(f"{scale.mu:.10g}")])
     for e in found.entries.values():
-        rows.writerow([e.id, e.title, e.label, e.quantity, e.steps, e.unit, ""])
+        rows.writerow([e.id, e.title, e.label, e.quantity, e.steps, units.said(e.unit), ""])
     return b"\xef\xbb\xbf" + out.getvalue().encode()
-
-
-def _written(x: float) -> str:
-    return written(f"{x:.10g}")
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------------
@@ -112,6 +114,14 @@ def _written(x: float) -> str:
 def check(path: Path) -> None:
     """Refuse a file that cannot be read, before any work is done for it."""
     _bytes(path)
+
+
+class _Refused(Exception):
+    """What is wrong with a line: in which column, and what to try."""
+
+    def __init__(self, message: str, hint: str = "", column: Column = "measured") -> None:
+        super().__init__(message)
+        self.message, self.hint, self.column = message, hint, column
 
 
 def read(path: Path, project: str, found: Measurables) -> Filled:
@@ -127,38 +137,33 @@ def read(path: Path, project: str, found: Measurables) -> Filled:
     text = _decoded(_bytes(path), name, filled.notes)
     _check_project(text, name, project)
     rows = _rows(text, name, filled.notes)
-    problems: list[Problem] = []
-    columns, start = _columns(rows, name, found, filled.notes)
-    _read_rows(rows[start:], columns, name, found, filled, problems)
-    if problems:
-        unknown = [p for p in problems if p.message.startswith("unknown")]
-        if len(unknown) > SHOWN and len(unknown) > 0.5 * len(rows):
-            hint = f"is the file of another project? this is {project}; compare {project} --template writes one"
-            raise BadInput(Problem(f"{len(unknown)} of {len(rows)} lines are about quantities this project does not have", name,
-                                   unknown[0].line, COLUMNS["id"], hint))
-        if len(problems) > SHOWN:
-            problems[SHOWN:] = [Problem(f"and {len(problems) - SHOWN} problems more", name)]
-        raise BadInput(problems)
+    table = _Table(name, found, filled, *_columns(rows, name, found, filled.notes))
+    for row in rows[table.start:]:
+        table.read(*row)
+    table.refuse(len(rows), project)
     if not filled.lines:
-        raise BadInput(Problem("nothing is filled in", name, field=COLUMNS["measured"],
-                               hint="write what you measured into that column, then compare again"))
+        raise BadInput(Problem(tell("nothing is filled in"), name, field=table.title("measured"),
+                               hint=tell("write what you measured into that column, then compare again")))
     return filled
 
 
 def _bytes(path: Path) -> bytes:
+    writes = tell("compare PROJECT --template writes a file to fill in")
     try:
         if path.is_dir():
-            raise BadInput(Problem("expected a CSV file, this is a folder", str(path)))
+            raise BadInput(Problem(tell("expected a CSV file, this is a folder"), str(path)))
         data = path.read_bytes() if path.stat().st_size <= LARGEST else b""
     except OSError as e:
-        hint = "compare PROJECT --template writes a file to fill in" if isinstance(e, FileNotFoundError) else ""
-        raise BadInput(Problem(f"cannot be read: {(e.strerror or str(e)).lower()}", str(path), hint=hint)) from None
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=(e.strerror or str(e)).lower()), str(path),
+                               hint=writes if isinstance(e, FileNotFoundError) else "")) from None
     if not data.strip():
         large = path.stat().st_size > LARGEST
-        what = f"larger than {LARGEST // 1_000_000} MB: not a file of numbers" if large else "the file is empty"
-        raise BadInput(Problem(what, str(path), hint="compare PROJECT --template writes a file to fill in"))
+        what = tell("larger than {size} MB: not a file of numbers").format(size=LARGEST // 1_000_000) if large else tell(
+            "the file is empty")
+        raise BadInput(Problem(what, str(path), hint=writes))
     if data[:2] == b"PK" or data[:4] == b"\xd0\xcf\x11\xe0":
-        raise BadInput(Problem("this is a workbook, not a CSV file", str(path), hint="save it as CSV (Файл – Сохранить как – CSV)"))
+        raise BadInput(Problem(tell("this is a workbook, not a CSV file"), str(path),
+                               hint=tell("save it as CSV (File – Save as – CSV)")))
     return data
 
 
@@ -166,18 +171,20 @@ def _decoded(data: bytes, name: str, notes: list[str]) -> str:
     try:
         text, note = texts.decoded(data)
     except texts.NotText as e:
-        raise BadInput(Problem(str(e), name, e.line, hint="save it as CSV, UTF-8")) from None
+        raise BadInput(Problem(str(e), name, e.line, hint=tell("save it as CSV, UTF-8"))) from None
     if note:
         notes.append(f"{name}: {note}")
     return texts.cleaned(text)
 
 
 def _check_project(text: str, name: str, project: str) -> None:
+    said = "|".join(re.escape(heading.partition("{")[0].strip()) for heading in every(OF_PROJECT))
     for number, line in enumerate(text.splitlines()[:10], 1):
-        match = re.match(r'\s*"?#\s*проект:\s*([^;,\t"]+)', line)
+        match = re.match(rf'\s*"?#\s*(?:{said})\s*([^;,\t"]+)', line)
         if match and match[1].strip() != re.split(r'[;,\t"]', project)[0].strip():
-            raise BadInput(Problem(f"the file is of the project {match[1].strip()}, not of {project}", name, number,
-                                   hint=f"tmm-sheets compare {match[1].strip()} --measured {name}"))
+            other = match[1].strip()
+            said = tell("the file is of the project {other}, not of {project}").format(other=other, project=project)
+            raise BadInput(Problem(said, name, number, hint=f"tmm-sheets compare {other} --measured {name}"))
 
 
 Row = tuple[int, list[str]]
@@ -188,20 +195,21 @@ def _rows(text: str, name: str, notes: list[str]) -> list[Row]:
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1)
              if line.strip(" ;,\t\"") and not line.lstrip(' "\t').startswith("#")]
     if not lines:
-        raise BadInput(Problem("no lines with numbers", name, hint="compare PROJECT --template writes a file to fill in"))
+        raise BadInput(Problem(tell("no lines with numbers"), name,
+                               hint=tell("compare PROJECT --template writes a file to fill in")))
     head = lines[0][1]
     separator = max(";\t,", key=head.count)
     if head.count(separator) == 0:
-        raise BadInput(Problem("no separator found: expected columns with ; or , or a tab between them", name, lines[0][0],
-                               hint="save the table as CSV with semicolons"))
-    if separator != ";":
-        notes.append(f"{name}: columns separated by {'commas' if separator == ',' else 'tabs'}")
+        raise BadInput(Problem(tell("no separator found: expected columns with ; or , or a tab between them"), name, lines[0][0],
+                               hint=tell("save the table as CSV with semicolons")))
+    if separator == "\t":
+        notes.append(tell("{file}: columns separated by tabs").format(file=name))
     found: list[Row] = []
     for i, line in lines:
         try:
             cells = next(csv.reader([line], delimiter=separator))
         except csv.Error as e:
-            raise BadInput(Problem(f"cannot be read as CSV: {e}", name, i)) from None
+            raise BadInput(Problem(tell("cannot be read as CSV: {why}").format(why=e), name, i)) from None
         found.append((i, [c.strip().strip("\u00a0") for c in cells]))
     if separator == ",":
         _mend_commas(found, name, notes)
@@ -217,78 +225,143 @@ def _mend_commas(rows: list[Row], name: str, notes: list[str]) -> None:
             cells[-2:] = [f"{cells[-2]},{cells[-1]}"]
             mended.append(i)
     if mended:
-        notes.append(f"{name}: {len(mended)} decimal commas between separating commas put together, first in line {mended[0]}")
+        said = tell_n("{file}: {n} decimal comma between separating commas put together, first in line {line}",
+                      "{file}: {n} decimal commas between separating commas put together, first in line {line}", len(mended))
+        notes.append(said.format(file=name, n=len(mended), line=mended[0]))
 
 
-def _columns(rows: list[Row], name: str, found: Measurables, notes: list[str]) -> tuple[dict[Column, int], int]:
-    """Which column is which, and the first row of numbers."""
+def _headings() -> dict[str, Column]:
+    """What may stand above the columns, in any language, in small letters."""
+    written: dict[str, Column] = {said.lower(): column for column, heading in COLUMNS.items() for said in every(heading)}
+    return {**OTHER_NAMES, **{column: column for column in COLUMNS}, **written}
+
+
+def _columns(rows: list[Row], name: str, found: Measurables, notes: list[str]) -> tuple[dict[Column, int], list[str], int]:
+    """Which column is which, what stands above them, and the first row of numbers."""
     number, head = rows[0]
     columns: dict[Column, int] = {}
+    known = _headings()
     for i, title in enumerate(head):
-        column = OTHER_NAMES.get(title.lower().strip(" :"))
+        column = known.get(title.lower().strip(" :"))
         if column is not None:
             columns.setdefault(column, i)
     if "id" in columns and "measured" in columns:
-        return columns, 1
+        return columns, head, 1
     if not columns and (_known(head[0], found) or plain(head[0]).startswith(f"{FACTOR}/")):
-        notes.append(f"{name}: no heading: first column taken for {COLUMNS['id']}, last for {COLUMNS['measured']}")
-        return {"id": 0, "measured": len(head) - 1}, 0
+        notes.append(tell("{file}: no heading: first column taken for {first}, last for {last}").format(
+            file=name, first=tell(COLUMNS["id"]), last=tell(COLUMNS["measured"])))
+        return {"id": 0, "measured": len(head) - 1}, [], 0
     wanted: tuple[Column, ...] = ("id", "measured")
-    problems = []
-    for wants in wanted:
-        if wants not in columns:
-            near = get_close_matches(COLUMNS[wants], [h.lower() for h in head], n=1, cutoff=0.6)
-            there = f"there are {', '.join(filter(None, head))}"
-            problems.append(Problem(f'the column "{COLUMNS[wants]}" is missing', name, number, COLUMNS[wants],
-                                    f'did you mean "{near[0]}"? rename it' if near else there))
-    raise BadInput(problems)
+    raise BadInput([_missing(COLUMNS[wants], head, name, number) for wants in wanted if wants not in columns])
 
 
-def _read_rows(rows: Iterable[Row], columns: Mapping[Column, int], name: str, found: Measurables, filled: Filled,
-               problems: list[Problem]) -> None:
-    seen: dict[str, MeasuredLine] = {}
-    used = {key for key in found.scales if any(e.scale == key for e in found.entries.values())}
-    points = commas = 0
-    for number, cells in rows:
-        def cell(column: Column, cells: list[str] = cells) -> str:
-            at = columns.get(column)
+def _missing(heading: str, head: Sequence[str], name: str, number: int) -> Problem:
+    """That a column is missing; it may be called nearly so, in any language."""
+    near = [other for one in every(heading) for other in get_close_matches(one, [h.lower() for h in head], n=1, cutoff=0.6)]
+    hint = tell('did you mean "{near}"? rename it').format(near=near[0]) if near else tell("there are {headings}").format(
+        headings=", ".join(filter(None, head)))
+    said = tell('the column "{heading}" is missing').format(heading=tell(heading))
+    return Problem(said, name, number, tell(heading), hint)
+
+
+@dataclass
+class _Table:
+    """A file while it is read line by line, with what is wrong with it.
+
+    Attributes
+    ----------
+    name, found, filled : its name, what may be measured, and what was read
+    columns, head, start : the columns by what they hold, their headings if they have any, the first row of numbers
+    """
+
+    name: str
+    found: Measurables
+    filled: Filled
+    columns: Mapping[Column, int]
+    head: Sequence[str]
+    start: int
+
+    def __post_init__(self) -> None:
+        self.problems: list[Problem] = []
+        self.unknown: list[Problem] = []
+        self.seen: dict[str, MeasuredLine] = {}
+        self.used = {e.scale for e in self.found.entries.values() if e.scale in self.found.scales}
+        self.points = self.commas = 0
+        self.nothing = {"-", "–", "—", *(said.lower() for said in every(NOT_MEASURED))}
+
+    def title(self, column: Column) -> str:
+        """What stands above a column."""
+        at = self.columns[column]
+        return self.head[at] if self.head else tell(COLUMNS[column])
+
+    def read(self, number: int, cells: Sequence[str]) -> None:
+        """Read one line."""
+        def cell(column: Column) -> str:
+            at = self.columns.get(column)
             return cells[at] if at is not None and at < len(cells) else ""
 
         key, written = cell("id"), cell("measured")
         if not key:
             if written:
-                problems.append(Problem(f"{written} stands beside no quantity", name, number, COLUMNS["id"]))
-            continue
-        if not written or written in ("-", "–", "—"):
-            filled.empty += 1
-            continue
-        points, commas = points + ("." in written), commas + ("," in written)
+                said = tell("{number} stands beside no quantity").format(number=written)
+                self.problems.append(Problem(said, self.name, number, self.title("id")))
+            return
+        if not written or written.lower() in self.nothing:
+            self.filled.empty += 1
+            return
+        self.points, self.commas = self.points + ("." in written), self.commas + ("," in written)
         try:
             if plain(key).startswith(f"{FACTOR}/"):
-                _factor(key, written, found, filled, used)
-                continue
-            entry = _entry(key, found, filled, name, number)
-            value, half = _number(written, cell("unit"), entry, filled, f"{name}:{number}")
+                _factor(key, written, self.found, self.filled, self.used)
+                return
+            entry = _entry(key, self.found, self.filled, self.name, number)
+            value, half = _number(written, cell("unit"), entry, self.filled, f"{self.name}:{number}")
             own = cell("factor") if entry.scale else ""
-            factor = _like(_positive(own), found.scales[entry.scale]) if own else None
-        except ValueError as e:
-            message, _, hint = str(e).partition("\n")
-            where = COLUMNS["id"] if message.startswith("unknown") else COLUMNS["measured"]
-            problems.append(Problem(message, name, number, where, hint))
-            continue
-        line = MeasuredLine(entry, value, half, number, factor)
-        before = seen.get(entry.id)
-        if before is not None:
-            if before.value != value:
-                twice = f"{entry.id} stands twice: {before.value:g} in line {before.line}, {value:g} here"
-                problems.append(Problem(twice, name, number, COLUMNS["measured"], "leave one of them"))
-            else:
-                filled.notes.append(f"{name}:{number}: {entry.id} stands twice with the same number, counted once")
-            continue
-        seen[entry.id] = line
-        filled.lines.append(line)
-    if points and commas:
-        filled.notes.append(f"{name}: decimal points in {points} lines, commas in {commas}: both are read as decimal marks")
+            factor = _like(_positive(own), self.found.scales[entry.scale]) if own else None
+        except _Refused as e:
+            problem = Problem(e.message, self.name, number, self.title(e.column), e.hint)
+            self.problems.append(problem)
+            self.unknown += [problem] if e.column == "id" else []
+            return
+        self._take(MeasuredLine(entry, value, half, number, factor))
+
+    def _take(self, line: MeasuredLine) -> None:
+        """Take a line in, unless its quantity was there before."""
+        before = self.seen.setdefault(line.entry.id, line)
+        if before is line:
+            self.filled.lines.append(line)
+        elif before.value == line.value:
+            self.filled.notes.append(tell("{place}: {id} stands twice with the same number, counted once").format(
+                place=f"{self.name}:{line.line}", id=line.entry.id))
+        else:
+            twice = tell("{id} stands twice: {before} in line {line}, {here} here").format(
+                id=line.entry.id, before=told(f"{before.value:g}"), line=before.line, here=told(f"{line.value:g}"))
+            self.problems.append(Problem(twice, self.name, line.line, self.title("measured"), tell("leave one of them")))
+
+    def refuse(self, rows: int, project: str) -> None:
+        """Tell what is wrong with the whole, and what is remarkable.
+
+        Raises
+        ------
+        BadInput
+            if anything is wrong.
+        """
+        if self.points and self.commas:
+            self.filled.notes.append(tell("{file}: decimal points in {points} lines, commas in {commas}: both are read as "
+                                          "decimal marks")
+                                     .format(file=self.name, points=self.points, commas=self.commas))
+        if len(self.unknown) > SHOWN and len(self.unknown) > 0.5 * rows:
+            hint = tell("is the file of another project? this is {project}; compare {project} --template writes one").format(
+                project=project)
+            said = tell("{n} of {rows} lines are about quantities this project does not have")
+            said = said.format(n=len(self.unknown), rows=rows)
+            raise BadInput(Problem(said, self.name, self.unknown[0].line, self.title("id"), hint))
+        if len(self.problems) > SHOWN:
+            more = len(self.problems) - SHOWN
+            said = tell_n("and {n} problem more", "and {n} problems more", more).format(n=more)
+            self.problems[SHOWN:] = [Problem(said, self.name)]
+        if self.problems:
+            raise BadInput(self.problems)
 
 
 def _factor(key: str, written: str, found: Measurables, filled: Filled, used: set[str]) -> None:
@@ -296,7 +369,8 @@ def _factor(key: str, written: str, found: Measurables, filled: Filled, used: se
     wanted = plain(key).partition("/")[2]
     if wanted not in known:
         near = get_close_matches(wanted, sorted(known), n=1)
-        raise ValueError(f"unknown scale factor {key}" + (f"\ndid you mean {FACTOR}/{near[0]}?" if near else ""))
+        raise _Refused(tell("unknown scale factor {key}").format(key=key),
+                       tell("did you mean {near}?").format(near=f"{FACTOR}/{near[0]}") if near else "", "id")
     filled.factors[known[wanted]] = _like(_positive(written), found.scales[known[wanted]])
 
 
@@ -304,15 +378,16 @@ def _positive(written: str) -> float:
     match = _NUMBER.fullmatch(_plain(written))
     value = float(match[0].replace(",", ".")) if match else 0.0
     if not (isfinite(value) and value > 0):
-        raise ValueError(f"expected a scale factor, a positive number, not {written!r}")
+        raise _Refused(tell("expected a scale factor, a positive number, not {written}").format(written=repr(written)))
     return value
 
 
 def _like(factor: float, scale: Scale) -> float:
     """A scale factor that may be meant: not hundreds of times that of the sheet."""
     if not 1 / APART < factor / scale.mu < APART:
-        raise ValueError(f"the scale factor {factor:g} is far from that of the sheet, {scale.mu:g} {scale.unit}\n"
-                         f"is it in {scale.unit}?")
+        said = tell("the scale factor {factor} is far from that of the sheet, {mu} {unit}")
+        raise _Refused(said.format(factor=told(f"{factor:g}"), mu=told(f"{scale.mu:g}"), unit=scale.unit),
+                       tell("is it in {unit}?").format(unit=scale.unit))
     return factor
 
 
@@ -331,9 +406,11 @@ def _entry(key: str, found: Measurables, filled: Filled, name: str, number: int)
     known = _known(key, found)
     if not known:
         near = get_close_matches(key, list(found.entries), n=2, cutoff=0.6)
-        raise ValueError(f"unknown quantity {key}" + (f"\ndid you mean {' or '.join(near)}?" if near else ""))
+        said = tell("did you mean {near} or {other}?") if len(near) > 1 else tell("did you mean {near}?")
+        hint = said.format(near=near[0], other=near[-1]) if near else ""
+        raise _Refused(tell("unknown quantity {key}").format(key=key), hint, "id")
     if known != key:
-        filled.notes.append(f"{name}:{number}: {key} read as {known}")
+        filled.notes.append(tell("{place}: {key} read as {known}").format(place=f"{name}:{number}", key=key, known=known))
     return found.entries[known]
 
 
@@ -341,43 +418,39 @@ def _number(written: str, unit: str, entry: Measurable, filled: Filled, place: s
     """The number in the entry's unit, and half a unit of its last digit."""
     text = _plain(written)
     match = _NUMBER.match(text)
+    example = told("46.5")
     if match is None:
-        raise ValueError(f"expected a number, not {written!r}\nwrite for example 46,5; leave empty what was not measured")
+        raise _Refused(tell("expected a number, not {written}").format(written=repr(written)),
+                       tell("write for example {example}; leave empty what was not measured").format(example=example))
     own = text[match.end():].strip()
     if own and not re.match(r"[A-Za-zА-Яа-я°%/(]", own):
-        raise ValueError(f"expected one number, not {written!r}\nwrite for example 46,5")
+        raise _Refused(tell("expected one number, not {written}").format(written=repr(written)),
+                       tell("write for example {example}").format(example=example))
     value = float(match[0].replace(",", "."))
     if not abs(value) < ABSURD:
-        raise ValueError(f"expected a number that a sheet can have, not {written!r}")
+        raise _Refused(tell("expected a number that a sheet can have, not {written}").format(written=repr(written)))
     mantissa, _, exponent = match[0].lower().partition("e")
     decimals = len(mantissa.replace(",", ".").partition(".")[2])
     half = 0.5 * 10.0 ** (int(exponent or 0) - decimals) if value else 0.0  # nothing is nothing, however it is written
     times = _times(own or unit, entry)
     if times != 1.0:
-        stated = written if own else f"{written} {unit}"
-        filled.notes.append(f"{place}: {stated} taken as {value * times:g} {entry.unit}")
+        taken = f"{told(f'{value * times:g}')} {units.said(entry.unit)}"
+        filled.notes.append(tell("{place}: {written} taken as {taken}").format(
+            place=place, written=written if own else f"{written} {unit}", taken=taken))
     return value * times, half * times
 
 
 def _times(unit: str, entry: Measurable) -> float:
     """How many of the entry's units one of the stated units has."""
-    stated = _unit(unit)
-    if not stated or stated == _unit(entry.unit) or "?" in unit:  # a code page without superscripts writes м/с?
-        return 1.0
-    for table, own in ((_LENGTHS, MILLIMETRES), (_ANGLES, DEGREES)):
-        if stated in table and (entry.unit == own or entry.unit in table):
-            return table[stated] / table[entry.unit]
-    if unit.strip().startswith(("к", "k")) and _unit(unit.strip()[1:]) == _unit(entry.unit):
-        return 1000.0
-    raise ValueError(f"expected {entry.unit or 'a pure number'}, not {unit}\nwrite the number in {entry.unit or 'no unit'}")
-
-
-def _unit(unit: str) -> str:
-    """One spelling of a unit: no spaces, dots and brackets; Russian names in Latin letters."""
-    bare = re.sub(r"[\s·⋅*^()?]+", "", unit).replace("²", "2").replace("³", "3")
-    if bare in _LENGTHS or bare in _ANGLES:
-        return bare
-    return re.sub(r"[а-яА-Я]+", lambda word: _LATIN.get(word[0], word[0]), bare)
+    try:
+        return units.times(unit, entry.unit)
+    except ValueError:
+        if not entry.unit:
+            said = tell("expected a pure number, not {unit}").format(unit=unit)
+            raise _Refused(said, tell("write the number in no unit")) from None
+        own = units.said(entry.unit)
+        raise _Refused(tell("expected {own}, not {unit}").format(own=own, unit=unit),
+                       tell("write the number in {own}").format(own=own)) from None
 
 
 def factor_of(line: MeasuredLine, scales: Mapping[str, Scale], factors: Mapping[str, float]) -> float:

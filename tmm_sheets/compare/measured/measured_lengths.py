@@ -11,10 +11,12 @@ from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.judged import Judged, Mistake
-from tmm_sheets.compare.report import Report
-from tmm_sheets.construction.protocol import sentence, spoken
+from tmm_sheets.compare.measured.measured_units import said as said_unit
+from tmm_sheets.compare.report import Report, said_verdict
+from tmm_sheets.construction.protocol import letter_of, sentence
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.numbers import fixed, number, plain
+from tmm_sheets.numbers import decimal, plain, rounded, told
+from tmm_sheets.words import marked, on_paper, reader, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -33,14 +35,16 @@ def template(project: Project, folder: Path, say: Callable[[str], None]) -> Repo
     """
     path = folder / NAME
     if path.exists():
-        raise BadInput(Problem("is there already and may be filled in; nothing was written", str(path),
-                               hint="rename it, or choose another folder with -o"))
+        raise BadInput(Problem(tell("is there already and may be filled in; nothing was written"), str(path),
+                               hint=tell("rename it, or choose another folder with -o")))
     found = measurables(project, say)
     name = project.variant.project.name
     data = measured_file.template(name, found)
-    lines = [f"{name}: {len(found.entries)} quantities to measure or compute; fill in what you have, then",
-             f"    tmm-sheets compare {name} --measured {path}"]
-    asked = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": e.unit}
+    count = len(found.entries)
+    said = tell_n("{project}: {n} quantity to measure or compute; fill in what you have, then",
+                  "{project}: {n} quantities to measure or compute; fill in what you have, then", count)
+    lines = [said.format(project=name, n=count), f"    tmm-sheets compare {name} --measured {path}"]
+    asked = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": said_unit(e.unit)}
              for e in found.entries.values()]
     return Report("\n".join(lines), {"project": name, "quantities": asked}, {NAME: data}, tuple(found.notes))
 
@@ -51,7 +55,7 @@ def compare(project: Project, path: Path, pencil: float, reading: float, say: Ca
     measured_file.check(path)
     found = measurables(project, say)
     filled = measured_file.read(path, name, found)
-    say("errors")
+    say(tell("errors"))
     judged = judge(filled, found, pencil, reading)
     return Report(_text(judged, filled), _tree(name, judged, filled, pencil, reading), notes=(*found.notes, *filled.notes))
 
@@ -59,10 +63,12 @@ def compare(project: Project, path: Path, pencil: float, reading: float, say: Ca
 # --- text ------------------------------------------------------------------------------------------------------------------
 
 
-HEAD = ("", "pos.", "quantity", "exact", "measured", "deviation", "%", "tolerance", "verdict")
+HEAD = ("", marked("pos."), marked("quantity"), marked("exact"), marked("measured"), marked("deviation"), "%", marked("tolerance"),
+        marked("verdict"))
 
 
 def _text(judged: list[Judged], filled: measured_file.Filled) -> str:
+    head = tuple(map(tell, HEAD))
     rows: list[tuple[str, ...]] = []
     titles: dict[int, str] = {}
     last = ""
@@ -70,13 +76,13 @@ def _text(judged: list[Judged], filled: measured_file.Filled) -> str:
         if j.entry.title != last:
             last = titles[len(rows)] = j.entry.title
         rows.append(_row(j))
-    widths = [max(len(r[i]) for r in (HEAD, *rows)) for i in range(len(HEAD))]
+    widths = [max(len(r[i]) for r in (head, *rows)) for i in range(len(head))]
 
     def line(cells: tuple[str, ...]) -> str:
         words = (c.ljust(w) if i in (0, 2, 8) else c.rjust(w) for i, (c, w) in enumerate(zip(cells, widths, strict=True)))
         return "  ".join(words).rstrip()
 
-    lines = [line(HEAD)]
+    lines = [line(head)]
     for i, row in enumerate(rows):
         if i in titles:
             lines += ["", titles[i]]
@@ -89,35 +95,36 @@ MARKS = {"green": " ", "amber": "?", "red": "!"}
 
 def _row(j: Judged) -> tuple[str, ...]:
     e = j.entry
-    percent = "–" if j.percent is None or abs(j.percent) >= 1000 else fixed(j.percent, 1)
-    tolerance = f"±{number(j.tolerance, 2)}" if EXACT < j.tolerance < float("inf") else "0" if j.tolerance <= EXACT else "–"
-    said: list[str] = [j.verdict]
+    percent = "–" if j.percent is None or abs(j.percent) >= 1000 else told(decimal(j.percent, 1))
+    tolerance = f"±{told(rounded(j.tolerance, 2))}" if EXACT < j.tolerance < float("inf") else "0" if j.tolerance <= EXACT else "–"
+    colour = said_verdict(j.verdict)
+    said = [colour]
     if j.follows is not None:
-        said = [f"{j.verdict}, follows from {_name(j.follows)}"]
+        said = [tell("{verdict}, follows from {number}").format(verdict=colour, number=_name(j.follows))]
     elif j.starts:
-        said = [f"{j.verdict}, START"]
+        said = [tell("{verdict}, START").format(verdict=colour)]
     if j.remark:
         said.append(j.remark)
     mark = "·" if j.follows is not None else MARKS[j.verdict]
-    unit = f" {e.unit}" if e.unit else ""
-    return (mark, e.label, e.quantity, _exact(j), f"{_written(j)}{unit}", _deviation(j), percent, tolerance,
+    return (mark, e.label, e.quantity, _exact(j), _with_unit(j), _deviation(j), percent, tolerance,
             "; ".join(said))
 
 
-def _written(j: Judged) -> str:
+def _with_unit(j: Judged) -> str:
     """The measured number; one that no sheet has in the notation of computers."""
     x = j.line.value
-    return number(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else plain(x, 3)
+    written = told(rounded(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else plain(x, 3))
+    return f"{written} {said_unit(j.entry.unit)}" if j.entry.unit else written
 
 
 def _exact(j: Judged) -> str:
     """Exact value, no digits far below the tolerance."""
-    return "0" if abs(j.exact) < 0.01 * j.tolerance else number(j.exact, 4)
+    return "0" if abs(j.exact) < 0.01 * j.tolerance else told(rounded(j.exact, 4))
 
 
 def _deviation(j: Judged) -> str:
     x = 0.0 if abs(j.deviation) < 0.01 * j.tolerance else j.deviation
-    text = number(x, 2) if abs(x) < 10 else number(x, 3)
+    text = told(rounded(x, 2 if abs(x) < 10 else 3))
     return text if x <= 0 else f"+{text}"
 
 
@@ -130,36 +137,40 @@ def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
     follow = [j for j in judged if j.follows is not None]
     own = [j for j in judged if j.follows is None]
     count = {v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")}
-    lines = [f"{len(judged)} numbers: {count['green']} green, {count['amber']} amber, {count['red']} red, {len(follow)} following "
-             f"from an earlier mistake; {filled.empty} left empty"]
+    said = tell_n("{n} number: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
+                  "left empty",
+                  "{n} numbers: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
+                  "left empty",
+                  len(judged))
+    lines = [said.format(n=len(judged), **count, follow=len(follow), empty=filled.empty)]
     starts = sorted((j for j in judged if j.starts), key=lambda j: j.order)
     for i, j in enumerate(starts[:MOST], 1):
         after = [f for f in follow if f.follows is j]
         lines.append(f"{i}. {j.entry.title}, {_name(j)}: {_what(j)}")
         if j.mistake is not None:
-            lines.append(f"   {_sentence(j.mistake)}")
+            with on_paper(reader()):
+                lines.append(f"   {_sentence(j.mistake)}")
         if after:
             some = ", ".join(_name(f) for f in after[:6]) + (" ..." if len(after) > 6 else "")
-            lines.append(f"   {len(after)} follow from it: {some}")
+            said = tell_n("{n} follows from it: {numbers}", "{n} follow from it: {numbers}", len(after))
+            lines.append(f"   {said.format(n=len(after), numbers=some)}")
     if len(starts) > MOST:
-        lines.append("So many mistakes: was another variant drawn, or with other scale factors than stated?")
+        lines.append(tell("So many mistakes: was another variant drawn, or with other scale factors than stated?"))
     elif starts:
-        lines.append("Mend the first one first: what follows from it is right as soon as that is.")
+        lines.append(tell("Mend the first one first: what follows from it is right as soon as that is."))
     elif not count["amber"]:
-        lines.append("All within a pencil's reach.")
+        lines.append(tell("All within a pencil's reach."))
     return lines
 
 
 def _what(j: Judged) -> str:
     if j.scale:
         return j.scale
-    unit = f" {j.entry.unit}" if j.entry.unit else ""
-    text = f"{_written(j)}{unit} instead of {_exact(j)}"
-    if j.tolerance > EXACT:
-        text += f", {abs(j.deviation) / j.tolerance:.3g} times the tolerance"
-    if j.mistake is not None:
-        text += f"; {_where(j)}"
-    return f"{text}; {j.remark}" if j.remark else text
+    said = tell("{measured} instead of {exact}, {times} times the tolerance") if j.tolerance > EXACT else tell(
+        "{measured} instead of {exact}")
+    times = told(f"{abs(j.deviation) / j.tolerance:.3g}")
+    text = said.format(measured=_with_unit(j), exact=_exact(j), times=times)
+    return "; ".join(part for part in (text, _where(j), j.remark) if part)
 
 
 def _sentence(mistake: Mistake) -> str:
@@ -169,10 +180,13 @@ def _sentence(mistake: Mistake) -> str:
 
 
 def _where(j: Judged) -> str:
-    """Which step was drawn wrong, and by how much where that is a point on paper."""
-    assert j.mistake is not None
-    name, off = spoken(j.mistake.step.name), _off(j)
-    return f"it starts with {name}" if off is None else f"point {name} lies {number(off, 2)} mm off"
+    """Which step was drawn wrong, if one was, and by how much where that is a point on paper."""
+    if j.mistake is None:
+        return ""
+    name, off = letter_of(j.mistake.step), _off(j)
+    if off is None:
+        return tell("it starts with {step}").format(step=name)
+    return tell("point {point} lies {distance} mm off").format(point=name, distance=told(rounded(off, 2)))
 
 
 def _off(j: Judged) -> float | None:
@@ -197,7 +211,8 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
                     "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}
                    for j in sorted(judged, key=lambda j: j.order) if j.starts],
         "numbers": [{
-            "id": j.entry.id, "plan": j.entry.plan, "position": j.entry.label, "quantity": j.entry.quantity, "unit": j.entry.unit,
+            "id": j.entry.id, "plan": j.entry.plan, "position": j.entry.label, "quantity": j.entry.quantity,
+            "unit": said_unit(j.entry.unit),
             "line": j.line.line, "exact": j.exact, "measured": j.line.value, "deviation": j.deviation, "percent": j.percent,
             "tolerance": j.tolerance if isfinite(j.tolerance) else None, "verdict": j.verdict, "starts": j.starts,
             "follows": j.follows.entry.id if j.follows is not None else None, "remark": j.remark,

@@ -18,9 +18,10 @@ from tmm_sheets.compare.photo.profiles import follow, peaks, sample
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, Floats, Map, chords, homography
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.words import marked, tell
 
 STATIONS = 240  # along each side
-WANTED = (
+WANTED = marked(
     "the whole frame must be in the picture, flat and sharp, on a background that is not as light as the paper; the title block is "
     "form 1 or 2a of GOST 2.104 in the lower right corner"
 )
@@ -79,12 +80,12 @@ def fit_frame(grey: Grey, corners: Points, around: Sequence[Points]) -> FrameFit
         o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
         use = strength > 0.4 * np.median(strength)
         if min(np.bincount(side[use], minlength=4)) < STATIONS / 4:
-            raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
+            raise CannotBuild(tell("the frame cannot be followed along all its sides"), hint=tell(WANTED))
         seen = Seen(m.to_picture(p + n * o), p, n, use.astype(float))
         m, scatter = fit_map(m, seen)
         smear = _smear(profile[use], offsets, o[use])
         if not smear < 2:  # mm: there is no line at all
-            raise CannotBuild("the frame cannot be followed along all its sides", hint=WANTED)
+            raise CannotBuild(tell("the frame cannot be followed along all its sides"), hint=tell(WANTED))
     return FrameFit(m, seen, scatter, smear)
 
 

@@ -21,6 +21,7 @@ from tmm_sheets.compare.photo.profiles import ProfileLines, darkness, sample
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, Floats, Map, chords, homography, projected
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.words import marked, tell
 
 SMALL = 1800  # pixels of the longer side of the picture in which the frame is sought
 FOUND = 0.6  # least score of a frame: share of the title block's lines times share of the sides that have ink
@@ -29,7 +30,7 @@ ALONG = 0.8  # least share of ink in a line that runs all along a side
 BARE = 0.5  # share of ink below which a side is astray
 SHORTEST = 50  # pixels, of a side
 PALE = 45.0  # darkness below which nothing is a line
-SHARP = "hold the camera still and wait for it to focus, in more light; or scan the sheet"
+SHARP = marked("hold the camera still and wait for it to focus, in more light; or scan the sheet")
 OFFSETS = np.arange(-5.2, 5.3, 0.4)  # mm across the lines of the title block
 NEAR = 1.2  # mm within which a line of the title block may be
 
@@ -68,17 +69,18 @@ def find(grey: Grey, block: ProfileLines) -> FoundFrame:
     small = cv2.resize(grey, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
     ink = darkness(small, 8)
     if float(np.percentile(ink, 99.7)) < PALE:
-        raise CannotBuild("nothing in the picture is as dark as a drawn line: it is blurred, or the lines are too pale", hint=SHARP)
+        raise CannotBuild(tell("nothing in the picture is as dark as a drawn line: it is blurred, or the lines are too pale"),
+                          hint=tell(SHARP))
     best = _best(small, ink, block)
     if best is None or best.score < FOUND:
         share = 0.0 if best is None else max(best.score, 0.0)
-        raise CannotBuild(
-            "no frame with a title block was found in the picture "
-            f"(at best {100 * share:.0f} % of the title block's lines are where they belong)", hint=WANTED,
-        )
+        said = tell("no frame with a title block was found in the picture (at best {share} % of the title block's lines are "
+                    "where they "
+                    "belong)")
+        raise CannotBuild(said.format(share=round(100 * share)), hint=tell(WANTED))
     if best.mirrored:
-        raise CannotBuild("the picture is mirrored: the title block is on the wrong side",
-                          hint="take it from the front; switch off mirroring in the camera or the scanner")  # fmt: skip
+        raise CannotBuild(tell("the picture is mirrored: the title block is on the wrong side"),
+                          hint=tell("take it from the front; switch off mirroring in the camera or the scanner"))  # fmt: skip
     along = best.corners[1] - best.corners[0]
     turned = round(float(np.angle(along)) / (pi / 2)) % 4
     return replace(best, corners=best.corners / shrink, sides=tuple(s / shrink for s in best.sides), turned=turned)

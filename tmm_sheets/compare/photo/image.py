@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import replace
 from math import hypot
 from pathlib import Path
@@ -21,6 +22,7 @@ from tmm_sheets.compare.photo.rectification import LONGEST, MATCH, Rectified, re
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -59,9 +61,9 @@ def compare(
         When the picture has no frame, shows another sheet, or is too blurred or too small, or no view of ``views`` is in it.
     """
     sheet_numbers(project, n)
-    say("reading the picture and composing the sheet")
+    say(tell("reading the picture and composing the sheet"))
     with ThreadPoolExecutor(1) as aside:  # decoding runs beside Python
-        reading = aside.submit(read, path)
+        reading = aside.submit(copy_context().run, read, path)  # in the same language
         ours = known_sheet(project, n)
         picture = reading.result()
     known = ours.elements
@@ -71,17 +73,18 @@ def compare(
     notes = (*picture.notes, *found.notes)
     placed = None
     if places:
-        say("placing the views")
+        say(tell("placing the views"))
         placed = placed_views.place(known, places, found.map, found.ink)
         if not placed.similarities:
-            raise CannotBuild(f"{path}: none of the views of sheet {n} was found", hint="; ".join(placed.notes))
-        say("correcting by the lines of the views")
+            raise CannotBuild(tell("{file}: none of the views of sheet {n} was found").format(file=path, n=n),
+                              hint="; ".join(placed.notes))
+        say(tell("correcting by the lines of the views"))
         found = _corrected(picture, found, placed.elements)
         placed = placed_views.place(known, places, found.map, found.ink)
         known, notes = placed.elements, (*notes, *placed.notes)
     elif found.match < MATCH:
         _wrong_sheet(project, n, found, path, say)
-    say("measuring the elements")
+    say(tell("measuring the elements"))
     traces, extra = tracing.trace(known, found.ink)
     extra = [x for x in extra if placed is None or placed.strange(x)]
     return image_report(project.variant.project.name, n, path, found, traces, extra, pencil, notes)
@@ -109,15 +112,22 @@ def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
     for k in range(1, len(project.variant.sheets) + 1):
         if k == n:
             continue
-        say(f"trying sheet {k}")
+        say(tell("trying sheet {n}").format(n=k))
         lines = as_lines([e for e in known_sheet(project, k).elements if e.length < LONGEST], most=2500)
         _, _, match = rectification.refine(found.map, found.sides, found.ink, lines, found.level)
         if match > share:
             best, share = k, match
-    missing = f"only {100 * found.match:.0f} % of the lines of sheet {n} are where they belong"
+    project_name, matched = project.variant.project.name, round(100 * found.match)
     if best != n and share > max(MATCH, found.match + CERTAIN):
-        raise CannotBuild(f"{path} does not show sheet {n} but sheet {best} of {project.variant.project.name}: {missing}, "
-                          f"{100 * share:.0f} % of sheet {best}'s are", hint=f"try --sheet {best}")  # fmt: skip
-    raise CannotBuild(f"{path} does not show a sheet of {project.variant.project.name} as it is drawn here: {missing}",
-                      hint="is it another project or variant? A drawing with a layout of its own needs --views FILE, "
-                      "which tells where its views stand")  # fmt: skip
+        said = tell("{file} does not show sheet {n} but sheet {best} of {project}: only {matched} % of the lines of sheet {n} "
+                    "are where "
+                    "they belong, {share} % of sheet {best}'s are")
+        raise CannotBuild(said.format(file=path, n=n, best=best, project=project_name, matched=matched, share=round(100 * share)),
+                          hint=tell("try --sheet {n}").format(n=best))
+    said = tell("{file} does not show a sheet of {project} as it is drawn here: only {matched} % of the lines of sheet {n} are "
+                "where "
+                "they belong")
+    raise CannotBuild(said.format(file=path, n=n, project=project_name, matched=matched),
+                      hint=tell("is it another project or variant? A drawing with a layout of its own needs --views FILE, which "
+                                "tells "
+                                "where its views stand"))

@@ -18,7 +18,9 @@ from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding, judge
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
-from tmm_sheets.compare.report import Report
+from tmm_sheets.compare.report import Report, said_verdict
+from tmm_sheets.numbers import told
+from tmm_sheets.words import tell, tell_n
 
 
 @dataclass(frozen=True)
@@ -63,31 +65,59 @@ def image_report(
     judged = _Judged([judge(t, pencil, found.uncertainty, found.soft) for t in traces], extra)
     soft = SOFT_TOLERANCE if found.soft else 0.0
     count = judged.count
+    said = tell_n(
+        "Sheet {sheet} of {project}, {file}: {n} element judged, {green} within a pencil's reach, {amber} up to twice that, "
+        "{red} beyond",
+        "Sheet {sheet} of {project}, {file}: {n} elements judged, {green} within a pencil's reach, {amber} up to twice that, "
+        "{red} beyond",
+        sum(count.values()))
     lines = [
-        f"Sheet {n} of {name}, {path.name}: {sum(count.values())} elements judged, {count['green']} within a pencil's reach, "
-        f"{count['amber']} up to twice that, {count['red']} beyond",
-        f"{judged.dense} elements are too near to others to be measured; {judged.hidden_ends} ends of main lines and vectors lie "
-        f"under others and are judged only as far as they show; {len(extra)} places with ink that is not on the sheet",
-        f"Tolerance {pencil + found.uncertainty + soft:.2f} mm: pencil {pencil:.2f}, rectification {found.uncertainty:.2f}"
-        + (f", a picture that is not sharp {soft:.2f}; ends of thin lines are not judged" if soft else ""),
+        said.format(sheet=n, project=name, file=path.name, n=sum(count.values()), **count),
+        _hidden(judged),
+        _tolerance(pencil, found.uncertainty, soft),
         *_table(judged),
     ]
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
         "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged), "notes": list(notes),
     }  # fmt: skip
-    drawn = _overlays(found, judged, f"{name}: sheet {n}, {path.name}")
+    drawn = _overlays(found, judged, tell("{project}: sheet {n}, {file}").format(project=name, n=n, file=path.name))
     files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in drawn.items()}
     return Report("\n".join(lines), tree, files, notes)
 
 
+def _hidden(judged: _Judged) -> str:
+    """What could not be measured, and what is too much."""
+    return "; ".join((
+        tell_n("{n} element is too near to others to be measured", "{n} elements are too near to others to be measured",
+               judged.dense).format(n=judged.dense),
+        tell_n("{n} end of main lines and vectors lies under others and is judged only as far as it shows",
+               "{n} ends of main lines and vectors lie under others and are judged only as far as they show",
+               judged.hidden_ends).format(n=judged.hidden_ends),
+        tell_n("{n} place with ink that is not on the sheet", "{n} places with ink that is not on the sheet",
+               len(judged.extra)).format(n=len(judged.extra)),
+    ))
+
+
+def _tolerance(pencil: float, uncertainty: float, soft: float) -> str:
+    """The tolerance and what makes it, mm."""
+    said = tell("Tolerance {whole} mm: pencil {pencil}, rectification {uncertainty}, a picture that is not sharp {soft}; ends "
+                "of thin "
+                "lines are not judged") if soft else tell("Tolerance {whole} mm: pencil {pencil}, rectification {uncertainty}")
+    sizes = {"whole": pencil + uncertainty + soft, "pencil": pencil, "uncertainty": uncertainty, "soft": soft}
+    return said.format(**{part: told(f"{size:.2f}") for part, size in sizes.items()})
+
+
 def _table(judged: _Judged) -> list[str]:
     """The lines of the table of what is off, after an empty one; none when nothing is."""
-    rows = [(str(k), f.verdict or "", f"{f.deviation:.1f}" if f.deviation else "", called(f.element), f.element.view.name, f.what)
-            for k, f in enumerate(judged.bad, 1)]  # fmt: skip
-    rows += [(str(k), "amber", f"{x.length:.0f}", "extra ink", "", f"{x.width:.0f} x {x.height:.0f} mm about "
-              f"x = {x.middle.real:.0f}, y = {x.middle.imag:.0f}") for k, x in judged.numbered_extra()]  # fmt: skip
-    return ["", *table(("No.", "", "mm", "Element", "View", "What"), rows)] if rows else []
+    rows = [(str(k), said_verdict(f.verdict), told(f"{f.deviation:.1f}") if f.deviation else "", called(f.element),
+             f.element.view.name, f.what) for k, f in enumerate(judged.bad, 1)]
+    where = tell("{width} x {height} mm about x = {x}, y = {y}")
+    rows += [(str(k), said_verdict("amber"), f"{x.length:.0f}", tell("extra ink"), "", where.format(
+        width=f"{x.width:.0f}", height=f"{x.height:.0f}", x=f"{x.middle.real:.0f}", y=f"{x.middle.imag:.0f}"))
+        for k, x in judged.numbered_extra()]
+    head = (tell("No."), "", tell("mm"), tell("Element"), tell("View"), tell("What"))
+    return ["", *table(head, rows)] if rows else []
 
 
 def _tree(judged: _Judged) -> dict[str, Any]:

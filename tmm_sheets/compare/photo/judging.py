@@ -9,15 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.findings import Finding, excess, shifted, turned
+from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
+from tmm_sheets.numbers import told
+from tmm_sheets.words import marked, tell
 
 LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
 """Lines whose ends mean nothing exact: by hand they are overdrawn."""
 LOOSE = 2.5  # mm by which those may be too long or too short
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
-IN_REACH = "within a pencil's reach"
+IN_REACH = marked("within a pencil's reach")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,14 +79,15 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Ph
         deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
         worst = max(deviations, key=lambda d: d.share)
         said = "; ".join(d.said for d in deviations if d.said)
-        return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or IN_REACH, worst.place, t, worst.allowed)
+        return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or tell(IN_REACH), worst.place, t, worst.allowed)
     if t.status == "missing":
-        return PhotoFinding(e, "red", e.length, "missing", middle, t, tolerance)
+        return PhotoFinding(e, "red", e.length, tell("missing"), middle, t, tolerance)
     if t.status == "absent lettering":
-        return PhotoFinding(e, "amber", 0.0, "no lettering here", complex(e.points.mean()), t, tolerance)
+        return PhotoFinding(e, "amber", 0.0, tell("no lettering here"), complex(e.points.mean()), t, tolerance)
     if t.status == "shared" and t.deviation <= tolerance:
-        return PhotoFinding(e, "green", t.deviation, f"{IN_REACH}, with others in one stroke", middle, t, tolerance)
-    word = "not measurable: too near to others" if t.status in ("dense", "shared") else "there"
+        said = tell("within a pencil's reach, with others in one stroke")
+        return PhotoFinding(e, "green", t.deviation, said, middle, t, tolerance)
+    word = tell("not measurable: too near to others") if t.status in ("dense", "shared") else tell("there")
     return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
 
 
@@ -95,14 +98,22 @@ def _displacement(t: Trace, tolerance: float, middle: complex) -> _Deviation:
     return _Deviation(t.deviation, tolerance, place, _similarity_in_words(t, tolerance) if t.deviation > tolerance else "")
 
 
+_END = {
+    (0, True): marked("{by} mm too long at its beginning"), (0, False): marked("{by} mm too short at its beginning"),
+    (1, True): marked("{by} mm too long at its end"), (1, False): marked("{by} mm too short at its end"),
+}
+"""What an end is said to be: the first or the second, too long or too short."""
+
+
 def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
     """How far the ends that could be seen are off."""
     e, loose = t.element, t.element.style in LOOSE_STYLES
     allowed = LOOSE if loose else tolerance + pencil + 0.2  # 0.2 mm: the steps in which ends are seen
-    for end, which, at in ((t.ends[0], "beginning", e.points[0]), (t.ends[1], "end", e.points[-1])):
+    for k, at in ((0, e.points[0]), (1, e.points[-1])):
+        end = t.ends[k]
         if not np.isfinite(end) or (loose and soft):
             continue
-        said = f"{excess(end, 'long', 'short')} at its {which}" if abs(end) > allowed else ""
+        said = tell(_END[k, bool(end > 0)]).format(by=millimetres(end)) if abs(end) > allowed else ""
         off = min(abs(end), 2 * LOOSE) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)
 
@@ -114,11 +125,17 @@ def _similarity_in_words(t: Trace, tolerance: float) -> str:
     said = []
     if abs(t.growth) > 0.5 * tolerance:
         if e.kind in ("circle", "arc"):
-            said.append(f"radius {excess(t.growth)} ({e.radius + t.growth:.1f} for {e.radius:.1f})")
+            said.append(of_radius(t.growth, e.radius))
         elif e.kind == "curve":
-            said.append(f"{excess(t.growth)} in {half:.0f} mm")
+            said.append(_grown(t.growth, half))
     if abs(t.shift) > 0.5 * tolerance:
         said.append(shifted(t.shift))
     if e.kind != "circle" and abs(t.turn) * half > 0.5 * tolerance:
         said.append(turned(degrees(t.turn)))
-    return ", ".join(said) or f"off by up to {t.deviation:.1f} mm"
+    return ", ".join(said) or tell("off by up to {by} mm").format(by=told(f"{t.deviation:.1f}"))
+
+
+def _grown(by: float, half: float) -> str:
+    """An excess of a curve that reaches ``half`` mm to each side, mm, in words."""
+    said = tell("{by} mm too large in {size} mm") if by > 0 else tell("{by} mm too small in {size} mm")
+    return said.format(by=millimetres(by), size=f"{half:.0f}")

@@ -16,6 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.numbers import told
+from tmm_sheets.words import marked, tell, tell_n
 
 Grey = npt.NDArray[np.uint8]
 
@@ -30,10 +32,10 @@ LARGEST = 1_500_000_000
 BAND = 4_000_000
 """Pixels with transparency that are put on white at once."""
 PDF_DPI, MM = 200.0, 72 / 25.4
-SMALLER = "scan at 300 dpi in grey: A1 is 9930 x 7020 pixels then, more does not help"
+SMALLER = marked("scan at 300 dpi in grey: A1 is 9930 x 7020 pixels then, more does not help")
 PNG, WITH_ALPHA = b"\x89PNG\r\n\x1a\n", (b"\4", b"\6")
 """Beginning of a PNG file, and its colour types with transparency."""
-SHOW = 'a photograph or scan as JPG, PNG or PDF, for example "compare PROJECT --sheet 1 --image photo.jpg"'
+SHOW = marked('expected a photograph or scan as JPG, PNG or PDF, for example "compare PROJECT --sheet 1 --image photo.jpg"')
 
 
 class Picture(NamedTuple):
@@ -52,7 +54,7 @@ def need_opencv() -> None:
         With the command that installs it.
     """
     if find_spec("cv2") is None:
-        raise BadInput("comparing a photograph needs OpenCV, which is not installed", hint="pip install tmm-sheets[compare]")
+        raise BadInput(tell("comparing a photograph needs OpenCV, which is not installed"), hint="pip install tmm-sheets[compare]")
 
 
 def read(path: Path) -> Picture:
@@ -69,28 +71,32 @@ def read(path: Path) -> Picture:
     try:
         size = path.stat().st_size
         if size > LARGEST:
-            raise CannotBuild(f"{path}: {size / 1e9:.1f} GB are more than can be read ({LARGEST / 1e9:.1f} GB)", SMALLER)
+            raise CannotBuild(tell("{file}: {size} GB are more than can be read ({most} GB)").format(
+                file=path, size=told(f"{size / 1e9:.1f}"), most=told(f"{LARGEST / 1e9:.1f}")), tell(SMALLER))
         data = path.read_bytes()
     except FileNotFoundError:
-        raise BadInput(Problem("there is no such file", str(path), hint=f"expected {SHOW}")) from None
+        raise BadInput(Problem(tell("there is no such file"), str(path), hint=tell(SHOW))) from None
     except OSError as e:
-        raise BadInput(Problem(f"cannot be read: {e.strerror or e}", str(path), hint=f"expected {SHOW}")) from None
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path), hint=tell(SHOW))) from None
     if not data:
-        raise BadInput(Problem("the file is empty", str(path), hint=f"expected {SHOW}"))
+        raise BadInput(Problem(tell("the file is empty"), str(path), hint=tell(SHOW)))
     notes: tuple[str, ...] = ()
     if data.lstrip()[:5] == b"%PDF-":
         grey, notes = _page(data, path)
     else:
         decoded, notes = _decoded(data, path)
         if decoded is None:
-            raise BadInput(Problem("is not an image that can be read, or only part of one", str(path), hint=f"expected {SHOW}"))
+            raise BadInput(Problem(tell("is not an image that can be read, or only part of one"), str(path),
+                                   hint=tell(SHOW)))
         grey = decoded
     pixels = grey.shape[0] * grey.shape[1]
     if pixels < LEAST_PIXELS:
         raise CannotBuild(
-            f"{path}: {grey.shape[1]} x {grey.shape[0]} pixels are too few for an A1 sheet: thin lines cannot be seen",
-            hint="take the picture with at least 8 million pixels, the sheet filling it; messengers shrink pictures, so send it as "
-            "a file",
+            tell("{file}: {width} x {height} pixels are too few for an A1 sheet: thin lines cannot be seen").format(
+                file=path, width=grey.shape[1], height=grey.shape[0]),
+            hint=tell("take the picture with at least 8 million pixels, the sheet filling it; messengers shrink pictures, so "
+                      "send it as "
+                      "a file"),
         )
     _refuse_large(grey.shape[1], grey.shape[0], path)
     return Picture(grey, notes)
@@ -99,8 +105,9 @@ def read(path: Path) -> Picture:
 def _refuse_large(width: int, height: int, path: Path, side: int = LONGEST_SIDE) -> None:
     """Refuse a picture that would fill the memory, or has a longer side than that."""
     if width * height > MOST_PIXELS or max(width, height) > side:
-        raise CannotBuild(f"{path}: {width} x {height} pixels are more than can be handled: at most "
-                          f"{MOST_PIXELS / 1e6:.0f} million, {LONGEST_SIDE} along a side", SMALLER)  # fmt: skip
+        said = tell("{file}: {width} x {height} pixels are more than can be handled: at most {most} million, {side} along a side")
+        raise CannotBuild(said.format(file=path, width=width, height=height, most=MOST_PIXELS // 1_000_000, side=LONGEST_SIDE),
+                          tell(SMALLER))
 
 
 def _size(data: bytes) -> tuple[int, int] | None:
@@ -132,7 +139,7 @@ def _decoded(data: bytes, path: Path) -> tuple[Any, tuple[str, ...]]:
             with_alpha: Any = cv2.imdecode(raw, cv2.IMREAD_UNCHANGED)
             if with_alpha is not None and with_alpha.ndim == 3 and with_alpha.shape[2] == 4:
                 if int(with_alpha[:, :, 3].min()) < np.iinfo(with_alpha.dtype).max:
-                    return _on_white(with_alpha), (f"{path.name} is transparent; it was put on white",)
+                    return _on_white(with_alpha), (tell("{file} is transparent; it was put on white").format(file=path.name),)
                 del with_alpha
         return cv2.imdecode(raw, cv2.IMREAD_GRAYSCALE), ()
     except cv2.error:
@@ -170,25 +177,27 @@ def _on_white(with_alpha: Any) -> Grey:
 def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
     """The first page of a PDF."""
     if find_spec("pypdfium2") is None:
-        raise BadInput("reading a PDF needs pypdfium2, which is not installed",
-                       hint="pip install tmm-sheets[compare], or save the page as PNG")  # fmt: skip
+        raise BadInput(tell("reading a PDF needs pypdfium2, which is not installed"),
+                       hint=tell("pip install tmm-sheets[compare], or save the page as PNG"))  # fmt: skip
     import pypdfium2
 
     try:
         document = pypdfium2.PdfDocument(data)
     except pypdfium2.PdfiumError as e:
         if "password" in str(e).lower():
-            raise BadInput(Problem("the PDF is locked with a password", str(path), hint="save or print it without one")) from None
-        raise BadInput(Problem(f"is not a PDF that can be read: {e}", str(path), hint=f"expected {SHOW}")) from None
+            said = tell("the PDF is locked with a password")
+            raise BadInput(Problem(said, str(path), hint=tell("save or print it without one"))) from None
+        raise BadInput(Problem(tell("is not a PDF that can be read: {why}").format(why=e), str(path), hint=tell(SHOW))) from None
     try:
         pages = len(document)
         if not pages:
-            raise BadInput(Problem("the PDF has no page", str(path), hint=f"expected {SHOW}"))
+            raise BadInput(Problem(tell("the PDF has no page"), str(path), hint=tell(SHOW)))
         page = document[0]
         width, height = page.get_size()
         if not (isfinite(width) and isfinite(height) and 0 < max(width, height) <= 5 * min(width, height)):
-            raise CannotBuild(f"{path}: the page of {width / MM:.0f} x {height / MM:.0f} mm is not that of a sheet",
-                              hint="scan or print the whole sheet, A1, to one page")
+            raise CannotBuild(tell("{file}: the page of {width} x {height} mm is not that of a sheet").format(
+                file=path, width=f"{width / MM:.0f}", height=f"{height / MM:.0f}"),
+                hint=tell("scan or print the whole sheet, A1, to one page"))
         for image in page.get_objects(filter=[pypdfium2.raw.FPDF_PAGEOBJ_IMAGE]):
             _refuse_large(*_pixels_of(image), path, MOST_PIXELS)  # shrunk when the page is drawn, but decoded before
         scale = min(PDF_DPI / 72, (0.5 * MOST_PIXELS / max(width * height, 1.0)) ** 0.5)
@@ -201,5 +210,6 @@ def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
     finally:
         document.close()
     grey = pixels[:, :, 0] if pixels.ndim == 3 else pixels
-    note = (f"{path.name} has {pages} pages; the first was compared",) if pages > 1 else ()
+    said = tell_n("{file} has {n} page; the first was compared", "{file} has {n} pages; the first was compared", pages)
+    note = (said.format(file=path.name, n=pages),) if pages > 1 else ()
     return np.ascontiguousarray(grey), note

@@ -25,7 +25,8 @@ from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.placing import BESIDE, SYMBOL, Placing, moved
 from tmm_sheets.compare.view_places import ViewPlace
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.numbers import decimal
+from tmm_sheets.numbers import decimal, told
+from tmm_sheets.words import tell, tell_n
 
 FOUND = 0.5
 """Least share of a view's lines that must be in place."""
@@ -184,17 +185,23 @@ def _notes(
             yield _told(view, p, given[view])
     absent = ", ".join(f'"{view.name}"' for view, p in placed.items() if p.where is None and view not in given)
     if absent:
-        yield f"not in their places, and left out: {absent}; --views can tell where they stand"
+        yield tell("not in their places, and left out: {views}; --views can tell where they stand").format(views=absent)
     if count := sum(p.left_out for p in placed.values()):
-        yield f"{count} lines that lead from one view to another are not where they are on our sheet, and were not compared"
+        said = tell_n("{n} line that leads from one view to another is not where it is on our sheet, and was not compared",
+                      "{n} lines that lead from one view to another are not where they are on our sheet, and were not "
+                      "compared", count)
+        yield said.format(n=count)
 
 
 def _told(view: ElementView, placed: _PlacedView, given: ViewPlace) -> str:
     """What became of a view the file places: how large it was drawn, against ours or against the scale factor it was given."""
     if placed.where is None:
-        return f'view "{view.name}" was not found where --views says: {100 * placed.share:.0f} % of its lines are there'
+        said = tell('view "{view}" was not found where --views says: {share} % of its lines are there')
+        return said.format(view=view.name, share=round(100 * placed.share))
     size, degrees = placed.where.scale, placed.where.degrees
-    text = f'view "{view.name}" was fitted: {size:.4f} times as large as on our sheet, turned by {decimal(degrees)}°'
-    if given.mu is not None and view.mu is not None:
-        text += f"; with mu = {given.mu:g} it ought to be {view.mu / given.mu:.4f}"
-    return text
+    said = tell('view "{view}" was fitted: {size} times as large as on our sheet, turned by {degrees}°').format(
+        view=view.name, size=told(f"{size:.4f}"), degrees=told(decimal(degrees)))
+    if given.mu is None or view.mu is None:
+        return said
+    ought = tell("with mu = {mu} it ought to be {size}").format(mu=told(f"{given.mu:g}"), size=told(f"{view.mu / given.mu:.4f}"))
+    return f"{said}; {ought}"

@@ -26,6 +26,8 @@ from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, ink
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Map
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import told
+from tmm_sheets.words import marked, tell
 
 LEAST_SCALE, FAIR_SCALE = 2.0, 3.0
 """Pixels per mm of the sheet below which a photograph is refused, or draws a warning."""
@@ -37,7 +39,12 @@ MATCH = 0.5
 """Least share of a sheet's lines that must be where they belong."""
 RECTIFIED = 0.15
 """Error of a place after rectification, mm, not exceeded at 95 % of the places of simulated photographs."""
-TURNS = {1: "a quarter turn clockwise", 2: "a half turn", 3: "a quarter turn counter-clockwise"}
+TURNED = {
+    1: marked("{file} was turned by a quarter turn clockwise (the title block is known)"),
+    2: marked("{file} was turned by a half turn (the title block is known)"),
+    3: marked("{file} was turned by a quarter turn counter-clockwise (the title block is known)"),
+}
+"""What was done to a picture by quarter turns it was seen turned by."""
 COARSE = 4.0  # pixels per mm, enough for the correction
 COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2), (0.7, RELIEF + 1, 0.2))
 """Reach to either side of a line, mm; degree of the relief (above the highest: waves); distance that counts as far off, mm."""
@@ -103,7 +110,7 @@ def rectify(
     CannotBuild
         When there is no frame, or the picture is too blurred or too small.
     """
-    say("looking for the frame")
+    say(tell("looking for the frame"))
     try:
         found = frame_search.find(picture.grey, frame_lines(known))
         m, sides, scatter, smear = frame_fit.fit_frame(picture.grey, found.corners, found.sides)
@@ -111,7 +118,7 @@ def rectify(
         raise CannotBuild(f"{path}: {e.args[0]}", hint=e.hint) from None
     scale = float(np.abs(np.diff(found.corners)).min() / FRAME.height)
     notes = _remarks(path, scale, smear, found.turned)
-    say("correcting by the drawing's lines")
+    say(tell("correcting by the drawing's lines"))
     lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.role == "frame")])
     ink = straighten(picture.grey, m, COARSE)
     better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE, RELIEF if by_lines else 2)
@@ -131,18 +138,21 @@ def _remarks(path: Path, scale: float, smear: float, turned: int) -> tuple[str, 
         When it is too small or too blurred.
     """
     if scale < LEAST_SCALE:
-        raise CannotBuild(f"{path}: the sheet is {scale:.1f} pixels per millimetre: too few to measure lines 0.2 mm wide",
-                          hint="go nearer, or use more pixels: an A1 sheet that fills 12 million pixels has 4.5")  # fmt: skip
+        said = tell("{file}: the sheet is {scale} pixels per millimetre: too few to measure lines {width} mm wide")
+        hint = tell("go nearer, or use more pixels: an A1 sheet that fills 12 million pixels has {scale}")
+        raise CannotBuild(said.format(file=path, scale=told(f"{scale:.1f}"), width=told("0.2")), hint.format(scale=told("4.5")))
     if smear > BLURRED:
-        raise CannotBuild(f"{path}: the picture is blurred: edges of lines are smeared over {2 * smear:.1f} mm",
-                          hint=frame_search.SHARP)  # fmt: skip
+        said = tell("{file}: the picture is blurred: edges of lines are smeared over {size} mm")
+        raise CannotBuild(said.format(file=path, size=told(f"{2 * smear:.1f}")), hint=tell(frame_search.SHARP))
     notes = []
     if turned:
-        notes.append(f"{path.name} was turned by {TURNS[turned]} (the title block is known)")
+        notes.append(tell(TURNED[turned]).format(file=path.name))
     if scale < FAIR_SCALE:
-        notes.append(f"{path.name} has {scale:.1f} pixels per millimetre only: thin lines may be missed")
+        notes.append(tell("{file} has {scale} pixels per millimetre only: thin lines may be missed").format(
+            file=path.name, scale=told(f"{scale:.1f}")))
     if smear > SOFT:
-        notes.append(f"{path.name} is not sharp (edges of lines are smeared over {2 * smear:.1f} mm): thin lines may be missed")
+        notes.append(tell("{file} is not sharp (edges of lines are smeared over {size} mm): thin lines may be missed").format(
+            file=path.name, size=told(f"{2 * smear:.1f}")))
     return tuple(notes)
 
 
