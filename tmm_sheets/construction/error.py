@@ -226,7 +226,7 @@ class Errors:
         def value(step: Step) -> Any:
             for s in step.ancestors(values) if id(step) not in values else ():
                 self._note_lengths(s)
-                args = self._on_paper(s)
+                args = self.arguments(s)
                 # What is exact stays as it was computed: a mistake goes on through what is drawn.
                 if s.rule.exact or all(not isinstance(a, Step) or values[id(a)] is a.value for a in args):
                     values[id(s)] = s.value
@@ -238,7 +238,19 @@ class Errors:
 
         return value
 
-    def _on_paper(self, step: Step) -> tuple[Any, ...]:
+    def own(self, step: Step) -> Matrices:
+        """Root of the covariance that drawing or reading a step itself adds, shape (n, 2, 2) or (1, 2, 2)."""
+        known = self._of(step)
+        return np.zeros((1, 2, 2)) if known is None or id(step) not in self._numbers else known.scaled[:, :, -2:]
+
+    def replayed(self, step: Step, values: list[Any]) -> Any:
+        """The step done again from other values of its :meth:`arguments`."""
+        self._note_lengths(step)
+        with np.errstate(all="ignore"):
+            return _replayed(step, values, self._snapped(step, self.arguments(step)))
+
+    def arguments(self, step: Step) -> tuple[Any, ...]:
+        """Arguments as a pencil knows them: not those that only spare rounding, the points of a curve in its place."""
         if id(step) not in self._arguments:
             self._arguments[id(step)] = _on_paper(step)
         return self._arguments[id(step)]

@@ -52,8 +52,8 @@ SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
 LONG = 10.0
 """Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
-PLOTTED = 0.8
-"""Share of an ordinate's tolerance that the number it was plotted from has."""
+MOST_TOLD = 3
+"""Own numbers that are named."""
 CHANCE = 1e-3
 """How often a file without any mistake may be accused of one."""
 EXACT = 1e-6
@@ -70,10 +70,11 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     for j in judged:
         j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
-    own = OwnNumbers(judged, errors) if judged else None
-    if own is not None:
-        _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors, own, computed)
-        _against_own(own, found, _beyond_chance(len(judged)))
+    if judged:
+        own = OwnNumbers(judged, errors)
+        left = _wrong_scales([j for j in judged if id(j) not in computed])
+        _against_own(own, {id(j) for j in left})
+        _chains(left, errors, own, computed)
     for j in judged:
         if id(j) in computed and j.verdict != "green":
             origin = _origin(j, computed)
@@ -109,13 +110,14 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
     # A ruler is read no better than its reading is written.
     written = line.half_digit if e.terms or e.calculated else 0.0
-    tolerance = hypot(error, max(read, written), e.calculated * exact, _of_squares(e, errors, reading, ratio))
+    own = hypot(max(read, written), e.calculated * exact)
+    tolerance = hypot(error, own, _of_squares(e, errors, reading, ratio))
     # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
     if not isfinite(tolerance) or (e.kind == "length" and exact > LONG and tolerance > exact):
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact) if e.kind == "angle" else measured - exact
-    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size)
+    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size, reading=own)
     judged.remark = _remark(judged, measured, tolerance)
     return judged
 
@@ -329,27 +331,7 @@ class _Sheet:
     def shares(self, place: Place, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
         value = self.errors.displaced(self.steps[place], place[1], complex(*x))
-        return np.array([_changed(self.judged[i], value) for i in self.by_place[place][0]])
-
-
-def _changed(j: Judged, value: Callable[[Step], Any]) -> float:
-    """How much a number changes when the steps have other values."""
-    e = j.entry
-
-    def moved(step: Step, k: int) -> complex:
-        now, was = (np.asarray(x) for x in (value(step), step.value))
-        return complex(now[k] - was[k] if now.ndim else now - was)
-
-    if e.is_distance:
-        (tail, k, _), (head, _, g) = e.terms
-        away = complex(value_at(head, k) - value_at(tail, k))
-        change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
-    else:
-        change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
-        if len(e.terms) == 1 and not e.signed and e.kind != "angle":
-            change = abs(e.value + change) - e.value
-        change += sum(factor * abs(moved(step, k)) ** 2 for factor, step, k, _ in e.squares)
-    return float(change) * j.size
+        return np.array([self.judged[i].changed(value) for i in self.by_place[place][0]])
 
 
 def _loss(r: Any) -> Any:
@@ -367,8 +349,8 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers, computed: Map
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         open_[first] = False
-        start.follows = _own_reason(own, start, computed)
-        if start.follows is not None or abs(start.deviation) <= beyond * start.tolerance:
+        start.follows = None if start.off_own else _own_reason(own, start, computed)
+        if start.follows is not None or not start.off_own and abs(start.deviation) <= beyond * start.tolerance:
             continue
         start.starts = True
         tried += 1
@@ -404,32 +386,37 @@ def _beyond_chance(count: int) -> float:
 
 def _own_reason(own: OwnNumbers, j: Judged, computed: Mapping[int, list[Judged]]) -> Judged | None:
     """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
-    expected, tolerance = own.expected(j)
+    made = own.steps.value(j)
+    if made is None or not isfinite(made.tolerance):
+        expected, tolerance = own.expected(j)
+        reasons = own.reasons(j)
+    else:
+        expected, tolerance, reasons = made.expected, made.tolerance, made.reasons
     if abs(j.deviation - expected) > 2 * hypot(tolerance, CURVED * expected):
         return None
-    for earlier, part, _ in own.reasons(j):
+    for earlier, part in reasons:
         origin = _origin(earlier, computed)
         if (origin.starts or origin is not earlier) and abs(part) > SHARE * abs(expected):
             return origin
     return None
 
 
-def _against_own(own: OwnNumbers, found: Measurables, beyond: float) -> None:
-    """Accuse what a pencil might have made, but not from the student's own one number that it was plotted or computed from."""
+def _against_own(own: OwnNumbers, left: set[int]) -> None:
+    """Accuse what does not follow from the student's own numbers that it was drawn or computed from, also where a pencil might
+    have made it; but not what is right although they are wrong.
+    """
+    beyond = _beyond_chance(len(own.judged))
     for j in own.judged:
-        plotted = j.entry.kind == "length" and j.entry.scale in found.on_paper
-        computed = j.entry.kind == "result" and not j.entry.label and j.entry.id not in found.checks
-        if j.starts or j.follows is not None or not (plotted or computed) or not isfinite(j.tolerance):
+        made = own.steps.value(j) if id(j) in left and isfinite(j.tolerance) else None
+        if made is None or abs(j.deviation - made.expected) <= beyond * hypot(j.reading, CURVED * made.expected):
             continue
-        expected, tolerance = own.expected(j)
-        if abs(j.deviation - expected) <= beyond * hypot(tolerance, CURVED * expected):
-            continue
-        # Of what many numbers lead to, the linear guess is not good enough.
-        of, part, influence = (own.reasons(j) or [(j, 0.0, 0.0)])[0]
-        if influence > PLOTTED * j.tolerance and of.verdict == "green" and abs(expected - part) < SHARE * j.tolerance:
+        wrong = any(m.verdict != "green" for m, _ in made.reasons)
+        if abs(j.deviation - made.expected) > beyond * hypot(made.tolerance, CURVED * made.expected) and not (
+                wrong and j.verdict == "green"):
             j.off_own = j.starts = True
-            j.remark = (f"does not follow from your own {of.entry.quantity} = {number(of.line.value, 5)}: "
-                        f"that gives {number(j.exact + expected, 4)}")
+            own_numbers = ", ".join(f"{m.entry.quantity} = {number(m.line.value, 5)}" for m, _ in made.reasons[:MOST_TOLD])
+            j.remark = (f"does not follow from your own {own_numbers}: "  # words
+                        f"that gives {number(j.exact + made.expected, 4)}")
 
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:
