@@ -115,6 +115,8 @@ class Hand:
         if e.is_distance:
             (tail, k, _), (head, _, g) = e.terms
             value = abs(at(head, k) - at(tail, k)) * abs(g)
+        elif e.is_size:
+            value = abs(at(*e.terms[0][:2]))
         else:
             for step, k, g in e.terms:
                 exact = np.asarray(step.value)

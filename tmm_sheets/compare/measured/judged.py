@@ -89,6 +89,9 @@ class Judged:
             (tail, k, _), (head, _, g) = e.terms
             away = complex(value_at(head, k) - value_at(tail, k))
             change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
+        elif e.is_size:
+            (step, k, _), = e.terms
+            change = abs(complex(value_at(step, k)) + moved(step, k)) - e.value
         else:
             change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
             if len(e.terms) == 1 and not e.signed and e.kind != "angle":

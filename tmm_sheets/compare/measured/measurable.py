@@ -106,6 +106,11 @@ class Measurable:
         return len(self.terms) == 2 and not self.signed and self.terms[0][2] == -self.terms[1][2]
 
     @property
+    def is_size(self) -> bool:
+        """True for the magnitude of a force."""
+        return len(self.terms) == 1 and not self.signed and self.terms[0][0].rule.gives == "force"
+
+    @property
     def steps(self) -> str:
         """Names of the steps it is measured between."""
         return " ".join(dict.fromkeys(spoken(step.name) for step, _, _ in self.terms if not step.name.startswith("∂")))
