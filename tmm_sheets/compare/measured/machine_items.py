@@ -75,9 +75,9 @@ def gear(project: Project, found: Measurables) -> None:
     for name, told in pair.results().items():
         value = told.value
         if name in GEAR_ANGLES:
-            scalar(found, "Зубчатая передача", name, degrees(value), DEGREES)
+            scalar(found, "Зубчатая передача", name, degrees(value), DEGREES, part="gear")
         else:
-            scalar(found, "Зубчатая передача", name, value, "" if name in GEAR_NUMBERS else MILLIMETRES)
+            scalar(found, "Зубчатая передача", name, value, "" if name in GEAR_NUMBERS else MILLIMETRES, part="gear")
 
 
 def _sliding(plan: Plan, found: Measurables) -> None:

@@ -212,11 +212,12 @@ def angle_apart(a: float, b: float) -> float:
 
 
 def scalar(found: Measurables, title: str, name: str, value: Any, unit: str, terms: Iterable[Term] = (), *, scale: str = "",
-           reading: float = 0.0, calculated: float = CALCULATED, signed: bool = True) -> None:
-    """A result of the whole project."""
+           reading: float = 0.0, calculated: float = CALCULATED, signed: bool = True, part: str = "") -> None:
+    """A result of the whole project; its id begins with its ``part`` where another one has a result of that name, too."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         exact = isinstance(value, int)
-        entry = Measurable(f"{RESULTS}/{name}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms), scale,
+        key = f"{part}-{name}" if plain(f"{RESULTS}/{name}") in found.entries else name
+        entry = Measurable(f"{RESULTS}/{key}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms), scale,
                            calculated=0.0 if exact else calculated, reading=reading, signed=True)
         found.add(entry if signed else magnitude(entry))
 
