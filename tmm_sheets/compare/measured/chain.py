@@ -20,6 +20,7 @@ from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
+from tmm_sheets.compare.measured.own_steps import OwnValue
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import number
@@ -403,20 +404,26 @@ def _own_reason(own: OwnNumbers, j: Judged, computed: Mapping[int, list[Judged]]
 
 def _against_own(own: OwnNumbers, left: set[int]) -> None:
     """Accuse what does not follow from the student's own numbers that it was drawn or computed from, also where a pencil might
-    have made it; but not what is right although they are wrong.
+    have made it; but not what is right although they are wrong, nor what stands on a point that was seen wrong before.
     """
     beyond = _beyond_chance(len(own.judged))
+    seen: set[Place] = set()
     for j in own.judged:
         made = own.steps.value(j) if id(j) in left and isfinite(j.tolerance) else None
-        if made is None or abs(j.deviation - made.expected) <= beyond * hypot(j.reading, CURVED * made.expected):
-            continue
-        wrong = any(m.verdict != "green" for m, _ in made.reasons)
-        if abs(j.deviation - made.expected) > beyond * hypot(made.tolerance, CURVED * made.expected) and not (
-                wrong and j.verdict == "green"):
+        if made is not None and seen.isdisjoint(made.unmeasured) and _contradicts(j, made, beyond):
             j.off_own = j.starts = True
-            own_numbers = ", ".join(f"{m.entry.quantity} = {number(m.line.value, 5)}" for m, _ in made.reasons[:MOST_TOLD])
-            j.remark = (f"does not follow from your own {own_numbers}: "  # words
-                        f"that gives {number(j.exact + made.expected, 4)}")
+            told = ", ".join(f"{m.entry.quantity} = {number(m.line.value, 5)}" for m, _ in made.reasons[:MOST_TOLD])
+            j.remark = f"does not follow from your own {told}: that gives {number(j.exact + made.expected, 4)}"  # words
+        if j.verdict == "red":
+            seen |= {_place(step, k) for step, k, _ in j.entry.terms}
+
+
+def _contradicts(j: Judged, made: OwnValue, beyond: float) -> bool:
+    """Whether a number does not follow from those it was made of; a right one is no mistake where they are wrong."""
+    apart, doubt = abs(j.deviation - made.expected), CURVED * made.expected
+    if apart <= beyond * hypot(j.reading, doubt) or apart <= beyond * hypot(made.tolerance, doubt):
+        return False
+    return j.verdict != "green" or all(m.verdict == "green" for m, _ in made.reasons)
 
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:

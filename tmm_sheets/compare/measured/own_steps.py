@@ -61,6 +61,11 @@ class OwnValue:
         parts = [(m, -self._moved(place, -self._off[place])) for place, m in self._again.measured.items()]
         return sorted(parts, key=lambda part: -abs(part[1]))
 
+    @property
+    def unmeasured(self) -> Iterator[Place]:
+        """Steps between the measured numbers and this one, its own included."""
+        return (place for place, (_, measured) in self._again.steps.items() if measured is None)
+
     def _moved(self, place: Place, way: complex) -> float:
         """What the number does when one step comes out elsewhere."""
         return self._again.change(self._j, {**self._off, place: self._off.get(place, 0j) + way}) - self.expected if way else 0.0
