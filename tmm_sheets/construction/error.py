@@ -260,7 +260,12 @@ class Errors:
         return self._mu.get(id(step), 0.0)
 
     def order(self, step: Step) -> int:
-        """Number of a step in an order in which each stands after everything it depends on; -1 for what has no error."""
+        """Number of a step in an order in which each stands after everything it depends on; -1 for what has no error.
+
+        What is only measured, on no plan, has the number of the last step it is measured on.
+        """
+        if not step.plan:
+            return max((self.order(a) for a in step.args if isinstance(a, Step)), default=-1)
         self._of(step)
         return self._numbers.get(id(step), -1)
 

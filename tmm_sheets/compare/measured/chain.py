@@ -8,7 +8,8 @@ with the numbers that are in order as witnesses. A number whose deviation explai
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from contextlib import suppress
 from math import atan, degrees, hypot, isfinite, radians, tan
 from statistics import NormalDist
 from typing import Any
@@ -180,13 +181,18 @@ def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) 
         needs = [by_id[name] for name in check.needs if name in by_id]
         if j is None or len(needs) != len(check.needs):
             continue
-        times = filled.factors.get(check.scale, found.scales[check.scale].mu) if check.scale else 1.0
-        values = [n.line.value * times for n in needs]
+        mu = [factor_of(n.line, found.scales, filled.factors) if found.is_drawn(n.entry) else 1.0 for n in needs]
+        values = [n.line.value * times for n, times in zip(needs, mu, strict=True)]
         expected = check.compute(*values)
-        allowed = ROUNDED * abs(expected) + j.line.half_digit
+        # Where large parts leave little, rounding these counts.
+        parts = [expected]
+        allowed = j.line.half_digit
         for i, n in enumerate(needs):
-            moved = [*values[:i], values[i] + n.line.half_digit * times, *values[i + 1:]]
-            allowed += abs(check.compute(*moved) - expected)
+            near, none = ([*values[:i], x, *values[i + 1:]] for x in (values[i] + n.line.half_digit * mu[i], 0.0))
+            allowed += abs(check.compute(*near) - expected)
+            with suppress(ZeroDivisionError):
+                parts.append(expected - check.compute(*none))
+        allowed += ROUNDED * max(map(abs, parts))
         apart = j.line.value - expected if j.entry.signed else abs(j.line.value) - abs(expected)
         if abs(apart) <= allowed:
             computed[id(j)] = needs
@@ -351,7 +357,7 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers, computed: Map
         start = judged[first]
         open_[first] = False
         start.follows = None if start.off_own else _own_reason(own, start, computed)
-        if start.follows is not None or not start.off_own and abs(start.deviation) <= beyond * start.tolerance:
+        if start.follows is not None or (not start.off_own and abs(start.deviation) <= beyond * start.tolerance):
             continue
         start.starts = True
         tried += 1

@@ -133,4 +133,4 @@ def cam(project: Project, found: Measurables) -> None:
             scalar(found, "Кулачок", name, 1000 * float(step.value), MILLIMETRES, terms,
                    scale=step.plan if mu else "", reading=1000 * mu)
             if mu:
-                found.check(f"{RESULTS}/{name}", [f"{step.plan}/{step.name}"], lambda x: 1000 * x, step.plan)
+                found.check(f"{RESULTS}/{name}", [f"{step.plan}/{step.name}"], lambda x: 1000 * x)

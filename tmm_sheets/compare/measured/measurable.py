@@ -118,11 +118,13 @@ class Measurable:
 
 @dataclass(frozen=True)
 class Check:
-    """How a result is computed from other numbers of the same file: ``compute`` takes them in the order of ``needs``."""
+    """How a result is computed from other numbers of the same file: ``compute`` takes them in the order of ``needs``.
+
+    Lengths come multiplied by their scale factor.
+    """
 
     needs: tuple[str, ...]
     compute: Callable[..., float]
-    scale: str = ""
 
 
 @dataclass
@@ -140,9 +142,19 @@ class Measurables:
     notes: list[str] = field(default_factory=list)
     checks: dict[str, Check] = field(default_factory=dict)
 
-    def check(self, result: str, needs: Iterable[str], compute: Callable[..., float], scale: str = "") -> None:
-        """Note how a result follows from other numbers; with a ``scale`` the numbers come multiplied by its factor."""
-        self.checks.setdefault(plain(result), Check(tuple(map(plain, needs)), compute, scale))
+    def check(self, result: str, needs: Iterable[str], compute: Callable[..., float]) -> None:
+        """Note how a result follows from other numbers."""
+        self.checks.setdefault(plain(result), Check(tuple(map(plain, needs)), compute))
+
+    def mu(self, name: str) -> float:
+        """Scale factor of a length; 1 for what is no length."""
+        entry = self.entries[name]
+        return self.scales[entry.scale].mu if self.is_drawn(entry) else 1.0
+
+    @staticmethod
+    def is_drawn(entry: Measurable) -> bool:
+        """True for a length that has a scale factor."""
+        return entry.kind == "length" and bool(entry.scale)
 
     def errors(self, factors: Mapping[str, float], pencil: float, reading: float) -> Errors:
         """Error analysis of all plans, drawn with other scale factors where these say so."""

@@ -95,7 +95,7 @@ class OwnSteps:
 
     def _uncertain(self, step: Step, k: int) -> bool:
         error = self._errors.error(step)
-        return not error[min(k, len(error) - 1)] == 0
+        return bool(error[min(k, len(error) - 1)] != 0)
 
     def _gathered(self, step: Step, k: int, j: Judged, again: _Again) -> bool:
         """Gather what a step is made of, back to measured numbers; False where something drawn was not measured."""
@@ -167,7 +167,7 @@ class _Again:
             made = now
             if measured is None:
                 args = self.errors.arguments(step)
-                made = self.errors.replayed(step, [values.get(id(a), a.value) if isinstance(a, Step) else value_of(a) for a in args])
+                made = self.errors.replayed(step, [values.get(id(a), value_of(a)) for a in args])
             now, made = np.array(now), np.asarray(made)
             at = (place[1],) if now.ndim else ()
             now[at] = (made[at] if made.ndim else made) + (shifts.get(place, 0.0) if now.dtype.kind == "c" else
