@@ -159,6 +159,44 @@ def test_an_ordinate_is_plotted_as_it_was_computed(shaper, computed, plotted, sa
     assert ("does not follow from your own J_пр" in ordinate.remark) == (said == "red")
 
 
+@pytest.mark.parametrize(("off", "said"), [(0.0, "green"), (3.0, "green"), (9.0, "red"), (-9.0, "red")])
+def test_a_sum_is_plotted_from_its_parts(shaper, off, said):
+    """y_dE is four times the sum of what was measured on the diagrams of work: half a millimetre of reading is two there, a pencil
+    may be 4 mm off. The line of the driving work is straight from 0 at position 0 to y_K at position 10.
+    """
+    work, total = shaper.entries["work/y_A(5)"], shaper.entries["total-work/5/y_dE"]
+    driving = shaper.entries["driving-moment/y_K"]
+    own = {work.id: work.value - 0.9, driving.id: driving.value}
+    own[total.id] = 4 * (own[work.id] + 0.5 * own[driving.id]) + off
+    lines = [MeasuredLine(shaper.entries[name], value, 0.05, i) for i, (name, value) in enumerate(own.items())]
+    found = {j.entry.id: j for j in judged(shaper, Filled(lines))}[total.id]
+    assert found.tolerance == pytest.approx(3.9, abs=0.1)
+    assert found.verdict == said
+    assert found.starts == (said == "red")
+    assert ("does not follow from your own y_A(5)" in found.remark) == (said == "red")
+
+
+@pytest.mark.parametrize(("times", "said"), [(1.0, False), (1.02, True), (0.98, True)])
+def test_a_reaction_from_own_arms(shaper, some, times, said):
+    """F21 across the rocker is the sum of own forces times own arms over the own distance |CB|, worked out here by hand."""
+    filled = drawn(shaper, some)
+    own = {line.entry.id: line.value for line in filled.lines}
+    mu = shaper.scales["positions"].mu
+    # At position 2 all of them turn the rocker the same way about C.
+    forces = {"F34": own["results/2/F43"], "G3": 5.66 * 9.81, "G2": 2.8 * 9.81, "Fi3": own["results/2/Fi3"],
+              "Fi2": own["results/2/Fi2"]}
+    moment = sum(own[f"arms/2/h_{name}(C)"] * shaper.mu(f"arms/2/h_{name}(C)") * force for name, force in forces.items()) + own["results/2/Mi3"]
+    value = moment / (own["positions/2/CB"] * mu)
+    of = judged(shaper, changed(filled, results__2__F21t=float(f"{times * value:.4g}")))
+    found = next(j for j in of if j.entry.id == "results/2/F21t")
+    assert found.inconsistent == said
+
+
+def test_a_module_is_no_mass(shaper):
+    assert shaper.entries["results/m"].unit == "кг"
+    assert shaper.entries["results/gear-m"].value == 3.5
+
+
 def test_a_wrong_sign(shaper):
     name = "work/y_A(5)"
     filled = Hand(shaper, np.random.default_rng(1), sigma=0.0).filled({name: shaper.entries[name]})

@@ -415,7 +415,7 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
     beyond = _beyond_chance(len(own.judged))
     seen: set[Place] = set()
     for j in own.judged:
-        made = own.steps.value(j) if id(j) in left and isfinite(j.tolerance) else None
+        made = own.steps.value(j) if id(j) in left and isfinite(j.tolerance) and not j.inconsistent else None
         if made is not None and seen.isdisjoint(made.unmeasured) and _contradicts(j, made, beyond):
             j.off_own = j.starts = True
             told = ", ".join(f"{m.entry.quantity} = {number(m.line.value, 5)}" for m, _ in made.reasons[:MOST_TOLD])
