@@ -185,7 +185,7 @@ def test_a_reaction_from_own_arms(shaper, some, times, said):
     # At position 2 all of them turn the rocker the same way about C.
     forces = {"F34": own["results/2/F43"], "G3": 5.66 * 9.81, "G2": 2.8 * 9.81, "Fi3": own["results/2/Fi3"],
               "Fi2": own["results/2/Fi2"]}
-    moment = sum(own[f"arms/2/h_{name}(C)"] * shaper.mu(f"arms/2/h_{name}(C)") * force for name, force in forces.items()) + own["results/2/Mi3"]
+    forces = {"F34": own["results/2/F43"], "G3": 5.66 * 9.81, "G2": 2.8 * 9.81, **{f: own[f"results/2/{f}"] for f in ("Fi2", "Fi3")}}
     value = moment / (own["positions/2/CB"] * mu)
     of = judged(shaper, changed(filled, results__2__F21t=float(f"{times * value:.4g}")))
     found = next(j for j in of if j.entry.id == "results/2/F21t")

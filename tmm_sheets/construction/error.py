@@ -172,12 +172,14 @@ class Errors:
         The error and the gradient of the quantity by every step it goes back to, at its position, in the order of drawing.
         """
         at, sources, by, shares = self.causes(terms)
-        places, which = np.unique(np.stack((sources, at)), axis=1, return_inverse=True)
-        which = which.reshape(-1)
-        row, scaled = np.zeros((2, places.shape[1], 2))
+        count = at.max(initial=0) + 1
+        places, which = np.unique(sources * count + at, return_inverse=True)
+        row, scaled = np.zeros((2, len(places), 2))
         np.add.at(row, which, by)
         np.add.at(scaled, which, shares)
-        steps = [(self._steps[n], int(k), complex(*g)) for (n, k), g in zip(places.T, row, strict=True)]
+        gradients = row.view(complex)[:, 0].tolist()
+        steps = [(self._steps[n], k, g) for n, k, g in zip((places // count).tolist(), (places % count).tolist(), gradients,
+                                                           strict=True)]
         return float(np.linalg.norm(scaled)), steps
 
     def causes(self, terms: Iterable[tuple[Step, int, complex]]) -> tuple[Numbers, Numbers, Floats, Floats]:
