@@ -429,7 +429,10 @@ def _contradicts(j: Judged, made: OwnValue, beyond: float) -> bool:
     apart, doubt = abs(j.deviation - made.expected), CURVED * made.expected
     if apart <= beyond * hypot(j.reading, doubt) or apart <= beyond * hypot(made.tolerance, doubt):
         return False
-    return j.verdict != "green" or all(m.verdict == "green" for m, _ in made.reasons)
+    # Of a point or a force that is off only one direction was measured.
+    if any(m.verdict == "red" and np.iscomplexobj(step.value) for m, _ in made.reasons for step, _, _ in m.entry.terms):
+        return False
+    return j.verdict == "red" or all(m.verdict == "green" for m, _ in made.reasons)
 
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:
