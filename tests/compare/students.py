@@ -140,7 +140,7 @@ class Hand:
     def gone_on_with(self, e: Measurable, value: float) -> None:
         """What was computed and written down is what is plotted and computed with."""
         step, k, g = e.terms[0]
-        if step.plan in ("reduction", "moments") or e.id in self.wrong:
+        if step.plan in ("reduction", "moments") or e.is_size or e.id in self.wrong:
             made = np.array(self.value(step))
             at = (k,) if made.ndim else ()
             made[at] = made[at] * (value / abs(made[at])) if e.is_size else value / g.real
