@@ -115,6 +115,8 @@ class Hand:
         if e.is_distance:
             (tail, k, _), (head, _, g) = e.terms
             value = abs(at(head, k) - at(tail, k)) * abs(g)
+        elif e.is_size:
+            value = abs(at(*e.terms[0][:2]))
         else:
             for step, k, g in e.terms:
                 exact = np.asarray(step.value)
@@ -132,16 +134,16 @@ class Hand:
         check = self.found.checks.get(e.id)
         if check is None or not all(name in written for name in check.needs):
             return self.measured(e)
-        times = self.found.scales[check.scale].mu if check.scale else 1.0
         wrong = self.wrong[e.id].times if e.id in self.wrong else 1.0
-        return float(f"{wrong * check.compute(*(written[name] * times for name in check.needs)):.3g}")
+        return float(f"{wrong * check.compute(*(written[name] * self.found.mu(name) for name in check.needs)):.3g}")
 
     def gone_on_with(self, e: Measurable, value: float) -> None:
         """What was computed and written down is what is plotted and computed with."""
         step, k, g = e.terms[0]
-        if step.plan == "reduction" or e.id in self.wrong:
-            made = np.array(self.value(step), dtype=float)
-            made[(k,) if made.ndim else ()] = value / g.real
+        if step.plan in ("reduction", "moments") or e.is_size or e.id in self.wrong:
+            made = np.array(self.value(step))
+            at = (k,) if made.ndim else ()
+            made[at] = made[at] * (value / abs(made[at])) if e.is_size else value / g.real
             self.drawn[id(step)] = made
 
     def filled(self, chosen: Mapping[str, Measurable] | None = None) -> Filled:

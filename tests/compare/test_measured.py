@@ -10,10 +10,12 @@ import pytest
 
 from tests.compare.manual_tables import opened
 from tests.compare.students import PENCIL, READING, Hand, Plant
+from tests.compare.students import opened as measurables_of
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, read
 from tmm_sheets.compare.measured.measured_lengths import NAME
+from tmm_sheets.construction.step import value_at
 
 FEW = ("positions", "velocities", "accelerations", "force-5", "force-2", "lever")
 
@@ -157,6 +159,64 @@ def test_an_ordinate_is_plotted_as_it_was_computed(shaper, computed, plotted, sa
     assert ordinate.verdict == said
     assert ordinate.starts == (said == "red")
     assert ("does not follow from your own J_пр" in ordinate.remark) == (said == "red")
+
+
+@pytest.mark.parametrize(("off", "said"), [(0.0, "green"), (3.0, "green"), (9.0, "red"), (-9.0, "red")])
+def test_a_sum_is_plotted_from_its_parts(shaper, off, said):
+    """y_dE is four times the sum of what was measured on the diagrams of work: half a millimetre of reading is two there, a pencil
+    may be 4 mm off. The line of the driving work is straight from 0 at position 0 to y_K at position 10.
+    """
+    work, total = shaper.entries["work/y_A(5)"], shaper.entries["total-work/5/y_dE"]
+    driving = shaper.entries["driving-moment/y_K"]
+    own = {work.id: work.value - 0.9, driving.id: driving.value}
+    own[total.id] = 4 * (own[work.id] + 0.5 * own[driving.id]) + off
+    lines = [MeasuredLine(shaper.entries[name], value, 0.05, i) for i, (name, value) in enumerate(own.items())]
+    found = {j.entry.id: j for j in judged(shaper, Filled(lines))}[total.id]
+    assert found.tolerance == pytest.approx(3.9, abs=0.1)
+    assert found.verdict == said
+    assert found.starts == (said == "red")
+    assert ("does not follow from your own y_A(5)" in found.remark) == (said == "red")
+
+
+@pytest.mark.parametrize(("times", "said"), [(1.0, False), (1.02, True), (0.98, True)])
+def test_a_reaction_from_own_arms(shaper, some, times, said):
+    """F21 across the rocker is the sum of own forces times own arms over the own distance |CB|, worked out here by hand."""
+    filled = drawn(shaper, some)
+    own = {line.entry.id: line.value for line in filled.lines}
+    mu = shaper.scales["positions"].mu
+    # At position 2 all of them turn the rocker the same way about C.
+    forces = {"F34": own["results/2/F43"], "G3": 55.52, "G2": 27.47, **{x: own[f"results/2/{x}"] for x in ("Fi2", "Fi3")}}
+    arms = {force: own[f"arms/2/h_{force}(C)"] * shaper.mu(f"arms/2/h_{force}(C)") for force in forces}
+    moment = sum(arms[force] * size for force, size in forces.items()) + own["results/2/Mi3"]
+    value = moment / (own["positions/2/CB"] * mu)
+    of = judged(shaper, changed(filled, results__2__F21t=float(f"{times * value:.4g}")))
+    found = next(j for j in of if j.entry.id == "results/2/F21t")
+    assert found.inconsistent == said
+
+
+@pytest.mark.parametrize("off", [6, -6])
+def test_two_mistakes_in_one_plan(off):
+    """Points a3 and b5 of a velocity plan both 6 mm too far out: what is drawn from a3 follows from a3, the rest from b5."""
+    found = measurables_of("sixbar/6:3")
+    plan = next(plan for plan, _ in found.plans if plan.name == "velocities")
+    k = plan.labels.index("4")
+
+    def outwards(tail, head):
+        away = complex(value_at(plan[head], k) - value_at(plan[tail], k))
+        return off * away / abs(away)
+
+    some = {e.id: e for e in found.entries.values()
+            if e.plan in ("positions", "velocities") or (e.label == "4" and e.title == "Скорости")}
+    plants = (Plant("velocities", "4", "a3", outwards("p", "a3")), Plant("velocities", "4", "b5", outwards("b", "b5")))
+    of = {j.entry.id: j for j in judged(found, drawn(found, some, *plants, sigma=0.5))}
+    assert [j.entry.quantity for j in starts(of.values())] == ["|pa3|", "|bb5|"]
+    assert [of[f"velocities/4/{name}"].follows.entry.quantity for name in ("pb", "ps3", "pb5")] == ["|pa3|"] * 3
+    assert of["results/4/V_B5B"].follows.entry.quantity == "|bb5|"
+
+
+def test_a_module_is_no_mass(shaper):
+    assert shaper.entries["results/m"].unit == "кг"
+    assert shaper.entries["results/gear-m"].value == 3.5
 
 
 def test_a_wrong_sign(shaper):

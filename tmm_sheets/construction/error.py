@@ -172,12 +172,14 @@ class Errors:
         The error and the gradient of the quantity by every step it goes back to, at its position, in the order of drawing.
         """
         at, sources, by, shares = self.causes(terms)
-        places, which = np.unique(np.stack((sources, at)), axis=1, return_inverse=True)
-        which = which.reshape(-1)
-        row, scaled = np.zeros((2, places.shape[1], 2))
+        count = at.max(initial=0) + 1
+        places, which = np.unique(sources * count + at, return_inverse=True)
+        row, scaled = np.zeros((2, len(places), 2))
         np.add.at(row, which, by)
         np.add.at(scaled, which, shares)
-        steps = [(self._steps[n], int(k), complex(*g)) for (n, k), g in zip(places.T, row, strict=True)]
+        gradients = row.view(complex)[:, 0].tolist()
+        steps = [(self._steps[n], k, g) for n, k, g in zip((places // count).tolist(), (places % count).tolist(), gradients,
+                                                           strict=True)]
         return float(np.linalg.norm(scaled)), steps
 
     def causes(self, terms: Iterable[tuple[Step, int, complex]]) -> tuple[Numbers, Numbers, Floats, Floats]:
@@ -226,7 +228,7 @@ class Errors:
         def value(step: Step) -> Any:
             for s in step.ancestors(values) if id(step) not in values else ():
                 self._note_lengths(s)
-                args = self._on_paper(s)
+                args = self.arguments(s)
                 # What is exact stays as it was computed: a mistake goes on through what is drawn.
                 if s.rule.exact or all(not isinstance(a, Step) or values[id(a)] is a.value for a in args):
                     values[id(s)] = s.value
@@ -238,7 +240,19 @@ class Errors:
 
         return value
 
-    def _on_paper(self, step: Step) -> tuple[Any, ...]:
+    def own(self, step: Step) -> Matrices:
+        """Root of the covariance that drawing or reading a step itself adds, shape (n, 2, 2) or (1, 2, 2)."""
+        known = self._of(step)
+        return np.zeros((1, 2, 2)) if known is None or id(step) not in self._numbers else known.scaled[:, :, -2:]
+
+    def replayed(self, step: Step, values: list[Any]) -> Any:
+        """The step done again from other values of its :meth:`arguments`."""
+        self._note_lengths(step)
+        with np.errstate(all="ignore"):
+            return _replayed(step, values, self._snapped(step, self.arguments(step)))
+
+    def arguments(self, step: Step) -> tuple[Any, ...]:
+        """Arguments as a pencil knows them: not those that only spare rounding, the points of a curve in its place."""
         if id(step) not in self._arguments:
             self._arguments[id(step)] = _on_paper(step)
         return self._arguments[id(step)]
@@ -248,7 +262,12 @@ class Errors:
         return self._mu.get(id(step), 0.0)
 
     def order(self, step: Step) -> int:
-        """Number of a step in an order in which each stands after everything it depends on; -1 for what has no error."""
+        """Number of a step in an order in which each stands after everything it depends on; -1 for what has no error.
+
+        What is only measured, on no plan, has the number of the last step it is measured on.
+        """
+        if not step.plan:
+            return max((self.order(a) for a in step.args if isinstance(a, Step)), default=-1)
         self._of(step)
         return self._numbers.get(id(step), -1)
 

@@ -8,7 +8,8 @@ with the numbers that are in order as witnesses. A number whose deviation explai
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from math import atan, degrees, hypot, isfinite, radians, tan
 from statistics import NormalDist
 from typing import Any
@@ -20,6 +21,7 @@ from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
+from tmm_sheets.compare.measured.own_steps import OwnValue
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded, told
@@ -53,8 +55,8 @@ SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
 LONG = 10.0
 """Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
-PLOTTED = 0.8
-"""Share of an ordinate's tolerance that the number it was plotted from has."""
+MOST_TOLD = 3
+"""Own numbers that are named."""
 CHANCE = 1e-3
 """How often a file without any mistake may be accused of one."""
 EXACT = 1e-6
@@ -71,10 +73,11 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     for j in judged:
         j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
-    own = OwnNumbers(judged, errors) if judged else None
-    if own is not None:
-        _chains(_wrong_scales([j for j in judged if id(j) not in computed]), errors, own, computed)
-        _against_own(own, found, _beyond_chance(len(judged)))
+    if judged:
+        own = OwnNumbers(judged, errors)
+        left = _wrong_scales([j for j in judged if id(j) not in computed])
+        _against_own(own, {id(j) for j in left})
+        _chains(left, errors, own, computed)
     for j in judged:
         if id(j) in computed and j.verdict != "green":
             origin = _origin(j, computed)
@@ -112,13 +115,14 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
     # A ruler is read no better than its reading is written.
     written = line.half_digit if e.terms or e.calculated else 0.0
-    tolerance = hypot(error, max(read, written), e.calculated * exact, _of_squares(e, errors, reading, ratio))
+    own = hypot(max(read, written), e.calculated * exact)
+    tolerance = hypot(error, own, _of_squares(e, errors, reading, ratio))
     # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
     if not isfinite(tolerance) or (e.kind == "length" and exact > LONG and tolerance > exact):
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact) if e.kind == "angle" else measured - exact
-    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size)
+    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size, reading=own)
     judged.remark = _remark(judged, measured, tolerance)
     return judged
 
@@ -180,13 +184,18 @@ def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) 
         needs = [by_id[name] for name in check.needs if name in by_id]
         if j is None or len(needs) != len(check.needs):
             continue
-        times = filled.factors.get(check.scale, found.scales[check.scale].mu) if check.scale else 1.0
-        values = [n.line.value * times for n in needs]
+        mu = [factor_of(n.line, found.scales, filled.factors) if found.is_drawn(n.entry) else 1.0 for n in needs]
+        values = [n.line.value * times for n, times in zip(needs, mu, strict=True)]
         expected = check.compute(*values)
-        allowed = ROUNDED * abs(expected) + j.line.half_digit
+        # Where large parts leave little, rounding these counts.
+        parts = [expected]
+        allowed = j.line.half_digit
         for i, n in enumerate(needs):
-            moved = [*values[:i], values[i] + n.line.half_digit * times, *values[i + 1:]]
-            allowed += abs(check.compute(*moved) - expected)
+            near, none = ([*values[:i], x, *values[i + 1:]] for x in (values[i] + n.line.half_digit * mu[i], 0.0))
+            allowed += abs(check.compute(*near) - expected)
+            with suppress(ZeroDivisionError):
+                parts.append(expected - check.compute(*none))
+        allowed += ROUNDED * max(map(abs, parts))
         apart = j.line.value - expected if j.entry.signed else abs(j.line.value) - abs(expected)
         if abs(apart) <= allowed:
             computed[id(j)] = needs
@@ -339,27 +348,7 @@ class _Sheet:
     def shares(self, place: Place, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
         value = self.errors.displaced(self.steps[place], place[1], complex(*x))
-        return np.array([_changed(self.judged[i], value) for i in self.by_place[place][0]])
-
-
-def _changed(j: Judged, value: Callable[[Step], Any]) -> float:
-    """How much a number changes when the steps have other values."""
-    e = j.entry
-
-    def moved(step: Step, k: int) -> complex:
-        now, was = (np.asarray(x) for x in (value(step), step.value))
-        return complex(now[k] - was[k] if now.ndim else now - was)
-
-    if e.is_distance:
-        (tail, k, _), (head, _, g) = e.terms
-        away = complex(value_at(head, k) - value_at(tail, k))
-        change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
-    else:
-        change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
-        if len(e.terms) == 1 and not e.signed and e.kind != "angle":
-            change = abs(e.value + change) - e.value
-        change += sum(factor * abs(moved(step, k)) ** 2 for factor, step, k, _ in e.squares)
-    return float(change) * j.size
+        return np.array([self.judged[i].changed(value) for i in self.by_place[place][0]])
 
 
 def _loss(r: Any) -> Any:
@@ -377,8 +366,8 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers, computed: Map
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         open_[first] = False
-        start.follows = _own_reason(own, start, computed)
-        if start.follows is not None or abs(start.deviation) <= beyond * start.tolerance:
+        start.follows = None if start.off_own else _own_reason(own, start, computed)
+        if start.follows is not None or (not start.off_own and abs(start.deviation) <= beyond * start.tolerance):
             continue
         start.starts = True
         tried += 1
@@ -414,31 +403,45 @@ def _beyond_chance(count: int) -> float:
 
 def _own_reason(own: OwnNumbers, j: Judged, computed: Mapping[int, list[Judged]]) -> Judged | None:
     """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
-    expected, tolerance = own.expected(j)
+    made = own.steps.value(j)
+    if made is None or not isfinite(made.tolerance):
+        expected, tolerance = own.expected(j)
+        reasons = own.reasons(j)
+    else:
+        expected, tolerance, reasons = made.expected, made.tolerance, made.reasons
     if abs(j.deviation - expected) > 2 * hypot(tolerance, CURVED * expected):
         return None
-    for earlier, part, _ in own.reasons(j):
+    for earlier, part in reasons:
         origin = _origin(earlier, computed)
         if (origin.starts or origin is not earlier) and abs(part) > SHARE * abs(expected):
             return origin
     return None
 
 
-def _against_own(own: OwnNumbers, found: Measurables, beyond: float) -> None:
-    """Accuse what a pencil might have made, but not from the student's own one number that it was plotted or computed from."""
+def _against_own(own: OwnNumbers, left: set[int]) -> None:
+    """Accuse what does not follow from the student's own numbers that it was drawn or computed from, also where a pencil might
+    have made it; but not what is right although they are wrong, nor what stands on a point that was seen wrong before.
+    """
+    beyond = _beyond_chance(len(own.judged))
+    seen: set[Place] = set()
     for j in own.judged:
-        plotted = j.entry.kind == "length" and j.entry.scale in found.on_paper
-        computed = j.entry.kind == "result" and not j.entry.label and j.entry.id not in found.checks
-        if j.starts or j.follows is not None or not (plotted or computed) or not isfinite(j.tolerance):
-            continue
-        expected, tolerance = own.expected(j)
-        if abs(j.deviation - expected) <= beyond * hypot(tolerance, CURVED * expected):
-            continue
-        # Of what many numbers lead to, the linear guess is not good enough.
-        of, part, influence = (own.reasons(j) or [(j, 0.0, 0.0)])[0]
-        if influence > PLOTTED * j.tolerance and of.verdict == "green" and abs(expected - part) < SHARE * j.tolerance:
+        made = own.steps.value(j) if id(j) in left and isfinite(j.tolerance) and not j.inconsistent else None
+        if made is not None and seen.isdisjoint(made.unmeasured) and _contradicts(j, made, beyond):
             j.off_own = j.starts = True
-            j.remark = _own_gives([of], j.exact + expected)
+            j.remark = _own_gives([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)
+        if j.verdict == "red":
+            seen |= {_place(step, k) for step, k, _ in j.entry.terms}
+
+
+def _contradicts(j: Judged, made: OwnValue, beyond: float) -> bool:
+    """Whether a number does not follow from those it was made of; a right one is no mistake where they are wrong."""
+    apart, doubt = abs(j.deviation - made.expected), CURVED * made.expected
+    if apart <= beyond * hypot(j.reading, doubt) or apart <= beyond * hypot(made.tolerance, doubt):
+        return False
+    # Of a point or a force that is off only one direction was measured.
+    if any(m.verdict == "red" and np.iscomplexobj(step.value) for m, _ in made.reasons for step, _, _ in m.entry.terms):
+        return False
+    return j.verdict == "red" or all(m.verdict == "green" for m, _ in made.reasons)
 
 
 def _best(sheet: _Sheet, i: int) -> Mistake | None:

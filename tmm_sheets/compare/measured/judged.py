@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +12,7 @@ import numpy.typing as npt
 from tmm_sheets.compare.measured.measurable import Measurable
 from tmm_sheets.compare.measured.measured_file import MeasuredLine
 from tmm_sheets.compare.report import Verdict, verdict
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Step, value_at
 
 Place = tuple[int, int]
 """A step and a position."""
@@ -33,7 +35,7 @@ class Judged:
     """A measured number with its judgement, in its own unit.
 
     ``follows`` is the number in which its chain of errors starts, itself not included; ``starts`` is True for such a number.
-    ``tolerance`` is infinite where the construction has none to give.
+    ``tolerance`` is infinite where the construction has none to give, ``reading`` the part of it that reading and computing have.
     """
 
     line: MeasuredLine
@@ -49,6 +51,7 @@ class Judged:
     inconsistent: bool = False
     off_own: bool = False
     size: float = 1.0
+    reading: float = 0.0
     order: int = 0
 
     @property
@@ -73,3 +76,24 @@ class Judged:
     def at(self) -> int:
         """Number of the position among those of the plans."""
         return self.entry.terms[-1][1] if self.entry.terms else 0
+
+    def changed(self, value: Callable[[Step], Any]) -> float:
+        """How much the number changes when the steps have other values."""
+        e = self.entry
+
+        def moved(step: Step, k: int) -> complex:
+            now, was = (np.asarray(x) for x in (value(step), step.value))
+            return complex(now[k] - was[k] if now.ndim else now - was)
+
+        if e.is_distance:
+            (tail, k, _), (head, _, g) = e.terms
+            away = complex(value_at(head, k) - value_at(tail, k))
+            change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
+        elif e.is_size:
+            (step, k, _), = e.terms
+            change = abs(complex(value_at(step, k)) + moved(step, k)) - e.value
+        else:
+            change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
+            if len(e.terms) == 1 and not e.signed and e.kind != "angle":
+                change = abs(e.value + change) - e.value
+        return float(change) * self.size

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from math import degrees
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import degrees, prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from tmm_sheets.compare.measured.measurable import (
     length,
     magnitude,
     measured_step,
+    plain,
     size,
 )
 from tmm_sheets.compare.measured.measured_units import (
@@ -32,13 +33,14 @@ from tmm_sheets.compare.measured.measured_units import (
     MOMENT,
     SPEED,
 )
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.linkage import accelerations
-from tmm_sheets.methods.linkage.forces import MOMENTS
+from tmm_sheets.methods.linkage.forces import GIVEN_FORCE, MOMENTS, OPPOSITE, TANGENTIAL, WEIGHT
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 from tmm_sheets.words import tell, tr
 
@@ -133,7 +135,7 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
                 called = letters.get(head.name, name)
                 found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, called, unit, "result", drawn.value * mu,
                                      terms, key, mu))
-                found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float, key)
+                found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float)
             for link, step in turning.items():
                 alike = step.rule in (SAME, accelerations.SAME) and link != project.mechanism.crank.link
                 if link != project.mechanism.frame and not alike:
@@ -250,8 +252,7 @@ def _force_plans(project: Project, found: Measurables) -> None:
                 given.add(step.name)
                 if step.name in sides:
                     side = sides[step.name]
-                    found.check(f"{RESULTS}/{label}/{step.name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float,
-                                plan.name)
+                    found.check(f"{RESULTS}/{label}/{step.name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float)
                 path = f"{RESULTS}/{label}/{step.name}"
                 found.add(size(tell("Reactions"), path, label, letter_of(step), FORCE, k, step, by=step))
 
@@ -292,7 +293,10 @@ def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
         about = step.args[0]
         link = step.name.removeprefix("ΣM").split("–")[0]
         key = "scheme-crank" if link == crank and "scheme-crank" in found.scales else schemes.get(link, "positions")
-        for at, force in zip(step.args[1::3], step.args[2::3], strict=False):
+        moments: dict[tuple[str, ...], float] = {}
+        for at, force, couple in zip(step.args[1::3], step.args[2::3], step.args[3::3], strict=True):
+            if isinstance(couple, Step):
+                moments[f"{RESULTS}/{label}/{couple.name}",] = float(value_at(couple, k))
             if not isinstance(force, Step) or at is about or not abs(complex(value_at(force, k))) > 0:
                 continue
             arm = Step(f"∂h{force.name}", rules.ARM, (about, at, force))
@@ -302,3 +306,37 @@ def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
             found.add(Measurable(f"arms/{label}/{name}", "arms", tell("Arms of forces"), label,
                                  f"h_{letter_of(force)}({letter_of(about)})", MILLIMETRES, "length", abs(value) / mu,
                                  ((arm, k, complex(sign / mu)),), key, 1.0, head=arm))
+            moment = float(ar.moment(*(complex(value_at(a, k)) for a in (about, at, force))))
+            if moment:
+                known = force.args[0] if force.rule is OPPOSITE else force
+                drawn = known.rule in (WEIGHT, GIVEN_FORCE)
+                moments[f"arms/{label}/{name}", *(() if drawn else (f"{RESULTS}/{label}/{known.name}",))] = moment
+        _from_moments(project, found, step, moments)
+
+
+def _from_moments(project: Project, found: Measurables, total: Step, moments: Mapping[tuple[str, ...], float]) -> None:
+    """What an equation of moments gives, from arms and forces; ``moments`` by the ids of the numbers that each is a product of."""
+    f, k = project.study.forces, project.force_index
+    label = project.study.labels[k]
+    products = [(tuple(map(plain, names)), moment) for names, moment in moments.items() if moment]
+    for result in [part.vector for part in f.from_moments] + ([f.balancing] if f.balancing is not None else []):
+        if result.args[0] is not total:
+            continue
+        across = []
+        if result.rule is TANGENTIAL:
+            _, centre, at = result.args
+            distance = np.atleast_1d(np.abs(centre.value - at.value))
+            if np.ptp(distance) > 1e-9 * np.max(distance):  # along a slider; that of a link is given
+                across.append(plain(f"positions/{label}/{centre.name}{at.name}"))
+        needs = list(dict.fromkeys([name for names, _ in products for name in names] + across))
+        if not products or any(name not in found.entries for name in needs):
+            continue
+        exact = {name: found.entries[name].value * found.mu(name) for name in needs}
+
+        def compute(*values: float, exact: Mapping[str, float] = exact, of: float = abs(complex(value_at(result, k))),
+                    products: Sequence[tuple[tuple[str, ...], float]] = products, across: Sequence[str] = across) -> float:
+            share = {name: value / exact[name] for name, value in zip(exact, values, strict=True)}
+            now = sum(moment * prod(share[name] for name in names) for names, moment in products)
+            return of * abs(now / sum(moment for _, moment in products)) / prod(share[name] for name in across)
+
+        found.check(f"{RESULTS}/{label}/{result.name}", needs, compute)

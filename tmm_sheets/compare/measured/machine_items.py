@@ -75,9 +75,10 @@ def gear(project: Project, found: Measurables) -> None:
     for name, told in pair.results().items():
         value = told.value
         if name in GEAR_ANGLES:
-            scalar(found, tell("Gear pair"), name, degrees(value), DEGREES)
+            scalar(found, tell("Gear pair"), name, degrees(value), DEGREES, part="gear")
         else:
-            scalar(found, tell("Gear pair"), name, value, "" if name in GEAR_NUMBERS else MILLIMETRES)
+            scalar(found, tell("Gear pair"), name, value, "" if name in GEAR_NUMBERS else MILLIMETRES,
+                   part="gear")
 
 
 def _sliding(plan: Plan, found: Measurables) -> None:
@@ -133,4 +134,4 @@ def cam(project: Project, found: Measurables) -> None:
             scalar(found, tell("Cam"), name, 1000 * float(step.value), MILLIMETRES, terms,
                    scale=step.plan if mu else "", reading=1000 * mu)
             if mu:
-                found.check(f"{RESULTS}/{name}", [f"{step.plan}/{step.name}"], lambda x: 1000 * x, step.plan)
+                found.check(f"{RESULTS}/{name}", [f"{step.plan}/{step.name}"], lambda x: 1000 * x)

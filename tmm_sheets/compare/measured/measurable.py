@@ -105,6 +105,11 @@ class Measurable:
         return len(self.terms) == 2 and not self.signed and self.terms[0][2] == -self.terms[1][2]
 
     @property
+    def is_size(self) -> bool:
+        """True for the magnitude of a force."""
+        return len(self.terms) == 1 and not self.signed and self.terms[0][0].rule.gives == "force"
+
+    @property
     def steps(self) -> str:
         """Names of the steps it is measured between."""
         return " ".join(dict.fromkeys(letter_of(step) for step, _, _ in self.terms if not step.name.startswith("∂")))
@@ -112,11 +117,13 @@ class Measurable:
 
 @dataclass(frozen=True)
 class Check:
-    """How a result is computed from other numbers of the same file: ``compute`` takes them in the order of ``needs``."""
+    """How a result is computed from other numbers of the same file: ``compute`` takes them in the order of ``needs``.
+
+    Lengths come multiplied by their scale factor.
+    """
 
     needs: tuple[str, ...]
     compute: Callable[..., float]
-    scale: str = ""
 
 
 @dataclass
@@ -134,9 +141,19 @@ class Measurables:
     notes: list[str] = field(default_factory=list)
     checks: dict[str, Check] = field(default_factory=dict)
 
-    def check(self, result: str, needs: Iterable[str], compute: Callable[..., float], scale: str = "") -> None:
-        """Note how a result follows from other numbers; with a ``scale`` the numbers come multiplied by its factor."""
-        self.checks.setdefault(plain(result), Check(tuple(map(plain, needs)), compute, scale))
+    def check(self, result: str, needs: Iterable[str], compute: Callable[..., float]) -> None:
+        """Note how a result follows from other numbers."""
+        self.checks.setdefault(plain(result), Check(tuple(map(plain, needs)), compute))
+
+    def mu(self, name: str) -> float:
+        """Scale factor of a length; 1 for what is no length."""
+        entry = self.entries[name]
+        return self.scales[entry.scale].mu if self.is_drawn(entry) else 1.0
+
+    @staticmethod
+    def is_drawn(entry: Measurable) -> bool:
+        """True for a length that has a scale factor."""
+        return entry.kind == "length" and bool(entry.scale)
 
     def errors(self, factors: Mapping[str, float], pencil: float, reading: float) -> Errors:
         """Error analysis of all plans, drawn with other scale factors where these say so."""
@@ -208,11 +225,12 @@ def angle_apart(a: float, b: float) -> float:
 
 
 def scalar(found: Measurables, title: str, name: str, value: Any, unit: str, terms: Iterable[Term] = (), *, scale: str = "",
-           reading: float = 0.0, calculated: float = CALCULATED, signed: bool = True) -> None:
-    """A result of the whole project."""
+           reading: float = 0.0, calculated: float = CALCULATED, signed: bool = True, part: str = "") -> None:
+    """A result of the whole project; its id begins with its ``part`` where another one has a result of that name, too."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         exact = isinstance(value, int)
-        entry = Measurable(f"{RESULTS}/{name}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms), scale,
+        key = f"{part}-{name}" if plain(f"{RESULTS}/{name}") in found.entries else name
+        entry = Measurable(f"{RESULTS}/{key}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms), scale,
                            calculated=0.0 if exact else calculated, reading=reading, signed=True)
         found.add(entry if signed else magnitude(entry))
 

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare.measured.own_steps import OwnSteps
+
 if TYPE_CHECKING:
     from tmm_sheets.compare.measured.judged import Judged
     from tmm_sheets.construction.error import Errors
@@ -29,6 +31,7 @@ class OwnNumbers:
         # What is measured on a step comes before what is computed from it.
         self.judged = [judged[i] for i in sorted(range(len(judged)),
                                                  key=lambda i: (judged[i].order, judged[i].entry.kind == "result", i))]
+        self.steps = OwnSteps(self.judged, errors)
         self._rank = {id(j): r for r, j in enumerate(self.judged)}
         self._tolerances = np.array([j.tolerance if _informative(j) else np.inf for j in self.judged])
         self._units = np.where(np.isfinite(self._tolerances), self._tolerances, 1.0)
@@ -43,17 +46,17 @@ class OwnNumbers:
         expected = float(self._deviations[r] - self._independent[r] * own)
         return expected * unit, own * unit if np.isfinite(self._tolerances[r]) else float("inf")
 
-    def reasons(self, j: Judged) -> list[tuple[Judged, float, float]]:
+    def reasons(self, j: Judged) -> list[tuple[Judged, float]]:
         """Earlier numbers with the greatest influence on what is expected of a number, the greatest first.
 
-        With each, what it contributes to the expected deviation, and what it would when it was off by its tolerance.
+        With each, what it contributes to the expected deviation.
         """
         r = self._rank[id(j)]
         if r == 0:
             return []
         weights = _solved(self._root[:r, :r].T[::-1, ::-1], self._root[r, :r][::-1])[::-1]
         parts, unit = weights * self._deviations[:r], float(self._units[r])
-        return [(self.judged[k], float(parts[k]) * unit, abs(float(weights[k])) * unit) for k in np.argsort(-np.abs(weights))]
+        return [(self.judged[k], float(parts[k]) * unit) for k in np.argsort(-np.abs(weights))]
 
 
 def _solved(lower: Any, right: Any) -> Floats:
