@@ -137,7 +137,7 @@ def test_protocol_has_the_scale_factors_of_the_sheet():
     data = PROJECTS["manual 000"]
     canvas = whole(data)
     assert {name: scale.mu for name, scale in canvas.scales.items()} == {"cam-motion": 1.0, "cam-zone": 2e-4, "cam-profile": 1e-4}
-    assert {s.mu for s in (data.cam.motion.scales.dds, data.cam.motion.scales.ds, data.cam.motion.scales.s)} == {1e-3, 2e-4, 5e-5}
+    assert {s.mu for s in (data.cam.motion.scales.dds, data.cam.motion.scales.ds, data.cam.motion.scales.s)} == {1e-3, 1.5e-4, 5e-5}
     assert "μ" in texts(drawn("cam.motion", data))
 
 

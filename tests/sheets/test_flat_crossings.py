@@ -184,7 +184,7 @@ def test_the_analysed_position_may_be_in_the_second_turn():
     p = near({"cycle.turns": 2, "cycle.force_position": "18"})
     found = sheet.composed(p, 1)
     told = " ".join(g.text for g in found.groups if g.kind == "lettering")
-    assert "В положениях 5–7 засечку точки C нельзя провести точнее 2,3 мм" in told
+    assert "В положениях 5–7 засечку точки C нельзя провести точнее 2,5 мм" in told
     assert "линии сходятся под углом 13°; для силового расчёта возьмите положение 4, 16 (0,6 мм)" in told
     assert "На плане ускорений в положении 18 точку c нельзя найти" in told
     assert found.crowded == ()
@@ -206,7 +206,7 @@ def test_the_better_position_is_on_the_same_stroke():
 def test_the_warning_in_words(project, composed):
     (found,) = flat_crossings.find(project, project.study.positions.plan, range(12), composed.scales)
     assert flat_crossings.said(project, found) == (
-        "В положениях 5–7 засечку точки C нельзя провести точнее 2,3 мм: в положении 6 линии сходятся под углом 13°; "
+        "В положениях 5–7 засечку точки C нельзя провести точнее 2,5 мм: в положении 6 линии сходятся под углом 13°; "
         "для силового расчёта возьмите положение 4 (0,6 мм)")
     other = replace(found, positions=(1, 5), worst=5, mm=None, angle=0.05, better=None)
     assert flat_crossings.said(project, other) == (
@@ -229,7 +229,7 @@ def lettering_of(composed, start):
 @pytest.mark.parametrize(
     ("start", "view"),
     [("В положениях 5–7 засечку", "kinematics.position_plans"), ("На плане скоростей", "kinematics.velocity_plans"),
-     ("На плане ускорений", "kinematics.acceleration_plan"), ("На плане сил группы 2–3", "kinetics.groups")],
+     ("На плане ускорений", "kinematics.acceleration_plan"), ("На плане сил группы 2–3", "kinetics.group")],
 )  # fmt: skip
 def test_the_warning_stands_free_in_its_view(composed, start, view):
     assert composed.crowded == ()
@@ -290,7 +290,7 @@ def test_check_tells(capsys):
     told = capsys.readouterr()
     assert told.out == "near: OK\n"
     assert told.err == (
-        "near: positions 5–7: point C can be drawn no better than 2.3 mm, its lines cross under 13.2 deg "
+        "near: positions 5–7: point C can be drawn no better than 2.5 mm, its lines cross under 13.2 deg "
         "at position 6; position 4 is better (0.6 mm)\n"
     )  # fmt: skip
     assert run(["check", "lugansk/shaper"]) == 0

@@ -17,6 +17,8 @@ from tmm_sheets.drawing.lettering import Lettering, fitted, letter, size_for
 from tmm_sheets.drawing.marks import Arc, Box, Dimension, Fill, Form, Line, Mark, PlacedFrame, Points, Polyline, Role, Text, Trace
 
 Align = Literal["left", "centre", "right"]
+SMALLEST = 2.5
+"""Least height of letters, mm."""
 ARROW = (5.0, 0.85)
 """Length and half width of an arrow head, mm (GOST 2.307: about 20 degrees)."""
 LOOSE = 0.25
@@ -335,8 +337,8 @@ class Canvas:
     def table(self, corner: complex, widths: Sequence[float], rows: Sequence[Sequence[str]], row: float = 7.0,
               height: float = 3.5, header: int = 1) -> Box:
         """Table with its upper left corner at ``corner``; the first ``header`` rows are ruled off with a main line."""
-        total, x0, y1 = sum(widths), corner.real, corner.imag
-        y0 = y1 - row * len(rows)
+        widths, x0, y1 = _for_text(widths, rows), corner.real, corner.imag
+        total, y0 = sum(widths), y1 - row * len(rows)
         for i in range(len(rows) + 1):
             y = y1 - i * row
             self.line(complex(x0, y), complex(x0 + total, y), "main" if i in (0, header, len(rows)) else "thin")
@@ -367,6 +369,16 @@ class Canvas:
         self._one("arrow", first)
         mid = rect(1, start + share * (end - start))
         self.label(vertex + radius * mid, markup, mid, height)
+
+
+def _for_text(widths: Sequence[float], rows: Sequence[Sequence[str]]) -> list[float]:
+    """Widths of columns in which all cells have room in the smallest letters, what is missing taken from where there is more."""
+    least = [max(letter(cell, SMALLEST).width for cell in column) + 1.0 for column in zip(*rows, strict=True)]
+    short = sum(max(need - w, 0.0) for w, need in zip(widths, least, strict=True))
+    spare = sum(max(w - need, 0.0) for w, need in zip(widths, least, strict=True))
+    if not 0 < short <= spare:
+        return list(widths)
+    return [need if w < need else w - (w - need) * short / spare for w, need in zip(widths, least, strict=True)]
 
 
 @in_role("hatch")

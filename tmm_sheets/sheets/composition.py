@@ -59,8 +59,15 @@ def arranged(project: Project, n: int) -> Arrangement:
         leaf.leaf = number
     boxes = [view.box for view in whole.views]
     room = Box(min(b.x0 for b in boxes), TITLE_BLOCK.y0, TITLE_BLOCK.x1, max(b.y1 for b in boxes))
-    found = {number: _below_designation(box) for number, box in solve(tree, room).items()}
+    found = solve(tree, room)
+    if not all(_kept(view.box, found[node.leaf]) for _, parts in there for view, node in parts if view.draw not in NEEDS):
+        return plan
     return replace(plan, views=tuple(_placed(view, node, found) for _, parts in there for view, node in parts))
+
+
+def _kept(box: Box, place: Box) -> bool:
+    """Whether a view that tells no need is still where its box is, up to rounding: then it stays just there."""
+    return max(abs(a - b) for a, b in zip(box, place, strict=True)) <= 3.0
 
 
 def _leaves(node: Node) -> Iterator[Node]:
@@ -83,7 +90,9 @@ def _below_designation(box: Box) -> Box:
 
 def _placed(view: View, node: Node, found: dict[int, Box]) -> View:
     """A view in its new place; one of several parts with the places of these as its option ``places``."""
-    parts = [found[leaf.leaf] for leaf in _leaves(node)]
+    if view.draw not in NEEDS:
+        return view
+    parts = [_below_designation(found[leaf.leaf]) for leaf in _leaves(node)]
     box = Box(min(b.x0 for b in parts), min(b.y0 for b in parts), max(b.x1 for b in parts), max(b.y1 for b in parts))
     return replace(view, box=box, options={**view.options, "places": parts} if len(parts) > 1 else view.options)
 

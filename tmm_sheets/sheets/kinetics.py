@@ -350,8 +350,9 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     frame = fit_frame(project, canvas, "lever", "μ_V", tr("(m/s)/mm"), *lever_scheme(project, k, shown), box.inset(*LEVER))
     plain: Scale | None = canvas.scales.get("velocities")
     text = str(frame.scale)
-    if plain is not None and plain.mu > frame.scale.mu * 1.01:
-        text = tr("{scale} (enlarged {times})").format(scale=text, times=times(plain.mu / frame.scale.mu))
+    ratio = plain.mu / frame.scale.mu if plain is not None else 1.0
+    if ratio > 1.01 and abs(100 * ratio - round(100 * ratio)) < 1e-6:  # 2,667 times tells nothing
+        text = tr("{scale} (enlarged {times})").format(scale=text, times=times(ratio))
     canvas.title(box, tr("Zhukovsky lever (position {label})").format(label=project.cycle.labels[k]), text)
     turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
     for seg in lv.velocities.plan.segments:

@@ -20,7 +20,7 @@ GAP = 6.0
 """Largest distance that is kept between views, mm: the room of a view left out goes to its neighbours."""
 STEPS = (60.0, 35.0, 20.0, 11.0, 6.0), (4.0, 2.0, 1.0)
 """How far borders move at a time, mm: at first as far as is best, in the end to the millimetre."""
-ROUNDS = 4
+ROUNDS = 3
 """How often all borders are tried with each of these."""
 _SERIES = (*HANDY, 10.0)
 
@@ -97,15 +97,20 @@ class Node:
     def _of(self, child: Node, size: float, width: float, height: float) -> float:
         return child.cost(width, size) if self.axis else child.cost(size, height)
 
-    def settle(self, width: float, height: float, steps: Sequence[float]) -> None:
-        """Move each border by that of some steps, to one side or the other, which costs least, then those inside the parts."""
-        free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
-        for i in range(len(self.children) - 1):
-            self._move(i, i + 1, [step / free for step in steps], width, height)
-        for child, size in zip(self.children, self.sizes(width, height), strict=True):
-            child.settle(width if self.axis else size, size if self.axis else height, steps)
+    def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
+        """Move each border by that of some steps, to one side or the other, which costs least, then those inside the parts.
 
-    def _move(self, i: int, j: int, steps: Sequence[float], width: float, height: float) -> None:
+        Whether any moved.
+        """
+        free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
+        moved = False
+        for i in range(len(self.children) - 1):
+            moved |= self._move(i, i + 1, [step / free for step in steps], width, height)
+        for child, size in zip(self.children, self.sizes(width, height), strict=True):
+            moved |= child.settle(width if self.axis else size, size if self.axis else height, steps)
+        return moved
+
+    def _move(self, i: int, j: int, steps: Sequence[float], width: float, height: float) -> bool:
         pair = [self.children[i], self.children[j]]
 
         def cost(shares: Sequence[float]) -> float:
@@ -116,6 +121,7 @@ class Node:
         moved = [[now[0] + d, now[1] - d] for by in steps for d in (by, -by) if now[0] + d > 0 < now[1] - d]
         best = min([now, *moved], key=lambda shares: round(cost(shares), 3))
         self.shares[i], self.shares[j] = best
+        return best is not now
 
     def places(self, box: Box) -> dict[int, Box]:
         """Place of each view, its borders at whole millimetres."""
@@ -132,7 +138,8 @@ def solve(tree: Node, box: Box) -> dict[int, Box]:
     """Places of the views of a tree in a rectangle, by their numbers."""
     for steps in STEPS:
         for _ in range(ROUNDS):
-            tree.settle(box.width, box.height, steps)
+            if not tree.settle(box.width, box.height, steps):
+                break
     return tree.places(box)
 
 
