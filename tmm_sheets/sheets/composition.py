@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
 """Place of the title block among the views."""
+MAIN = 3.0
+"""How much more than others the position plans count: the mechanism is what a sheet is about."""
 DESIGNATION = Box(20.0, 573.0, 92.0, 589.0)
 """Place of the turned designation, over the views in the upper left corner (GOST 2.104)."""
 
@@ -140,7 +142,7 @@ def _leaf(box: Box, need: Need, share: float = 1.0) -> Node:
 def _positions(project: Project, view: View) -> Node:
     around = kinematic_frames.positions_around(project, view.options)
     z, d = kinematic_frames.positions_reach(project)
-    return _leaf(view.box, _reaching(view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0)), 1.5)
+    return _leaf(view.box, _reaching(view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0)), MAIN)
 
 
 def _velocities(project: Project, view: View) -> Node:
