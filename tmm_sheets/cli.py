@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
 """Formats of drawings."""
 
+NOTE_FORMATS = ("pdf", "docx")
+"""Formats of the explanatory note."""
+
 PARTS = ("positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "cam")
 """Parts of the results."""
 
@@ -342,6 +345,29 @@ def why(project: str, result: str, corrected: bool) -> None:
 
     for line in reasons.lines(_open(project, corrected), result):
         click.echo(line)
+
+
+@commands.command()
+@PROJECT
+@CORRECTED
+@option("--format", "formats", default="pdf", show_default=True, callback=_among(NOTE_FORMATS), metavar="F,F",
+        help=f"Formats: {', '.join(NOTE_FORMATS)}.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the note.  [default: out/<project>]")
+def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path | None) -> None:
+    """Write the explanatory note of PROJECT: text, formulas, tables and figures from the record, ready to be printed."""
+    from tmm_sheets import files
+    from tmm_sheets.note import note as writing
+    from tmm_sheets.progress import Progress
+
+    writing.check(formats)
+    opened = _open(project, corrected)
+    folder = _folder(opened.variant, output)
+    files.check_folder(folder)
+    with Progress() as progress:
+        made, _ = writing.write(opened, formats, lambda what: progress.say(f"{what} ..."))
+        files.write_all({folder / name: data for name, data in made.items()})
+    for name in made:
+        click.echo(folder / name)
 
 
 def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:

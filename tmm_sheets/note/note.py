@@ -1,0 +1,72 @@
+"""The files of a note: composed once, set as PDF for the page numbers, written in the formats asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from tmm_sheets.errors import CannotBuild
+
+if TYPE_CHECKING:
+    from tmm_sheets.note.document import Note
+    from tmm_sheets.project import Project
+
+FORMATS = ("pdf", "docx")
+"""Formats of the note."""
+PACKAGES = {"pdf": ("typst",), "docx": ("typst", "docx")}
+"""What each format is made with; pages of the contents are counted in the PDF for both."""
+
+
+def check(formats: Iterable[str]) -> None:
+    """Tell at once that a package is missing.
+
+    Raises
+    ------
+    CannotBuild
+        which one, for which format, and how to install it.
+    """
+    for form in formats:
+        missing = [name for name in PACKAGES[form] if find_spec(name) is None]
+        if missing:
+            names = " and ".join({"docx": "python-docx"}.get(name, name) for name in missing)
+            raise CannotBuild(f"the note as {form.upper()} needs {names}", "install the extra: pip install 'tmm-sheets[note]'")
+
+
+def write(project: Project, formats: Iterable[str] = ("pdf",), say: Callable[[str], None] = lambda _: None) -> tuple[dict[str, bytes], int]:
+    """Contents of the files note.pdf, note.docx by their names, and the number of pages without what is not part of the note.
+
+    Raises
+    ------
+    CannotBuild
+        when a package is missing, there are no templates of the language, or nothing of the project can be drawn.
+    """
+    formats = tuple(formats)
+    check(formats)
+    from tmm_sheets.note import composing
+
+    note = composing.compose(project, say)
+    say("pages")
+    note, data, places = _settled(note)
+    made: dict[str, bytes] = {}
+    for form in formats:
+        if form == "pdf":
+            made["note.pdf"] = data
+        else:
+            from tmm_sheets.note import docx_writer
+
+            say("docx")
+            made["note.docx"] = docx_writer.render(note, places)
+    return made, int(places["pages"])
+
+
+def _settled(note: Note) -> tuple[Note, bytes, dict[str, int]]:
+    """The note with its pages counted, and its PDF: set again when the number changes what it is told in."""
+    from tmm_sheets.note import composing, typst_writer
+
+    guess = composing.counted(note, 40)
+    data, places = typst_writer.render(guess)
+    if places["pages"] != 40:
+        guess = composing.counted(note, int(places["pages"]))
+        data, places = typst_writer.render(guess)
+    return guess, data, places

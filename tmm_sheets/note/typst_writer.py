@@ -1,0 +1,208 @@
+"""The note as PDF: a Typst source from the document tree, set by the package typst."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.note.document import (
+    Block,
+    Contents,
+    Figure,
+    Formula,
+    Heading,
+    NewPage,
+    Note,
+    Paragraph,
+    Sheet,
+    Symbol,
+    Table,
+    Text,
+    Where,
+)
+from tmm_sheets.note.formula import (
+    Barred,
+    Fenced,
+    Figures,
+    Fraction,
+    Letters,
+    Node,
+    Root,
+    Row,
+    Scripts,
+    Sign,
+    Underlined,
+    Words,
+)
+from tmm_sheets.resources import template
+
+MISSING = ("the note as PDF needs the package typst", "install the extra: pip install 'tmm-sheets[note]'")
+
+
+def render(note: Note) -> tuple[bytes, dict[str, int]]:
+    """The PDF, and the pages by number of the headings ("toc-0" ...) and of all ("pages").
+
+    Raises
+    ------
+    CannotBuild
+        when the package typst is missing.
+    """
+    try:
+        import typst
+    except ImportError:
+        raise CannotBuild(*MISSING) from None
+    import json
+
+    with TemporaryDirectory(prefix="tmm-note-") as folder:
+        root = Path(folder)
+        for name, data in pictures(note.blocks()).items():
+            (root / name).write_bytes(data)
+        (root / "preamble.typ").write_bytes(template("note/preamble.typ").read_bytes())
+        (root / "note.typ").write_text(source(note), encoding="utf-8")
+        fonts = [str(template("note/fonts")), str(template("fonts"))]
+        compiler = typst.Compiler(root / "note.typ", root=root, font_paths=fonts, ignore_system_fonts=True)
+        data = compiler.compile(format="pdf", timestamp=0, pdf_tags=False)
+        found = json.loads(compiler.query("<places>", field="value", one=True))
+    assert isinstance(data, bytes)
+    return data, found
+
+
+def pictures(blocks: Iterable[Block]) -> dict[str, bytes]:
+    """SVG files of the figures and sheets by their names."""
+    return {f"{file_name(b)}.svg": b.svg for b in blocks if isinstance(b, Figure | Sheet)}
+
+
+def file_name(block: Figure | Sheet) -> str:
+    """Name of the file of a picture."""
+    return f"sheet-{block.number}" if isinstance(block, Sheet) else f"fig-{block.number.replace('.', '-')}"
+
+
+def source(note: Note) -> str:
+    """The Typst source of a note."""
+    w = _Writer()
+    body = "\n".join(map(w.block, note.body))
+    front = "\n".join(map(w.block, note.front))
+    reminders = "\n".join(map(w.block, note.reminders))
+    fields = ", ".join(f"{string(k)}: {string(v)}" for k, v in (note.frame.fields | note.frame.words).items())
+    title = ", ".join(f"{string(k)}: {_value(v)}" for k, v in note.title_page.items())
+    return (
+        '#import "preamble.typ": *\n'
+        f"#show: note.with(lang: {string(note.language)}, title: {string(note.title)}, author: {string(note.author)}, "
+        f"first: {note.first_page}, words: ({fields or ':'}))\n"
+        f"#title-page(({title}))\n{front}\n{body}\n#last-page()\n#places()\n"
+        + (f"#reminders[{reminders}]\n" if reminders else "")
+    )
+
+
+def _value(value: Any) -> str:
+    return f"({', '.join(string(x) for x in value)},)" if isinstance(value, list | tuple) else string(str(value))
+
+
+def string(text: str) -> str:
+    """A string literal of Typst."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+
+
+class _Writer:
+    """Blocks as Typst, with the headings counted for the contents."""
+
+    def __init__(self) -> None:
+        self.headings = 0
+
+    def block(self, b: Block) -> str:
+        """One block."""
+        made: str = getattr(self, f"_{type(b).__name__.lower()}")(b)
+        return made
+
+    def _heading(self, b: Heading) -> str:
+        text = f"{b.number}  {b.text}" if b.number else b.text
+        self.headings += 1
+        return f"#title({b.level}, {string(text)}, toc: {'true' if b.number or b.level == 1 else 'false'})"
+
+    def _paragraph(self, b: Paragraph) -> str:
+        return f"#{ {'plain': 'para', 'item': 'item', 'centre': 'middle', 'right': 'aside', 'where': 'para'}[b.look]}[{text(b.text)}]\n"
+
+    def _formula(self, b: Formula) -> str:
+        lines = " ".join(f"${math(x)}$," for x in b.lines)
+        return f"#formula(({lines}), {string(b.number)})"
+
+    def _where(self, b: Where) -> str:
+        rows = " ".join(f"([${math(r.symbol)}$], {string(r.meaning + (', ' + r.unit if r.unit else ''))})," for r in b.rows)
+        return f"#where({string(b.word)}, ({rows}))"
+
+    def _table(self, b: Table) -> str:
+        columns = max(map(len, b.rows))
+        rows = ", ".join("(" + ", ".join(f"[{text(c)}]" for c in row) + ",)" for row in b.rows)
+        return f"#grid-table({string(b.number)}, {string(b.title)}, {columns}, ({rows},))"
+
+    def _figure(self, b: Figure) -> str:
+        turned = "true" if b.turned else "false"
+        return (f"#picture({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')}, {b.width:.2f}mm, {b.height:.2f}mm, "
+                f"{turned})")
+
+    def _sheet(self, b: Sheet) -> str:
+        return f"#sheet({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')})"
+
+    def _contents(self, b: Contents) -> str:
+        return f"#contents({string(b.title)})"
+
+    def _newpage(self, b: NewPage) -> str:
+        return "#pagebreak(weak: true)"
+
+
+def text(parts: Text) -> str:
+    """Running text."""
+    return "".join(f"${math(x.node)}$" if isinstance(x, Symbol) else f"#{string(str(x))};" for x in parts)
+
+
+_SIGNS = {"·": "dot.op", "∥": "parallel", "⟂": "perp", "|": "bar.v", "/": "slash", "(": "\\(", ")": "\\)", ",": '","', ";": '";"',
+          "′": "prime", "″": "prime.double", ":": '":"', "°": '"°"', "–": '"–"', "%": '"%"', "*": '"*"', "…": "dots.h"}  # fmt: skip
+
+
+def math(node: Node) -> str:
+    """A formula in Typst's mathematics, between dollar signs."""
+    if isinstance(node, Letters):
+        return _letter(node.text)
+    if isinstance(node, Figures):
+        return string(node.text)
+    if isinstance(node, Words):
+        return " space " if node.text == " " else string(node.text)
+    if isinstance(node, Sign):
+        return _SIGNS.get(node.text, node.text)
+    if isinstance(node, Row):
+        return " ".join(map(math, node.items)) or '""'
+    if isinstance(node, Scripts):
+        parts = [math(node.base)]
+        if node.above is not None:
+            parts.append(f"t: {math(node.above)}")
+        if node.below is not None:
+            parts.append(f"b: {math(node.below)}")
+        return f"attach({', '.join(parts)})"
+    if isinstance(node, Fraction):
+        return f"frac({math(node.over)}, {math(node.under)})"
+    if isinstance(node, Root):
+        return f"sqrt({math(node.of)})"
+    if isinstance(node, Fenced):
+        left, right = (_SIGNS.get(x, x) for x in (node.left, node.right))
+        return f"lr({left} {math(node.of)} {right})"
+    if isinstance(node, Barred):
+        return f"overline({math(node.of)})"
+    assert isinstance(node, Underlined)
+    made = math(node.of)
+    for _ in range(node.times):
+        made = f"underline({made})"
+    return made
+
+
+_GREEK = {"α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta", "η": "eta", "θ": "theta", "κ": "kappa",
+          "λ": "lambda", "μ": "mu", "ν": "nu", "ξ": "xi", "π": "pi", "ρ": "rho", "σ": "sigma", "τ": "tau", "φ": "phi", "χ": "chi",
+          "ψ": "psi", "ω": "omega", "Δ": "Delta", "Σ": "Sigma", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega", "Θ": "Theta"}  # fmt: skip
+
+
+def _letter(c: str) -> str:
+    if c in _GREEK:
+        return _GREEK[c] if c not in "ΔΣ" else f"upright({_GREEK[c]})"
+    return c if c.isascii() and c.isalpha() and len(c) == 1 else string(c)
