@@ -40,7 +40,19 @@ class Symbol:
     node: Node
 
 
-Inline = str | Number | Symbol
+@dataclass(frozen=True)
+class Reference:
+    """The number of a figure, table, formula or source in the text; ``target`` is "figure:4.2", empty for a source."""
+
+    text: str
+    target: str = ""
+
+    def __str__(self) -> str:
+        """The number as it is written."""
+        return self.text
+
+
+Inline = str | Number | Symbol | Reference
 Text = tuple[Inline, ...]
 
 

@@ -272,7 +272,8 @@ def _walk(tree: expression.Expression, operands: Sequence[Operand], angle: bool)
     if name == "/":
         return Fraction(parts[0][0], parts[1][0]), ATOM
     if name == "^":
-        return Scripts(held(parts[0], ATOM), None, parts[1][0]), POWER
+        base = held(parts[0], ATOM) if not isinstance(parts[0][0], Fraction) else Fenced("(", parts[0][0], ")")
+        return Scripts(base, None, parts[1][0]), POWER
     if name == "*":
         return joined("·", [held(p, PRODUCT) for p in parts]), PRODUCT
     if name in ("+", "-"):

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from tmm_sheets.errors import CannotBuild
 
 if TYPE_CHECKING:
-    from tmm_sheets.note.document import Note
     from tmm_sheets.project import Project
 
 FORMATS = ("pdf", "docx")
@@ -43,11 +42,12 @@ def write(project: Project, formats: Iterable[str] = ("pdf",), say: Callable[[st
     """
     formats = tuple(formats)
     check(formats)
-    from tmm_sheets.note import composing
+    from tmm_sheets.note import composing, typst_writer
 
     note = composing.compose(project, say)
     say("pages")
-    note, data, places = _settled(note)
+    data, places = typst_writer.render(note)
+    note = composing.counted(note, int(places["pages"]))
     made: dict[str, bytes] = {}
     for form in formats:
         if form == "pdf":
@@ -58,15 +58,3 @@ def write(project: Project, formats: Iterable[str] = ("pdf",), say: Callable[[st
             say("docx")
             made["note.docx"] = docx_writer.render(note, places)
     return made, int(places["pages"])
-
-
-def _settled(note: Note) -> tuple[Note, bytes, dict[str, int]]:
-    """The note with its pages counted, and its PDF: set again when the number changes what it is told in."""
-    from tmm_sheets.note import composing, typst_writer
-
-    guess = composing.counted(note, 40)
-    data, places = typst_writer.render(guess)
-    if places["pages"] != 40:
-        guess = composing.counted(note, int(places["pages"]))
-        data, places = typst_writer.render(guess)
-    return guess, data, places

@@ -26,6 +26,7 @@ from tmm_sheets.note.document import (
     NewPage,
     Number,
     Paragraph,
+    Reference,
     Symbol,
     Table,
     Text,
@@ -122,7 +123,7 @@ class Numbering:
         """Number of the next formula, figure or table of the section."""
         self.counts[kind] = self.counts.get(kind, 0) + 1
         self.total[kind] = self.total.get(kind, 0) + 1
-        found = f"{self.section}.{self.counts[kind]}"
+        found = f"{self.section}.{self.counts[kind]}" if self.section else str(self.counts[kind])
         self.labels[f"{kind}:{label}"] = found
         return found
 
@@ -276,9 +277,10 @@ class Writer:
     def _explained(self, said: Said) -> Iterator[Explained]:
         for markup, unit in said.explained:
             meaning = meaning_of(markup, self.language, self.template)
-            if meaning and (markup, meaning) not in self.known:
-                self.known.add((markup, meaning))
-                yield Explained(letters(markup), meaning, unit)
+            once = ("", meaning) if meaning.endswith(_OF_INDEX) else (markup, meaning)
+            if meaning and once not in self.known:
+                self.known.add(once)
+                yield Explained(letters(markup), meaning.removesuffix(_OF_INDEX).rstrip(), unit)
 
     def text(self, line: str, n: int, scope: Scope) -> Text:
         """A line with its fields filled in."""
@@ -308,21 +310,23 @@ class Writer:
             return [Symbol(value)]
         return list(value)
 
-    def _reference(self, to: str, n: int, scope: Scope) -> str:
+    def _reference(self, to: str, n: int, scope: Scope) -> Reference:
         kind, _, name = to.partition(":")
         if kind == "cite":
             key, _, place = name.partition(" ")
             try:
-                return f"[{self.numbering.cite(key)}{', ' + place if place else ''}]"
+                return Reference(f"[{self.numbering.cite(key)}{', ' + place if place else ''}]")
             except KeyError:
                 raise _Wrong(f'there is no source "{key}" in literature.toml', n) from None
         labels = self.numbering.labels
         found = labels.get(f"{kind}:{label(scope, name)}", labels.get(to))
         if found is None:
             raise _Wrong(f'nothing has the label "{to}"', n)
-        return f"({found})" if kind == "formula" else found
+        return Reference(f"({found})" if kind == "formula" else found, f"{kind}:{found}")
 
 
+_OF_INDEX = "…"
+"""How a meaning ends that holds for every letter of its kind: it is told once."""
 LONGEST = 58
 """Width of letters and numbers of a formula, in characters, up to which they stand on one line."""
 WIDEST = 72

@@ -78,6 +78,17 @@ class Pictures:
                 marks = [m for m in marks if _touches(m, box)]
         return _figure(name, marks, box)
 
+    def top(self, name: str, height: float) -> list[Figure]:
+        """Each view of that name as a figure, of a high one the upper part, ``height`` mm of the sheet."""
+        made = []
+        for n, marks, own in self._views.get(name, ()):
+            if own:
+                drawn = [self.sheets[n].drawing.marks[k] for k in marks]
+                box = extent(drawn)
+                box = Box(box.x0, max(box.y0, box.y1 - height), box.x1, box.y1)
+                made.append(_figure(name, [m for m in drawn if _touches(m, box)], box))
+        return made
+
     def parts(self, name: str) -> list[Figure]:
         """The view as several figures, one under another, where it is too large to be read as one."""
         whole = self.figure(name)
@@ -113,7 +124,8 @@ class Pictures:
 
 
 def _within(step: str, role: str, focus: Sequence[str]) -> bool:
-    return any(step == name or step.startswith(f"{name}/") or role == name for name in focus)
+    shown = role in ("text", "point", "curve", "dimension", "symbol", "link")
+    return any((shown and (step == name or step.startswith(f"{name}/"))) or role == name for name in focus)
 
 
 def extent(marks: Iterable[Mark]) -> Box:
@@ -143,7 +155,7 @@ def scale(box: Box) -> tuple[float, bool]:
     usual = max(USUAL, min(1.0, SMALL / box.width, SMALL / box.height))
     upright = min(WIDTH / box.width, HEIGHT / box.height, usual)
     turned = min(WIDTH / box.height, LONG / box.width, usual)
-    if upright * LETTERS >= READABLE or turned < 1.15 * upright:
+    if upright * LETTERS >= READABLE or (turned * LETTERS < READABLE and turned < 1.15 * upright):
         return upright, False
     return turned, True
 

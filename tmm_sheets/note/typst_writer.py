@@ -37,6 +37,7 @@ from tmm_sheets.note.formula import (
     Underlined,
     Words,
 )
+from tmm_sheets.note.phrases import plain_text
 from tmm_sheets.resources import template
 
 MISSING = ("the note as PDF needs the package typst", "install the extra: pip install 'tmm-sheets[note]'")
@@ -75,6 +76,28 @@ def pictures(blocks: Iterable[Block]) -> dict[str, bytes]:
     return {f"{file_name(b)}.svg": b.svg for b in blocks if isinstance(b, Figure | Sheet)}
 
 
+def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:
+    """Pictures of the figures and sheets as PNG by their names, turned as they stand on the page."""
+    import typst
+
+    drawn = [b for b in blocks if isinstance(b, Figure | Sheet)]
+    with TemporaryDirectory(prefix="tmm-note-") as folder:
+        root = Path(folder)
+        pages = []
+        for b in drawn:
+            name = file_name(b)
+            (root / f"{name}.svg").write_bytes(b.svg)
+            width = b.width if isinstance(b, Figure) else 224.0
+            image = f'image("{name}.svg", width: {width:.2f}mm)'
+            turned = isinstance(b, Sheet) or b.turned
+            pages.append(f"rotate(-90deg, reflow: true, {image})" if turned else image)
+        source = "#set page(width: auto, height: auto, margin: 0mm)\n" + "\n#pagebreak()\n".join(f"#{p}" for p in pages)
+        (root / "pictures.typ").write_text(source, encoding="utf-8")
+        made = typst.compile(root / "pictures.typ", format="png", ppi=dpi) if drawn else []
+    found = [made] if isinstance(made, bytes) else list(made or [])
+    return {file_name(b): data for b, data in zip(drawn, found, strict=True)}
+
+
 def file_name(block: Figure | Sheet) -> str:
     """Name of the file of a picture."""
     return f"sheet-{block.number}" if isinstance(block, Sheet) else f"fig-{block.number.replace('.', '-')}"
@@ -111,9 +134,12 @@ class _Writer:
 
     def __init__(self) -> None:
         self.headings = 0
+        self.height = 0.0
+        """About how far down it is from the beginning of the section, mm: no figure may stand above its heading."""
 
     def block(self, b: Block) -> str:
         """One block."""
+        self.height = 20.0 if isinstance(b, Heading) and b.level == 1 else self.height + height(b)
         made: str = getattr(self, f"_{type(b).__name__.lower()}")(b)
         return made
 
@@ -141,7 +167,7 @@ class _Writer:
     def _figure(self, b: Figure) -> str:
         turned = "true" if b.turned else "false"
         return (f"#picture({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')}, {b.width:.2f}mm, {b.height:.2f}mm, "
-                f"{turned})")
+                f"{turned}, {'auto' if self.height > PAGE else 'bottom'})")
 
     def _sheet(self, b: Sheet) -> str:
         return f"#sheet({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')})"
@@ -153,9 +179,25 @@ class _Writer:
         return "#pagebreak(weak: true)"
 
 
+PAGE = 250.0
+"""Height of the text on a page, mm."""
+
+
+def height(b: Block) -> float:
+    """About how high a block is, mm."""
+    if isinstance(b, Paragraph):
+        return 5.5 * (1 + len(plain_text(b.text)) / 88)
+    if isinstance(b, Table):
+        return 15.0 + 6.0 * len(b.rows)
+    if isinstance(b, Figure):
+        return (b.width if b.turned else b.height) + 10.0
+    return 5.0 * len(b.rows) if isinstance(b, Where) else 10.0
+
+
 def text(parts: Text) -> str:
     """Running text."""
-    return "".join(f"${math(x.node)}$" if isinstance(x, Symbol) else f"#{string(str(x))};" for x in parts)
+    return "".join(f"${math(x.node)}$" if isinstance(x, Symbol) else "#pages-of-all;" if getattr(x, "step", "") == "note.pages"
+                   else f"#{string(str(x))};" for x in parts)
 
 
 _SIGNS = {"·": "dot.op", "∥": "parallel", "⟂": "perp", "|": "bar.v", "/": "slash", "(": "\\(", ")": "\\)", ",": '","', ";": '";"',

@@ -50,7 +50,8 @@ def scope(r: Reader) -> Scope:
     found.fields["phases"] = list(_phases(r))
     _law(r, found)
     found.fields["motion"] = [{"part": f} for f in r.pictures.parts("cam.motion")]
-    found.fields["profiles"] = [{"part": f} for f in r.pictures.parts("cam_profile.profile")]
+    profile = r.pictures.figure("cam_profile.profile", focus=("curve", "cam-profile/O"))
+    found.fields["profiles"] = [{"part": profile}] if profile is not None else []
     for name, picture in (("zone", "cam_zone.of_tappet"), ("zone_rocker", "cam_zone.of_rocker"), ("plate", "cam_zone.plate"),
                           ("sum", "cam_zone.sum_graph"), ("roller", "cam_profile.roller"), ("pressure", "cam.pressure"),
                           ("spring", "cam.spring")):  # fmt: skip

@@ -46,7 +46,7 @@ def scope(r: Reader) -> Scope:
             figure = r.pictures.figure("work")
         if figure is not None:
             found.figures[name] = figure
-    diagram = r.pictures.figure("energy-mass", focus=("curve", "energy-mass/points", "energy-mass/a", "energy-mass/b"))
+    diagram = r.pictures.figure("energy-mass", focus=("curve", "energy-mass/points", "energy-mass/a", "energy-mass/b", "energy-mass/ab"))
     if diagram is not None:
         found.figures["energy_mass"] = diagram
     for i, figure in enumerate(r.pictures.parts("mertsalov.column")):

@@ -44,10 +44,12 @@ def scope(r: Reader) -> Scope:
         found.fields["mu"] = scale_text(scale)
     found.fields["in_scale"] = (words(r.language)["phrases"]["in_scale"], *scale_text(scale)) if scale is not None else ""
     for name, picture, focus in (("engagement", "gear.engagement", ("gear-involute-1", "gear-involute-2", "gear-engagement/N1N2")),
-                                 ("mesh", "gear.mesh", ()), ("sliding", "gear-sliding", ()), ("rack", "rack.generating", ())):  # fmt: skip
+                                 ("mesh", "gear.mesh", ()), ("rack", "rack.generating", ())):  # fmt: skip
         figure = r.pictures.figure(picture, focus)
         if figure is not None:
             found.figures[name] = figure
+    for name, part in zip(("speeds", "sliding"), r.pictures.top("gear-sliding", 190.0), strict=False):
+        found.figures[name] = part
     n = r.pictures.sheet_of("gear.engagement")
     found.fields["sheet"] = str(n) if n is not None else ""
     return found
