@@ -82,7 +82,7 @@ class _Writer:
         from docx.enum.text import WD_ALIGN_PARAGRAPH, WD_LINE_SPACING
         from docx.oxml.ns import qn
 
-        for name, size in (("Normal", 12.5), ("Heading 1", 15), ("Heading 2", 13.5), ("Caption", 12), ("TOC Heading", 15)):
+        for name, size in (("Normal", 12), ("Heading 1", 14), ("Heading 2", 13), ("Caption", 11.5), ("TOC Heading", 15)):
             if name not in [s.name for s in self.made.styles]:
                 continue
             style: Any = self.made.styles[name]
@@ -205,10 +205,11 @@ class _Writer:
         table.autofit = False
         _indent(table, -283)
         _borders(table)
+        for column, width in zip(table.columns, widths, strict=True):
+            column.width = self.mm(width)
         for row, cells, height in zip(table.rows, rows, heights, strict=True):
             _height(row, height)
-            for cell, text, width in zip(row.cells, cells, widths, strict=True):
-                cell.width = self.mm(width)
+            for cell, text in zip(row.cells, cells, strict=True):
                 self._cell(cell, text, 7)
         for r0, c0, r1, c1 in merges:
             text = next((rows[r][c] for r in range(r0, r1 + 1) for c in range(c0, c1 + 1) if rows[r][c]), "")
@@ -301,8 +302,7 @@ class _Writer:
             p = self.made.add_paragraph()
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(84), WD_TAB_ALIGNMENT.CENTER)
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(175), WD_TAB_ALIGNMENT.RIGHT)
-            p.paragraph_format.space_before = self.pt(4)
-            p.paragraph_format.space_after = self.pt(4)
+            p.paragraph_format.space_before = p.paragraph_format.space_after = self.pt(2)
             p.add_run("\t")
             _math(p, node)
             if b.number and i == len(b.lines) - 1:
@@ -335,6 +335,9 @@ class _Writer:
         table = self.made.add_table(len(b.rows), columns, style="Table Grid")
         table.alignment = WD_TABLE_ALIGNMENT.CENTER
         size = 9 if columns > 8 else 10 if columns > 6 else 11
+        table.autofit = False
+        for column, width in zip(table.columns, widths_of(b), strict=True):
+            column.width = self.mm(width)
         for row, cells in zip(table.rows, b.rows, strict=True):
             for cell, text in zip(row.cells, cells, strict=True):
                 q = cell.paragraphs[0]
@@ -343,7 +346,8 @@ class _Writer:
                 for run in q.runs:
                     run.font.size = self.pt(size)
         _repeat(table.rows[0])
-        self.made.add_paragraph()
+        after = self.made.add_paragraph()
+        after.paragraph_format.line_spacing = self.pt(6)
 
     def _numbered(self, p: Any, word: str, number: str, kind: str, title: str = "") -> None:
         """A caption: word, number of the section, and a counting field; the number is what references point to."""
@@ -438,6 +442,18 @@ class _Writer:
                 link.append(_parsed(xml))
         if self.headings:
             p._p.append(_parsed(f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="end"/></w:r>'))
+
+
+def widths_of(b: Table) -> list[float]:
+    """Widths of the columns of a table, mm, by what stands in them; together at most that of the text."""
+    from tmm_sheets.note.phrases import plain_text, weight
+
+    def size(text: Text) -> float:
+        return len(plain_text(text)) + sum(weight(x.node) for x in text if isinstance(x, Symbol))
+
+    columns = max(map(len, b.rows))
+    wanted = [6.0 + 2.1 * min(max(size(row[i]) for row in b.rows if i < len(row)), 40) for i in range(columns)]
+    return [w * min(1.0, 174.0 / sum(wanted)) for w in wanted]
 
 
 def mark_of(target: str) -> str:
