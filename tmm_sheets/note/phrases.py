@@ -137,6 +137,8 @@ class Numbering:
 
 
 _FIELD = re.compile(r"\{([^{}]*)\}|\$([^$]*)\$")
+_OPTIONAL = re.compile(r"\[\[(.*?)\]\]")
+_NAMED = re.compile(r"\{([^{}]*)\}")
 _COMMAND = re.compile(r"%(\w+\??)\s*(.*)")
 
 
@@ -286,12 +288,24 @@ class Writer:
         """A line with its fields filled in."""
         found: list[Inline] = []
         at = 0
+        line = _OPTIONAL.sub(lambda m: m[1] if self._all_there(m[1], scope) else "", line)
         for m in _FIELD.finditer(line):
             found.append(line[at : m.start()])
             at = m.end()
             found += [Symbol(letters(m[2]))] if m[2] is not None else self._field(m[1], n, scope)
         found.append(line[at:])
         return tuple(x for x in found if x != "")
+
+    def _all_there(self, text: str, scope: Scope) -> bool:
+        """Whether everything that some words refer to is in the note, and every field they name."""
+        for name in _NAMED.findall(text):
+            if name.startswith("@") and not name.startswith("@cite:"):
+                kind, _, own = name[1:].partition(":")
+                if f"{kind}:{label(scope, own)}" not in self.numbering.labels and name[1:] not in self.numbering.labels:
+                    return False
+            elif not name.startswith(("@", "#")) and _found(scope, name) is None:
+                return False
+        return True
 
     def _field(self, name: str, n: int, scope: Scope) -> list[Inline]:
         if name.startswith("@"):

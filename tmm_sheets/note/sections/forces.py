@@ -65,7 +65,8 @@ def _loads(r: Reader, found: Scope) -> None:
         cells.append((r.of(loads["weight"].vector, None, ""),) if "weight" in loads else ("–",))
         cells.append((r.of(acc.points[link.centre], None, ""),) if link.centre in acc.points else ("–",))
         cells.append((r.of(inertia.vector, None, ""),) if inertia is not None else ("–",))
-        cells.append((r.number(link.inertia, "", f"link.{name}.inertia"),) if couples else ("–",))
+        own = abs(float(value_at(couples[0].args[0], r.k))) if couples else 0.0
+        cells.append((r.number(own, "", f"link.{name}.inertia"),) if couples else ("–",))
         cells.append((r.of(acc.epsilon[name], None, ""),) if couples else ("–",))
         cells.append((r.of(couples[0], None, ""),) if couples else ("–",))
         rows.append(tuple(cells))
@@ -79,7 +80,9 @@ def _loads(r: Reader, found: Scope) -> None:
             found.formulas["weight"] = r.checked(f"G_{{{name}}}", lambda x, y: x * y, [
                 Quantity(f"m_{{{name}}}", float(link.mass), "kg", f"link.{name}.mass"), g], loads["weight"].vector)
         if couples and not is_zero(epsilon, 1.0):
-            j = Quantity(f"J_{{S{name}}}", float(link.inertia), "kg*m2", f"link.{name}.inertia")
+            inertia_of = couples[0].args[0]
+            j = Quantity(f"J_{{S{name}}}", abs(float(value_at(inertia_of, r.k))), "kg*m2", r.id(inertia_of) if isinstance(inertia_of, Step)
+                         else f"link.{name}.inertia")
             e = Quantity(f"ε_{{{name}}}", abs(epsilon), "rad/s2", r.id(acc.epsilon[name]), r.label)
             found.formulas["couple"] = r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [j, e], couples[0])
     found.tables["loads"] = tuple(rows)
