@@ -35,6 +35,7 @@ class Pictures:
     def __init__(self, sheets: dict[int, Composed]) -> None:
         self.sheets = sheets
         self._views: dict[str, list[tuple[int, tuple[int, ...], bool]]] = {}
+        self._drawn: dict[str, list[tuple[int, tuple[int, ...], bool]]] = {}
         for n, composed in sheets.items():
             drawing = composed.drawing
             for view in drawing.views:
@@ -43,6 +44,8 @@ class Pictures:
                 for k in marks:
                     of = drawing.marks[k].of
                     shares[of] = shares.get(of, 0) + 1
+                if marks:
+                    self._drawn.setdefault(_drawn_by(composed, marks[0]), []).append((n, marks, True))
                 for of, share in shares.items():
                     self._views.setdefault(of, []).append((n, marks, 2 * share > len(marks)))
                     if of.startswith("velocity plan "):
@@ -50,7 +53,7 @@ class Pictures:
 
     def sheet_of(self, name: str) -> int | None:
         """Number of the sheet that shows a view; None when none does."""
-        found = self._views.get(name)
+        found = self._drawn.get(name) or self._views.get(name)
         return found[0][0] if found else None
 
     def figure(self, name: str, focus: Sequence[str] = (), own: bool = False) -> Figure | None:
@@ -59,7 +62,7 @@ class Pictures:
         ``focus`` names steps or plans that are to be seen where the whole view is too large to be read; ``own`` takes the marks
         of that name only, without what else stands in the view.
         """
-        found = self._views.get(name)
+        found = self._views.get(name) or self._drawn.get(name)
         if not found:
             return None
         n = found[0][0]
@@ -91,10 +94,9 @@ class Pictures:
 
     def parts(self, name: str) -> list[Figure]:
         """The view as several figures, one under another, where it is too large to be read as one."""
-        whole = self.figure(name)
-        if whole is None:
+        found = self._drawn.get(name) or self._views.get(name)
+        if not found:
             return []
-        found = self._views[name]
         n = found[0][0]
         drawing = self.sheets[n].drawing
         marks = [drawing.marks[k] for view in found if view[0] == n and view[2] for k in view[1]]
@@ -103,7 +105,7 @@ class Pictures:
         while count < 4 and scale(Box(box.x0, box.y0, box.x1, box.y0 + box.height / count))[0] * LETTERS < READABLE:
             count += 1
         if count == 1:
-            return [whole]
+            return [_figure(name, marks, box)]
         cuts = _gaps(marks, box, count)
         made = []
         for low, high in zip(cuts, cuts[1:], strict=False):
@@ -121,6 +123,11 @@ class Pictures:
             data = svg.picture(drawing.marks, Box(0, 0, drawing.width, drawing.height))
             made.append(Sheet(str(n), drawing.title, f"sheet{n}", data, drawing.width, drawing.height))
         return made
+
+
+def _drawn_by(composed: Composed, k: int) -> str:
+    """What draws the view to which a mark belongs."""
+    return next((part.draw for part in reversed(composed.parts) if part.first <= k), "")
 
 
 def _within(step: str, role: str, focus: Sequence[str]) -> bool:

@@ -13,7 +13,8 @@ from tmm_sheets.note.reader import Quantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
 from tmm_sheets.numbers import is_zero
 
-NAMES = {"flywheel-data/δ": "δ"}
+SAFE = 30.0
+"""Speed up to which a rim of cast iron is safe, m/s (000, 5.7)."""
 PLANS = ("reduced-moment", "driving-moment", "total-work", "reduced-inertia", "energy-mass", "first-energy", "flywheel-inertia",
          "flywheel-limit", "flywheel-wheel", "crank-speed", "motor-check", "crank-acceleration", "work")  # fmt: skip
 
@@ -41,9 +42,7 @@ def scope(r: Reader) -> Scope:
     _results(r, found)
     _tables(r, found)
     for name in ("force_graph", "moments", "works", "total_work", "inertia", "wheel"):
-        figure = r.pictures.figure(f"flywheel.{name}" if name not in ("moments", "works", "total_work", "inertia") else f"flywheel.{name}")
-        if figure is None and name in ("works", "moments"):
-            figure = r.pictures.figure("work")
+        figure = r.pictures.figure(f"flywheel.{name}")
         if figure is not None:
             found.figures[name] = figure
     diagram = r.pictures.figure("energy-mass", focus=("curve", "energy-mass/points", "energy-mass/a", "energy-mass/b", "energy-mass/ab"))
@@ -129,6 +128,8 @@ def _results(r: Reader, found: Scope) -> None:
             if plan is not None and name in plan:
                 found.fields[f"wheel_{name}"] = r.of(plan[name])
     found.fields["wheel"] = wheel is not None
+    speed = found.fields.get("wheel_V")
+    found.fields["slow"] = speed is not None and speed.value < SAFE
     found.tables["comparison"] = (
         ((words(r.language)["flywheel"]["quantity"],), (words(r.language)["flywheel"]["drawn"],), (words(r.language)["flywheel"]["limit"],),
          (words(r.language)["flywheel"]["difference"],)),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.note.document import Symbol, Text
+from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, words
 from tmm_sheets.note.reader import Quantity, Reader
@@ -238,6 +239,7 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
     extra = [(s.symbol, s.tail, s.head, True) for s in fp.plan.segments if s.symbol not in {x[0] for x in fp.sides}]
     for symbol, tail, head, sought in [*fp.sides, *extra]:
         f = value_at(head, r.k) - value_at(tail, r.k)
+        f = 0j if is_zero(f, r.project.study.forces.force_size(r.k)) else f
         mm = float(scale.mm(abs(f)))
         plain = symbol.replace(BAR, "")
         force = next((s for s in fp.plan if s.name == _named(plain)), head)
@@ -346,8 +348,14 @@ def _comparison(r: Reader) -> tuple[tuple[Text, ...], ...]:
     delta = study.balance["Δ"]
     value = float(value_at(delta, r.at(delta, None)))
     return (((said["quantity"],), (said["kinetostatics"],), (said["lever"],), (said["difference"],)),
-            ((Symbol(letters(name)), f", {r.unit(unit)}"), (r.of(first, None, ""),), (r.of(study.lever.balancing, None, ""),),
+            ((Symbol(letters(name)), f", {r.unit(unit)}"), (_size(r, first),), (_size(r, study.lever.balancing),),
              (r.number(value, "", r.id(delta), r.label, 2, kind=100.0),)))
+
+
+def _size(r: Reader, step: Step) -> Number:
+    """A force or moment without its sign: the formulas give its size."""
+    n = r.of(step, None, "")
+    return replace(n, text=n.text.removeprefix("−"))
 
 
 def _reactions(r: Reader) -> tuple[tuple[Text, ...], ...]:
