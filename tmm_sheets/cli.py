@@ -364,10 +364,12 @@ def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path |
     folder = _folder(opened.variant, output)
     files.check_folder(folder)
     with Progress() as progress:
-        made, _ = writing.write(opened, formats, lambda what: progress.say(f"{what} ..."))
-        files.write_all({folder / name: data for name, data in made.items()})
-    for name in made:
+        written = writing.write(opened, formats, lambda what: progress.say(f"{what} ..."))
+        files.write_all({folder / name: data for name, data in written.files.items()})
+    for name in written.files:
         click.echo(folder / name)
+    for problem in written.problems:
+        click.echo(f"{opened.variant.project.name}: left out: {problem}", err=True)
 
 
 def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:

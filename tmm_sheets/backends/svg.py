@@ -63,7 +63,8 @@ def picture(marks: Iterable[Mark], box: Box) -> bytes:
     """SVG of some marks, cut out along a rectangle of the sheet (mm), without titles: for a page of text."""
     width, height = f"{box.width:g}", f"{box.height:g}"
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}mm" height="{height}mm" viewBox="0 0 {width} {height}">\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}mm" height="{height}mm" '
+        f'viewBox="0 0 {width} {height}">\n'
         f'<g transform="matrix(1 0 0 -1 {-box.x0:g} {box.y1:g})" fill="none" stroke="#000" stroke-linecap="round" '
         f'stroke-linejoin="round">\n{_paths(marks, "class")}</g>\n</svg>\n'
     ).encode()

@@ -100,17 +100,34 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     sheets = reader.pictures.pages()
     body += _appendices(sheets)
     counts = {
-        "figures": sum(isinstance(b, Figure) for b in [*made, *body]), "tables": sum(isinstance(b, Table) for b in [*made, *body]),
-        "sources": len(numbering.cited), "sheets": len(sheets), "formulas": numbering.total.get("formula", 0),
-    }  # fmt: skip
-    front = [*writer.blocks("abstract", Scope(summary | {k: Number(str(v), f"note.{k}", v) for k, v in counts.items()}
-                                              | {"pages": PAGES})), *made]
+        "figures": sum(isinstance(b, Figure) for b in [*made, *body]),
+        "tables": sum(isinstance(b, Table) for b in [*made, *body]),
+        "sources": len(numbering.cited),
+        "sheets": len(sheets),
+        "formulas": numbering.total.get("formula", 0),
+    }
+    front = [
+        *writer.blocks(
+            "abstract", Scope(summary | {k: Number(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
+        ),
+        *made,
+    ]
     reminders = writer.blocks("reminders", base)
     if attempt.refused:
         reader.problems += [f"{name}: {e}" for name, e in attempt.refused.items()]
     block = project.variant.title_block
-    return Note(language, f"{project.variant.project.title}. {said['title']}", block.student or "tmm_sheets", tuple(front),
-                _title_page(reader), tuple(body), _frame(reader), tuple(reminders), 1)
+    return Note(
+        language,
+        f"{project.variant.project.title}. {said['title']}",
+        block.student or "tmm_sheets",
+        tuple(front),
+        _title_page(reader),
+        tuple(body),
+        _frame(reader),
+        tuple(reminders),
+        1,
+        tuple(dict.fromkeys(reader.problems)),
+    )
 
 
 PAGES = Number("\u0001", "note.pages", 0)
@@ -119,8 +136,11 @@ PAGES = Number("\u0001", "note.pages", 0)
 
 def counted(note: Note, pages: int) -> Note:
     """The note with the number of its pages where the abstract tells it."""
+
     def settled(text: Text) -> Text:
-        return tuple(replace(x, text=str(pages), value=pages) if isinstance(x, Number) and x.text == PAGES.text else x for x in text)
+        return tuple(
+            replace(x, text=str(pages), value=pages) if isinstance(x, Number) and x.text == PAGES.text else x for x in text
+        )
 
     front = tuple(replace(b, text=settled(b.text)) if isinstance(b, Paragraph) else b for b in note.front)
     return replace(note, front=front)
@@ -142,16 +162,22 @@ def _general(r: Reader, parts: set[str]) -> Scope:
     """Fields that every template may use."""
     v = r.project.variant
     fields: dict[str, Any] = {
-        "name": v.project.title, "variant": v.project.variant or "", "project": v.project.name,
-        "machine": v.project.title, "sheets": len(r.pictures.sheets), "institution": v.title_block.institution,
+        "name": v.project.title,
+        "variant": v.project.variant or "",
+        "project": v.project.name,
+        "machine": v.project.title,
+        "sheets": len(r.pictures.sheets),
+        "institution": v.title_block.institution,
         **{f"has_{p}": True for p in parts},
-    }  # fmt: skip
+    }
     said = phrases.words(r.language)
     fields |= {f"keys_{p}": said["keys"][p] if p in parts else "" for p in said["keys"]}
     fields["objects"] = _listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
     fields["aims"] = _listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
     fields["variant_text"] = said["phrases"]["variant"].format(variant=v.project.variant) if v.project.variant else ""
     fields["and_forces"] = said["phrases"]["and_forces"] if "forces" in parts else ""
+    fields["checked_text"] = said["phrases"]["checked"] if {"forces", "flywheel"} & parts else ""
+    fields["way_text"] = said["phrases"]["way_forces" if "forces" in parts else "way_positions"] if "positions" in parts else ""
     moment = v.balancing is None or v.balancing.kind == "moment"
     fields |= said["balancing"]["moment" if moment else "force"]
     if "positions" in parts:
@@ -186,7 +212,7 @@ def _task(r: Reader) -> Scope:
 
 
 def _data(r: Reader) -> list[tuple[Text, ...]]:
-    """Rows of the table of inputs: what the project file gives and ``[data]`` of words.toml has words for, as it is written there."""
+    """Rows of the table of inputs: what the project file gives, as it is written there, and ``[data]`` has words for."""
     said = phrases.words(r.language)
     rows: list[tuple[Text, ...]] = []
     for key, entry in said["data"].items():
@@ -243,21 +269,32 @@ def _title_page(r: Reader) -> dict[str, Any]:
     block = r.project.variant.title_block
     page = said["title_page"]
     return {
-        "ministry": page["ministry"], "institution": block.institution or page["institution"], "kind": page["kind"],
-        "course": page["course"], "theme": page["theme"].format(name=r.project.variant.project.title),
+        "ministry": page["ministry"],
+        "institution": block.institution or page["institution"],
+        "kind": page["kind"],
+        "course": page["course"],
+        "theme": page["theme"].format(name=r.project.variant.project.title),
         "designation": f"{block.designation} {page['code']}".strip(),
         "people": [page["student"], page["supervisor"], page["checker"]],
-        "names": [block.student or "", block.supervisor or "", block.checker or ""], "place": page["place"],
-        "figure": said["figure"], "table": said["table"], "appendix": said["appendix"],
-    }  # fmt: skip
+        "names": [block.student or "", block.supervisor or "", block.checker or ""],
+        "place": page["place"],
+        "figure": said["figure"],
+        "table": said["table"],
+        "appendix": said["appendix"],
+    }
 
 
 def _frame(r: Reader) -> Frame:
     said = phrases.words(r.language)
     block = r.project.variant.title_block
     fields = {
-        "designation": f"{block.designation} {said['title_page']['code']}".strip(), "student": block.student or "",
-        "checker": block.checker or "", "supervisor": block.supervisor or "", "letter": block.letter or "",
-        "institution": block.institution or "", "group": block.group or "", "subject": said["stamp_subject"],
-    }  # fmt: skip
+        "designation": f"{block.designation} {said['title_page']['code']}".strip(),
+        "student": block.student or "",
+        "checker": block.checker or "",
+        "supervisor": block.supervisor or "",
+        "letter": block.letter or "",
+        "institution": block.institution or "",
+        "group": block.group or "",
+        "subject": said["stamp_subject"],
+    }
     return Frame(fields, dict(said["stamp"]))

@@ -70,7 +70,7 @@ class Paragraph:
     """Running text; ``look`` says whether it is one of a list, or stands in the middle of the line."""
 
     text: Text
-    look: Literal["plain", "item", "centre", "right", "where"] = "plain"
+    look: Literal["plain", "item", "centre", "right"] = "plain"
 
 
 @dataclass(frozen=True)
@@ -178,6 +178,8 @@ class Note:
     frame: Frame
     reminders: tuple[Block, ...] = ()
     first_page: int = 1
+    problems: tuple[str, ...] = ()
+    """what the project has and the note could not tell, with the reasons."""
 
     def blocks(self) -> Iterator[Block]:
         """Everything between title page and reminders."""

@@ -1,4 +1,4 @@
-"""The note for Word: headings, captions and fields by their styles, equations as OMML, the frame in the header, stamps in the footer."""
+"""The note for Word: styles, fields, equations as OMML, the frame in the header, stamps in the footer."""
 
 from __future__ import annotations
 
@@ -176,8 +176,8 @@ class _Writer:
             '<a:graphic><a:graphicData uri="http://schemas.microsoft.com/office/word/2010/wordprocessingShape"><wps:wsp>'
             f'<wps:cNvSpPr/><wps:spPr><a:xfrm><a:off x="0" y="0"/><a:ext cx="{width}" cy="{height}"/></a:xfrm>'
             '<a:prstGeom prst="rect"><a:avLst/></a:prstGeom><a:noFill/><a:ln w="17780"><a:solidFill><a:srgbClr val="000000"/>'
-            '</a:solidFill></a:ln></wps:spPr><wps:bodyPr/></wps:wsp></a:graphicData></a:graphic></wp:anchor></w:drawing></mc:Choice>'
-            '</mc:AlternateContent></w:r>'
+            "</a:solidFill></a:ln></wps:spPr><wps:bodyPr/></wps:wsp></a:graphicData></a:graphic></wp:anchor></w:drawing></mc:Choice>"
+            "</mc:AlternateContent></w:r>"
         )
         paragraph._p.append(_parsed(xml))
 
@@ -194,10 +194,16 @@ class _Writer:
             left = [["", "", "", "", ""], ["", "", "", "", ""], heads]
             roles = [("developed", "student"), ("checked", "checker"), ("head", "supervisor"), ("norm", ""), ("approved", "")]
             left += [[w.get(role, ""), "", w.get(name, ""), "", ""] for role, name in roles]
-            right = [[w.get("designation", ""), "", "", ""], ["", "", "", ""], ["", "", "", ""],
-                     [w.get("subject", ""), w.get("letter-head", ""), w.get("list", ""), w.get("lists", "")],
-                     ["", w.get("letter", ""), "PAGE", str(self.places["pages"])],
-                     ["", f"{w.get('institution', '')} {w.get('group', '')}".strip(), "", ""], ["", "", "", ""], ["", "", "", ""]]
+            right = [
+                [w.get("designation", ""), "", "", ""],
+                ["", "", "", ""],
+                ["", "", "", ""],
+                [w.get("subject", ""), w.get("letter-head", ""), w.get("list", ""), w.get("lists", "")],
+                ["", w.get("letter", ""), "PAGE", str(self.places["pages"])],
+                ["", f"{w.get('institution', '')} {w.get('group', '')}".strip(), "", ""],
+                ["", "", "", ""],
+                ["", "", "", ""],
+            ]
             rows = [a + b for a, b in zip(left, right, strict=True)]
             widths, heights = [7, 10, 23, 15, 10, 70, 15, 15, 20], [5] * 8
             merges = [(0, 5, 2, 8), (3, 5, 7, 5), (5, 6, 7, 8), *((i, 0, i, 1) for i in range(3, 8))]
@@ -279,7 +285,9 @@ class _Writer:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
         p = self.made.add_paragraph()
-        p.alignment = {"centre": WD_ALIGN_PARAGRAPH.CENTER, "right": WD_ALIGN_PARAGRAPH.RIGHT}.get(b.look, WD_ALIGN_PARAGRAPH.JUSTIFY)
+        p.alignment = {"centre": WD_ALIGN_PARAGRAPH.CENTER, "right": WD_ALIGN_PARAGRAPH.RIGHT}.get(
+            b.look, WD_ALIGN_PARAGRAPH.JUSTIFY
+        )
         if b.look == "plain":
             p.paragraph_format.first_line_indent = self.mm(10)
         elif b.look == "item":
@@ -393,12 +401,14 @@ class _Writer:
         name = PackURI(f"/word/media/{_name(b)}.svg")
         part = Part(name, "image/svg+xml", b.svg, self.made.part.package)
         relation = self.made.part.relate_to(part, "http://schemas.openxmlformats.org/officeDocument/2006/relationships/image")
-        blip = shape._inline.graphic.graphicData.pic.blipFill.find(
-            "{http://schemas.openxmlformats.org/drawingml/2006/main}blip")
-        blip.append(_parsed(
-            '<a:extLst xmlns:a="http://schemas.openxmlformats.org/drawingml/2006/main"><a:ext uri="' + _SVG_URI + '">'
-            f'<asvg:svgBlip xmlns:asvg="{_SVG}" xmlns:r="http://schemas.openxmlformats.org/officeDocument/2006/relationships" '
-            f'r:embed="{relation}"/></a:ext></a:extLst>'))
+        blip = shape._inline.graphic.graphicData.pic.blipFill.find("{http://schemas.openxmlformats.org/drawingml/2006/main}blip")
+        blip.append(
+            _parsed(
+                '<a:extLst xmlns:a="http://schemas.openxmlformats.org/drawingml/2006/main"><a:ext uri="' + _SVG_URI + '">'
+                f'<asvg:svgBlip xmlns:asvg="{_SVG}" xmlns:r="http://schemas.openxmlformats.org/officeDocument/2006/relationships" '
+                f'r:embed="{relation}"/></a:ext></a:extLst>'
+            )
+        )
 
     def _sheet(self, b: Sheet) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
@@ -413,7 +423,7 @@ class _Writer:
         self._picture(b, 224.0, 224.0 * b.height / b.width, True)
 
     def _newpage(self, b: NewPage) -> None:
-        self.made.add_page_break()
+        self.made.add_paragraph().paragraph_format.page_break_before = True
 
     def _contents(self, b: Contents) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH, WD_TAB_ALIGNMENT, WD_TAB_LEADER
@@ -433,12 +443,14 @@ class _Writer:
             p._p.append(link)
             size = '<w:rPr><w:sz w:val="23"/></w:rPr>'
             for xml in (
-                f'<w:r xmlns:w="{_W}">{size}<w:t xml:space="preserve">{escape(text)}</w:t></w:r>', f'<w:r xmlns:w="{_W}"><w:tab/></w:r>',
+                f'<w:r xmlns:w="{_W}">{size}<w:t xml:space="preserve">{escape(text)}</w:t></w:r>',
+                f'<w:r xmlns:w="{_W}"><w:tab/></w:r>',
                 f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="begin"/></w:r>',
                 f'<w:r xmlns:w="{_W}"><w:instrText xml:space="preserve"> PAGEREF {mark} \\h </w:instrText></w:r>',
                 f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="separate"/></w:r>',
-                f'<w:r xmlns:w="{_W}">{size}<w:t>{page}</w:t></w:r>', f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="end"/></w:r>',
-            ):  # fmt: skip
+                f'<w:r xmlns:w="{_W}">{size}<w:t>{page}</w:t></w:r>',
+                f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="end"/></w:r>',
+            ):
                 link.append(_parsed(xml))
         if self.headings:
             p._p.append(_parsed(f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="end"/></w:r>'))
@@ -478,9 +490,11 @@ def _math(p: Any, node: Node) -> None:
 
 
 def _begin(p: Any, instruction: str) -> None:
-    for xml in (f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="begin"/></w:r>',
-                f'<w:r xmlns:w="{_W}"><w:instrText xml:space="preserve"> {escape(instruction)} </w:instrText></w:r>',
-                f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="separate"/></w:r>'):  # fmt: skip
+    for xml in (
+        f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="begin"/></w:r>',
+        f'<w:r xmlns:w="{_W}"><w:instrText xml:space="preserve"> {escape(instruction)} </w:instrText></w:r>',
+        f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="separate"/></w:r>',
+    ):
         p._p.append(_parsed(xml))
 
 
@@ -504,8 +518,23 @@ def _bookmark(p: Any, name: str, number: int, put: Any) -> None:
 
 def _properties(table: Any, made: Sequence[tuple[str, str]]) -> None:
     """Properties of a table in the order of the schema."""
-    order = ["tblStyle", "tblpPr", "tblOverlap", "bidiVisual", "tblStyleRowBandSize", "tblStyleColBandSize", "tblW", "jc",
-             "tblCellSpacing", "tblInd", "tblBorders", "shd", "tblLayout", "tblCellMar", "tblLook"]  # fmt: skip
+    order = [
+        "tblStyle",
+        "tblpPr",
+        "tblOverlap",
+        "bidiVisual",
+        "tblStyleRowBandSize",
+        "tblStyleColBandSize",
+        "tblW",
+        "jc",
+        "tblCellSpacing",
+        "tblInd",
+        "tblBorders",
+        "shd",
+        "tblLayout",
+        "tblCellMar",
+        "tblLook",
+    ]
     properties = table._tbl.tblPr
     for name, xml in made:
         for old in properties.findall(f"{{{_W}}}{name}"):
@@ -518,14 +547,23 @@ def _properties(table: Any, made: Sequence[tuple[str, str]]) -> None:
 
 
 def _indent(table: Any, twips: int) -> None:
-    _properties(table, [("tblInd", f'<w:tblInd xmlns:w="{_W}" w:w="{twips}" w:type="dxa"/>'),
-                        ("tblCellMar", f'<w:tblCellMar xmlns:w="{_W}"><w:left w:w="20" w:type="dxa"/><w:right w:w="20" w:type="dxa"/>'
-                                       "</w:tblCellMar>")])
+    _properties(
+        table,
+        [
+            ("tblInd", f'<w:tblInd xmlns:w="{_W}" w:w="{twips}" w:type="dxa"/>'),
+            (
+                "tblCellMar",
+                f'<w:tblCellMar xmlns:w="{_W}"><w:left w:w="20" w:type="dxa"/><w:right w:w="20" w:type="dxa"/></w:tblCellMar>',
+            ),
+        ],
+    )
 
 
 def _borders(table: Any) -> None:
-    sides = "".join(f'<w:{s} w:val="single" w:sz="{size}" w:space="0" w:color="000000"/>'
-                    for s, size in (("top", 12), ("left", 12), ("bottom", 12), ("right", 12), ("insideH", 4), ("insideV", 8)))  # fmt: skip
+    sides = "".join(
+        f'<w:{s} w:val="single" w:sz="{size}" w:space="0" w:color="000000"/>'
+        for s, size in (("top", 12), ("left", 12), ("bottom", 12), ("right", 12), ("insideH", 4), ("insideV", 8))
+    )
     _properties(table, [("tblBorders", f'<w:tblBorders xmlns:w="{_W}">{sides}</w:tblBorders>')])
 
 

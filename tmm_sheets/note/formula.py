@@ -115,7 +115,9 @@ class Underlined(Node):
 
 # --- letters ------------------------------------------------------------------------------------------------------
 
-_NAME = re.compile(r"([FMGRVaωεφhJmzrψθ])(и?[\d–]+)([τn]?)([′″]*)|([FM])(Ми|и|пс|ур|д|с)(\d*)|([a-zπ])(\d+)([′″]*)|([A-Z])(\d+)([′″]*)")
+_NAME = re.compile(
+    r"([FMGRVaωεφhJmzrψθ])(и?[\d–]+)([τn]?)([′″]*)|([FM])(Ми|и|пс|ур|д|с)(\d*)|([a-zπ])(\d+)([′″]*)|([A-Z])(\d+)([′″]*)"
+)
 
 
 _INDEX = re.compile(r"_([A-Z]+\d*|[a-zа-я]{2,}|K_\d)(?![}])")
@@ -146,7 +148,10 @@ def letters(markup: str) -> Node:
     """Tree of lettering markup."""
     found: list[Node] = []
     for m in _TOKEN.finditer(_INDEX.sub(r"_{\1}", markup)):
-        below, above = next((x for x in m.group(1, 2) if x is not None), None), next((x for x in m.group(3, 4) if x is not None), None)
+        below, above = (
+            next((x for x in m.group(1, 2) if x is not None), None),
+            next((x for x in m.group(3, 4) if x is not None), None),
+        )
         if below is not None or above is not None:
             _attach(found, below, above)
         elif m[5] == "\u0305" and found:
@@ -198,8 +203,17 @@ def _cyrillic(c: str) -> bool:
 # --- expressions --------------------------------------------------------------------------------------------------
 
 _ANGLES = ("sin", "cos", "tan")
-_FUNCTIONS = {"tan": "tg", "atan": "arctg", "atan2": "arctg", "asin": "arcsin", "acos": "arccos", "minimum": "min", "maximum": "max",
-              "inverse involute": "arcinv", "sign": "sign"}  # fmt: skip
+_FUNCTIONS = {
+    "tan": "tg",
+    "atan": "arctg",
+    "atan2": "arctg",
+    "asin": "arcsin",
+    "acos": "arccos",
+    "minimum": "min",
+    "maximum": "max",
+    "inverse involute": "arcinv",
+    "sign": "sign",
+}
 
 
 @dataclass(frozen=True)
@@ -243,7 +257,7 @@ def _is(tree: expression.Expression, value: float) -> bool:
 
 def same(a: expression.Expression, b: expression.Expression) -> bool:
     """Whether two trees are alike."""
-    return expression.as_json(a) == expression.as_json(b)
+    return bool(expression.as_json(a) == expression.as_json(b))
 
 
 def arguments(tree: expression.Expression) -> Iterator[int]:
@@ -279,8 +293,10 @@ def _walk(tree: expression.Expression, operands: Sequence[Operand], angle: bool)
     if name in ("+", "-"):
         if len(parts) == 1:
             return Row((Sign("−"), held(parts[0], PRODUCT))), SUM
-        rest = [held(p, PRODUCT) if name == "-" or (i and isinstance(p[0], Row) and p[0].items[:1] == (Sign("−"),)) else _held_sum(p)
-                for i, p in enumerate(parts[1:], 1)]
+        rest = [
+            held(p, PRODUCT) if name == "-" or (i and isinstance(p[0], Row) and p[0].items[:1] == (Sign("−"),)) else _held_sum(p)
+            for i, p in enumerate(parts[1:], 1)
+        ]
         return joined("−" if name == "-" else "+", [parts[0][0], *rest]), SUM
     if name == "sqrt":
         return Root(parts[0][0]), ATOM

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
@@ -32,8 +33,17 @@ def check(formats: Iterable[str]) -> None:
             raise CannotBuild(f"the note as {form.upper()} needs {names}", "install the extra: pip install 'tmm-sheets[note]'")
 
 
-def write(project: Project, formats: Iterable[str] = ("pdf",), say: Callable[[str], None] = lambda _: None) -> tuple[dict[str, bytes], int]:
-    """Contents of the files note.pdf, note.docx by their names, and the number of pages without what is not part of the note.
+@dataclass(frozen=True)
+class Written:
+    """The files of a note by their names, how many pages it has, and what could not be told in it."""
+
+    files: dict[str, bytes]
+    pages: int
+    problems: tuple[str, ...]
+
+
+def write(project: Project, formats: Iterable[str] = ("pdf",), say: Callable[[str], None] = lambda _: None) -> Written:
+    """The files note.pdf and note.docx of a project.
 
     Raises
     ------
@@ -57,4 +67,4 @@ def write(project: Project, formats: Iterable[str] = ("pdf",), say: Callable[[st
 
             say("docx")
             made["note.docx"] = docx_writer.render(note, places)
-    return made, int(places["pages"])
+    return Written(made, int(places["pages"]), note.problems)

@@ -47,8 +47,10 @@ def folder(language: str) -> Path:
     found = template(f"note/{language}")
     if not found.is_dir():
         there = ", ".join(sorted(p.name for p in template("note").iterdir() if (p / "words.toml").is_file()))
-        raise CannotBuild(f'there are no templates of the note in the language "{language}"',
-                          f"there are templates in {there}: --lang {there.split(', ')[0]}; others can be added as templates/note/{language}")
+        raise CannotBuild(
+            f'there are no templates of the note in the language "{language}"',
+            f"there are templates in {there}: --lang {there.split(', ')[0]}; others can be added as templates/note/{language}",
+        )
     return found
 
 
@@ -94,8 +96,12 @@ class Scope:
     def within(self, fields: Mapping[str, Any]) -> Scope:
         """The same with some fields more."""
         own = {k: v for k, v in fields.items() if not isinstance(v, Said | Figure)}
-        return Scope(self.fields | own, self.formulas | {k: v for k, v in fields.items() if isinstance(v, Said)}, self.tables,
-                     self.figures | {k: v for k, v in fields.items() if isinstance(v, Figure)})
+        return Scope(
+            self.fields | own,
+            self.formulas | {k: v for k, v in fields.items() if isinstance(v, Said)},
+            self.tables,
+            self.figures | {k: v for k, v in fields.items() if isinstance(v, Figure)},
+        )
 
 
 class Numbering:
@@ -224,8 +230,9 @@ class Writer:
         number = "" if text.startswith("!") else self.numbering.heading(level)
         return Heading(level, number, "".join(map(str, self.text(text.lstrip("! "), n, scope))))
 
-    def _conditional(self, word: str, what: str, inner: list[tuple[int, str]], other: list[tuple[int, str]], n: int,
-                     scope: Scope) -> Iterator[Block]:
+    def _conditional(
+        self, word: str, what: str, inner: list[tuple[int, str]], other: list[tuple[int, str]], n: int, scope: Scope
+    ) -> Iterator[Block]:
         if word == "if":
             negated = what.startswith("not ")
             name = what.removeprefix("not ").strip()
@@ -257,8 +264,15 @@ class Writer:
         elif word == "figure":
             figure = scope.figures.get(name)
             if figure is not None:
-                yield Figure(self.numbering.next("figure", label(scope, name)), "".join(map(str, self.text(title, n, scope))), figure.name,
-                             figure.svg, figure.width, figure.height, figure.turned)
+                yield Figure(
+                    self.numbering.next("figure", label(scope, name)),
+                    "".join(map(str, self.text(title, n, scope))),
+                    figure.name,
+                    figure.svg,
+                    figure.width,
+                    figure.height,
+                    figure.turned,
+                )
         else:
             raise _Wrong(f'"%{word}" is no command of a template', n)
 
@@ -440,7 +454,14 @@ def _meaning(markup: str, table: Mapping[str, str]) -> str:
     longest = -1
     for key, meaning in table.items():
         head, star, tail = bare(key).partition("*")
-        if star and not key.startswith("~") and plain.startswith(head) and plain.endswith(tail) and len(plain) > len(head) + len(tail) and len(head) > longest:
+        if (
+            star
+            and not key.startswith("~")
+            and plain.startswith(head)
+            and plain.endswith(tail)
+            and len(plain) > len(head) + len(tail)
+            and len(head) > longest
+        ):
             longest = len(head)
             found = meaning.replace("*", plain[len(head) : len(plain) - len(tail)])
     return found
@@ -480,7 +501,7 @@ def _split(lines: list[tuple[int, str]], i: int, n: int) -> tuple[list[tuple[int
     """What is inside a command up to its %end, what after its %else, and where it goes on."""
     depth, other = 0, -1
     for j in range(i, len(lines)):
-        word = (m[1] if (m := _COMMAND.fullmatch(lines[j][1])) else "")
+        word = m[1] if (m := _COMMAND.fullmatch(lines[j][1])) else ""
         if word in ("if", "each"):
             depth += 1
         elif word == "end" and depth:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from math import cos, sin
 from typing import TYPE_CHECKING
 
@@ -108,7 +109,7 @@ class Pictures:
             return [_figure(name, marks, box)]
         cuts = _gaps(marks, box, count)
         made = []
-        for low, high in zip(cuts, cuts[1:], strict=False):
+        for low, high in pairwise(cuts):
             part = [m for m in marks if low <= _middle(m).imag < high]
             if part:
                 place = extent(part)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from math import degrees, floor, isfinite, log10
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,20 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import Inline, Number, Symbol, Text
-from tmm_sheets.note.formula import Figures, Node, Operand, Row, Scripts, Sign, Words, arguments, letters, letters_of, of_tree, simplified
+from tmm_sheets.note.formula import (
+    Figures,
+    Node,
+    Operand,
+    Row,
+    Scripts,
+    Sign,
+    Words,
+    arguments,
+    letters,
+    letters_of,
+    of_tree,
+    simplified,
+)
 from tmm_sheets.note.phrases import Said
 from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number, written
 from tmm_sheets.record.recording import book_of, unit
@@ -71,13 +85,17 @@ class Reader:
     @property
     def k(self) -> int:
         """Number of the position that is told in words: that of the force analysis."""
+        if self.project.variant.crank is None or self.project.variant.cycle is None:
+            return 0
         if "forces" in self.project.parts or (self.project.variant.cycle is not None and self.project.variant.cycle.force_position):
             return self.project.force_index
         return min(2, len(self.project.cycle.labels) - 1)
 
     @property
     def label(self) -> str:
-        """Label of that position."""
+        """Label of that position; empty where nothing moves in numbered positions."""
+        if self.project.variant.crank is None or self.project.variant.cycle is None:
+            return ""
         return str(self.project.cycle.labels[self.k])
 
     # --- numbers
@@ -86,21 +104,31 @@ class Reader:
         """A unit in words."""
         return phrases.unit(name, self.language)
 
-    def number(self, value: float, unit: str = "", step: str = "", position: str = "", digits: int = DIGITS, kind: float = 0.0) -> Number:
+    def number(
+        self, value: float, unit: str = "", step: str = "", position: str = "", digits: int = DIGITS, kind: float = 0.0
+    ) -> Number:
         """A number as it is written; large and small ones as a product with a power of ten in words of the paper."""
         value = float(np.real(value))
         if is_zero(value, kind):
             value = 0.0
         return Number(shown(value, digits), step, value, position, digits, self.unit(unit))
 
-    def of(self, step: Step, k: int | None = None, unit_: str | None = None, digits: int = DIGITS, part: str = "abs", kind: float = 0.0,
-           ) -> Number:
+    def of(
+        self,
+        step: Step,
+        k: int | None = None,
+        unit_: str | None = None,
+        digits: int = DIGITS,
+        kind: float = 0.0,
+    ) -> Number:
         """Value of a step at a position; of a vector its magnitude."""
         at = self.at(step, k)
         value = value_at(step, at)
         if isinstance(value, complex | np.complexfloating):
-            value = {"abs": abs, "x": np.real, "y": np.imag}[part](value)
-        return self.number(float(value), self.unit_of(step) if unit_ is None else unit_, self.id(step), self.position(step, at), digits, kind)
+            value = abs(value)
+        return self.number(
+            float(value), self.unit_of(step) if unit_ is None else unit_, self.id(step), self.position(step, at), digits, kind
+        )
 
     def fixed(self, value: float, unit: str, decimals: int, step: str = "", position: str = "") -> Number:
         """A number with a fixed number of decimals: millimetres of a drawing, degrees."""
@@ -156,8 +184,15 @@ class Reader:
 
     # --- formulas
 
-    def formula(self, step: Step, k: int | None = None, symbol: str = "", factor: float = 1.0, as_unit: str | None = None,
-                names: Mapping[str, str] | None = None) -> Said | None:
+    def formula(
+        self,
+        step: Step,
+        k: int | None = None,
+        symbol: str = "",
+        factor: float = 1.0,
+        as_unit: str | None = None,
+        names: Mapping[str, str] | None = None,
+    ) -> Said | None:
         """The formula of a step by its own expression; None when it has none that can be written."""
         tree = step.rule.tree(len(step.args))
         if tree is None or isinstance(tree, expression.Argument):
@@ -173,7 +208,9 @@ class Reader:
             return None
         result = self.of(step, k)
         unit_ = self.unit_of(step) if as_unit is None else as_unit
-        return self.written(symbol or symbol_of(step), tree, quantities, Quantity("", result.value * factor, unit_, result.step, result.position))
+        return self.written(
+            symbol or symbol_of(step), tree, quantities, Quantity("", result.value * factor, unit_, result.step, result.position)
+        )
 
     def _operand(self, a: Any, k: int | None, names: Mapping[str, str]) -> Quantity | None:
         if isinstance(a, Step):
@@ -194,7 +231,7 @@ class Reader:
         return None
 
     def written(self, symbol: str, tree: expression.Expression, quantities: Sequence[Quantity], result: Quantity | None) -> Said:
-        """A formula from its expression and the quantities in the places of its arguments; ``result`` None leaves the numbers out."""
+        """A formula from its expression and the quantities in the places of its arguments; without ``result`` letters only."""
         in_letters = [Operand(letters(q.symbol)) for q in quantities]
         in_numbers = [self._figures(q) for q in quantities]
         head = letters(symbol)
@@ -226,8 +263,16 @@ class Reader:
             found = (*found, Sign("="), Figures(text, Number(text, q.step, q.value, q.position)))
         return found
 
-    def checked(self, symbol: str, build: Callable[..., Any], quantities: Sequence[Quantity], step: Step, k: int | None = None,
-                unit_: str | None = None, factor: float = 1.0) -> Said:
+    def checked(
+        self,
+        symbol: str,
+        build: Callable[..., Any],
+        quantities: Sequence[Quantity],
+        step: Step,
+        k: int | None = None,
+        unit_: str | None = None,
+        factor: float = 1.0,
+    ) -> Said:
         """A formula in the words of the field for a step that the record computes with vectors: its value must be the step's.
 
         Raises
@@ -241,8 +286,18 @@ class Reader:
         size = max(abs(n.value * factor), 1e-9 * max((abs(q.value) for q in quantities), default=0.0), 1e-12)
         if isfinite(value) and abs(abs(value) - abs(n.value * factor)) > 1e-6 * size:
             raise ArithmeticError(f"{symbol} of {n.step} is {n.value * factor}, the note's formula gives {value}")
-        return self.written(symbol, tree, quantities, Quantity("", abs(n.value * factor) if value > 0 else n.value * factor,
-                                                               self.unit_of(step) if unit_ is None else unit_, n.step, n.position))
+        return self.written(
+            symbol,
+            tree,
+            quantities,
+            Quantity(
+                "",
+                abs(n.value * factor) if value > 0 else n.value * factor,
+                self.unit_of(step) if unit_ is None else unit_,
+                n.step,
+                n.position,
+            ),
+        )
 
     # --- sentences
 
@@ -250,18 +305,19 @@ class Reader:
         """The steps of a plan in their words, one after another, for the position that is told."""
         scale = self.scales.get(plan.name)
         to_mm, name = (scale.mm, "мм") if scale is not None else (float, protocol.UNITS.get(plan.unit, plan.unit))
-        k = plan.labels.index(self.label) if len(plan.labels) > 1 and self.label in plan.labels else 0
+        k = plan.labels.index(self.label) if self.label in plan.labels else min(2, len(plan.labels) - 1)
         said = list(protocol.sentences(plan, k, to_mm, name))
         found: list[Inline] = []
         for step, sentence in zip(plan, said, strict=True):
             if not skip(step) and not _bare(sentence):
-                found += [*marked(sentence, self.id(step), plan.labels[k] if len(plan.labels) > 1 else ""), " "]
+                found += [*marked(sentence, self.id(step), plan.labels[k] if len(plan.labels) > 1 else "", self.language), " "]
         return tuple(found)
 
     # --- tables
 
-    def row_table(self, head: Sequence[Text], columns: Sequence[tuple[Sequence[float], str, str]], labels: Sequence[str],
-                  digits: int = DIGITS) -> tuple[tuple[Text, ...], ...]:
+    def row_table(
+        self, head: Sequence[Text], columns: Sequence[tuple[Sequence[float], str, str]], labels: Sequence[str], digits: int = DIGITS
+    ) -> tuple[tuple[Text, ...], ...]:
         """A table with a row for each position: ``columns`` are values, the step they are of, and a unit that the head says."""
         rows: list[tuple[Text, ...]] = [tuple(head)]
         for i, label in enumerate(labels):
@@ -319,15 +375,22 @@ def figures(n: Number) -> Node:
 # --- sentences of the record with letters set as letters -----------------------------------------------------------
 
 _LETTER = r"A-Za-zα-ωΑ-Ωϕϑ"
-_MARKED = re.compile(
-    rf"(?P<number>[−]?\d+(?:,\d+)?(?:e[−-]?\d+)?(?![{_LETTER}\d_′″])(?: (?:мм|Н·м|кг·м²|рад/с²|рад/с|м/с²|м/с|Н|м|кг|Дж|Вт|рад)(?![А-я]))?°?)"
-    rf"|(?P<word>[{_LETTER}∞](?:_\w+|[{_LETTER}\d_′″*'̅]|(?<=[FM])и(?=\d))*(?:\^\S)?)")
 
 
-def marked(sentence: str, step: str, position: str) -> Iterator[Inline]:
+@cache
+def _marked(language: str) -> re.Pattern[str]:
+    """Numbers, with their units, and letters in the sentences of a language."""
+    units = "|".join(sorted(map(re.escape, phrases.words(language)["units"].values()), key=len, reverse=True))
+    return re.compile(
+        rf"(?P<number>[−]?\d+(?:[,.]\d+)?(?:e[−-]?\d+)?(?![{_LETTER}\d_′″])(?: (?:{units})(?!\w))?°?)"
+        rf"|(?P<word>[{_LETTER}∞](?:_\w+|[{_LETTER}\d_′″*'̅]|(?<=[FM])и(?=\d))*(?:\^\S)?)"
+    )
+
+
+def marked(sentence: str, step: str, position: str, language: str) -> Iterator[Inline]:
     """A sentence with its letters as symbols and its numbers as numbers of a step."""
     at = 0
-    for m in _MARKED.finditer(sentence):
+    for m in _marked(language).finditer(sentence):
         before = sentence[m.start() - 1 : m.start()]
         if before.isalpha() or (m["word"] and sentence[m.end() : m.end() + 1].isalpha() and _cyrillic(sentence[m.end()])):
             continue

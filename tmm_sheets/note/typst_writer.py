@@ -64,11 +64,11 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
         (root / "preamble.typ").write_bytes(template("note/preamble.typ").read_bytes())
         (root / "note.typ").write_text(source(note), encoding="utf-8")
         fonts = [str(template("note/fonts")), str(template("fonts"))]
-        compiler = typst.Compiler(root / "note.typ", root=root, font_paths=fonts, ignore_system_fonts=True)
-        data = compiler.compile(format="pdf", timestamp=0, pdf_tags=False)
+        compiler = typst.Compiler(str(root / "note.typ"), root=str(root), font_paths=fonts, ignore_system_fonts=True)
+        made = compiler.compile(format="pdf", timestamp=0, pdf_tags=False)
         found = json.loads(compiler.query("<places>", field="value", one=True))
-    assert isinstance(data, bytes)
-    return data, found
+    assert isinstance(made, bytes)
+    return made, found
 
 
 def pictures(blocks: Iterable[Block]) -> dict[str, bytes]:
@@ -93,8 +93,8 @@ def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:
             pages.append(f"rotate(-90deg, reflow: true, {image})" if turned else image)
         source = "#set page(width: auto, height: auto, margin: 0mm)\n" + "\n#pagebreak()\n".join(f"#{p}" for p in pages)
         (root / "pictures.typ").write_text(source, encoding="utf-8")
-        made = typst.compile(root / "pictures.typ", format="png", ppi=dpi) if drawn else []
-    found = [made] if isinstance(made, bytes) else list(made or [])
+        made: Any = typst.compile(str(root / "pictures.typ"), format="png", ppi=dpi) if drawn else []
+    found: list[bytes] = [made] if isinstance(made, bytes) else list(made or [])
     return {file_name(b): data for b, data in zip(drawn, found, strict=True)}
 
 
@@ -115,8 +115,7 @@ def source(note: Note) -> str:
         '#import "preamble.typ": *\n'
         f"#show: note.with(lang: {string(note.language)}, title: {string(note.title)}, author: {string(note.author)}, "
         f"first: {note.first_page}, words: ({fields or ':'}))\n"
-        f"#title-page(({title}))\n{front}\n{body}\n#last-page()\n#places()\n"
-        + (f"#reminders[{reminders}]\n" if reminders else "")
+        f"#title-page(({title}))\n{front}\n{body}\n#last-page()\n#places()\n" + (f"#reminders[{reminders}]\n" if reminders else "")
     )
 
 
@@ -149,7 +148,8 @@ class _Writer:
         return f"#title({b.level}, {string(text)}, toc: {'true' if b.number or b.level == 1 else 'false'})"
 
     def _paragraph(self, b: Paragraph) -> str:
-        return f"#{ {'plain': 'para', 'item': 'item', 'centre': 'middle', 'right': 'aside', 'where': 'para'}[b.look]}[{text(b.text)}]\n"
+        function = {"plain": "para", "item": "item", "centre": "middle", "right": "aside"}[b.look]
+        return f"#{function}[{text(b.text)}]\n"
 
     def _formula(self, b: Formula) -> str:
         lines = " ".join(f"${math(x)}$," for x in b.lines)
@@ -166,8 +166,9 @@ class _Writer:
 
     def _figure(self, b: Figure) -> str:
         turned = "true" if b.turned else "false"
-        return (f"#picture({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')}, {b.width:.2f}mm, {b.height:.2f}mm, "
-                f"{turned}, {'auto' if self.height > PAGE else 'bottom'})")
+        place = "auto" if self.height > PAGE else "bottom"
+        size = f"{b.width:.2f}mm, {b.height:.2f}mm"
+        return f"#picture({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')}, {size}, {turned}, {place})"
 
     def _sheet(self, b: Sheet) -> str:
         return f"#sheet({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')})"
@@ -196,12 +197,35 @@ def height(b: Block) -> float:
 
 def text(parts: Text) -> str:
     """Running text."""
-    return "".join(f"${math(x.node)}$" if isinstance(x, Symbol) else "#pages-of-all;" if getattr(x, "step", "") == "note.pages"
-                   else f"#{string(str(x))};" for x in parts)
+    return "".join(
+        f"${math(x.node)}$"
+        if isinstance(x, Symbol)
+        else "#pages-of-all;"
+        if getattr(x, "step", "") == "note.pages"
+        else f"#{string(str(x))};"
+        for x in parts
+    )
 
 
-_SIGNS = {"·": "dot.op", "∥": "parallel", "⟂": "perp", "|": "bar.v", "/": "slash", "(": "\\(", ")": "\\)", ",": '","', ";": '";"',
-          "′": "prime", "″": "prime.double", ":": '":"', "°": '"°"', "–": '"–"', "%": '"%"', "*": '"*"', "…": "dots.h"}  # fmt: skip
+_SIGNS = {
+    "·": "dot.op",
+    "∥": "parallel",
+    "⟂": "perp",
+    "|": "bar.v",
+    "/": "slash",
+    "(": "\\(",
+    ")": "\\)",
+    ",": '","',
+    ";": '";"',
+    "′": "prime",
+    "″": "prime.double",
+    ":": '":"',
+    "°": '"°"',
+    "–": '"–"',
+    "%": '"%"',
+    "*": '"*"',
+    "…": "dots.h",
+}
 
 
 def math(node: Node) -> str:
@@ -239,9 +263,35 @@ def math(node: Node) -> str:
     return made
 
 
-_GREEK = {"α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta", "η": "eta", "θ": "theta", "κ": "kappa",
-          "λ": "lambda", "μ": "mu", "ν": "nu", "ξ": "xi", "π": "pi", "ρ": "rho", "σ": "sigma", "τ": "tau", "φ": "phi", "χ": "chi",
-          "ψ": "psi", "ω": "omega", "Δ": "Delta", "Σ": "Sigma", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega", "Θ": "Theta"}  # fmt: skip
+_GREEK = {
+    "α": "alpha",
+    "β": "beta",
+    "γ": "gamma",
+    "δ": "delta",
+    "ε": "epsilon",
+    "ζ": "zeta",
+    "η": "eta",
+    "θ": "theta",
+    "κ": "kappa",
+    "λ": "lambda",
+    "μ": "mu",
+    "ν": "nu",
+    "ξ": "xi",
+    "π": "pi",
+    "ρ": "rho",
+    "σ": "sigma",
+    "τ": "tau",
+    "φ": "phi",
+    "χ": "chi",
+    "ψ": "psi",
+    "ω": "omega",
+    "Δ": "Delta",
+    "Σ": "Sigma",
+    "Φ": "Phi",
+    "Ψ": "Psi",
+    "Ω": "Omega",
+    "Θ": "Theta",
+}
 
 
 def _letter(c: str) -> str:

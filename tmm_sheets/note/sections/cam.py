@@ -18,13 +18,27 @@ def scope(r: Reader) -> Scope:
     cam = r.project.cam
     results = cam.results()
     table: Any = r.project.variant.cam
-    found = Scope({
-        "translating": table.follower.startswith("translating"), "rocker": "rocker" in table.follower or "oscillating" in table.follower,
-        "plate": "flat" in table.follower or "plate" in table.follower, "law": words(r.language)["cam"]["laws"].get(str(table.law), ""),
-        "roller": "r_roller" in results,
-    })  # fmt: skip
-    for name in ("cam-phases", "cam-scales", "cam-zone", "cam-plate", "cam-plate-places", "cam-roller", "cam-curvature", "cam-spring",
-                 "cam-profile", "cam-zone-touch"):  # fmt: skip
+    found = Scope(
+        {
+            "translating": table.follower.startswith("translating"),
+            "rocker": "rocker" in table.follower or "oscillating" in table.follower,
+            "plate": "flat" in table.follower or "plate" in table.follower,
+            "law": words(r.language)["cam"]["laws"].get(str(table.law), ""),
+            "roller": "r_roller" in results,
+        }
+    )
+    for name in (
+        "cam-phases",
+        "cam-scales",
+        "cam-zone",
+        "cam-plate",
+        "cam-plate-places",
+        "cam-roller",
+        "cam-curvature",
+        "cam-spring",
+        "cam-profile",
+        "cam-zone-touch",
+    ):
         plan = r.plan(name)
         for step in plan or ():
             said = r.formula(step)
@@ -37,9 +51,9 @@ def scope(r: Reader) -> Scope:
                 found.fields[key] = r.angle(float(value), r.id(step)) if unit == "rad" else r.of(step)
     for name in ("r0", "e", "l0", "r_roller", "rho_min"):
         told = results.get(name)
-        step = getattr(told, "step", told)
-        if step is not None and hasattr(step, "rule"):
-            found.fields[name] = r.number(abs(float(np.real(step.value))) * 1e3, "mm", r.id(step))
+        behind: Any = getattr(told, "step", told)
+        if behind is not None and hasattr(behind, "rule"):
+            found.fields[name] = r.number(abs(float(np.real(behind.value))) * 1e3, "mm", r.id(behind))
     for name in ("cam-zone", "cam-profile"):
         scale = r.scales.get(name)
         if scale is not None:
@@ -52,9 +66,15 @@ def scope(r: Reader) -> Scope:
     found.fields["motion"] = [{"part": f} for f in r.pictures.parts("cam.motion")]
     profile = r.pictures.figure("cam_profile.profile", focus=("curve", "cam-profile/O"))
     found.fields["profiles"] = [{"part": profile}] if profile is not None else []
-    for name, picture in (("zone", "cam_zone.of_tappet"), ("zone_rocker", "cam_zone.of_rocker"), ("plate", "cam_zone.plate"),
-                          ("sum", "cam_zone.sum_graph"), ("roller", "cam_profile.roller"), ("pressure", "cam.pressure"),
-                          ("spring", "cam.spring")):  # fmt: skip
+    for name, picture in (
+        ("zone", "cam_zone.of_tappet"),
+        ("zone_rocker", "cam_zone.of_rocker"),
+        ("plate", "cam_zone.plate"),
+        ("sum", "cam_zone.sum_graph"),
+        ("roller", "cam_profile.roller"),
+        ("pressure", "cam.pressure"),
+        ("spring", "cam.spring"),
+    ):
         figure = r.pictures.figure(picture)
         if figure is not None:
             found.figures[name] = figure
@@ -71,8 +91,11 @@ def _phases(r: Reader) -> Any:
 
     for step in plan or ():
         if step.name.startswith("φ_") and step.name[2:] in ("у", "дс", "с", "бс"):
-            yield {"letter": Symbol(letters(symbol_of(step))), "value": r.angle(float(step.value), r.id(step)),
-                   "meaning": words(r.language)["cam"]["phases"][step.name[2:]]}
+            yield {
+                "letter": Symbol(letters(symbol_of(step))),
+                "value": r.angle(float(step.value), r.id(step)),
+                "meaning": words(r.language)["cam"]["phases"][step.name[2:]],
+            }
 
 
 def _law(r: Reader, found: Scope) -> None:

@@ -13,20 +13,40 @@ from tmm_sheets.note.reader import Quantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
 from tmm_sheets.numbers import is_zero
 
+EVEN = 0.05
+"""Share of the square of the angular velocity below which an angular acceleration changes no inertia force noticeably."""
 SAFE = 30.0
 """Speed up to which a rim of cast iron is safe, m/s (000, 5.7)."""
-PLANS = ("reduced-moment", "driving-moment", "total-work", "reduced-inertia", "energy-mass", "first-energy", "flywheel-inertia",
-         "flywheel-limit", "flywheel-wheel", "crank-speed", "motor-check", "crank-acceleration", "work")  # fmt: skip
+PLANS = (
+    "reduced-moment",
+    "driving-moment",
+    "total-work",
+    "reduced-inertia",
+    "energy-mass",
+    "first-energy",
+    "flywheel-inertia",
+    "flywheel-limit",
+    "flywheel-wheel",
+    "crank-speed",
+    "motor-check",
+    "crank-acceleration",
+    "work",
+)
 
 
 def scope(r: Reader) -> Scope:
     """Formulas, tables and figures of the flywheel."""
     fw = r.project.flywheel
-    found = Scope({
-        "label": r.label, "mertsalov": fw.method == "mertsalov", "resisting": fw.reduced.resisting, "needed": fw.needed,
-        "delta": r.number(fw.delta, "", "flywheel.delta"), "rim": r.project.variant.flywheel is not None
-        and r.project.variant.flywheel.form == "rim",
-    })  # fmt: skip
+    found = Scope(
+        {
+            "label": r.label,
+            "mertsalov": fw.method == "mertsalov",
+            "resisting": fw.reduced.resisting,
+            "needed": fw.needed,
+            "delta": r.number(fw.delta, "", "flywheel.delta"),
+            "rim": r.project.variant.flywheel is not None and r.project.variant.flywheel.form == "rim",
+        }
+    )
     fw.results()
     for name in PLANS:
         plan = r.plan(name)
@@ -45,7 +65,9 @@ def scope(r: Reader) -> Scope:
         figure = r.pictures.figure(f"flywheel.{name}")
         if figure is not None:
             found.figures[name] = figure
-    diagram = r.pictures.figure("energy-mass", focus=("curve", "energy-mass/points", "energy-mass/a", "energy-mass/b", "energy-mass/ab"))
+    diagram = r.pictures.figure(
+        "energy-mass", focus=("curve", "energy-mass/points", "energy-mass/a", "energy-mass/b", "energy-mass/ab")
+    )
     if diagram is not None:
         found.figures["energy_mass"] = diagram
     for i, figure in enumerate(r.pictures.parts("mertsalov.column")):
@@ -67,13 +89,16 @@ def _reduction(r: Reader, found: Scope) -> None:
         terms.append(Quantity(_term(name), value, "J", r.id(step), r.label))
     inertia = at.inertia
     if terms:
+
         def total(w: Any, *parts: Any) -> Any:
             out = parts[0]
             for p in parts[1:]:
                 out = out + p
             return out / w**2
 
-        found.formulas["J"] = r.checked("J_{пр}", total, [omega, *terms], inertia) if not _crank_part(r) else _with_crank(r, omega, terms, inertia)
+        found.formulas["J"] = (
+            r.checked("J_{пр}", total, [omega, *terms], inertia) if not _crank_part(r) else _with_crank(r, omega, terms, inertia)
+        )
     for name, step in plan.steps.items():
         if name.startswith("N_") and not name.startswith("N_G") and "(" not in name:
             value = float(np.real(value_at(step, r.at(step, None))))
@@ -120,7 +145,9 @@ def _results(r: Reader, found: Scope) -> None:
     work = fw.work_plan
     for name in ("∫M", "ΔA"):
         if name in work:
-            found.fields["closing" if name == "ΔA" else "area"] = r.fixed(float(np.real(work[name].value)), "mm", 1, r.id(work[name]))
+            found.fields["closing" if name == "ΔA" else "area"] = r.fixed(
+                float(np.real(work[name].value)), "mm", 1, r.id(work[name])
+            )
     wheel = fw.wheel
     if wheel is not None:
         for name in ("D", "B", "H", "m", "V"):
@@ -131,11 +158,19 @@ def _results(r: Reader, found: Scope) -> None:
     speed = found.fields.get("wheel_V")
     found.fields["slow"] = speed is not None and speed.value < SAFE
     found.tables["comparison"] = (
-        ((words(r.language)["flywheel"]["quantity"],), (words(r.language)["flywheel"]["drawn"],), (words(r.language)["flywheel"]["limit"],),
-         (words(r.language)["flywheel"]["difference"],)),
-        ((*r.head("J_{м}", "kg*m2"),), (r.number(fw.J_flywheel, "", "flywheel-inertia/J_м"),),
-         (r.number(fw.J_flywheel_converged, "", "flywheel-limit/J_м∞"),),
-         (r.number(fw.difference_percent, "", "flywheel-limit/разность", digits=2),)))
+        (
+            (words(r.language)["flywheel"]["quantity"],),
+            (words(r.language)["flywheel"]["drawn"],),
+            (words(r.language)["flywheel"]["limit"],),
+            (words(r.language)["flywheel"]["difference"],),
+        ),
+        (
+            (*r.head("J_{м}", "kg*m2"),),
+            (r.number(fw.J_flywheel, "", "flywheel-inertia/J_м"),),
+            (r.number(fw.J_flywheel_converged, "", "flywheel-limit/J_м∞"),),
+            (r.number(fw.difference_percent, "", "flywheel-limit/разность", digits=2),),
+        ),
+    )
 
 
 def _tables(r: Reader, found: Scope) -> None:
@@ -145,15 +180,18 @@ def _tables(r: Reader, found: Scope) -> None:
     total = fw.total_plan
     labels = list(fw.labels)
     columns: list[tuple[str, str, Any, str]] = [
-        ("M_{пр}", "N*m", fw.M_reduced, r.id(fw.moment_plan["M_пр"])), ("A", "J", fw.work, r.id(total["A"])),
-        ("A_{K}", "J", total["A_K"].value, r.id(total["A_K"])), ("ΔE", "J", fw.delta_E, r.id(total["E"])),
-        ("J_{пр}", "kg*m2", fw.J_reduced, r.id(fw.inertia_plan["J_пр"]))]  # fmt: skip
+        ("M_{пр}", "N*m", fw.M_reduced, r.id(fw.moment_plan["M_пр"])),
+        ("A", "J", fw.work, r.id(total["A"])),
+        ("A_{K}", "J", total["A_K"].value, r.id(total["A_K"])),
+        ("ΔE", "J", fw.delta_E, r.id(total["E"])),
+        ("J_{пр}", "kg*m2", fw.J_reduced, r.id(fw.inertia_plan["J_пр"])),
+    ]
     n = min(len(labels), *(len(np.atleast_1d(v)) for _, _, v, _ in columns))
     rows: list[tuple[Text, ...]] = [((said["position"],), *(r.head(s, u) for s, u, _, _ in columns))]
     for i in range(n):
         cells: list[Text] = [(labels[i],)]
-        for _, _, values, step in columns:
-            cells.append((r.number(float(values[i]), "", step, labels[i], kind=float(np.nanmax(np.abs(values)))),))
+        for _, _, values, where in columns:
+            cells.append((r.number(float(values[i]), "", where, labels[i], kind=float(np.nanmax(np.abs(values)))),))
         rows.append(tuple(cells))
     found.tables["works"] = tuple(rows)
     at = fw.reduced.numbered
@@ -162,19 +200,39 @@ def _tables(r: Reader, found: Scope) -> None:
         head: list[Text] = [(said["position"],), *(r.head(_term(name), "J") for name in terms)]
         rows = [tuple(head)]
         for i, label in r.project.cycle.drawn:
-            rows.append(((label,), *((r.number(float(v[i]), "", r.id(at.terms[name]), label, kind=float(np.max(np.abs(v)))),)
-                                     for name, v in terms.items())))
+            rows.append(
+                (
+                    (label,),
+                    *(
+                        (r.number(float(v[i]), "", r.id(at.terms[name]), label, kind=float(np.max(np.abs(v)))),)
+                        for name, v in terms.items()
+                    ),
+                )
+            )
         found.tables["terms"] = tuple(rows)
     if "epsilon1" in fw.results():
         plan = fw.position_acceleration
         step = plan["ε1"]
         values = np.real(np.atleast_1d(step.value))
         if len(values) >= n:
-            rows = [((said["position"],), *(r.head(s, u) for s, u in (("M", "N*m"), ("dJ/dφ", "kg*m2"), ("J", "kg*m2"), ("ε_1", "rad/s2"))))]
+            rows = [
+                (
+                    (said["position"],),
+                    *(r.head(s, u) for s, u in (("M", "N*m"), ("dJ/dφ", "kg*m2"), ("J", "kg*m2"), ("ε_1", "rad/s2"))),
+                )
+            ]
             for i in range(n):
                 cells = [(labels[i],)]
                 for name in ("M", "dJ/dφ", "J", "ε1"):
                     v = np.real(np.atleast_1d(plan[name].value))
-                    cells.append((r.number(float(v[i if len(v) > 1 else 0]), "", r.id(plan[name]), labels[i], kind=float(np.max(np.abs(v)))),))
+                    cells.append(
+                        (
+                            r.number(
+                                float(v[i if len(v) > 1 else 0]), "", r.id(plan[name]), labels[i], kind=float(np.max(np.abs(v)))
+                            ),
+                        )
+                    )
                 rows.append(tuple(cells))
             found.tables["acceleration"] = tuple(rows)
+            ratio = float(np.nanmax(np.abs(values))) / fw.omega1**2
+            found.fields |= {"unevenness": r.number(ratio, "", r.id(step), digits=2), "even": ratio < EVEN}

@@ -22,11 +22,17 @@ BAR = "\u0305"
 def scope(r: Reader) -> Scope:
     """Everything of the force analysis at the position that is told, reactions at all of them."""
     study = r.project.study
-    forces, m = study.forces, study.mechanism
-    found = Scope({
-        "label": r.label, "count": len(m.groups), "crank": m.crank.link, "gear_force": study.driver is not None,
-        "balancing": Symbol(letters(letters_of(r.project.balancing))), "gravity": r.number(r.project.gravity, "m/s2", "forces.gravity"),
-    })  # fmt: skip
+    m = study.mechanism
+    found = Scope(
+        {
+            "label": r.label,
+            "count": len(m.groups),
+            "crank": m.crank.link,
+            "gear_force": study.driver is not None,
+            "balancing": Symbol(letters(letters_of(r.project.balancing))),
+            "gravity": r.number(r.project.gravity, "m/s2", "forces.gravity"),
+        }
+    )
     _loads(r, found)
     found.fields["applied"] = list(_applied(r))
     found.fields["groups"] = [_group(r, g, i) for i, g in enumerate(reversed(m.groups), 1)]
@@ -34,8 +40,12 @@ def scope(r: Reader) -> Scope:
     _lever(r, found)
     found.tables["reactions"] = _reactions(r)
     found.tables["balance"] = _comparison(r)
-    for name, picture in (("crank", "kinetics.crank"), ("crank_plan", f"force-{m.crank.link}"), ("lever", "kinetics.lever"),
-                          ("balancing", "diagrams.balancing")):  # fmt: skip
+    for name, picture in (
+        ("crank", "kinetics.crank"),
+        ("crank_plan", f"force-{m.crank.link}"),
+        ("lever", "kinetics.lever"),
+        ("balancing", "diagrams.balancing"),
+    ):
         figure = r.pictures.figure(picture)
         if figure is not None:
             found.figures[name] = figure
@@ -50,9 +60,18 @@ def _loads(r: Reader, found: Scope) -> None:
     forces, acc, m = study.forces, study.accelerations, study.mechanism
     said = words(r.language)["forces"]
     g = Quantity("g", r.project.gravity, "m/s2", "forces.gravity")
-    rows: list[tuple[Text, ...]] = [(
-        (said["link"],), r.head("m", "kg"), r.head("G", "N"), r.head("a_S", "m/s2"), r.head("F_{и}", "N"), r.head("J_S", "kg*m2"),
-        r.head("ε", "rad/s2"), r.head("M_{и}", "N*m"))]  # fmt: skip
+    rows: list[tuple[Text, ...]] = [
+        (
+            (said["link"],),
+            r.head("m", "kg"),
+            r.head("G", "N"),
+            r.head("a_S", "m/s2"),
+            r.head("F_{и}", "N"),
+            r.head("J_S", "kg*m2"),
+            r.head("ε", "rad/s2"),
+            r.head("M_{и}", "N*m"),
+        )
+    ]
     best: tuple[float, str] | None = None
     for name, link in m.links.items():
         loads = {load.role: load for load in forces.loads[name] if load.role in ("weight", "inertia")}
@@ -60,30 +79,42 @@ def _loads(r: Reader, found: Scope) -> None:
         if not loads and not couples:
             continue
         inertia = loads.get("inertia")
-        a = abs(value_at(acc.points[link.centre], r.k)) if link.centre in acc.points else 0.0
+        moved = acc.points.get(str(link.centre))
+        a = abs(value_at(moved, r.k)) if moved is not None else 0.0
         epsilon = float(value_at(acc.epsilon[name], r.k)) if name in acc.epsilon else 0.0
         cells: list[Text] = [(name,), (r.number(link.mass, "", f"link.{name}.mass"),)]
         cells.append((r.of(loads["weight"].vector, None, ""),) if "weight" in loads else ("–",))
-        cells.append((r.of(acc.points[link.centre], None, ""),) if link.centre in acc.points else ("–",))
+        cells.append((r.of(moved, None, ""),) if moved is not None else ("–",))
         cells.append((r.of(inertia.vector, None, ""),) if inertia is not None else ("–",))
         own = abs(float(value_at(couples[0].args[0], r.k))) if couples else 0.0
         cells.append((r.number(own, "", f"link.{name}.inertia"),) if couples else ("–",))
         cells.append((r.of(acc.epsilon[name], None, ""),) if couples else ("–",))
         cells.append((r.of(couples[0], None, ""),) if couples else ("–",))
         rows.append(tuple(cells))
-        if inertia is not None and (best is None or link.mass * a > best[0]):
+        if inertia is not None and moved is not None and (best is None or link.mass * a > best[0]):
             best = (link.mass * a, name)
             mass = Quantity(f"m_{{{name}}}", float(link.mass), "kg", f"link.{name}.mass")
-            found.formulas["inertia"] = r.checked(f"F_{{и{name}}}", lambda x, y: x * y, [
-                mass, Quantity(f"a_{{{letters_name(str(link.centre))}}}", float(a), "m/s2", r.id(acc.points[link.centre]), r.label)],
-                inertia.vector)
+            found.formulas["inertia"] = r.checked(
+                f"F_{{и{name}}}",
+                lambda x, y: x * y,
+                [mass, Quantity(f"a_{{{letters_name(str(link.centre))}}}", float(a), "m/s2", r.id(moved), r.label)],
+                inertia.vector,
+            )
         if "weight" in loads and best is not None and best[1] == name:
-            found.formulas["weight"] = r.checked(f"G_{{{name}}}", lambda x, y: x * y, [
-                Quantity(f"m_{{{name}}}", float(link.mass), "kg", f"link.{name}.mass"), g], loads["weight"].vector)
+            found.formulas["weight"] = r.checked(
+                f"G_{{{name}}}",
+                lambda x, y: x * y,
+                [Quantity(f"m_{{{name}}}", float(link.mass), "kg", f"link.{name}.mass"), g],
+                loads["weight"].vector,
+            )
         if couples and not is_zero(epsilon, 1.0):
             inertia_of = couples[0].args[0]
-            j = Quantity(f"J_{{S{name}}}", abs(float(value_at(inertia_of, r.k))), "kg*m2", r.id(inertia_of) if isinstance(inertia_of, Step)
-                         else f"link.{name}.inertia")
+            j = Quantity(
+                f"J_{{S{name}}}",
+                abs(float(value_at(inertia_of, r.k))),
+                "kg*m2",
+                r.id(inertia_of) if isinstance(inertia_of, Step) else f"link.{name}.inertia",
+            )
             e = Quantity(f"ε_{{{name}}}", abs(epsilon), "rad/s2", r.id(acc.epsilon[name]), r.label)
             found.formulas["couple"] = r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [j, e], couples[0])
     found.tables["loads"] = tuple(rows)
@@ -97,7 +128,7 @@ def letters_name(name: str) -> str:
 def _applied(r: Reader) -> Iterator[dict[str, Any]]:
     """Technological forces at the position that is told."""
     for load in r.project.study.forces.external:
-        if load.role == "applied" and load.vector is not r.project.study.forces.balancing:
+        if load.role == "applied" and abs(value_at(load.vector, r.k)) and load.vector is not r.project.study.forces.balancing:
             yield {"symbol": Symbol(letters(load.symbol.replace(BAR, ""))), "link": load.link, "value": r.of(load.vector)}
 
 
@@ -131,8 +162,10 @@ def _sum(r: Reader, total: Step, symbol: str, result: Step, length: Quantity | N
     flip = 1.0 if target >= 0 else -1.0
     for symbol_, _, f, moment, step, arm in terms:
         if arm:
-            quantities += [Quantity(symbol_, abs(f), "N", r.id(step), r.label),
-                           Quantity(f"h_{{{index_of(symbol_)}}}", arm, "m", r.id(step), r.label)]
+            quantities += [
+                Quantity(symbol_, abs(f), "N", r.id(step), r.label),
+                Quantity(f"h_{{{index_of(symbol_)}}}", arm, "m", r.id(step), r.label),
+            ]
             part = expression.Argument(len(quantities) - 2) * expression.Argument(len(quantities) - 1)
         else:
             quantities.append(Quantity(symbol_, abs(moment), "N*m", r.id(step), r.label))
@@ -174,10 +207,16 @@ def _group(r: Reader, g: Any, nth: int) -> dict[str, Any]:
             continue
         total = part.vector.args[0]
         a, b = (complex(value_at(x, r.k)) for x in part.vector.args[1:3])
-        length = Quantity(f"l_{{{part.at}{part.centre}}}", abs(b - a), "m", r.id(r.project.study.positions.points[part.at]), r.label)
+        length = Quantity(
+            f"l_{{{part.at}{part.centre}}}", abs(b - a), "m", r.id(r.project.study.positions.points[part.at]), r.label
+        )
         made = _sum(r, total, letters_of(part.vector.name), part.vector, length)
-        item: dict[str, Any] = {"centre": Symbol(letters(letters_of(part.centre))), "of": Symbol(letters(letters_of(part.vector.name))),
-                                "zero": made is None, "joint": Symbol(letters(letters_of(part.at)))}  # fmt: skip
+        item: dict[str, Any] = {
+            "centre": Symbol(letters(letters_of(part.centre))),
+            "of": Symbol(letters(letters_of(part.vector.name))),
+            "zero": made is None,
+            "joint": Symbol(letters(letters_of(part.at))),
+        }
         if made is not None:
             item["force"] = made[0]
             item["equation"] = _shown(made[1], total.name, part.centre)
@@ -210,10 +249,21 @@ def _arm(r: Reader, name: str, step: Step) -> dict[str, Any]:
         return {"zero": True, "of": Symbol(letters(letters_of(name))), "force": Symbol(letters(letters_of(f"F{name[1:]}")))}
     if not f:
         return {}
-    said = r.checked(letters_of(name), lambda m, x: m / x, [
-        Quantity(letters_of(moment.name), abs(value), "N*m", r.id(moment), r.label),
-        Quantity(letters_of(force.name), f, "N", r.id(force), r.label)], step)  # fmt: skip
-    return {"zero": False, "of": Symbol(letters(letters_of(name))), "force": Symbol(letters(letters_of(f"F{name[1:]}"))), "arm": said}
+    said = r.checked(
+        letters_of(name),
+        lambda m, x: m / x,
+        [
+            Quantity(letters_of(moment.name), abs(value), "N*m", r.id(moment), r.label),
+            Quantity(letters_of(force.name), f, "N", r.id(force), r.label),
+        ],
+        step,
+    )
+    return {
+        "zero": False,
+        "of": Symbol(letters(letters_of(name))),
+        "force": Symbol(letters(letters_of(f"F{name[1:]}"))),
+        "arm": said,
+    }
 
 
 def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
@@ -226,8 +276,12 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
         times = 2 if not sought else 1 if len(unknown) > 1 else 0
         nodes.append(Underlined(letters(symbol), times) if times else letters(symbol))
     nodes += [Sign("="), Words("0")]
-    found: dict[str, Any] = {"equation": Said(Row(tuple(nodes))), "links": ", ".join(fp.links), "one": len(fp.links) == 1,
-                             "two": len(unknown) > 1}
+    found: dict[str, Any] = {
+        "equation": Said(Row(tuple(nodes))),
+        "links": ", ".join(fp.links),
+        "one": len(fp.links) == 1,
+        "two": len(unknown) > 1,
+    }
     figure = r.pictures.figure(fp.plan.name)
     if figure is not None:
         found["plan"] = figure
@@ -244,8 +298,10 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
         plain = symbol.replace(BAR, "")
         force = next((s for s in fp.plan if s.name == _named(plain)), head)
         if sought:
-            q = [Quantity(f"|{tail.name}–{head.name}|", mm, "mm", r.id(force), r.label),
-                 Quantity("μ_{F}", scale.mu, "N/mm", f"scales.{fp.plan.name}")]
+            q = [
+                Quantity(f"|{tail.name}–{head.name}|", mm, "mm", r.id(force), r.label),
+                Quantity("μ_{F}", scale.mu, "N/mm", f"scales.{fp.plan.name}"),
+            ]
             tree: Any = expression.Argument(0) * expression.Argument(1)
             results.append({"result": r.written(plain, tree, q, Quantity("", abs(f), "N", r.id(force), r.label))})
         else:
@@ -302,19 +358,32 @@ def _lever(r: Reader, found: Scope) -> None:
     tree: Any = None
     own = lever.hung[-1]
     last = float(value_at(own.arm, r.k))
-    sizes = [abs(complex(value_at(h.force, r.k))) * abs(float(value_at(h.arm, r.k))) for h in lever.hung[:-1]]
+    sizes = [
+        abs(complex(value_at(h.force, r.k))) * abs(float(value_at(h.arm, r.k))) for h in lever.hung[:-1] if value_at(h.force, r.k)
+    ]
     greatest = max(sizes, default=0.0)
     f_own = float(np.real(value_at(lever.balancing if lever.line is not None else own.force.args[0], r.k)))
     for h in lever.hung[:-1]:
         f, arm = abs(complex(value_at(h.force, r.k))), float(value_at(h.arm, r.k))
+        if not f:
+            continue
         symbol = h.symbol.replace(BAR, "")
         mm = float(scale.mm(arm))
         n = r.number(f, "", r.id(h.force), r.label)
-        rows.append(((Symbol(letters(symbol)),), (n,), (r.fixed(mm, "", 1, r.id(h.arm), r.label),),
-                     (r.number(f * mm, "", r.id(h.arm), r.label, kind=greatest * float(scale.mm(1.0))),)))
+        rows.append(
+            (
+                (Symbol(letters(symbol)),),
+                (n,),
+                (r.fixed(mm, "", 1, r.id(h.arm), r.label),),
+                (r.number(f * mm, "", r.id(h.arm), r.label, kind=greatest * float(scale.mm(1.0))),),
+            )
+        )
         if is_zero(f * arm, greatest):
             continue
-        quantities += [Quantity(symbol, f, "N", r.id(h.force), r.label), Quantity(f"h_{{{index_of(symbol)}}}", abs(mm), "mm", r.id(h.arm), r.label)]
+        quantities += [
+            Quantity(symbol, f, "N", r.id(h.force), r.label),
+            Quantity(f"h_{{{index_of(symbol)}}}", abs(mm), "mm", r.id(h.arm), r.label),
+        ]
         part: Any = expression.Argument(len(quantities) - 2) * expression.Argument(len(quantities) - 1)
         positive = arm * last < 0
         tree = (part if positive else -part) if tree is None else (tree + part if positive else tree - part)
@@ -330,10 +399,16 @@ def _lever(r: Reader, found: Scope) -> None:
     found.tables["lever"] = tuple(rows)
     found.fields["mu_lever"] = scale_text(scale)
     if lever.line is None:
-        length = Quantity(f"l_{{{study.mechanism.crank.pivot}{study.mechanism.crank.pin}}}", float(study.mechanism.crank.length), "m",
-                          "crank.length")
+        length = Quantity(
+            f"l_{{{study.mechanism.crank.pivot}{study.mechanism.crank.pin}}}",
+            float(study.mechanism.crank.length),
+            "m",
+            "crank.length",
+        )
         force = Quantity("F_{ур}", abs(f_own), "N", r.id(own.force), r.label)
-        found.formulas["lever_moment"] = r.checked(letters_of("Mур"), lambda f, l: f * l, [force, length], lever.balancing)
+        found.formulas["lever_moment"] = r.checked(
+            letters_of("Mур"), lambda f, length: f * length, [force, length], lever.balancing
+        )
 
 
 def _comparison(r: Reader) -> tuple[tuple[Text, ...], ...]:
@@ -347,9 +422,15 @@ def _comparison(r: Reader) -> tuple[tuple[Text, ...], ...]:
     name = letters_of(r.project.balancing)
     delta = study.balance["Δ"]
     value = float(value_at(delta, r.at(delta, None)))
-    return (((said["quantity"],), (said["kinetostatics"],), (said["lever"],), (said["difference"],)),
-            ((Symbol(letters(name)), f", {r.unit(unit)}"), (_size(r, first),), (_size(r, study.lever.balancing),),
-             (r.number(value, "", r.id(delta), r.label, 2, kind=100.0),)))
+    return (
+        ((said["quantity"],), (said["kinetostatics"],), (said["lever"],), (said["difference"],)),
+        (
+            (Symbol(letters(name)), f", {r.unit(unit)}"),
+            (_size(r, first),),
+            (_size(r, study.lever.balancing),),
+            (r.number(value, "", r.id(delta), r.label, 2, kind=100.0),),
+        ),
+    )
 
 
 def _size(r: Reader, step: Step) -> Number:
@@ -382,7 +463,16 @@ def _reactions(r: Reader) -> tuple[tuple[Text, ...], ...]:
         cells += [(r.number(abs(complex(step.value[i])), "", r.id(step), label, kind=size),) for _, step in columns]
         if forces.balancing is not None:
             value = np.real(study.balance["along"].value[i]) if study.lever.line is not None else np.real(forces.balancing.value[i])
-            cells.append((r.number(float(value), "", r.id(study.balance["along"] if study.lever.line is not None else forces.balancing), label,
-                                   kind=size if study.lever.line is not None else forces.moment_size(i)),))
+            cells.append(
+                (
+                    r.number(
+                        float(value),
+                        "",
+                        r.id(study.balance["along"] if study.lever.line is not None else forces.balancing),
+                        label,
+                        kind=size if study.lever.line is not None else forces.moment_size(i),
+                    ),
+                )
+            )
         rows.append(tuple(cells))
     return tuple(rows)

@@ -26,16 +26,34 @@ def scope(r: Reader) -> Scope:
             if said is not None:
                 found.formulas[f"{name.removeprefix('gear-')}/{step.name}"] = said
     assert plan is not None
-    for name in ("z1", "z2", "m", "x1", "x2", "a_w", "eps_alpha", "z_min", "alpha_w", "alpha", "ha", "c", "sa1", "sa2", "r1", "rw1"):
+    for name in (
+        "z1",
+        "z2",
+        "m",
+        "x1",
+        "x2",
+        "a_w",
+        "eps_alpha",
+        "z_min",
+        "alpha_w",
+        "alpha",
+        "ha",
+        "c",
+        "sa1",
+        "sa2",
+        "r1",
+        "rw1",
+    ):
         if name in plan:
             step = plan[name]
             found.fields[name] = r.angle(step.value, r.id(step)) if name.startswith("alpha") else r.of(step)
     x1, x2 = (float(plan[n].value) for n in ("x1", "x2"))
     found.fields |= {
-        "shifted": bool(x1 or x2), "equal": x1 == -x2 and bool(x1), "thin": min(float(plan[f"sa_m{i}"].value) if f"sa_m{i}" in plan else 1.0
-                                                                               for i in (1, 2)) < 0.2,
-        "from_reducer": r.project.variant.gear is not None and r.project.variant.gear.teeth == "reducer",
-    }  # fmt: skip
+        "shifted": bool(x1 or x2),
+        "equal": x1 == -x2 and bool(x1),
+        "thin": min(float(plan[f"sa_m{i}"].value) if f"sa_m{i}" in plan else 1.0 for i in (1, 2)) < 0.2,
+        "from_reducer": str(getattr(r.project.variant.gear, "teeth", "")) == "reducer",
+    }
     found.tables["wheels"] = _wheels(r, plan)
     _overlap(r, found)
     _sliding(r, found)
@@ -43,8 +61,11 @@ def scope(r: Reader) -> Scope:
     if scale is not None:
         found.fields["mu"] = scale_text(scale)
     found.fields["in_scale"] = (words(r.language)["phrases"]["in_scale"], *scale_text(scale)) if scale is not None else ""
-    for name, picture, focus in (("engagement", "gear.engagement", ("gear-involute-1", "gear-involute-2", "gear-engagement/N1N2")),
-                                 ("mesh", "gear.mesh", ()), ("rack", "rack.generating", ())):  # fmt: skip
+    for name, picture, focus in (
+        ("engagement", "gear.engagement", ("gear-involute-1", "gear-involute-2", "gear-engagement/N1N2")),
+        ("mesh", "gear.mesh", ()),
+        ("rack", "rack.generating", ()),
+    ):
         figure = r.pictures.figure(picture, focus)
         if figure is not None:
             found.figures[name] = figure
@@ -57,7 +78,9 @@ def scope(r: Reader) -> Scope:
 
 def _wheels(r: Reader, plan: Any) -> tuple[tuple[Text, ...], ...]:
     said = words(r.language)["gear"]
-    rows: list[tuple[Text, ...]] = [((said["parameter"],), (said["letter"],), (said["wheel"].format(n=1),), (said["wheel"].format(n=2),))]
+    rows: list[tuple[Text, ...]] = [
+        ((said["parameter"],), (said["letter"],), (said["wheel"].format(n=1),), (said["wheel"].format(n=2),))
+    ]
     for name in ("z", *BOTH):
         if f"{name}1" not in plan or f"{name}2" not in plan:
             continue
@@ -68,8 +91,13 @@ def _wheels(r: Reader, plan: Any) -> tuple[tuple[Text, ...], ...]:
         unit = r.unit_of(one)
         symbol = symbol_of(one)
         cells = tuple(_cell(r, s, unit) for s in (one, two))
-        rows.append(((meaning + (f", {r.unit(unit)}" if unit and unit != "rad" else ""),),
-                     (Symbol(letters(_without_digit(symbol))),), *cells))
+        rows.append(
+            (
+                (meaning + (f", {r.unit(unit)}" if unit and unit != "rad" else ""),),
+                (Symbol(letters(_without_digit(symbol))),),
+                *cells,
+            )
+        )
     return tuple(rows)
 
 
@@ -94,8 +122,13 @@ def _overlap(r: Reader, found: Scope) -> None:
         if drawn is not None and name in drawn:
             value = float(drawn[name].value)
             difference = 100 * (value - first) / first
-            rows.append(((said["by_angle"].format(n=i),), (r.of(drawn[name]),),
-                         (r.number(difference, "", r.id(drawn[name]), digits=2, kind=100.0),)))
+            rows.append(
+                (
+                    (said["by_angle"].format(n=i),),
+                    (r.of(drawn[name]),),
+                    (r.number(difference, "", r.id(drawn[name]), digits=2, kind=100.0),),
+                )
+            )
     found.tables["overlap"] = tuple(rows)
 
 
@@ -105,7 +138,9 @@ def _sliding(r: Reader, found: Scope) -> None:
     plan = r.plan("gear-sliding")
     if plan is None:
         return
-    rows: list[tuple[Text, ...]] = [((said["division"],), r.head("y_{V1}", "mm"), r.head("y_{V2}", "mm"), r.head("θ_{1}"), r.head("θ_{2}"))]
+    rows: list[tuple[Text, ...]] = [
+        ((said["division"],), r.head("y_{V1}", "mm"), r.head("y_{V2}", "mm"), r.head("θ_{1}"), r.head("θ_{2}"))
+    ]
     for i, label in enumerate(plan.labels):
         cells: list[Text] = [(label,)]
         for name in ("yV1", "yV2", "theta1", "theta2"):

@@ -12,10 +12,10 @@ from tmm_sheets.construction import expression
 from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import LINE_LINE
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.note.document import Number, Symbol, Text
-from tmm_sheets.note.formula import Figures, Letters, Node, Row, Scripts, Sign, Underlined, Words, letters, letters_of
+from tmm_sheets.note.document import Symbol, Text
+from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, words
-from tmm_sheets.note.reader import Quantity, Reader, named, symbol_of
+from tmm_sheets.note.reader import Quantity, Reader, named
 from tmm_sheets.numbers import is_zero
 
 MOST_COLUMNS = 9
@@ -28,11 +28,18 @@ def scope(r: Reader) -> Scope:
     v, a = study.velocities, study.accelerations
     scales = {name: r.scales.get(name) for name in ("positions", "velocities", "accelerations")}
     fields: dict[str, Any] = {
-        "label": r.label, "count": len(cycle.drawn), "positions": len(cycle.labels), "crank": study.mechanism.crank.link,
-        "turns": cycle.period > 2 * pi + 1e-9, "uneven": study.running is not None,
-        "position_steps": r.sentences(study.positions.plan), "velocity_steps": r.sentences(v.plan, _plain), "acceleration_steps": r.sentences(a.plan, _plain),
-        "dead": cycle.plan is not None, "first_label": cycle.labels[0],
-    }  # fmt: skip
+        "label": r.label,
+        "count": len(cycle.drawn),
+        "positions": len(cycle.labels),
+        "crank": study.mechanism.crank.link,
+        "turns": cycle.period > 2 * pi + 1e-9,
+        "uneven": study.running is not None,
+        "position_steps": r.sentences(study.positions.plan),
+        "velocity_steps": r.sentences(v.plan, _plain),
+        "acceleration_steps": r.sentences(a.plan, _plain),
+        "dead": cycle.plan is not None,
+        "first_label": cycle.labels[0],
+    }
     if cycle.plan is not None:
         fields["dead_steps"] = r.sentences(cycle.plan, _plain)
     if cycle.numbering is not None:
@@ -51,8 +58,12 @@ def scope(r: Reader) -> Scope:
     found.tables["velocities"] = _over_positions(r, v.plan, v.omega, "velocity")
     found.tables["accelerations"] = _over_positions(r, a.plan, a.epsilon, "acceleration")
     found.tables["strokes"] = ()
-    for name, picture in (("positions", "kinematics.position_plans"), ("velocity", f"velocity plan {r.label}"),
-                          ("acceleration", "kinematics.acceleration_plan"), ("velocities", "velocity plans")):  # fmt: skip
+    for name, picture in (
+        ("positions", "kinematics.position_plans"),
+        ("velocity", f"velocity plan {r.label}"),
+        ("acceleration", "kinematics.acceleration_plan"),
+        ("velocities", "velocity plans"),
+    ):
         figure = r.pictures.figure(picture)
         if figure is None and name == "velocity":
             figure = r.pictures.figure("kinematics.velocity_plans")
@@ -104,7 +115,7 @@ def _first_formulas(r: Reader, found: Scope) -> None:
     found.fields["omega1"] = r.number(q_omega.value, q_omega.unit, q_omega.step, q_omega.position)
     length = Quantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", "crank.length")
     pin = study.velocities.points[crank.pin]
-    found.formulas["pin"] = r.checked(f"V_{{{crank.pin}}}", lambda w, l: w * l, [q_omega, length], pin)
+    found.formulas["pin"] = r.checked(f"V_{{{crank.pin}}}", lambda w, length: w * length, [q_omega, length], pin)
     scale = r.scales.get("velocities")
     if scale is not None:
         drawn = Quantity(f"p{crank.pin.lower()}", float(scale.mm(abs(value_at(pin, r.k)))), "mm", r.id(pin), r.label)
@@ -114,7 +125,9 @@ def _first_formulas(r: Reader, found: Scope) -> None:
     found.fields["pin"] = Symbol(letters_of_point(crank.pin))
     acceleration = study.accelerations.points[crank.pin]
     if study.running is None and not value_at(study.accelerations.epsilon[crank.link], r.k):
-        found.formulas["pin_acceleration"] = r.checked(f"a_{{{crank.pin}}}^{{n}}", lambda w, l: w * w * l, [q_omega, length], acceleration)
+        found.formulas["pin_acceleration"] = r.checked(
+            f"a_{{{crank.pin}}}^{{n}}", lambda w, length: w * w * length, [q_omega, length], acceleration
+        )
 
 
 def letters_of_point(name: str) -> Node:
@@ -131,8 +144,13 @@ def _drawn_lengths(r: Reader) -> tuple[tuple[Text, ...], ...]:
     rows: list[tuple[Text, ...]] = [tuple((h,) for h in said["lengths_head"])]
     for g in r.givens("m"):
         if g.symbol.startswith("l") and g.value:
-            rows.append(((Symbol(letters(g.symbol)),), (r.number(g.value, "", g.step),),
-                         (r.fixed(float(scale.mm(g.value)), "", 1, g.step),)))
+            rows.append(
+                (
+                    (Symbol(letters(g.symbol)),),
+                    (r.number(g.value, "", g.step),),
+                    (r.fixed(float(scale.mm(g.value)), "", 1, g.step),),
+                )
+            )
     return tuple(rows)
 
 
@@ -214,8 +232,14 @@ def _vectors(r: Reader, plan: Plan) -> tuple[tuple[Text, ...], ...]:
     rows: list[tuple[Text, ...]] = [((said["vector"],), (said["segment"],), (said["length"],), (said["size"].format(unit=unit),))]
     for s in plan.segments:
         size = abs(value_at(s.head, k) - value_at(s.tail, k))
-        rows.append(((Symbol(letters(s.symbol)),), (Symbol(_segment(s)),), (r.fixed(float(scale.mm(size)), "", 1, r.id(s.head), r.label),),
-                     (r.number(float(size), "", r.id(s.head), r.label, kind=_greatest(plan, k)),)))
+        rows.append(
+            (
+                (Symbol(letters(s.symbol)),),
+                (Symbol(_segment(s)),),
+                (r.fixed(float(scale.mm(size)), "", 1, r.id(s.head), r.label),),
+                (r.number(float(size), "", r.id(s.head), r.label, kind=_greatest(plan, k)),),
+            )
+        )
     return tuple(rows)
 
 
@@ -241,7 +265,9 @@ def _lengths(r: Reader, plan: Plan) -> Iterator[tuple[str, Said]]:
                 mm = Quantity(f"{s.tail.name}{_marked(s.head.name)}", float(scale.mm(size)), "mm", r.id(s.head), r.label)
                 mu = Quantity(scale.symbol, scale.mu, "", f"scales.{scale.symbol}")
                 tree = expression.Argument(0) * expression.Argument(1)
-                said = r.written(s.symbol.replace("\u0305", ""), tree, [mm, mu], Quantity("", size, plan.unit, r.id(s.head), r.label))
+                said = r.written(
+                    s.symbol.replace("\u0305", ""), tree, [mm, mu], Quantity("", size, plan.unit, r.id(s.head), r.label)
+                )
                 yield "size", said
                 return
 
@@ -264,13 +290,23 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
         size = abs(float(value)) * length  # of the vector across the link
         symbol = by_ends.get((tail.name, head.name), f"V_{{{head.name}}}").replace("\u0305", "")
         if second:
-            across = next((s for s in plan.segments if s.head is head and "τ" in s.symbol and abs(
-                abs(value_at(s.head, at) - value_at(s.tail, at)) - size) <= 1e-9 * max(size, 1e-12)), None)
+            across = next(
+                (
+                    s
+                    for s in plan.segments
+                    if s.head is head
+                    and "τ" in s.symbol
+                    and abs(abs(value_at(s.head, at) - value_at(s.tail, at)) - size) <= 1e-9 * max(size, 1e-12)
+                ),
+                None,
+            )
             symbol = across.symbol.replace("\u0305", "") if across is not None else f"a_{{{b.name}{a.name}}}^{{τ}}"
-        quantities = [Quantity(symbol, size, plan.unit, r.id(head), r.label),
-                      Quantity(f"l_{{{b.name}{a.name}}}", float(length), "m", r.id(b), r.label)]
+        quantities = [
+            Quantity(symbol, size, plan.unit, r.id(head), r.label),
+            Quantity(f"l_{{{b.name}{a.name}}}", float(length), "m", r.id(b), r.label),
+        ]
         letter = "ε" if second else "ω"
-        said = r.checked(f"{letter}_{{{link}}}", lambda x, l: x / l, quantities, step)
+        said = r.checked(f"{letter}_{{{link}}}", lambda x, length: x / length, quantities, step)
         yield {"angular": said, "link": link, "positive": float(value) >= 0, "zero": is_zero(float(value), 1.0)}
 
 
@@ -301,5 +337,3 @@ def _over_positions(r: Reader, plan: Plan, turning: dict[str, Step], key: str) -
             cells.append((r.number(float(values[i]), "", r.id(step), label, kind=max(usual, float(abs(values[i])))),))
         rows.append(tuple(cells))
     return tuple(rows)
-
-

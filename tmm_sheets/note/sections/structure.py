@@ -19,27 +19,49 @@ def scope(r: Reader) -> Scope:
     mobility = _mobility(r, "W", n, p5, m.mobility, "structure.W")
     groups = []
     for i, g in enumerate(reversed(m.groups), 1):
-        groups.append({
-            "links": g.name, "kind": str(g.kind.number), "form": g.form, "nth": str(i),
-            "mobility": _mobility(r, f"W_{{{g.name}}}", 2, 3, 0, f"structure.groups[{i}]"),
-            "pairs": _pairs_of(r, g.name),
-        })  # fmt: skip
+        groups.append(
+            {
+                "links": g.name,
+                "kind": str(g.kind.number),
+                "form": g.form,
+                "nth": str(i),
+                "mobility": _mobility(r, f"W_{{{g.name}}}", 2, 3, 0, f"structure.groups[{i}]"),
+                "pairs": _pairs_of(r, g.name),
+            }
+        )
     links: list[tuple[Text, ...]] = [tuple((h,) for h in said["links_head"]), (("0",), (said["frame"],), (", ".join(m.fixed),))]
     links += [((name,), (link.title or "–",), (_points(m.link_points(name)))) for name, link in m.links.items()]
     pairs: list[tuple[Text, ...]] = [tuple((h,) for h in said["pairs_head"])]
     pairs += [((Symbol(letters(_primed(p.name))),), (", ".join(p.links),), (said[p.motion],), ("5",)) for p in m.pairs]
     turning = sum(p.motion == "rotation" for p in m.pairs)
-    figures = {name: f for name, f in (("scheme", r.pictures.figure(f"position plan {r.label}", own=True)),
-                                       ("structure", r.pictures.figure("kinematics.structure"))) if f is not None}  # fmt: skip
+    figures = {
+        name: f
+        for name, f in (
+            ("scheme", r.pictures.figure(f"position plan {r.label}", own=True)),
+            ("structure", r.pictures.figure("kinematics.structure")),
+        )
+        if f is not None
+    }
     fields = {
-        "groups": groups, "n": Number(str(n), "structure.links", n), "p5": Number(str(p5), "structure.pairs", p5),
-        "turning": Number(str(turning), "structure.pairs", turning), "sliding": Number(str(p5 - turning), "structure.pairs", p5 - turning),
-        "structure": m.structure, "grade": str(m.grade), "W": Number(str(m.mobility), "structure.W", m.mobility),
-        "crank": m.crank.link, "crank_title": m.links[m.crank.link].title or said["crank"], "count": len(groups),
+        "groups": groups,
+        "n": Number(str(n), "structure.links", n),
+        "p5": Number(str(p5), "structure.pairs", p5),
+        "turning": Number(str(turning), "structure.pairs", turning),
+        "sliding": Number(str(p5 - turning), "structure.pairs", p5 - turning),
+        "structure": m.structure,
+        "grade": str(m.grade),
+        "W": Number(str(m.mobility), "structure.W", m.mobility),
+        "crank": m.crank.link,
+        "crank_title": m.links[m.crank.link].title or said["crank"],
+        "count": len(groups),
         "several": len(groups) > 1,
-    }  # fmt: skip
-    return Scope(fields, {"mobility": mobility, "first": _mobility(r, f"W_{{{m.crank.link}}}", 1, 1, 1, "structure.first")},
-                 {"links": tuple(links), "pairs": tuple(pairs)}, figures)
+    }
+    return Scope(
+        fields,
+        {"mobility": mobility, "first": _mobility(r, f"W_{{{m.crank.link}}}", 1, 1, 1, "structure.first")},
+        {"links": tuple(links), "pairs": tuple(pairs)},
+        figures,
+    )
 
 
 def _points(names: tuple[str, ...]) -> Text:

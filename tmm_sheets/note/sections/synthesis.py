@@ -38,16 +38,21 @@ def scope(r: Reader) -> Scope:
             tree = expression.Operation("/", (a, expression.Operation("-", (expression.Constant(360.0), a))))
             degrees = turn * 180 / pi
             ratio = turn / (2 * pi - turn)
-            found.formulas["ratio"] = r.written("K", tree, [Quantity("φ_{рх}", degrees, "deg", "dead-positions")],
-                                                Quantity("", ratio, "", "dead-positions"))
+            found.formulas["ratio"] = r.written(
+                "K", tree, [Quantity("φ_{рх}", degrees, "deg", "dead-positions")], Quantity("", ratio, "", "dead-positions")
+            )
             found.fields["ratio"] = r.number(ratio, "", "dead-positions")
             asked = variant.cycle.coefficient if variant.cycle is not None else None
             if asked:
                 found.fields["asked"] = r.number(float(asked), "", "cycle.coefficient")
                 found.fields["off"] = r.number(100 * abs(ratio - float(asked)) / float(asked), "%", "dead-positions", digits=2)
                 theta = expression.Constant(180.0) * (a - 1) / (a + 1)
-                found.formulas["theta"] = r.written("θ", theta, [Quantity("K", float(asked), "", "cycle.coefficient")],
-                                                    Quantity("", 180 * (float(asked) - 1) / (float(asked) + 1), "deg", "cycle.coefficient"))
+                found.formulas["theta"] = r.written(
+                    "θ",
+                    theta,
+                    [Quantity("K", float(asked), "", "cycle.coefficient")],
+                    Quantity("", 180 * (float(asked) - 1) / (float(asked) + 1), "deg", "cycle.coefficient"),
+                )
     return found
 
 
