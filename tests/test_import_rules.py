@@ -41,7 +41,7 @@ RULES = {
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets", "task"),
-    "note": ("backends construction drawing record results sheets", "project"),
+    "note": ("backends construction drawing project record results sheets", "task"),
     "compare": ("drawing sheets", ""),
     "compare.measured": (f"compare construction sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),

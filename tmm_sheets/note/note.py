@@ -11,6 +11,7 @@ from tmm_sheets.errors import CannotBuild
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
+    from tmm_sheets.task.variant import Variant
 
 FORMATS = ("pdf", "docx")
 """Formats of the note."""
@@ -31,6 +32,27 @@ def check(formats: Iterable[str]) -> None:
         if missing:
             names = " and ".join({"docx": "python-docx"}.get(name, name) for name in missing)
             raise CannotBuild(f"the note as {form.upper()} needs {names}", "install the extra: pip install 'tmm-sheets[note]'")
+
+
+def run_on(variant: Variant, say: Callable[[str], None] = lambda _: None) -> Variant:
+    """The project with the numbers of its sheets running on after the pages of its note: the appendices are the sheets.
+
+    Raises
+    ------
+    CannotBuild
+        as :func:`write`.
+    """
+    check(("pdf",))
+    from tmm_sheets.note import composing, typst_writer
+    from tmm_sheets.note.document import Sheet
+    from tmm_sheets.project import Project
+
+    note = composing.compose(Project(variant), say)
+    say("pages")
+    places = typst_writer.render(note)[1]
+    first = int(places["pages"]) - sum(isinstance(b, Sheet) for b in note.body) + 1
+    block = variant.title_block.model_copy(update={"first_sheet": first})
+    return variant.model_copy(update={"title_block": block})
 
 
 @dataclass(frozen=True)
