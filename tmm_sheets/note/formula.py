@@ -140,12 +140,17 @@ def letters_of(name: str) -> str:
 
 
 _TOKEN = re.compile(r"_\{((?:[^{}]|\{[^{}]*\})*)\}|_(.)|\^\{((?:[^{}]|\{[^{}]*\})*)\}|\^(.)|(.)", re.DOTALL)
+_WORD = re.compile(r"max|min")
 _SIGNS = "=+−-·/(),;:|≈<>≤≥°%×∥⟂→–…"
 _PRIMES = "'′″"
 
 
 def letters(markup: str) -> Node:
     """Tree of lettering markup."""
+    if _WORD.fullmatch(markup):
+        return Words(markup)
+    if markup.startswith("inv "):
+        return Row((Words("inv "), letters(markup[4:])))
     found: list[Node] = []
     for m in _TOKEN.finditer(_INDEX.sub(r"_{\1}", markup)):
         below, above = (
@@ -171,7 +176,7 @@ def _attach(found: list[Node], below: str | None, above: str | None) -> None:
     if new_below is not None and old.below is not None:
         old = Scripts(old)
     if new_above is not None and old.above is not None:
-        new_above = Row((old.above, new_above))
+        new_above = Sign("″") if old.above == new_above == Sign("′") else Row((old.above, new_above))
     found.append(Scripts(old.base, new_below or old.below, new_above or old.above))
 
 

@@ -237,7 +237,11 @@ class Reader:
         head = letters(symbol)
         used = list(dict.fromkeys(arguments(simplified(tree))))
         explained = [(symbol, self.unit(result.unit) if result is not None else "")]
-        explained += [(quantities[i].symbol, self.unit(quantities[i].unit)) for i in used if not _plain(quantities[i].symbol)]
+        explained += [
+            (quantities[i].symbol, self.unit(quantities[i].unit))
+            for i in used
+            if not _plain(quantities[i].symbol) and "·" not in quantities[i].symbol
+        ]
         formula = Row((head, Sign("="), *_items(of_tree(tree, in_letters))))
         if result is None:
             return Said(formula, None, tuple(explained))

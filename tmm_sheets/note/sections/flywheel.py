@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.step import value_at
-from tmm_sheets.note.document import Text
+from tmm_sheets.note.document import Symbol, Text
+from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, words
 from tmm_sheets.note.reader import Quantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
@@ -51,10 +52,20 @@ def scope(r: Reader) -> Scope:
     for name in PLANS:
         plan = r.plan(name)
         for step in plan or ():
-            said = r.formula(step)
+            said = r.formula(step, as_unit="rad/s2" if step.name == "ε1" else None)
             if said is not None:
                 found.formulas[f"{name}/{step.name}"] = said
     _reduction(r, found)
+    drawn = fw.driving_plan["M"]
+    mu = fw.scales.moment
+    constant = float(np.real(drawn.value))
+    ordinate = Quantity("y_{K}", constant / mu.mu, "mm", "driving-moment/dK")
+    found.formulas["driving"] = r.checked(
+        "M_{д}" if fw.reduced.resisting else "M_{с}",
+        lambda y, m: y * m,
+        [ordinate, Quantity("μ_{M}", mu.mu, "N m/mm", "scales.mu_M")],
+        drawn,
+    )
     for name, scale in vars(fw.scales).items():
         if hasattr(scale, "mu"):
             found.fields[f"mu_{name}"] = scale_text(scale)
@@ -102,7 +113,7 @@ def _reduction(r: Reader, found: Scope) -> None:
     for name, step in plan.steps.items():
         if name.startswith("N_") and not name.startswith("N_G") and "(" not in name:
             value = float(np.real(value_at(step, r.at(step, None))))
-            found.fields.setdefault("powers", []).append({"power": r.of(step), "force": name[2:]})
+            found.fields.setdefault("powers", []).append({"power": r.of(step), "force": Symbol(letters(letters_of(name[2:])))})
             if not is_zero(value, 1.0):
                 found.fields["moves"] = True
     moment = at.moment()

@@ -278,7 +278,7 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
     nodes += [Sign("="), Words("0")]
     found: dict[str, Any] = {
         "equation": Said(Row(tuple(nodes))),
-        "links": ", ".join(fp.links),
+        "links": "–".join(fp.links),
         "one": len(fp.links) == 1,
         "two": len(unknown) > 1,
     }

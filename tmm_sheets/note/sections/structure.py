@@ -29,7 +29,7 @@ def scope(r: Reader) -> Scope:
                 "pairs": _pairs_of(r, g.name),
             }
         )
-    links: list[tuple[Text, ...]] = [tuple((h,) for h in said["links_head"]), (("0",), (said["frame"],), (", ".join(m.fixed),))]
+    links: list[tuple[Text, ...]] = [tuple((h,) for h in said["links_head"]), (("0",), (said["frame"],), _points(tuple(m.fixed)))]
     links += [((name,), (link.title or "–",), (_points(m.link_points(name)))) for name, link in m.links.items()]
     pairs: list[tuple[Text, ...]] = [tuple((h,) for h in said["pairs_head"])]
     pairs += [((Symbol(letters(_primed(p.name))),), (", ".join(p.links),), (said[p.motion],), ("5",)) for p in m.pairs]
