@@ -32,6 +32,8 @@ from tmm_sheets.note.typst_writer import rasters
 
 DPI = 220
 """Resolution of the pictures beside their vectors, for programs that do not show these."""
+TEXT = 175.0
+"""Width of the text, mm; what is wider stands out of it on both sides."""
 FIRST = datetime(1980, 1, 1)
 _W = "http://schemas.openxmlformats.org/wordprocessingml/2006/main"
 _SVG = "http://schemas.microsoft.com/office/drawing/2016/SVG/main"
@@ -388,6 +390,8 @@ class _Writer:
         p.paragraph_format.keep_with_next = True
         if turned:
             width, height = height, width
+        if width > TEXT:
+            p.paragraph_format.left_indent = p.paragraph_format.right_indent = self.mm((TEXT - width) / 2)
         shape = p.add_run().add_picture(io.BytesIO(self.pictures[_name(b)]), width=self.mm(width), height=self.mm(height))
         self._vector(shape, b, turned)
 

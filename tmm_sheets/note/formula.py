@@ -195,8 +195,8 @@ def _append(found: list[Node], c: str) -> None:
         found[-1] = Words(last.text + c)
     elif _cyrillic(c) or c in "∞":
         found.append(Words(c))
-    elif c == "*":
-        found.append(Sign("*"))
+    elif c == "*" or c in _PRIMES:
+        found.append(Sign("′" if c == "'" else c))
     else:
         found.append(Letters(c))
 

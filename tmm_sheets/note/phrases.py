@@ -220,9 +220,10 @@ class Writer:
 
     def _paragraph(self, lines: list[str], n: int, scope: Scope) -> Iterator[Block]:
         if lines:
-            text = " ".join(lines)
+            text = self.text(" ".join(lines), n, scope)
             lines.clear()
-            yield Paragraph(self.text(text, n, scope))
+            if any(not isinstance(x, str) or x.strip() for x in text):
+                yield Paragraph(text)
 
     def _heading(self, line: str, n: int, scope: Scope) -> Heading:
         level = len(line) - len(line.lstrip("="))
@@ -293,7 +294,7 @@ class Writer:
     def _explained(self, said: Said) -> Iterator[Explained]:
         for markup, unit in said.explained:
             meaning = meaning_of(markup, self.language, self.template)
-            once = ("", meaning) if meaning.endswith(_OF_INDEX) else (markup, meaning)
+            once = ("" if meaning.endswith(_OF_INDEX) else bare(markup), meaning)
             if meaning and once not in self.known:
                 self.known.add(once)
                 yield Explained(letters(markup), meaning.removesuffix(_OF_INDEX).rstrip(), unit)

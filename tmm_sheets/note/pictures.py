@@ -4,30 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from math import cos, sin
 from typing import TYPE_CHECKING
 
 from tmm_sheets.backends import svg
 from tmm_sheets.box import Box
+from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Fill, Line, Mark, Text, flat
 from tmm_sheets.note.document import Figure, Sheet
 
 if TYPE_CHECKING:
     from tmm_sheets.sheets.sheet import Composed
 
-WIDTH, HEIGHT = 172.0, 205.0
-"""Place for a figure with its caption on a page, mm."""
+WIDTH, HEIGHT = 184.0, 205.0
+"""Place for a figure with its caption on a page, mm: within the frame, a little wider than the text."""
 LONG = 225.0
 """Height for one that is turned or fills a page."""
 LETTERS = 3.5
 """Height of the lettering that has to be read, mm on the sheet."""
-READABLE = 2.0
-"""Least height of lettering on the page, mm."""
+READABLE = 1.95
+"""Least height of lettering on the page, mm: two, as a ruler tells it."""
 USUAL = 0.58
 """Scale of a picture where there is room: lettering a little higher than it has to be."""
 SMALL = 70.0
 """Size up to which a small picture is not reduced, mm."""
-MARGIN = 2.0
+MARGIN = 0.6
 
 
 class Pictures:
@@ -82,16 +82,16 @@ class Pictures:
                 marks = [m for m in marks if _touches(m, box)]
         return _figure(name, marks, box)
 
-    def top(self, name: str, height: float) -> list[Figure]:
-        """Each view of that name as a figure, of a high one the upper part, ``height`` mm of the sheet."""
-        made = []
-        for n, marks, own in self._views.get(name, ()):
-            if own:
-                drawn = [self.sheets[n].drawing.marks[k] for k in marks]
-                box = extent(drawn)
-                box = Box(box.x0, max(box.y0, box.y1 - height), box.x1, box.y1)
-                made.append(_figure(name, [m for m in drawn if _touches(m, box)], box))
-        return made
+    def top(self, name: str, height: float) -> Figure | None:
+        """All views of that name as one figure, of a high one the upper part, ``height`` mm of the sheet."""
+        found = self._views.get(name)
+        if not found:
+            return None
+        n = found[0][0]
+        drawn = [self.sheets[n].drawing.marks[k] for view in found if view[0] == n and view[2] for k in view[1]]
+        box = extent(drawn)
+        box = Box(box.x0, max(box.y0, box.y1 - height), box.x1, box.y1)
+        return _figure(name, [m for m in drawn if _touches(m, box)], box)
 
     def parts(self, name: str) -> list[Figure]:
         """The view as several figures, one under another, where it is too large to be read as one."""
@@ -137,25 +137,17 @@ def _within(step: str, role: str, focus: Sequence[str]) -> bool:
 
 
 def extent(marks: Iterable[Mark]) -> Box:
-    """Smallest rectangle round marks, lettering with its width."""
-    x0 = y0 = float("inf")
-    x1 = y1 = -float("inf")
+    """Smallest rectangle round marks with the strokes of their lettering."""
+    low: list[tuple[float, float]] = []
+    high: list[tuple[float, float]] = []
     for m in marks:
-        if isinstance(m, Text):
-            w, h = _text_size(m)
-            xs, ys = [m.at.real, m.at.real + w], [m.at.imag - 0.3 * m.height, m.at.imag + h]
-        else:
-            p = flat(m, 3.0)
-            xs, ys = [float(p.real.min()), float(p.real.max())], [float(p.imag.min()), float(p.imag.max())]
-        x0, y0, x1, y1 = min(x0, *xs), min(y0, *ys), max(x1, *xs), max(y1, *ys)
+        for p in letters(m) if isinstance(m, Text) else (flat(m, 3.0),):
+            if len(p):
+                low.append((float(p.real.min()), float(p.imag.min())))
+                high.append((float(p.real.max()), float(p.imag.max())))
+    x0, y0 = (min(v) for v in zip(*low, strict=True))
+    x1, y1 = (max(v) for v in zip(*high, strict=True))
     return Box(x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN)
-
-
-def _text_size(m: Text) -> tuple[float, float]:
-    """Width and height that lettering takes to the right and up; some more than it needs where it is turned."""
-    along = 0.62 * m.height * len(m.text)
-    c, s = abs(cos(m.angle)), abs(sin(m.angle))
-    return along * c + m.height * s, along * s + m.height * c
 
 
 def scale(box: Box) -> tuple[float, bool]:
@@ -183,8 +175,7 @@ def _cut(box: Box) -> Box:
 
 def _touches(m: Mark, box: Box) -> bool:
     if isinstance(m, Text):
-        w, h = _text_size(m)
-        return box.x0 <= m.at.real and m.at.real + w <= box.x1 and box.y0 <= m.at.imag and m.at.imag + h <= box.y1
+        return all(box.contains(complex(z)) for p in letters(m) for z in p)
     p = flat(m, 3.0)
     inside = bool(p.real.max() >= box.x0 and p.real.min() <= box.x1 and p.imag.max() >= box.y0 and p.imag.min() <= box.y1)
     return inside and not (isinstance(m, Fill) and not (box.x0 <= p.real.min() and p.real.max() <= box.x1))

@@ -250,7 +250,7 @@ class Reader:
 
     def _figures(self, q: Quantity) -> Operand:
         source = Number(shown(q.value, q.digits), q.step, q.value, q.position, q.digits)
-        node = figures(source)
+        node = figures(source) if q.step else Figures(source.text)
         as_angle = None
         if q.unit == "rad":
             text = degrees_and_minutes(q.value)

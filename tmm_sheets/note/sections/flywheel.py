@@ -197,6 +197,13 @@ def _tables(r: Reader, found: Scope) -> None:
         ("ΔE", "J", fw.delta_E, r.id(total["E"])),
         ("J_{пр}", "kg*m2", fw.J_reduced, r.id(fw.inertia_plan["J_пр"])),
     ]
+    if "epsilon1" in fw.results():
+        step = fw.position_acceleration["ε1"]
+        values = np.real(np.atleast_1d(step.value))
+        if len(values) >= len(labels):
+            columns.append(("ε_{1}", "rad/s2", values, r.id(step)))
+            ratio = float(np.nanmax(np.abs(values))) / fw.omega1**2
+            found.fields |= {"unevenness": r.number(ratio, "", r.id(step), digits=2), "even": ratio < EVEN}
     n = min(len(labels), *(len(np.atleast_1d(v)) for _, _, v, _ in columns))
     rows: list[tuple[Text, ...]] = [((said["position"],), *(r.head(s, u) for s, u, _, _ in columns))]
     for i in range(n):
@@ -221,29 +228,3 @@ def _tables(r: Reader, found: Scope) -> None:
                 )
             )
         found.tables["terms"] = tuple(rows)
-    if "epsilon1" in fw.results():
-        plan = fw.position_acceleration
-        step = plan["ε1"]
-        values = np.real(np.atleast_1d(step.value))
-        if len(values) >= n:
-            rows = [
-                (
-                    (said["position"],),
-                    *(r.head(s, u) for s, u in (("M", "N*m"), ("dJ/dφ", "kg*m2"), ("J", "kg*m2"), ("ε_1", "rad/s2"))),
-                )
-            ]
-            for i in range(n):
-                cells = [(labels[i],)]
-                for name in ("M", "dJ/dφ", "J", "ε1"):
-                    v = np.real(np.atleast_1d(plan[name].value))
-                    cells.append(
-                        (
-                            r.number(
-                                float(v[i if len(v) > 1 else 0]), "", r.id(plan[name]), labels[i], kind=float(np.max(np.abs(v)))
-                            ),
-                        )
-                    )
-                rows.append(tuple(cells))
-            found.tables["acceleration"] = tuple(rows)
-            ratio = float(np.nanmax(np.abs(values))) / fw.omega1**2
-            found.fields |= {"unevenness": r.number(ratio, "", r.id(step), digits=2), "even": ratio < EVEN}

@@ -14,6 +14,10 @@ from tmm_sheets.note.sections.forces import scale_text
 BOTH = ("x", "r", "rb", "rw", "ra", "rf", "s", "s_chord", "p_chord", "rho_a", "alpha_a", "sa", "sa_m", "tau", "phi_alpha")
 
 
+TALL = 300.0
+"""Height of the graphs of sliding that a page takes, mm of the sheet: they go to infinity below."""
+
+
 def scope(r: Reader) -> Scope:
     """Formulas by their steps' names, the table of both wheels, overlap three ways."""
     pair = r.project.gear
@@ -69,8 +73,9 @@ def scope(r: Reader) -> Scope:
         figure = r.pictures.figure(picture, focus)
         if figure is not None:
             found.figures[name] = figure
-    for name, part in zip(("speeds", "sliding"), r.pictures.top("gear-sliding", 190.0), strict=False):
-        found.figures[name] = part
+    sliding = r.pictures.top("gear-sliding", TALL)
+    if sliding is not None:
+        found.figures["sliding"] = sliding
     n = r.pictures.sheet_of("gear.engagement")
     found.fields["sheet"] = str(n) if n is not None else ""
     return found
