@@ -11,6 +11,7 @@ from tests.note.opened import composed, opened
 from tmm_sheets import results, words
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import Contents, Figure, Formula, Heading, Number, Paragraph, Reference, Sheet, Table, Where, numbers
+from tmm_sheets.note.formula import Letters, Words
 from tmm_sheets.note.phrases import plain_text
 from tmm_sheets.note.pictures import LETTERS, READABLE
 from tmm_sheets.record.recording import book_of
@@ -78,6 +79,31 @@ def test_letters_of_numbered_formulas_are_explained(note):
     for meaning in ("момент инерции маховика", "коэффициент неравномерности движения", "угол зацепления", "средний диаметр обода",
                     "приведённый момент сил", "угловая скорость звена 3"):  # fmt: skip
         assert meaning in explained
+
+
+KNOWN = {"sin", "cos", "tg", "arctg", "arcsin", "arccos", "max", "min", "inv", "log", "exp"}
+
+
+def test_formulas_hold_no_name_of_the_program(note):
+    """Words in formulas are functions, units and Russian; letters stand alone or name points."""
+    def words(node):
+        if isinstance(node, Words):
+            yield node.text.strip()
+        for part in node.parts():
+            yield from words(part)
+
+    def letters(node):
+        run = ""
+        for part in node.parts():
+            yield from letters(part)
+            run = run + part.text if isinstance(part, Letters) and part.text.isascii() and part.text.islower() else ""
+            yield run
+
+    for b in note.blocks():
+        if isinstance(b, Formula):
+            for line in b.lines:
+                assert all(w in KNOWN or not re.search("[A-Za-z]", w) for w in words(line)), line
+                assert not [run for run in letters(line) if len(run) > 3], line
 
 
 def test_nothing_is_empty_or_unfilled(note):
@@ -161,6 +187,9 @@ def test_templates_hold_no_digit():
     ("transport/diesel@01-T-27", ["Структурный анализ рычажного механизма", "Геометрические размеры механизма",
                                   "Кинематический анализ рычажного механизма", "Силовой анализ рычажного механизма",
                                   "Синтез планетарного редуктора", "Синтез зубчатой передачи", "Синтез кулачкового механизма"]),
+    ("lugansk/engine", ["Структурный анализ рычажного механизма", "Геометрический синтез рычажного механизма",
+                        "Кинематический анализ рычажного механизма", "Силовой анализ рычажного механизма", "Расчёт маховика",
+                        "Синтез зубчатой передачи", "Синтез кулачкового механизма"]),
     ("sixbar/3:2", ["Структурный анализ рычажного механизма", "Геометрические размеры механизма",
                     "Кинематический анализ рычажного механизма", "Силовой анализ рычажного механизма", "Расчёт маховика"]),
 ])  # fmt: skip
@@ -170,6 +199,7 @@ def test_what_a_project_lacks_is_left_out_and_the_rest_renumbered(name, sections
     assert not made.problems
     test_nothing_is_empty_or_unfilled(made)
     test_every_reference_leads_somewhere(made)
+    test_formulas_hold_no_name_of_the_program(made)
 
 
 def test_an_own_mechanism_without_forces(tmp_path):

@@ -60,6 +60,13 @@ def test_sums_with_zero_and_squares_are_written_as_people_do():
     assert shown((A + B) * C, "a", "b", "c") == "lr(\\( a + b \\)) dot.op c"
 
 
+def test_signs_stand_in_front_and_ones_are_left_out():
+    one, minus = e.Constant(1.0), e.Constant(-1.0)
+    assert shown(one * A, "a") == "a"
+    assert shown(minus * A * B / C, "a", "b", "c") == "− frac(a dot.op b, c)"
+    assert shown(A + minus * B, "a", "b") == "a − b"
+
+
 def test_an_angle_is_in_degrees_inside_a_function_only():
     import numpy as np
 

@@ -6,10 +6,10 @@ Letters come in lettering markup (``M_{с}^{пр}``, ``ω_1``, an overbar for a 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isclose, pi
-from typing import Any
+from typing import Any, TypeGuard
 
 from tmm_sheets.construction import expression
 
@@ -245,8 +245,8 @@ def simplified(tree: expression.Expression) -> expression.Expression:
         if len(kept) == 1:
             return kept[0]
         parts = kept or parts[:1]
-    if tree.name == "*" and len(parts) == 2 and same(parts[0], parts[1]):
-        return expression.Operation("^", (parts[0], expression.Constant(2.0)))
+    if tree.name in ("*", "/", "+") and len(parts) == 2:
+        return _tidied(tree.name, parts[0], parts[1])
     if tree.name == "hypot":
         two = expression.Constant(2.0)
         squares = tuple(expression.Operation("^", (p, two)) for p in parts)
@@ -256,6 +256,36 @@ def simplified(tree: expression.Expression) -> expression.Expression:
     return expression.Operation(tree.name, parts, tree.function)
 
 
+def _tidied(sign: str, a: expression.Expression, b: expression.Expression) -> expression.Expression:
+    """Two parts with a sign between them: factors of one left out, minus signs in front, a square for two alike."""
+    if isinstance(a, expression.Constant) and isinstance(b, expression.Constant) and sign == "*":
+        return expression.Constant(a.value * b.value)
+    if sign == "+":
+        return expression.Operation("-", (a, b.parts[0])) if _negated(b) else expression.Operation("+", (a, b))
+    if _is(b, 1.0) or (sign == "*" and _is(a, 1.0)):
+        return a if _is(b, 1.0) else b
+    if sign == "*" and (_is(a, -1.0) or _is(b, -1.0)):
+        return expression.Operation("-", (b if _is(a, -1.0) else a,))
+    if _negated(a):
+        return expression.Operation("-", (_tidied(sign, a.parts[0], b),))
+    if sign == "*" and same(a, b):
+        return expression.Operation("^", (a, expression.Constant(2.0)))
+    return expression.Operation(sign, (a, b))
+
+
+def _negated(tree: expression.Expression) -> TypeGuard[expression.Operation]:
+    return isinstance(tree, expression.Operation) and tree.name == "-" and len(tree.parts) == 1
+
+
+def with_numbers(tree: expression.Expression, known: Mapping[int, float]) -> expression.Expression:
+    """The tree with some arguments as numbers of the formula itself."""
+    if isinstance(tree, expression.Argument):
+        return expression.Constant(known[tree.index]) if tree.index in known else tree
+    if isinstance(tree, expression.Operation):
+        return expression.Operation(tree.name, tuple(with_numbers(p, known) for p in tree.parts), tree.function)
+    return tree
+
+
 def _is(tree: expression.Expression, value: float) -> bool:
     return isinstance(tree, expression.Constant) and tree.value == value
 
@@ -263,6 +293,37 @@ def _is(tree: expression.Expression, value: float) -> bool:
 def same(a: expression.Expression, b: expression.Expression) -> bool:
     """Whether two trees are alike."""
     return bool(expression.as_json(a) == expression.as_json(b))
+
+
+_WRITTEN = (
+    "+",
+    "-",
+    "*",
+    "/",
+    "^",
+    "sqrt",
+    "abs",
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "exp",
+    "log",
+    "hypot",
+    "minimum",
+    "maximum",
+)
+"""Operations that stand in formulas."""
+
+
+def can_be_written(tree: expression.Expression) -> bool:
+    """Whether a tree holds nothing but what stands in formulas: no move of the construction, no part of a vector."""
+    if not isinstance(tree, expression.Operation):
+        return not (isinstance(tree, expression.Constant) and isinstance(tree.value, complex))
+    return tree.name in _WRITTEN and all(map(can_be_written, tree.parts))
 
 
 def arguments(tree: expression.Expression) -> Iterator[int]:

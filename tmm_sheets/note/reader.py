@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction import expression, protocol
-from tmm_sheets.construction.given import Given, GivenNumber
+from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note import phrases
@@ -26,10 +26,12 @@ from tmm_sheets.note.formula import (
     Sign,
     Words,
     arguments,
+    can_be_written,
     letters,
     letters_of,
     of_tree,
     simplified,
+    with_numbers,
 )
 from tmm_sheets.note.phrases import Said
 from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number, written
@@ -97,6 +99,10 @@ class Reader:
         if self.project.variant.crank is None or self.project.variant.cycle is None:
             return ""
         return str(self.project.cycle.labels[self.k])
+
+    def letters_of(self, step: Step) -> str:
+        """Letters of a step in the note: those of ``[symbols]`` in words.toml, or its own."""
+        return str(phrases.words(self.language).get("symbols", {}).get(step.name) or symbol_of(step))
 
     # --- numbers
 
@@ -195,7 +201,7 @@ class Reader:
     ) -> Said | None:
         """The formula of a step by its own expression; None when it has none that can be written."""
         tree = step.rule.tree(len(step.args))
-        if tree is None or isinstance(tree, expression.Argument):
+        if tree is None or isinstance(tree, expression.Argument) or not can_be_written(tree):
             return None
         quantities = []
         for a in step.args:
@@ -203,36 +209,50 @@ class Reader:
             if q is None:
                 return None
             quantities.append(q)
+        plain = {
+            i: float(a)
+            for i, a in enumerate(step.args)
+            if isinstance(a, int | float) and not isinstance(a, GivenNumber | FoundNumber)
+        }
+        tree = simplified(with_numbers(tree, plain))
+        head = symbol or self.letters_of(step)
+        if isinstance(tree, expression.Argument | expression.Constant) or not all(
+            _presentable(s) for s in (head, *(quantities[i].symbol for i in arguments(tree)))
+        ):
+            return None
+        if _converts(tree) or head in [quantities[i].symbol for i in arguments(tree)]:
+            return None  # the same quantity in another unit
         value = value_at(step, self.at(step, k))
         if np.ndim(value) or np.iscomplexobj(value) or not isinstance(value, int | float | np.number | np.ndarray):
             return None
         result = self.of(step, k)
         unit_ = self.unit_of(step) if as_unit is None else as_unit
-        return self.written(
-            symbol or symbol_of(step), tree, quantities, Quantity("", result.value * factor, unit_, result.step, result.position)
-        )
+        return self.written(head, tree, quantities, Quantity("", result.value * factor, unit_, result.step, result.position))
 
     def _operand(self, a: Any, k: int | None, names: Mapping[str, str]) -> Quantity | None:
         if isinstance(a, Step):
             value = value_at(a, self.at(a, k))
             if np.ndim(value) or np.iscomplexobj(value) or not isinstance(value, int | float | np.number | np.ndarray):
                 return None
-            symbol = symbol_of(a)
+            symbol = self.letters_of(a)
             return Quantity(names.get(a.name, symbol), float(value), self.unit_of(a), self.id(a), self.position(a, self.at(a, k)))
         if isinstance(a, Given):
             value = a.value if np.ndim(a.value) == 0 else a.value[min(self.k if k is None else k, len(a.value) - 1)]
             if isinstance(value, str) or not isinstance(value, int | float | np.number):
                 return None
-            return Quantity(names.get(a.name, a.symbol or a.name), float(value), a.unit, a.name)
+            return Quantity(self._given(a, names), float(value), a.unit, a.name)
         if isinstance(a, GivenNumber):
-            return Quantity(names.get(a.name, a.symbol or a.name), float(a), a.unit, a.name)
+            return Quantity(self._given(a, names), float(a), a.unit, a.name)
         if isinstance(a, int | float | np.number):
             return Quantity(number(float(a), 6), float(a))
         return None
 
+    def _given(self, a: Given | GivenNumber, names: Mapping[str, str]) -> str:
+        return str(names.get(a.name) or phrases.words(self.language).get("symbols", {}).get(a.name) or a.symbol or a.name)
+
     def written(self, symbol: str, tree: expression.Expression, quantities: Sequence[Quantity], result: Quantity | None) -> Said:
         """A formula from its expression and the quantities in the places of its arguments; without ``result`` letters only."""
-        in_letters = [Operand(letters(q.symbol)) for q in quantities]
+        in_letters = [Operand(letters(q.symbol), None, bool(_SUM.search(q.symbol))) for q in quantities]
         in_numbers = [self._figures(q) for q in quantities]
         head = letters(symbol)
         used = list(dict.fromkeys(arguments(simplified(tree))))
@@ -240,7 +260,7 @@ class Reader:
         explained += [
             (quantities[i].symbol, self.unit(quantities[i].unit))
             for i in used
-            if not _plain(quantities[i].symbol) and "·" not in quantities[i].symbol
+            if not _plain(quantities[i].symbol) and not _TERM.search(quantities[i].symbol)
         ]
         formula = Row((head, Sign("="), *_items(of_tree(tree, in_letters))))
         if result is None:
@@ -336,6 +356,22 @@ class Reader:
         """Head of a column: letters, unit."""
         node = letters(symbol)
         return (Symbol(node), *((f", {self.unit(unit_)}",) if unit_ else ()))
+
+
+_SUM = re.compile(r"(?<!^)[+−](?![^{]*\})")
+_TERM = re.compile(r"·|(?<!^)[+−](?![^{]*\})")
+
+
+def _presentable(symbol: str) -> bool:
+    """Whether letters are letters, and no name of the program."""
+    return not re.search(r"[a-z]{4}|[a-z]\.[a-z]|[a-z]_[a-z]{3}|sign of", symbol)
+
+
+def _converts(tree: expression.Expression) -> bool:
+    """Whether a formula only turns metres into millimetres or back."""
+    return isinstance(tree, expression.Operation) and any(
+        isinstance(p, expression.Constant) and p.value in (1000.0, 1e6) for p in tree.parts
+    )
 
 
 def _plain(symbol: str) -> bool:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from math import pi
+from typing import Any
 
 from tmm_sheets.construction import expression
 from tmm_sheets.note.document import Symbol, Text
 from tmm_sheets.note.formula import letters
 from tmm_sheets.note.phrases import Scope, words
-from tmm_sheets.note.reader import Quantity, Reader
+from tmm_sheets.note.reader import Quantity, Reader, symbol_of
 
 
 def scope(r: Reader) -> Scope:
     """Formulas of the synthesis, the table of lengths, what the dead positions give."""
     variant = r.project.variant
     found = Scope({"found": variant.synthesis is not None})
-    items = []
+    items: list[dict[str, Any]] = []
     if variant.synthesis is not None:
         _ = r.project.synthesis.lengths
         plan = r.project.synthesis.plan
@@ -23,6 +24,8 @@ def scope(r: Reader) -> Scope:
             said = r.formula(step)
             if said is not None and said.numbers is not None:
                 items.append({"formula": said})
+            elif step.name.endswith("′") and isinstance(step.value, float):
+                items.append({"taken": Symbol(letters(symbol_of(step))), "value": r.of(step)})
         figure = r.pictures.figure("synthesis.sizes")
         if figure is not None:
             found.figures["sizes"] = figure
