@@ -6,7 +6,7 @@ Letters come in lettering markup (``M_{с}^{пр}``, ``ω_1``, an overbar for a 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isclose, pi
 from typing import Any, TypeGuard
@@ -349,27 +349,44 @@ def _walk(tree: expression.Expression, operands: Sequence[Operand], angle: bool)
     assert isinstance(tree, expression.Operation)
     name = tree.name
     parts = [_walk(p, operands, angle or name in _ANGLES) for p in tree.parts]
-    if name == "/":
-        return Fraction(parts[0][0], parts[1][0]), ATOM
-    if name == "^":
-        base = held(parts[0], ATOM) if not isinstance(parts[0][0], Fraction) else Fenced("(", parts[0][0], ")")
-        return Scripts(base, None, parts[1][0]), POWER
-    if name == "*":
-        return joined("·", [held(p, PRODUCT) for p in parts]), PRODUCT
-    if name in ("+", "-"):
-        if len(parts) == 1:
-            return Row((Sign("−"), held(parts[0], PRODUCT))), SUM
-        rest = [
-            held(p, PRODUCT) if name == "-" or (i and isinstance(p[0], Row) and p[0].items[:1] == (Sign("−"),)) else _held_sum(p)
-            for i, p in enumerate(parts[1:], 1)
-        ]
-        return joined("−" if name == "-" else "+", [parts[0][0], *rest]), SUM
-    if name == "sqrt":
-        return Root(parts[0][0]), ATOM
-    if name == "abs":
-        return Fenced("|", parts[0][0], "|"), ATOM
-    if name == "conj":
-        return Barred(parts[0][0]), ATOM
+    if name in _ARITHMETIC:
+        return _ARITHMETIC[name](parts)
+    return _function(name, parts)
+
+
+Part = tuple[Node, int]
+
+
+def _power(parts: Sequence[Part]) -> Part:
+    base = Fenced("(", parts[0][0], ")") if isinstance(parts[0][0], Fraction) else held(parts[0], ATOM)
+    return Scripts(base, None, parts[1][0]), POWER
+
+
+def _sum(parts: Sequence[Part]) -> Part:
+    rest = [held(p, PRODUCT) if isinstance(p[0], Row) and p[0].items[:1] == (Sign("−"),) else _held_sum(p) for p in parts[1:]]
+    return joined("+", [parts[0][0], *rest]), SUM
+
+
+def _difference(parts: Sequence[Part]) -> Part:
+    if len(parts) == 1:
+        return Row((Sign("−"), held(parts[0], PRODUCT))), SUM
+    return joined("−", [parts[0][0], *(held(p, PRODUCT) for p in parts[1:])]), SUM
+
+
+_ARITHMETIC: dict[str, Callable[[Sequence[Part]], Part]] = {
+    "/": lambda parts: (Fraction(parts[0][0], parts[1][0]), ATOM),
+    "^": _power,
+    "*": lambda parts: (joined("·", [held(p, PRODUCT) for p in parts]), PRODUCT),
+    "+": _sum,
+    "-": _difference,
+    "sqrt": lambda parts: (Root(parts[0][0]), ATOM),
+    "abs": lambda parts: (Fenced("|", parts[0][0], "|"), ATOM),
+    "conj": lambda parts: (Barred(parts[0][0]), ATOM),
+}
+
+
+def _function(name: str, parts: Sequence[Part]) -> Part:
+    """A named function: of a single letter or number without brackets."""
     shown = _FUNCTIONS.get(name, name)
     inside = joined(";", [p[0] for p in parts])
     single = len(parts) == 1 and parts[0][1] == ATOM and not isinstance(parts[0][0], Fraction)

@@ -15,6 +15,7 @@ from tmm_sheets.construction import expression, protocol
 from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import Inline, Number, Symbol, Text
 from tmm_sheets.note.formula import (
@@ -45,6 +46,10 @@ if TYPE_CHECKING:
 
 DIGITS = 4
 """Significant digits of a number in the note, as a drawing gives them."""
+
+
+class Differs(CannotBuild):
+    """A formula as people write it does not give what the record has: the note does not print it."""
 
 
 @dataclass(frozen=True)
@@ -301,7 +306,7 @@ class Reader:
 
         Raises
         ------
-        ArithmeticError
+        Differs
             when the formula does not give what the record has.
         """
         tree = build(*(expression.Argument(i) for i in range(len(quantities))))
@@ -309,7 +314,7 @@ class Reader:
         n = self.of(step, k)
         size = max(abs(n.value * factor), 1e-9 * max((abs(q.value) for q in quantities), default=0.0), 1e-12)
         if isfinite(value) and abs(abs(value) - abs(n.value * factor)) > 1e-6 * size:
-            raise ArithmeticError(f"{symbol} of {n.step} is {n.value * factor}, the note's formula gives {value}")
+            raise Differs(f"{symbol} of {n.step} is {n.value * factor}, the note's formula gives {value}")
         return self.written(
             symbol,
             tree,

@@ -13,7 +13,7 @@ from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, words
-from tmm_sheets.note.reader import Quantity, Reader
+from tmm_sheets.note.reader import Differs, Quantity, Reader
 from tmm_sheets.numbers import is_zero
 
 BAR = "\u0305"
@@ -59,7 +59,6 @@ def _loads(r: Reader, found: Scope) -> None:
     study = r.project.study
     forces, acc, m = study.forces, study.accelerations, study.mechanism
     said = words(r.language)["forces"]
-    g = Quantity("g", r.project.gravity, "m/s2", "forces.gravity")
     rows: list[tuple[Text, ...]] = [
         (
             (said["link"],),
@@ -72,57 +71,60 @@ def _loads(r: Reader, found: Scope) -> None:
             r.head("M_{и}", "N*m"),
         )
     ]
-    best: tuple[float, str] | None = None
+    heaviest = 0.0
     for name, link in m.links.items():
-        loads = {load.role: load for load in forces.loads[name] if load.role in ("weight", "inertia")}
+        loads: dict[str, Any] = {load.role: load for load in forces.loads[name] if load.role in ("weight", "inertia")}
         couples = [c for c in study.loads[1].get(name, ()) if c.name.startswith("Mи")]
         if not loads and not couples:
             continue
-        inertia = loads.get("inertia")
         moved = acc.points.get(str(link.centre))
-        a = abs(value_at(moved, r.k)) if moved is not None else 0.0
-        epsilon = float(value_at(acc.epsilon[name], r.k)) if name in acc.epsilon else 0.0
-        cells: list[Text] = [(name,), (r.number(link.mass, "", f"link.{name}.mass"),)]
-        cells.append((r.of(loads["weight"].vector, None, ""),) if "weight" in loads else ("–",))
-        cells.append((r.of(moved, None, ""),) if moved is not None else ("–",))
-        cells.append((r.of(inertia.vector, None, ""),) if inertia is not None else ("–",))
-        own = abs(float(value_at(couples[0].args[0], r.k))) if couples else 0.0
-        cells.append((r.number(own, "", f"link.{name}.inertia"),) if couples else ("–",))
-        cells.append((r.of(acc.epsilon[name], None, ""),) if couples else ("–",))
-        cells.append((r.of(couples[0], None, ""),) if couples else ("–",))
-        rows.append(tuple(cells))
-        if inertia is not None and moved is not None and (best is None or link.mass * a > best[0]):
-            best = (link.mass * a, name)
-            mass = Quantity(f"m_{{{name}}}", float(link.mass), "kg", f"link.{name}.mass")
-            found.formulas["inertia"] = r.checked(
-                f"F_{{и{name}}}",
-                lambda x, y: x * y,
-                [mass, Quantity(f"a_{{{letters_name(str(link.centre))}}}", float(a), "m/s2", r.id(moved), r.label)],
-                inertia.vector,
-            )
-        if "weight" in loads and best is not None and best[1] == name:
-            found.formulas["weight"] = r.checked(
-                f"G_{{{name}}}",
-                lambda x, y: x * y,
-                [Quantity(f"m_{{{name}}}", float(link.mass), "kg", f"link.{name}.mass"), g],
-                loads["weight"].vector,
-            )
-        if couples and not is_zero(epsilon, 1.0):
-            inertia_of = couples[0].args[0]
-            j = Quantity(
-                f"J_{{S{name}}}",
-                abs(float(value_at(inertia_of, r.k))),
-                "kg*m2",
-                r.id(inertia_of) if isinstance(inertia_of, Step) else f"link.{name}.inertia",
-            )
-            e = Quantity(f"ε_{{{name}}}", abs(epsilon), "rad/s2", r.id(acc.epsilon[name]), r.label)
-            found.formulas["couple"] = r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [j, e], couples[0])
+        row: list[Text] = [(name,), (r.number(link.mass, "", f"link.{name}.mass"),)]
+        row += [
+            (r.of(step, None, ""),) if step is not None else ("–",)
+            for step in (_vector(loads, "weight"), moved, _vector(loads, "inertia"))
+        ]
+        if couples:
+            of = _inertia(r, name, couples[0])
+            row += [(r.number(of.value, "", of.step),), (r.of(acc.epsilon[name], None, ""),), (r.of(couples[0], None, ""),)]
+            _couple_formula(r, found, name, of, couples[0])
+        else:
+            row += [("–",)] * 3
+        rows.append(tuple(row))
+        force = link.mass * abs(value_at(moved, r.k)) if moved is not None else 0.0
+        if force > heaviest and "inertia" in loads and moved is not None:
+            heaviest = force
+            _weight_formulas(r, found, link, loads, moved)
     found.tables["loads"] = tuple(rows)
 
 
-def letters_name(name: str) -> str:
-    """Index of a point: S3 stays together."""
-    return name
+def _vector(loads: dict[str, Any], role: str) -> Step | None:
+    return loads[role].vector if role in loads else None
+
+
+def _inertia(r: Reader, name: str, couple: Step) -> Quantity:
+    """Moment of inertia that a couple was computed with: of the crank with a flywheel that of both."""
+    of = couple.args[0]
+    step = r.id(of) if isinstance(of, Step) else f"link.{name}.inertia"
+    return Quantity(f"J_{{S{name}}}", abs(float(value_at(of, r.k))), "kg*m2", step)
+
+
+def _couple_formula(r: Reader, found: Scope, name: str, inertia: Quantity, couple: Step) -> None:
+    epsilon = r.project.study.accelerations.epsilon[name]
+    value = abs(float(value_at(epsilon, r.k)))
+    if not is_zero(value, 1.0):
+        turned = Quantity(f"ε_{{{name}}}", value, "rad/s2", r.id(epsilon), r.label)
+        found.formulas["couple"] = r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [inertia, turned], couple)
+
+
+def _weight_formulas(r: Reader, found: Scope, link: Any, loads: dict[str, Any], moved: Step) -> None:
+    """Weight and inertia force of one link, as formulas."""
+    name = link.name
+    mass = Quantity(f"m_{{{name}}}", float(link.mass), "kg", f"link.{name}.mass")
+    g = Quantity("g", r.project.gravity, "m/s2", "forces.gravity")
+    a = Quantity(f"a_{{{link.centre}}}", abs(value_at(moved, r.k)), "m/s2", r.id(moved), r.label)
+    found.formulas["inertia"] = r.checked(f"F_{{и{name}}}", lambda x, y: x * y, [mass, a], loads["inertia"].vector)
+    if "weight" in loads:
+        found.formulas["weight"] = r.checked(f"G_{{{name}}}", lambda x, y: x * y, [mass, g], loads["weight"].vector)
 
 
 def _applied(r: Reader) -> Iterator[dict[str, Any]]:
@@ -180,7 +182,7 @@ def _sum(r: Reader, total: Step, symbol: str, result: Step, length: Quantity | N
     value = float(expression.evaluate(tree, [q.value for q in quantities]))
     n = r.of(result)
     if abs(abs(value) - abs(n.value)) > 1e-6 * max(abs(n.value), 1e-9 * size):
-        raise ArithmeticError(f"{symbol}: the record has {n.value}, the note's formula gives {value}")
+        raise Differs(f"{symbol}: the record has {n.value}, the note's formula gives {value}")
     said = r.written(symbol, tree, quantities, Quantity("", value, r.unit_of(result), n.step, n.position))
     own = [letters(symbol), *((Sign("·"), letters(length.symbol)) if length is not None else ())]
     equation += [Sign("+" if target >= 0 else "−"), *own, Sign("="), Words("0")]
@@ -394,7 +396,7 @@ def _lever(r: Reader, found: Scope) -> None:
     tree = tree / expression.Argument(len(quantities) - 1)
     value = float(expression.evaluate(tree, [q.value for q in quantities]))
     if abs(abs(value) - abs(f_own)) > 1e-6 * max(abs(f_own), 1e-12):
-        raise ArithmeticError(f"lever: the record has {f_own}, the note's formula gives {value}")
+        raise Differs(f"lever: the record has {f_own}, the note's formula gives {value}")
     found.formulas["lever"] = r.written(name, tree, quantities, Quantity("", value, "N", r.id(lever.balancing), r.label))
     found.tables["lever"] = tuple(rows)
     found.fields["mu_lever"] = scale_text(scale)
