@@ -234,3 +234,11 @@ def test_number_nodes_know_their_step(note):
 
 def test_words_stay_on_the_paper_alone():
     assert words.paper() == "ru"
+
+
+def test_no_sentence_breaks_off_before_a_number():
+    """An optional part of a template never ends between the word for a figure and its number."""
+    for name in phrases.names("ru"):
+        for n, line in enumerate(phrases.text_of("ru", name).splitlines(), 1):
+            assert not re.search(r"(рис\.|табл\.|таблице)\s*(\]\]|\[\[|$)", line), f"{name}.txt:{n}"
+            assert line.count("[[") == line.count("]]"), f"{name}.txt:{n}"
