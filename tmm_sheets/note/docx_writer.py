@@ -81,10 +81,10 @@ class _Writer:
         props.language = note.language
 
     def _styles(self) -> None:
-        from docx.enum.text import WD_ALIGN_PARAGRAPH, WD_LINE_SPACING
+        from docx.enum.text import WD_ALIGN_PARAGRAPH
         from docx.oxml.ns import qn
 
-        for name, size in (("Normal", 12), ("Heading 1", 14), ("Heading 2", 13), ("Caption", 11.5), ("TOC Heading", 15)):
+        for name, size in (("Normal", 11.5), ("Heading 1", 14), ("Heading 2", 13), ("Caption", 11.5), ("TOC Heading", 15)):
             if name not in [s.name for s in self.made.styles]:
                 continue
             style: Any = self.made.styles[name]
@@ -104,7 +104,7 @@ class _Writer:
             style.font.color.rgb = RGBColor(0, 0, 0)
         normal: Any = self.made.styles["Normal"]
         normal.paragraph_format.space_after = self.pt(0)
-        normal.paragraph_format.line_spacing_rule = WD_LINE_SPACING.SINGLE
+        normal.paragraph_format.line_spacing = 0.92
         first: Any = self.made.styles["Heading 1"]
         first.paragraph_format.page_break_before = True
         first.paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
@@ -145,7 +145,7 @@ class _Writer:
     def _page(self, section: Any) -> None:
         section.page_width, section.page_height = self.mm(210), self.mm(297)
         section.left_margin, section.right_margin = self.mm(25), self.mm(10)
-        section.top_margin, section.bottom_margin = self.mm(13), self.mm(26)
+        section.top_margin, section.bottom_margin = self.mm(11), self.mm(23)
         section.header_distance, section.footer_distance = self.mm(5), self.mm(5)
 
     def _section(self, kind: Any, form: str, first: bool = False) -> None:
@@ -388,6 +388,7 @@ class _Writer:
         p = self.made.add_paragraph()
         p.alignment = WD_ALIGN_PARAGRAPH.CENTER
         p.paragraph_format.keep_with_next = True
+        p.paragraph_format.line_spacing = 1.0  # anything less cuts the top of a picture off
         if turned:
             width, height = height, width
         if width > TEXT:
