@@ -41,13 +41,14 @@ RULES = {
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets", "task"),
+    "note": ("backends construction drawing project record results sheets", "task"),
     "compare": ("drawing sheets", "project"),
     "compare.measured": (f"compare construction sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
     "bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
     "stress": ("construction mechanism methods.linkage", ""),
-    "cli": ("backends bench catalogue compare drawing explain output project protocols record results sheets stress summary "
+    "cli": ("backends bench catalogue compare drawing explain note output project protocols record results sheets stress summary "
             "task", ""),
     "__main__": ("cli", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),
@@ -59,12 +60,13 @@ LIBRARIES = {
     "matplotlib": "backends.png bench.plots", "pydantic": "task.values task.schema task.messages task.variant",
     "pydantic_core": "task.messages", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods bench compare",
+    "typst": "note.typst_writer", "docx": "note.docx_writer",
 }  # fmt: skip
 """Large libraries and the modules or rooms they belong to."""
 
 LATE = ("numpy", "shapely")
 """Libraries the command line must not wait for: numpy is imported at the top only where numbers are made, shapely nowhere."""
-NUMBERS = "mechanism construction drawing methods sheets backends compare bench stress project record"
+NUMBERS = "mechanism construction drawing methods sheets backends compare bench stress project record note"
 
 
 def within(module, rooms):

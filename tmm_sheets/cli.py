@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
 """Formats of drawings."""
 
+NOTE_FORMATS = ("pdf", "docx")
+"""Formats of the explanatory note."""
+
 PARTS = ("positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "cam")
 """Parts of the results."""
 
@@ -170,11 +173,12 @@ def check(project: str, corrected: bool) -> None:
 @option("--force", is_flag=True, help="Make again also what has not changed, and overwrite what was changed by hand.")
 @option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
 @option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
+@option("--with-note", is_flag=True, help="Also the explanatory note, note.pdf; the numbers of the sheets run on after its pages.")
 @option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def build(
     projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[BinaryIO, ...], corrected: bool, sheets: tuple[int, ...],
     formats: tuple[str, ...], dpi: float, machine: Plotter | None, text: str, one_file: bool, output: Path | None,
-    archive: bool, force: bool, jobs: int | None, scheduler: str | None, explain: bool,
+    archive: bool, force: bool, jobs: int | None, scheduler: str | None, with_note: bool, explain: bool,
 ) -> None:
     """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
     if not projects and not families and not lists:
@@ -190,8 +194,12 @@ def build(
     if len(projects) == 1 and not families and not lists:
         if jobs is not None or scheduler is not None:
             raise click.UsageError(tell("--jobs and --dask are for several projects"))
-        _build_one(projects[0], order, output, explain)
+        if with_note and archive:
+            raise click.UsageError(tell("--with-note writes into a folder: leave --zip out"))
+        _build_one(projects[0], order, output, explain, with_note)
         return
+    if with_note:
+        raise click.UsageError(tell("--with-note is for one project"))
     if explain:
         raise click.UsageError(tell("--explain is for one project"))
     _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
@@ -208,7 +216,7 @@ def _listed(file: BinaryIO) -> list[str]:
         raise BadInput(Problem(str(e), str(getattr(file, "name", "")), e.line, hint=hint)) from None
 
 
-def _build_one(project: str, order: Order, output: Path | None, explain: bool) -> None:
+def _build_one(project: str, order: Order, output: Path | None, explain: bool, with_note: bool) -> None:
     from tmm_sheets.explain import Stopwatch
     from tmm_sheets.output.building import build as build_project
     from tmm_sheets.progress import Progress
@@ -216,12 +224,28 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool) -
     watch = Stopwatch()
     with watch.phase(tell("read")):
         variant = _read(project, order.corrected)
-    outlet = order.outlet(_folder(variant, output))
+    folder = _folder(variant, output)
+    outlet = order.outlet(folder)
     with Progress() as progress:
+        if with_note:
+            from tmm_sheets.note import note as writing
+
+            words.set_paper(words.of_project(variant.project.language))
+            with watch.phase("pages of the note"):
+                variant = writing.run_on(variant, lambda what: progress.say(f"{what} ..."))
         built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
-    for path in built.paths:
+        paths, warnings = built.paths, built.warnings
+        if with_note:
+            from tmm_sheets import files
+
+            with watch.phase("note"):
+                written = writing.write(built.opened, ("pdf",), lambda what: progress.say(f"{what} ..."))
+                files.write_all({folder / name: data for name, data in written.files.items()})
+            paths += tuple(folder / name for name in written.files)
+            warnings += tuple(f"left out: {problem}" for problem in written.problems)
+    for path in paths:
         click.echo(path)
-    for warning in built.warnings:
+    for warning in warnings:
         click.echo(f"{variant.project.name}: {warning}", err=True)
     unchanged = len(built.paths) - len(built.sizes)
     if unchanged:
@@ -355,6 +379,31 @@ def why(project: str, result: str, corrected: bool) -> None:
 
     for line in reasons.lines(_open(project, corrected), result):
         click.echo(line)
+
+
+@commands.command()
+@PROJECT
+@CORRECTED
+@option("--format", "formats", default="pdf", show_default=True, callback=_among(NOTE_FORMATS), metavar="F,F",
+        help=f"Formats: {', '.join(NOTE_FORMATS)}.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the note.  [default: out/<project>]")
+def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path | None) -> None:
+    """Write the explanatory note of PROJECT: text, formulas, tables and figures from the record, ready to be printed."""
+    from tmm_sheets import files
+    from tmm_sheets.note import note as writing
+    from tmm_sheets.progress import Progress
+
+    writing.check(formats)
+    opened = _open(project, corrected)
+    folder = _folder(opened.variant, output)
+    files.check_folder(folder)
+    with Progress() as progress:
+        written = writing.write(opened, formats, lambda what: progress.say(f"{what} ..."))
+        files.write_all({folder / name: data for name, data in written.files.items()})
+    for name in written.files:
+        click.echo(folder / name)
+    for problem in written.problems:
+        click.echo(f"{opened.variant.project.name}: left out: {problem}", err=True)
 
 
 def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from math import ceil, pi
 from pathlib import Path
 
+from tmm_sheets.box import Box
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.ink import check, letters
 from tmm_sheets.drawing.lettering import PEN
@@ -57,6 +58,17 @@ def render(drawing: Drawing) -> bytes:
         f"{''.join(body)}</g>\n</svg>\n"
     )
     return text.encode("utf-8")
+
+
+def picture(marks: Iterable[Mark], box: Box) -> bytes:
+    """SVG of some marks, cut out along a rectangle of the sheet (mm), without titles: for a page of text."""
+    width, height = f"{box.width:g}", f"{box.height:g}"
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}mm" height="{height}mm" '
+        f'viewBox="0 0 {width} {height}">\n'
+        f'<g transform="matrix(1 0 0 -1 {-box.x0:g} {box.y1:g})" fill="none" stroke="#000" stroke-linecap="round" '
+        f'stroke-linejoin="round">\n{_paths(marks, "class")}</g>\n</svg>\n'
+    ).encode()
 
 
 def _paths(marks: Iterable[Mark], called: str) -> str:

@@ -173,7 +173,7 @@ class _Work:
 
 def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wanted: list[Target], watch: Stopwatch) -> _Work:
     """What of the files wanted of sheets ``numbers`` is not current."""
-    inputs = fingerprint(program(), words.paper(), variant.text)
+    inputs = fingerprint(program(), words.paper(), variant.text, str(variant.title_block.first_sheet))
     due, names, stand_in = list[Target](), list[Target](), dict[str, str]()
     made_from: dict[Target, str] = {}
     with watch.phase(tell("compare with what is there")):

@@ -1,0 +1,128 @@
+"""The files: what their readers find in them, the same bytes twice, and what is told when something is missing."""
+
+import io
+import re
+import subprocess
+import sys
+import zipfile
+
+import pytest
+
+from tests.note.opened import composed, opened
+from tmm_sheets.__main__ import run
+from tmm_sheets.note import note as writing
+
+pypdfium2 = pytest.importorskip("pypdfium2")
+
+
+@pytest.fixture(scope="module")
+def cam():
+    """Both files of a small project."""
+    pytest.importorskip("typst")
+    pytest.importorskip("docx")
+    return writing.write(opened("lugansk/cam_rocker"), ("pdf", "docx"))
+
+
+def pages(data):
+    pdf = pypdfium2.PdfDocument(data)
+    return [pdf[i].get_textpage().get_text_range() for i in range(len(pdf))]
+
+
+def test_the_same_bytes_twice(cam):
+    again = writing.write(opened("lugansk/cam_rocker"), ("pdf", "docx"))
+    assert again.files == cam.files
+
+
+def test_contents_and_abstract_tell_the_true_pages(cam):
+    found = pages(cam.files["note.pdf"])
+    assert len(found) == cam.pages + 1  # the last one is no part of the note
+    assert f"Записка, {cam.pages}" in found[1].replace("\xa0", " ").replace("\r\n", " ")
+    contents = next(t for t in found if "Содержание" in t)
+    for title in ("Заключение", "Список использованной литературы"):
+        page = int(re.search(rf"{title}[ .\u2060\xad]*(\d+)", contents.replace("\r\n", " "))[1])
+        assert title in found[page - 1]
+
+
+def test_shaper_is_as_long_as_the_manuals_want(project, note):
+    pytest.importorskip("typst")
+    from tmm_sheets.note import typst_writer
+
+    data, places = typst_writer.render(note)
+    assert 30 <= places["pages"] <= 45
+    assert data.startswith(b"%PDF")
+
+
+def test_the_word_file_has_fields_equations_and_headings(cam):
+    archive = zipfile.ZipFile(io.BytesIO(cam.files["note.docx"]))
+    text = archive.read("word/document.xml").decode()
+    assert len(re.findall("<m:oMath ", text)) > 40 or len(re.findall("<m:oMath>", text)) > 40
+    for field in ("TOC ", "PAGEREF ", "SEQ figure", "SEQ table", "REF "):
+        assert field in text
+    marks = set(re.findall(r'w:bookmarkStart [^>]*w:name="([^"]+)"', text))
+    assert set(re.findall(r"(?:REF|PAGEREF) (\w+)", text)) <= marks
+    assert 'w:val="Heading1"' in text
+    footers = [archive.read(n).decode() for n in archive.namelist() if "footer" in n]
+    assert any(" PAGE " in f for f in footers)
+    assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+def test_with_note_the_numbers_of_the_sheets_run_on(tmp_path, capsys):
+    pytest.importorskip("typst")
+    assert run(["build", "lugansk/cam_rocker", "--with-note", "--format", "pdf", "-o", str(tmp_path)]) == 0
+    note = pages((tmp_path / "note.pdf").read_bytes())
+    sheet = next(i for i, t in enumerate(note, 1) if "ПРИЛОЖЕНИЕ 1" in t)
+    drawn = pages((tmp_path / "sheet1.pdf").read_bytes())[0].replace("\r\n", " ").split()
+    assert str(sheet) in drawn
+
+
+def test_a_missing_package_is_told_and_nothing_written(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(writing, "find_spec", lambda name: None)
+    assert run(["note", "lugansk/cam_flat", "-o", str(tmp_path / "x")]) == 1
+    told = capsys.readouterr().err
+    assert "typst" in told
+    assert "tmm-sheets[note]" in told
+    assert not (tmp_path / "x").exists()
+
+
+@pytest.mark.parametrize(("arguments", "told"), [
+    (["--format", "odt"], "'odt' is not one of pdf, docx"),
+    (["-o", "/dev/null/x"], "/dev/null"),
+])  # fmt: skip
+def test_wrong_usage_is_told(arguments, told, capsys):
+    pytest.importorskip("typst")
+    assert run(["note", "lugansk/cam_flat", *arguments]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_language_without_templates_is_told(capsys, tmp_path):
+    pytest.importorskip("typst")
+    from tmm_sheets import words
+
+    before = words.paper(), words.asked()
+    try:
+        words.ask_paper("en")
+        status = run(["note", "lugansk/cam_flat", "--lang", "en", "-o", str(tmp_path / "x")])
+    finally:
+        words.set_paper(before[0])
+        words.ask_paper(before[1])
+    if status == 0:
+        pytest.skip("there are templates in English by now")
+    assert status == 1
+    assert "there are no templates of the note" in capsys.readouterr().err
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_wrong_template_is_told_with_its_line(monkeypatch):
+    from tmm_sheets.errors import BadInput
+    from tmm_sheets.note import phrases
+
+    real = phrases.text_of
+    wrong = {"cam": "\n{nonsense}\n"}
+    monkeypatch.setattr(phrases, "text_of", lambda language, name: real(language, name) + wrong.get(name, ""))
+    with pytest.raises(BadInput, match=r'cam\.txt:\d+: there is no field "nonsense"'):
+        composed(opened("lugansk/cam_flat"))
+
+
+def test_the_command_waits_for_neither_package():
+    code = "import sys, tmm_sheets.cli; sys.exit(any(m in sys.modules for m in ('typst', 'docx', 'numpy')))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,300 @@
+"""A note from a project: the sections that it has something for, in the order of ``templates/note/order.toml``."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets import words as catalogues
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.note import phrases
+from tmm_sheets.note.document import (
+    Block,
+    Figure,
+    Frame,
+    Heading,
+    Note,
+    Number,
+    Paragraph,
+    Sheet,
+    Symbol,
+    Table,
+    Text,
+)
+from tmm_sheets.note.formula import letters
+from tmm_sheets.note.phrases import Numbering, Scope, Writer
+from tmm_sheets.note.pictures import Pictures
+from tmm_sheets.note.reader import Reader
+from tmm_sheets.resources import template
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tmm_sheets.project import Project
+
+
+@cache
+def _order() -> dict[str, Any]:
+    path = template("note/order.toml")
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as e:
+        raise BadInput(Problem(str(e), str(path))) from None
+
+
+def literature(language: str) -> dict[str, str]:
+    """Entries of the literature by their keys."""
+    path = phrases.folder(language) / "literature.toml"
+    found: dict[str, str] = tomllib.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> Note:
+    """The note of a project, in the language of the paper.
+
+    Raises
+    ------
+    CannotBuild
+        when there are no templates of that language, or nothing of the project can be drawn.
+    """
+    from tmm_sheets.sheets import sheet
+
+    language = catalogues.paper()
+    said = phrases.words(language)
+    attempt = sheet.every(project, say)
+    scales: dict[str, Any] = {}
+    for composed in attempt.drawn.values():
+        scales |= composed.scales
+    say("note")
+    reader = Reader(project, language, Pictures(attempt.drawn), scales)
+    numbering = Numbering(literature(language))
+    writer = Writer(language, numbering)
+    parts = _parts(project)
+    made: list[Block] = []
+    sections: list[str] = []
+    scopes: dict[str, Scope] = {}
+    base = _general(reader, parts)
+    task = writer.blocks("task", _with(_task(reader), base))
+    made += task
+    body: list[Block] = writer.blocks("introduction", base)
+    for section in _order()["section"]:
+        if section["needs"] and section["needs"] not in parts:
+            continue
+        name = section["template"]
+        try:
+            found = import_module(f"tmm_sheets.note.sections.{section['module']}").scope(reader)
+        except CannotBuild as e:
+            reader.problems.append(str(e))
+            continue
+        scopes[name] = found
+        body += writer.blocks(name, _with(found, base))
+        sections.append(name)
+    summary = dict(base.fields)
+    for name, found in scopes.items():
+        summary[name] = {**found.fields, "is": True}
+    body += writer.blocks("conclusion", Scope(summary))
+    body += _sources(language, numbering)
+    sheets = reader.pictures.pages()
+    body += _appendices(sheets)
+    counts = {
+        "figures": sum(isinstance(b, Figure) for b in [*made, *body]),
+        "tables": sum(isinstance(b, Table) for b in [*made, *body]),
+        "sources": len(numbering.cited),
+        "sheets": len(sheets),
+        "formulas": numbering.total.get("formula", 0),
+    }
+    front = [
+        *writer.blocks(
+            "abstract", Scope(summary | {k: Number(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
+        ),
+        *made,
+    ]
+    reminders = writer.blocks("reminders", base)
+    if attempt.refused:
+        reader.problems += [f"{name}: {e}" for name, e in attempt.refused.items()]
+    block = project.variant.title_block
+    return Note(
+        language,
+        f"{project.variant.project.title}. {said['title']}",
+        block.student or "tmm_sheets",
+        tuple(front),
+        _title_page(reader),
+        tuple(body),
+        _frame(reader),
+        tuple(reminders),
+        1,
+        tuple(dict.fromkeys(reader.problems)),
+    )
+
+
+PAGES = Number("\u0001", "note.pages", 0)
+"""Stands for the number of pages until they are counted."""
+
+
+def counted(note: Note, pages: int) -> Note:
+    """The note with the number of its pages where the abstract tells it."""
+
+    def settled(text: Text) -> Text:
+        return tuple(
+            replace(x, text=str(pages), value=pages) if isinstance(x, Number) and x.text == PAGES.text else x for x in text
+        )
+
+    front = tuple(replace(b, text=settled(b.text)) if isinstance(b, Paragraph) else b for b in note.front)
+    return replace(note, front=front)
+
+
+def _with(found: Scope, base: Scope) -> Scope:
+    return Scope(base.fields | found.fields, found.formulas, found.tables, found.figures)
+
+
+def _parts(project: Project) -> set[str]:
+    """What sections may need: parts of the results, and sections of the project file."""
+    found = set(project.parts)
+    if project.variant.cycle is None:
+        found -= {"positions", "velocities", "accelerations", "forces"}
+    return found
+
+
+def _general(r: Reader, parts: set[str]) -> Scope:
+    """Fields that every template may use."""
+    v = r.project.variant
+    fields: dict[str, Any] = {
+        "name": v.project.title,
+        "variant": v.project.variant or "",
+        "project": v.project.name,
+        "machine": v.project.title,
+        "sheets": len(r.pictures.sheets),
+        "institution": v.title_block.institution,
+        **{f"has_{p}": True for p in parts},
+    }
+    said = phrases.words(r.language)
+    fields |= {f"keys_{p}": said["keys"][p] if p in parts else "" for p in said["keys"]}
+    fields["objects"] = _listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
+    fields["aims"] = _listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
+    fields["variant_text"] = said["phrases"]["variant"].format(variant=v.project.variant) if v.project.variant else ""
+    fields["and_forces"] = said["phrases"]["and_forces"] if "forces" in parts else ""
+    fields["checked_text"] = said["phrases"]["checked"] if {"forces", "flywheel"} & parts else ""
+    fields["way_text"] = said["phrases"]["way_forces" if "forces" in parts else "way_positions"] if "positions" in parts else ""
+    moment = v.balancing is None or v.balancing.kind == "moment"
+    fields |= said["balancing"]["moment" if moment else "force"]
+    if "positions" in parts:
+        fields |= {"mobile": r.project.mechanism.mobility == 1, "label": r.label}
+    return Scope(fields)
+
+
+def _listed(items: list[str], last: str) -> str:
+    """A list in words."""
+    return last.join(filter(None, (", ".join(items[:-1]), *items[-1:])))
+
+
+def _task(r: Reader) -> Scope:
+    """Given numbers with their letters, and the scheme."""
+    said = phrases.words(r.language)
+    rows: list[tuple[Text, ...]] = [tuple((h,) for h in said["task"]["head"])]
+    try:
+        from tmm_sheets import results
+
+        results.told(r.project, None, refused={})
+    except CannotBuild as e:
+        r.problems.append(str(e))
+    r._book = None
+    rows += _data(r)
+    figures = {}
+    if r.project.variant.crank is not None and r.project.variant.cycle is not None:
+        figure = r.pictures.figure(f"position plan {r.label}", own=True)
+        if figure is not None:
+            figures["scheme"] = figure
+    titles = [{"sheet": str(n), "title": c.drawing.title.split(". ", 1)[-1]} for n, c in r.pictures.sheets.items()]
+    return Scope({"list": titles}, {}, {"data": tuple(rows)}, figures)
+
+
+def _data(r: Reader) -> list[tuple[Text, ...]]:
+    """Rows of the table of inputs: what the project file gives, as it is written there, and ``[data]`` has words for."""
+    said = phrases.words(r.language)
+    rows: list[tuple[Text, ...]] = []
+    for key, entry in said["data"].items():
+        for path, value, item in _values(r.project.variant.data, key.split(".")):
+            for number in value if isinstance(value, list) else [value]:
+                symbol, meaning = (text.replace("*", item) for text in entry[:2])
+                row = _row(r, ".".join(path), number, symbol, meaning)
+                if row is not None:
+                    rows.append(row)
+    return rows
+
+
+def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str) -> tuple[Text, ...] | None:
+    """A row of the inputs; None for a value that is no number."""
+    text, _, unit = (str(value).strip() + " ").partition(" ")
+    try:
+        number = float(text.replace(",", "."))
+    except ValueError:
+        return None
+    if isinstance(value, bool) or not number:
+        return None
+    named = r.unit(unit.strip())
+    return (meaning,), ((Symbol(letters(symbol)),) if symbol else ("–",)), (named or "–",), (r.number(number, "", path),)
+
+
+def _values(data: Any, path: list[str], before: tuple[str, ...] = (), item: str = "") -> list[tuple[tuple[str, ...], Any, str]]:
+    """Values under a path of the project file; ``*`` stands for every table of a list, which is called by its name."""
+    if not path:
+        return [(before, data, item)]
+    key, rest = path[0], path[1:]
+    if key == "*" and isinstance(data, list):
+        return [x for i, inner in enumerate(data) for x in _values(inner, rest, (*before, str(i)), str(inner.get("name", i + 1)))]
+    if key == "#" and isinstance(data, list):
+        return [x for i, inner in enumerate(data) for x in _values(inner, rest, (*before, str(i)), str(i + 1))]
+    if isinstance(data, dict) and key in data:
+        return _values(data[key], rest, (*before, key), item)
+    return []
+
+
+def _sources(language: str, numbering: Numbering) -> list[Block]:
+    """The literature in order of citation."""
+    entries: list[Block] = [Heading(1, "", phrases.words(language)["literature"])]
+    for i, key in enumerate(numbering.cited, 1):
+        entries.append(Paragraph((f"{i}. {numbering.literature[key]}",), "item"))
+    return entries
+
+
+def _appendices(sheets: list[Sheet]) -> list[Block]:
+    return [replace(s, number=str(i), title=s.title.split(". ", 1)[-1]) for i, s in enumerate(sheets, 1)]
+
+
+def _title_page(r: Reader) -> dict[str, Any]:
+    said = phrases.words(r.language)
+    block = r.project.variant.title_block
+    page = said["title_page"]
+    return {
+        "ministry": page["ministry"],
+        "institution": block.institution or page["institution"],
+        "kind": page["kind"],
+        "course": page["course"],
+        "theme": page["theme"].format(name=r.project.variant.project.title),
+        "designation": f"{block.designation} {page['code']}".strip(),
+        "people": [page["student"], page["supervisor"], page["checker"]],
+        "names": [block.student or "", block.supervisor or "", block.checker or ""],
+        "place": page["place"],
+        "figure": said["figure"],
+        "table": said["table"],
+        "appendix": said["appendix"],
+    }
+
+
+def _frame(r: Reader) -> Frame:
+    said = phrases.words(r.language)
+    block = r.project.variant.title_block
+    fields = {
+        "designation": f"{block.designation} {said['title_page']['code']}".strip(),
+        "student": block.student or "",
+        "checker": block.checker or "",
+        "supervisor": block.supervisor or "",
+        "letter": block.letter or "",
+        "institution": block.institution or "",
+        "group": block.group or "",
+        "subject": said["stamp_subject"],
+    }
+    return Frame(fields, dict(said["stamp"]))

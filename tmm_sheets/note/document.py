@@ -1,0 +1,199 @@
+"""The document tree of a note: what stands in it, without a word of how it is set.
+
+Text is a tuple of :data:`Inline`; numbers are nodes that know the step they come from, formulas are trees (see
+:mod:`~tmm_sheets.note.formula`). Sections, formulas, figures and tables have their numbers already: both writers print the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from tmm_sheets.note.formula import Node
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of the record as it is written: ``text`` with at most ``digits`` significant digits, and its ``unit`` in words.
+
+    ``step`` is "plan/name" of the step it is the value of, or the path of a given number; ``position`` the label of the position;
+    ``value`` the number itself in the step's unit. No digits: a number that a sentence of that step says.
+    """
+
+    text: str
+    step: str
+    value: float
+    position: str = ""
+    digits: int = 4
+    unit: str = ""
+
+    def __str__(self) -> str:
+        """Number and unit, not to be parted at the end of a line."""
+        return f"{self.text}\u00a0{self.unit}" if self.unit and self.unit not in ("°",) else self.text + self.unit
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """Letters in the text, set as in a formula."""
+
+    node: Node
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The number of a figure, table, formula or source in the text; ``target`` is "figure:4.2", empty for a source."""
+
+    text: str
+    target: str = ""
+
+    def __str__(self) -> str:
+        """The number as it is written."""
+        return self.text
+
+
+Inline = str | Number | Symbol | Reference
+Text = tuple[Inline, ...]
+
+
+@dataclass(frozen=True)
+class Heading:
+    """Title of a section: level 1 begins a page; ``number`` is empty for introduction, conclusions and the like."""
+
+    level: int
+    number: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Running text; ``look`` says whether it is one of a list, or stands in the middle of the line."""
+
+    text: Text
+    look: Literal["plain", "item", "centre", "right"] = "plain"
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A formula on its own line, ``number`` at the right margin; ``lines`` stand one under another."""
+
+    lines: tuple[Node, ...]
+    number: str = ""
+
+
+@dataclass(frozen=True)
+class Explained:
+    """A letter of a formula, what it means, its unit in words."""
+
+    symbol: Node
+    meaning: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Where:
+    """What the letters of the formulas before mean: "где", a letter a line."""
+
+    word: str
+    rows: tuple[Explained, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table under its number and title; the first row is its head. ``wide`` ones are set smaller."""
+
+    number: str
+    title: str
+    rows: tuple[tuple[Text, ...], ...]
+    left: bool = False
+    """columns that hold words are set from the left."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A picture with its caption; ``svg`` is its drawing, ``width`` and ``height`` mm on the page, ``turned`` by 90 degrees."""
+
+    number: str
+    title: str
+    name: str
+    svg: bytes = field(repr=False)
+    width: float = 0.0
+    height: float = 0.0
+    turned: bool = False
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A finished sheet in the appendices, on a page of its own."""
+
+    number: str
+    title: str
+    name: str
+    svg: bytes = field(repr=False)
+    width: float = 0.0
+    height: float = 0.0
+
+
+@dataclass(frozen=True)
+class Contents:
+    """Contents with page numbers under a heading without number."""
+
+    title: str
+
+
+@dataclass(frozen=True)
+class NewPage:
+    """The next block begins a page."""
+
+
+Block = Heading | Paragraph | Formula | Where | Table | Figure | Sheet | Contents | NewPage
+
+
+@dataclass(frozen=True)
+class Source:
+    """An entry of the literature, in order of citation."""
+
+    number: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Words of the stamps, forms 2 and 2a (GOST 2.104), by their fields."""
+
+    fields: dict[str, str]
+    words: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Note:
+    """A whole note: its title page, what is before the contents, the body, and the page of what only the student can fill in."""
+
+    language: str
+    title: str
+    author: str
+    front: tuple[Block, ...]
+    title_page: dict[str, Any]
+    body: tuple[Block, ...]
+    frame: Frame
+    reminders: tuple[Block, ...] = ()
+    first_page: int = 1
+    problems: tuple[str, ...] = ()
+    """what the project has and the note could not tell, with the reasons."""
+
+    def blocks(self) -> Iterator[Block]:
+        """Everything between title page and reminders."""
+        yield from self.front
+        yield from self.body
+
+
+def numbers(blocks: tuple[Block, ...] | list[Block]) -> Iterator[Number]:
+    """All numbers of the record that some blocks show, those of formulas too."""
+    for block in blocks:
+        if isinstance(block, Paragraph):
+            yield from (x for x in block.text if isinstance(x, Number))
+        elif isinstance(block, Table):
+            yield from (x for row in block.rows for cell in row for x in cell if isinstance(x, Number))
+        elif isinstance(block, Formula):
+            for line in block.lines:
+                yield from line.numbers()

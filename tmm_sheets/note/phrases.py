@@ -1,0 +1,520 @@
+"""Phrase templates: the words of a note as data, ``templates/note/<language>/*.txt``; what they may hold is told in docs/note.md.
+
+A template is lines of text with fields in braces, letters between dollar signs and a few commands at the beginning of a line. It
+holds no number: numbers come from the record through the fields.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.note.document import (
+    Block,
+    Contents,
+    Explained,
+    Figure,
+    Formula,
+    Heading,
+    Inline,
+    NewPage,
+    Number,
+    Paragraph,
+    Reference,
+    Symbol,
+    Table,
+    Text,
+    Where,
+)
+from tmm_sheets.note.formula import Fenced, Figures, Fraction, Letters, Node, Root, Row, Scripts, Sign, Words, letters
+from tmm_sheets.resources import template
+
+
+def folder(language: str) -> Path:
+    """Folder of the templates of a language.
+
+    Raises
+    ------
+    CannotBuild
+        when there are none of it yet; it says of which there are.
+    """
+    found = template(f"note/{language}")
+    if not found.is_dir():
+        there = ", ".join(sorted(p.name for p in template("note").iterdir() if (p / "words.toml").is_file()))
+        raise CannotBuild(
+            f'there are no templates of the note in the language "{language}"',
+            f"there are templates in {there}: --lang {there.split(', ')[0]}; others can be added as templates/note/{language}",
+        )
+    return found
+
+
+@cache
+def words(language: str) -> dict[str, Any]:
+    """Single words, units and meanings of letters: ``words.toml`` of a language."""
+    path = folder(language) / "words.toml"
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as e:
+        raise BadInput(Problem(str(e), str(path))) from None
+
+
+def text_of(language: str, name: str) -> str:
+    """A template as it stands in its file."""
+    return (folder(language) / f"{name}.txt").read_text(encoding="utf-8")
+
+
+def names(language: str) -> list[str]:
+    """Names of the templates of a language."""
+    return sorted(p.stem for p in folder(language).glob("*.txt"))
+
+
+@dataclass(frozen=True)
+class Said:
+    """A formula as a section offers it to its template: what is shown, and the letters that are to be explained."""
+
+    letters: Node
+    numbers: Node | None = None
+    explained: tuple[tuple[str, str], ...] = ()
+    """letters in markup, each with its unit in words."""
+
+
+@dataclass
+class Scope:
+    """What a template may name: fields, formulas, tables, figures, lists for %each."""
+
+    fields: dict[str, Any] = field(default_factory=dict)
+    formulas: dict[str, Said | list[Said]] = field(default_factory=dict)
+    tables: dict[str, tuple[tuple[Text, ...], ...]] = field(default_factory=dict)
+    figures: dict[str, Figure] = field(default_factory=dict)
+
+    def within(self, fields: Mapping[str, Any]) -> Scope:
+        """The same with some fields more."""
+        own = {k: v for k, v in fields.items() if not isinstance(v, Said | Figure)}
+        return Scope(
+            self.fields | own,
+            self.formulas | {k: v for k, v in fields.items() if isinstance(v, Said)},
+            self.tables,
+            self.figures | {k: v for k, v in fields.items() if isinstance(v, Figure)},
+        )
+
+
+class Numbering:
+    """Numbers of sections, formulas, figures and tables, and of the sources in order of citation."""
+
+    def __init__(self, literature: Mapping[str, str]) -> None:
+        self.section = 0
+        self.part = 0
+        self.counts: dict[str, int] = {}
+        self.labels: dict[str, str] = {}
+        self.literature = literature
+        self.cited: list[str] = []
+        self.total: dict[str, int] = {}
+
+    def heading(self, level: int) -> str:
+        """Number of the next section of that level."""
+        if level == 1:
+            self.section, self.part = self.section + 1, 0
+            self.counts.clear()
+            return str(self.section)
+        self.part += 1
+        return f"{self.section}.{self.part}"
+
+    def next(self, kind: str, label: str) -> str:
+        """Number of the next formula, figure or table of the section."""
+        self.counts[kind] = self.counts.get(kind, 0) + 1
+        self.total[kind] = self.total.get(kind, 0) + 1
+        found = f"{self.section}.{self.counts[kind]}" if self.section else str(self.counts[kind])
+        self.labels[f"{kind}:{label}"] = found
+        return found
+
+    def cite(self, key: str) -> str:
+        """Number of a source."""
+        if key not in self.literature:
+            raise KeyError(key)
+        if key not in self.cited:
+            self.cited.append(key)
+        return str(self.cited.index(key) + 1)
+
+
+_FIELD = re.compile(r"\{([^{}]*)\}|\$([^$]*)\$")
+_OPTIONAL = re.compile(r"\[\[(.*?)\]\]")
+_NAMED = re.compile(r"\{([^{}]*)\}")
+_COMMAND = re.compile(r"%(\w+\??)\s*(.*)")
+
+
+class Writer:
+    """Turns templates into blocks, one after another, so that numbers run on and no letter is explained twice."""
+
+    def __init__(self, language: str, numbering: Numbering) -> None:
+        self.language = language
+        self.numbering = numbering
+        self.known: set[tuple[str, str]] = set()
+        self.template = ""
+        self.pending: set[str] = set()
+
+    def blocks(self, name: str, scope: Scope) -> list[Block]:
+        """The blocks of a template.
+
+        Raises
+        ------
+        BadInput
+            with file and line of what the template asks for and the section does not have.
+        """
+        self.template = name
+        self.pending = set(re.findall(r"\{@(\w+:[\w-]+)\}", text_of(self.language, name)))
+        self._foresee(name, scope)
+        lines = list(enumerate(text_of(self.language, name).splitlines(), 1))
+        try:
+            return list(self._made(lines, scope))
+        except _Wrong as e:
+            path = str(folder(self.language) / f"{name}.txt")
+            raise BadInput(Problem(e.what, path, e.line)) from None
+
+    def _foresee(self, name: str, scope: Scope) -> None:
+        """Numbers of what a template refers to before it comes: they are those of a first reading."""
+        numbering, known = self.numbering, self.known
+        trial = Numbering(numbering.literature)
+        trial.section, trial.labels = numbering.section, dict.fromkeys(self.pending, "0") | numbering.labels
+        self.numbering, self.known = trial, set(known)
+        try:
+            lines = list(enumerate(text_of(self.language, name).splitlines(), 1))
+            for _ in self._made(lines, scope):
+                pass
+        except _Wrong:
+            pass  # told by the reading that counts
+        finally:
+            self.numbering, self.known = numbering, known
+        numbering.labels |= {k: v for k, v in trial.labels.items() if v != "0"}
+
+    def _made(self, lines: list[tuple[int, str]], scope: Scope) -> Iterator[Block]:
+        paragraph: list[str] = []
+        i = 0
+        while i < len(lines):
+            n, line = lines[i]
+            i += 1
+            if line.startswith("#"):
+                continue
+            if command := _COMMAND.fullmatch(line):
+                yield from self._paragraph(paragraph, n, scope)
+                if command[1] in ("if", "each"):
+                    inner, other, i = _split(lines, i, n)
+                    yield from self._conditional(command[1], command[2], inner, other, n, scope)
+                else:
+                    yield from self._command(command[1], command[2], n, scope)
+            elif line.startswith("="):
+                yield from self._paragraph(paragraph, n, scope)
+                yield self._heading(line, n, scope)
+            elif not line.strip() or line.startswith("- "):
+                yield from self._paragraph(paragraph, n, scope)
+                if line.startswith("- "):
+                    yield Paragraph(self.text("– " + line[2:], n, scope), "item")
+            else:
+                paragraph.append(line.strip())
+        yield from self._paragraph(paragraph, lines[-1][0] if lines else 0, scope)
+
+    def _paragraph(self, lines: list[str], n: int, scope: Scope) -> Iterator[Block]:
+        if lines:
+            text = self.text(" ".join(lines), n, scope)
+            lines.clear()
+            if any(not isinstance(x, str) or x.strip() for x in text):
+                yield Paragraph(text)
+
+    def _heading(self, line: str, n: int, scope: Scope) -> Heading:
+        level = len(line) - len(line.lstrip("="))
+        text = line[level:].strip()
+        number = "" if text.startswith("!") else self.numbering.heading(level)
+        return Heading(level, number, "".join(map(str, self.text(text.lstrip("! "), n, scope))))
+
+    def _conditional(
+        self, word: str, what: str, inner: list[tuple[int, str]], other: list[tuple[int, str]], n: int, scope: Scope
+    ) -> Iterator[Block]:
+        if word == "if":
+            negated = what.startswith("not ")
+            name = what.removeprefix("not ").strip()
+            yield from self._made(inner if bool(_found(scope, name)) != negated else other, scope)
+            return
+        for item in _found(scope, what) or ():
+            yield from self._made(inner, scope.within(item))
+
+    def _command(self, word: str, what: str, n: int, scope: Scope) -> Iterator[Block]:
+        name, _, title = (part.strip() for part in what.partition("|"))
+        if word == "page":
+            yield NewPage()
+        elif word == "contents":
+            yield Contents(what)
+        elif word in ("centre", "right"):
+            yield Paragraph(self.text(what, n, scope), "centre" if word == "centre" else "right")
+        elif word in ("formula", "formula?"):
+            if name not in scope.formulas and word.endswith("?"):
+                return
+            if name not in scope.formulas:
+                raise _Wrong(f'there is no formula "{name}" here; there are {", ".join(scope.formulas) or "none"}', n)
+            yield from self._formula(label(scope, name), scope.formulas[name])
+        elif word == "table":
+            if name not in scope.tables:
+                raise _Wrong(f'there is no table "{name}" here; there are {", ".join(scope.tables) or "none"}', n)
+            rows = scope.tables[name]
+            if len(rows) > 1:
+                yield Table(self.numbering.next("table", label(scope, name)), "".join(map(str, self.text(title, n, scope))), rows)
+        elif word == "figure":
+            figure = scope.figures.get(name)
+            if figure is not None:
+                yield Figure(
+                    self.numbering.next("figure", label(scope, name)),
+                    "".join(map(str, self.text(title, n, scope))),
+                    figure.name,
+                    figure.svg,
+                    figure.width,
+                    figure.height,
+                    figure.turned,
+                )
+        else:
+            raise _Wrong(f'"%{word}" is no command of a template', n)
+
+    def _formula(self, name: str, said: Said | list[Said]) -> Iterator[Block]:
+        for i, one in enumerate(said if isinstance(said, list) else [said]):
+            number = self.numbering.next("formula", name if not i else f"{name}-{i}")
+            rows = tuple(self._explained(one))
+            together = one.numbers is not None and weight(one.letters) + weight(one.numbers) < LONGEST
+            if one.numbers is not None and together:
+                yield Formula((Row((*items(one.letters), Sign("="), *items(one.numbers))),), f"({number})")
+            else:
+                yield Formula(broken(one.letters), f"({number})")
+            if rows:
+                yield Where(words(self.language)["where"], rows)
+            if one.numbers is not None and not together:
+                yield Formula(broken(Row((*items(_left(one.letters) or Row(())), Sign("="), *items(one.numbers)))))
+
+    def _explained(self, said: Said) -> Iterator[Explained]:
+        for markup, unit in said.explained:
+            meaning = meaning_of(markup, self.language, self.template)
+            once = ("" if meaning.endswith(_OF_INDEX) else bare(markup), meaning)
+            if meaning and once not in self.known:
+                self.known.add(once)
+                yield Explained(letters(markup), meaning.removesuffix(_OF_INDEX).rstrip(), unit)
+
+    def text(self, line: str, n: int, scope: Scope) -> Text:
+        """A line with its fields filled in."""
+        found: list[Inline] = []
+        at = 0
+        line = _OPTIONAL.sub(lambda m: m[1] if self._all_there(m[1], scope) else "", line)
+        for m in _FIELD.finditer(line):
+            found.append(line[at : m.start()])
+            at = m.end()
+            found += [Symbol(letters(m[2]))] if m[2] is not None else self._field(m[1], n, scope)
+        found.append(line[at:])
+        return tuple(x for x in found if x != "")
+
+    def _all_there(self, text: str, scope: Scope) -> bool:
+        """Whether everything that some words refer to is in the note, and every field they name."""
+        for name in _NAMED.findall(text):
+            if name.startswith("@") and not name.startswith("@cite:"):
+                kind, _, own = name[1:].partition(":")
+                if f"{kind}:{label(scope, own)}" not in self.numbering.labels and name[1:] not in self.numbering.labels:
+                    return False
+            elif not name.startswith(("@", "#")) and _found(scope, name) is None:
+                return False
+        return True
+
+    def _field(self, name: str, n: int, scope: Scope) -> list[Inline]:
+        if name.startswith("@"):
+            return [self._reference(name[1:], n, scope)]
+        if name.startswith("#"):
+            key, _, forms = name[1:].partition(" ")
+            return [plural(int(_count(_found(scope, key))), forms.split("|"), self.language)]
+        value = _found(scope, name)
+        if value is None:
+            raise _Wrong(f'there is no field "{name}" here; there are {", ".join(sorted(scope.fields))}', n)
+        if isinstance(value, str | Number | Symbol):
+            return [value]
+        if isinstance(value, int):
+            return [str(value)]
+        if isinstance(value, Node):
+            return [Symbol(value)]
+        return list(value)
+
+    def _reference(self, to: str, n: int, scope: Scope) -> Reference:
+        kind, _, name = to.partition(":")
+        if kind == "cite":
+            key, _, place = name.partition(" ")
+            try:
+                return Reference(f"[{self.numbering.cite(key)}{', ' + place if place else ''}]")
+            except KeyError:
+                raise _Wrong(f'there is no source "{key}" in literature.toml', n) from None
+        labels = self.numbering.labels
+        found = labels.get(f"{kind}:{label(scope, name)}", labels.get(to))
+        if found is None:
+            raise _Wrong(f'nothing has the label "{to}"', n)
+        return Reference(f"({found})" if kind == "formula" else found, f"{kind}:{found}")
+
+
+_OF_INDEX = "…"
+"""How a meaning ends that holds for every letter of its kind: it is told once."""
+LONGEST = 58
+"""Width of letters and numbers of a formula, in characters, up to which they stand on one line."""
+WIDEST = 72
+"""Width of a line, in characters, beyond which a sum goes on in the next."""
+
+
+def broken(node: Node) -> tuple[Node, ...]:
+    """A formula in lines: a long sum is broken at its signs, which are repeated; a long numerator becomes a bracket."""
+    if weight(node) <= WIDEST:
+        return (node,)
+    flat: list[Node] = []
+    for x in items(node):
+        if isinstance(x, Fraction) and weight(x.over) > WIDEST // 2:
+            under = x.under if not isinstance(x.under, Row) or len(x.under.items) == 1 else Fenced("(", x.under, ")")
+            flat += [Sign("("), *items(x.over), Sign(")"), Sign("/"), *items(under)]
+        else:
+            flat.append(x)
+    lines: list[list[Node]] = [[]]
+    for i, x in enumerate(flat):
+        rest = next((j for j in range(i + 1, len(flat)) if flat[j] in _BREAKS), len(flat))
+        if x in _BREAKS and lines[-1] and weight(Row((*lines[-1], *flat[i:rest]))) > WIDEST:
+            lines[-1].append(x)
+            lines.append([])
+        lines[-1].append(x)
+    return tuple(Row(tuple(line)) for line in lines)
+
+
+_BREAKS = (Sign("+"), Sign("−"), Sign("="))
+
+
+def items(node: Node) -> tuple[Node, ...]:
+    """Parts of a row, or the node alone."""
+    return node.items if isinstance(node, Row) else (node,)
+
+
+def label(scope: Scope, name: str) -> str:
+    """Label of a figure, table or formula: in a list that of its item, where the items are counted."""
+    return f"{name}-{scope.fields['nth']}" if "nth" in scope.fields else name
+
+
+def weight(node: Node) -> int:
+    """About how many characters wide a formula is."""
+    if isinstance(node, Letters):
+        return 1
+    if isinstance(node, Figures | Words):
+        return len(node.text)
+    if isinstance(node, Sign):
+        return 2 if node.text in "=+−·" else 1
+    if isinstance(node, Fraction):
+        return max(weight(node.over), weight(node.under)) + 1
+    if isinstance(node, Scripts):
+        inner = max((weight(x) for x in (node.below, node.above) if x is not None), default=0)
+        return weight(node.base) + (7 * inner + 9) // 10
+    return sum(map(weight, node.parts())) + (1 if isinstance(node, Fenced | Root) else 0)
+
+
+def _left(node: Node) -> Node | None:
+    """What stands before the first sign of equality."""
+    if isinstance(node, Row):
+        for i, x in enumerate(node.items):
+            if x == Sign("="):
+                return Row(node.items[:i])
+    return None
+
+
+def _count(value: Any) -> float:
+    return value.value if isinstance(value, Number) else len(value) if isinstance(value, list | tuple) else float(str(value))
+
+
+def plural(n: int, forms: list[str], language: str) -> str:
+    """The form that goes with a number: one, few, many; of two forms the second for all but one."""
+    if len(forms) < 3 or language == "en":
+        return forms[0] if n == 1 else forms[-1]
+    if n % 10 == 1 and n % 100 != 11:
+        return forms[0]
+    return forms[1] if n % 10 in (2, 3, 4) and n % 100 not in (12, 13, 14) else forms[2]
+
+
+def meaning_of(markup: str, language: str, section: str = "") -> str:
+    """What a letter means, by the tables ``letters-<section>`` and ``letters`` of words.toml.
+
+    Its own entry, or the pattern with the longest beginning.
+    """
+    own = _meaning(markup, words(language).get(f"letters-{section}", {}))
+    return own or _meaning(markup, words(language).get("letters", {}))
+
+
+def _meaning(markup: str, table: Mapping[str, str]) -> str:
+    plain = bare(markup)
+    for key, meaning in table.items():
+        if key.startswith("~"):
+            if m := re.fullmatch(key[1:], plain):
+                return m.expand(meaning)
+        elif bare(key) == plain:
+            return meaning
+    found = ""
+    longest = -1
+    for key, meaning in table.items():
+        head, star, tail = bare(key).partition("*")
+        if (
+            star
+            and not key.startswith("~")
+            and plain.startswith(head)
+            and plain.endswith(tail)
+            and len(plain) > len(head) + len(tail)
+            and len(head) > longest
+        ):
+            longest = len(head)
+            found = meaning.replace("*", plain[len(head) : len(plain) - len(tail)])
+    return found
+
+
+def bare(markup: str) -> str:
+    """Letters without markup."""
+    return re.sub(r"[\\_{}^ ]", "", markup)
+
+
+def unit(name: str, language: str) -> str:
+    """A unit of the record in words."""
+    if not name:
+        return ""
+    units: dict[str, str] = words(language)["units"]
+    return units.get(name, name)
+
+
+class _Wrong(Exception):
+    def __init__(self, what: str, line: int) -> None:
+        super().__init__(what)
+        self.what, self.line = what, line
+
+
+def _found(scope: Scope, name: str) -> Any:
+    value: Any = scope.fields
+    for part in name.split("."):
+        value = value.get(part) if isinstance(value, Mapping) else getattr(value, part, None)
+        if value is None:
+            break
+    if value is None:
+        return True if name in scope.formulas or name in scope.tables or name in scope.figures else None
+    return value
+
+
+def _split(lines: list[tuple[int, str]], i: int, n: int) -> tuple[list[tuple[int, str]], list[tuple[int, str]], int]:
+    """What is inside a command up to its %end, what after its %else, and where it goes on."""
+    depth, other = 0, -1
+    for j in range(i, len(lines)):
+        word = m[1] if (m := _COMMAND.fullmatch(lines[j][1])) else ""
+        if word in ("if", "each"):
+            depth += 1
+        elif word == "end" and depth:
+            depth -= 1
+        elif word == "else" and not depth:
+            other = j
+        elif word == "end":
+            end = other if other >= 0 else j
+            return lines[i:end], lines[end + 1 : j] if other >= 0 else [], j + 1
+    raise _Wrong("this command has no %end", n)
+
+
+def plain_text(text: Iterable[Inline]) -> str:
+    """Text without its marks."""
+    return "".join(str(x) if not isinstance(x, Symbol) else "" for x in text)

@@ -1,0 +1,205 @@
+"""Figures of a note: views of the composed sheets as SVG, cut out and as large as the page allows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from tmm_sheets.backends import svg
+from tmm_sheets.box import Box
+from tmm_sheets.drawing.ink import letters
+from tmm_sheets.drawing.marks import Fill, Line, Mark, Text, flat
+from tmm_sheets.note.document import Figure, Sheet
+
+if TYPE_CHECKING:
+    from tmm_sheets.sheets.sheet import Composed
+
+WIDTH, HEIGHT = 184.0, 205.0
+"""Place for a figure with its caption on a page, mm: within the frame, a little wider than the text."""
+LONG = 225.0
+"""Height for one that is turned or fills a page."""
+LETTERS = 3.5
+"""Height of the lettering that has to be read, mm on the sheet."""
+READABLE = 1.95
+"""Least height of lettering on the page, mm: two, as a ruler tells it."""
+USUAL = 0.58
+"""Scale of a picture where there is room: lettering a little higher than it has to be."""
+SMALL = 70.0
+"""Size up to which a small picture is not reduced, mm."""
+MARGIN = 0.6
+
+
+class Pictures:
+    """The views of some sheets by what draws them: the arrangement's name of a view, or the plan it shows."""
+
+    def __init__(self, sheets: dict[int, Composed]) -> None:
+        self.sheets = sheets
+        self._views: dict[str, list[tuple[int, tuple[int, ...], bool]]] = {}
+        self._drawn: dict[str, list[tuple[int, tuple[int, ...], bool]]] = {}
+        for n, composed in sheets.items():
+            drawing = composed.drawing
+            for view in drawing.views:
+                marks = tuple(k for a, b in view.spans for k in range(a, b))
+                shares: dict[str, int] = {}
+                for k in marks:
+                    of = drawing.marks[k].of
+                    shares[of] = shares.get(of, 0) + 1
+                if marks:
+                    self._drawn.setdefault(_drawn_by(composed, marks[0]), []).append((n, marks, True))
+                for of, share in shares.items():
+                    self._views.setdefault(of, []).append((n, marks, 2 * share > len(marks)))
+                    if of.startswith("velocity plan "):
+                        self._views.setdefault("velocity plans", []).append((n, marks, True))
+
+    def sheet_of(self, name: str) -> int | None:
+        """Number of the sheet that shows a view; None when none does."""
+        found = self._drawn.get(name) or self._views.get(name)
+        return found[0][0] if found else None
+
+    def figure(self, name: str, focus: Sequence[str] = (), own: bool = False) -> Figure | None:
+        """The view of that name as a figure; None when no sheet shows it.
+
+        ``focus`` names steps or plans that are to be seen where the whole view is too large to be read; ``own`` takes the marks
+        of that name only, without what else stands in the view.
+        """
+        found = self._views.get(name) or self._drawn.get(name)
+        if not found:
+            return None
+        n = found[0][0]
+        main = [x for x in found if x[2]] or found
+        drawing = self.sheets[n].drawing
+        marks = [drawing.marks[k] for view in main if view[0] == n for k in view[1]]
+        if own:
+            position = name.rpartition(" ")[2]
+            marks = [m for m in marks if m.of == name or (m.by is not None and m.by.position == position and m.by.role == "text")]
+        box = extent(marks)
+        if scale(box)[0] * LETTERS < READABLE and focus:
+            chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, focus)]
+            if chosen:
+                box = extent(chosen)
+                box = _cut(box)
+                marks = [m for m in marks if _touches(m, box)]
+        return _figure(name, marks, box)
+
+    def top(self, name: str, height: float) -> Figure | None:
+        """All views of that name as one figure, of a high one the upper part, ``height`` mm of the sheet."""
+        found = self._views.get(name)
+        if not found:
+            return None
+        n = found[0][0]
+        drawn = [self.sheets[n].drawing.marks[k] for view in found if view[0] == n and view[2] for k in view[1]]
+        box = extent(drawn)
+        box = Box(box.x0, max(box.y0, box.y1 - height), box.x1, box.y1)
+        return _figure(name, [m for m in drawn if _touches(m, box)], box)
+
+    def parts(self, name: str) -> list[Figure]:
+        """The view as several figures, one under another, where it is too large to be read as one."""
+        found = self._drawn.get(name) or self._views.get(name)
+        if not found:
+            return []
+        n = found[0][0]
+        drawing = self.sheets[n].drawing
+        marks = [drawing.marks[k] for view in found if view[0] == n and view[2] for k in view[1]]
+        box = extent(marks)
+        count = 1
+        while count < 4 and scale(Box(box.x0, box.y0, box.x1, box.y0 + box.height / count))[0] * LETTERS < READABLE:
+            count += 1
+        if count == 1:
+            return [_figure(name, marks, box)]
+        cuts = _gaps(marks, box, count)
+        made = []
+        for low, high in pairwise(cuts):
+            part = [m for m in marks if low <= _middle(m).imag < high]
+            if part:
+                place = extent(part)
+                made.append(_figure(name, part, Box(place.x0, max(place.y0, low - 6), place.x1, min(place.y1, high + 6))))
+        return made[::-1]
+
+    def pages(self) -> list[Sheet]:
+        """The sheets as they stand in the appendices, on A4 each."""
+        made = []
+        for n, composed in self.sheets.items():
+            drawing = composed.drawing
+            data = svg.picture(drawing.marks, Box(0, 0, drawing.width, drawing.height))
+            made.append(Sheet(str(n), drawing.title, f"sheet{n}", data, drawing.width, drawing.height))
+        return made
+
+
+def _drawn_by(composed: Composed, k: int) -> str:
+    """What draws the view to which a mark belongs."""
+    return next((part.draw for part in reversed(composed.parts) if part.first <= k), "")
+
+
+def _within(step: str, role: str, focus: Sequence[str]) -> bool:
+    shown = role in ("text", "point", "curve", "dimension", "symbol", "link")
+    return any((shown and (step == name or step.startswith(f"{name}/"))) or role == name for name in focus)
+
+
+def extent(marks: Iterable[Mark]) -> Box:
+    """Smallest rectangle round marks with the strokes of their lettering."""
+    low: list[tuple[float, float]] = []
+    high: list[tuple[float, float]] = []
+    for m in marks:
+        for p in letters(m) if isinstance(m, Text) else (flat(m, 3.0),):
+            if len(p):
+                low.append((float(p.real.min()), float(p.imag.min())))
+                high.append((float(p.real.max()), float(p.imag.max())))
+    x0, y0 = (min(v) for v in zip(*low, strict=True))
+    x1, y1 = (max(v) for v in zip(*high, strict=True))
+    return Box(x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN)
+
+
+def scale(box: Box) -> tuple[float, bool]:
+    """Scale of a picture on the page, and whether it is better turned."""
+    usual = max(USUAL, min(1.0, SMALL / box.width, SMALL / box.height))
+    upright = min(WIDTH / box.width, HEIGHT / box.height, usual)
+    turned = min(WIDTH / box.height, LONG / box.width, usual)
+    if upright * LETTERS >= READABLE or (turned * LETTERS < READABLE and turned < 1.15 * upright):
+        return upright, False
+    return turned, True
+
+
+def _figure(name: str, marks: Sequence[Mark], box: Box) -> Figure:
+    factor, turned = scale(box)
+    return Figure("", "", name, svg.picture(marks, box), box.width * factor, box.height * factor, turned)
+
+
+def _cut(box: Box) -> Box:
+    """The box itself, or its middle where even that is too large."""
+    width, height = WIDTH / READABLE * LETTERS, HEIGHT / READABLE * LETTERS
+    x, y = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
+    w, h = min(box.width, width), min(box.height, height)
+    return Box(x - w / 2, y - h / 2, x + w / 2, y + h / 2)
+
+
+def _touches(m: Mark, box: Box) -> bool:
+    if isinstance(m, Text):
+        return all(box.contains(complex(z)) for p in letters(m) for z in p)
+    p = flat(m, 3.0)
+    inside = bool(p.real.max() >= box.x0 and p.real.min() <= box.x1 and p.imag.max() >= box.y0 and p.imag.min() <= box.y1)
+    return inside and not (isinstance(m, Fill) and not (box.x0 <= p.real.min() and p.real.max() <= box.x1))
+
+
+def _middle(m: Mark) -> complex:
+    if isinstance(m, Text):
+        return m.at + 0.5j * m.height
+    p = flat(m, 3.0)
+    return complex((p.real.min() + p.real.max()) / 2, (p.imag.min() + p.imag.max()) / 2)
+
+
+def _gaps(marks: Sequence[Mark], box: Box, count: int) -> list[float]:
+    """Heights at which a tall view is best cut: near the equal parts, where the fewest marks are crossed."""
+    spans = []
+    for m in marks:
+        if isinstance(m, Line) and abs(m.a.real - m.b.real) < 1e-6 and abs(m.a.imag - m.b.imag) > 0.5 * box.height:
+            continue  # an axis or a line of projection through all of it
+        p = flat(m, 3.0)
+        top = m.at.imag + m.height if isinstance(m, Text) else float(p.imag.max())
+        spans.append((float(p.imag.min()), top))
+    cuts = [box.y0]
+    for i in range(1, count):
+        ideal = box.y0 + box.height * i / count
+        tries = [ideal + d for d in range(-40, 41)]
+        cuts.append(min(tries, key=lambda y: (sum(a < y < b for a, b in spans), abs(y - ideal))))
+    return [*cuts, box.y1 + 1]

@@ -1,0 +1,1 @@
+"""What each section of a note shows: fields, formulas, tables and figures for its phrase template."""

@@ -1,0 +1,339 @@
+"""Kinematics of the linkage: positions, plans of velocities and accelerations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction import expression
+from tmm_sheets.construction.plan import Plan, Segment
+from tmm_sheets.construction.rules import LINE_LINE
+from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.note.document import Symbol, Text
+from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
+from tmm_sheets.note.phrases import Said, Scope, words
+from tmm_sheets.note.reader import Quantity, Reader, named
+from tmm_sheets.numbers import is_zero
+
+MOST_COLUMNS = 9
+"""Columns of a table over the positions beside the number of the position."""
+
+
+def scope(r: Reader) -> Scope:
+    """Positions, velocities at all of them, accelerations at one in words and at all in a table."""
+    study, cycle = r.project.study, r.project.cycle
+    v, a = study.velocities, study.accelerations
+    scales = {name: r.scales.get(name) for name in ("positions", "velocities", "accelerations")}
+    fields: dict[str, Any] = {
+        "label": r.label,
+        "count": len(cycle.drawn),
+        "positions": len(cycle.labels),
+        "crank": study.mechanism.crank.link,
+        "turns": cycle.period > 2 * pi + 1e-9,
+        "uneven": study.running is not None,
+        "position_steps": r.sentences(study.positions.plan),
+        "velocity_steps": r.sentences(v.plan, _plain),
+        "acceleration_steps": r.sentences(a.plan, _plain),
+        "dead": cycle.plan is not None,
+        "first_label": cycle.labels[0],
+    }
+    if cycle.plan is not None:
+        fields["dead_steps"] = r.sentences(cycle.plan, _plain)
+    if cycle.numbering is not None:
+        fields["numbering_steps"] = r.sentences(cycle.numbering)
+    for name, scale in scales.items():
+        if scale is not None:
+            fields[f"mu_{name}"] = _scale(r, scale)
+    found = Scope(fields)
+    _first_formulas(r, found)
+    for plan, key in ((v.plan, "velocity"), (a.plan, "acceleration")):
+        found.fields[f"{key}_equations"] = [{"equation": Said(e), "known": known} for e, known in _equations(r, plan)]
+        found.tables[f"{key}_vectors"] = _vectors(r, plan)
+        found.formulas |= {f"{key}-{name}": said for name, said in _lengths(r, plan)}
+        found.fields[f"{key}_angular"] = list(_angular(r, plan, v.omega if key == "velocity" else a.epsilon))
+    found.tables["lengths"] = _drawn_lengths(r)
+    found.tables["velocities"] = _over_positions(r, v.plan, v.omega, "velocity")
+    found.tables["accelerations"] = _over_positions(r, a.plan, a.epsilon, "acceleration")
+    found.tables["strokes"] = ()
+    for name, picture in (
+        ("positions", "kinematics.position_plans"),
+        ("velocity", f"velocity plan {r.label}"),
+        ("acceleration", "kinematics.acceleration_plan"),
+        ("velocities", "velocity plans"),
+    ):
+        figure = r.pictures.figure(picture)
+        if figure is None and name == "velocity":
+            figure = r.pictures.figure("kinematics.velocity_plans")
+        if figure is not None:
+            found.figures[name] = figure
+        n = r.pictures.sheet_of(picture)
+        if n is not None:
+            found.fields[f"sheet_{name}"] = str(n)
+    found.fields["diagrams"] = [{"diagram": f, "of": name} for name, f in _diagrams(r)]
+    return found
+
+
+def _plain(step: Step) -> bool:
+    """A move that is told already, or goes without saying."""
+    return step.rule.name in ("given point", "turn by 90 degrees")
+
+
+def _diagrams(r: Reader) -> Iterator[tuple[str, Any]]:
+    for name in ("diagrams.motion", "diagrams.output"):
+        for figure in r.pictures.parts(name):
+            yield name, figure
+
+
+def _scale(r: Reader, scale: Any) -> Text:
+    """A scale factor as it is written: letter = number unit."""
+    head, _, rest = str(scale).partition(" = ")
+    return (Symbol(Row((letters(head), Sign("="), Words(rest)))),)
+
+
+def _first_formulas(r: Reader, found: Scope) -> None:
+    """Speed of the crank from its revolutions, velocity of its pin, scale factors from drawn lengths."""
+    study = r.project.study
+    crank = study.mechanism.crank
+    omega = study.velocities.omega[crank.link]
+    speed = str((r.project.variant.data.get("crank") or {}).get("speed", ""))
+    q_omega = r.quantity(omega, symbol=f"ω_{{{crank.link}}}")
+    q_omega = Quantity(q_omega.symbol, abs(q_omega.value), q_omega.unit, q_omega.step, q_omega.position)
+    number = speed.replace(",", ".").split(" ")[0] if speed else ""
+    try:
+        turns = float(number)
+    except ValueError:
+        turns = 0.0
+    if turns and abs(2 * pi * turns - q_omega.value) < 1e-6 * q_omega.value:
+        tree: Any = 2 * pi * expression.Argument(0)
+        found.formulas["omega"] = r.written(q_omega.symbol, tree, [Quantity("n_1", turns, "1/s", "crank.speed")], q_omega)
+    elif turns and abs(pi * turns / 30 - q_omega.value) < 1e-6 * q_omega.value:
+        tree = expression.Operation("/", (pi * expression.Argument(0), expression.Constant(30.0)))
+        found.formulas["omega"] = r.written(q_omega.symbol, tree, [Quantity("n_1", turns, "rpm", "crank.speed")], q_omega)
+    found.fields["omega1"] = r.number(q_omega.value, q_omega.unit, q_omega.step, q_omega.position)
+    length = Quantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", "crank.length")
+    pin = study.velocities.points[crank.pin]
+    found.formulas["pin"] = r.checked(f"V_{{{crank.pin}}}", lambda w, length: w * length, [q_omega, length], pin)
+    scale = r.scales.get("velocities")
+    if scale is not None:
+        drawn = Quantity(f"p{crank.pin.lower()}", float(scale.mm(abs(value_at(pin, r.k)))), "mm", r.id(pin), r.label)
+        of = Quantity(f"V_{{{crank.pin}}}", abs(value_at(pin, r.k)), "m/s", r.id(pin), r.label)
+        tree = expression.Operation("/", (expression.Argument(0), expression.Argument(1)))
+        found.formulas["mu_V"] = r.written("μ_{V}", tree, [of, drawn], Quantity("", scale.mu, "(m/s)/mm", "scales.mu_V"))
+    found.fields["pin"] = Symbol(letters_of_point(crank.pin))
+    acceleration = study.accelerations.points[crank.pin]
+    if study.running is None and not value_at(study.accelerations.epsilon[crank.link], r.k):
+        found.formulas["pin_acceleration"] = r.checked(
+            f"a_{{{crank.pin}}}^{{n}}", lambda w, length: w * w * length, [q_omega, length], acceleration
+        )
+
+
+def letters_of_point(name: str) -> Node:
+    """A point's letter."""
+    return letters(letters_of(name))
+
+
+def _drawn_lengths(r: Reader) -> tuple[tuple[Text, ...], ...]:
+    """Lengths of the givens and what they measure on the drawing of the position plans."""
+    scale = r.scales.get("positions")
+    if scale is None:
+        return ()
+    said = words(r.language)["kinematics"]
+    rows: list[tuple[Text, ...]] = [tuple((h,) for h in said["lengths_head"])]
+    for g in r.givens("m"):
+        if g.symbol.startswith("l") and g.value:
+            rows.append(
+                (
+                    (Symbol(letters(g.symbol)),),
+                    (r.number(g.value, "", g.step),),
+                    (r.fixed(float(scale.mm(g.value)), "", 1, g.step),),
+                )
+            )
+    return tuple(rows)
+
+
+def _equations(r: Reader, plan: Plan) -> Iterator[tuple[Node, Text]]:
+    """Vector equations of the crossings of a plan; each with what is known of the directions."""
+    by_ends = {(s.tail.name, s.head.name): s.symbol for s in plan.segments}
+    pole = str(plan.pole)
+    for step in plan:
+        if step.rule is not LINE_LINE:
+            continue
+        first, u, second, w = step.args[:4]
+        head = by_ends.get((pole, step.name))
+        if head is None:
+            continue
+        sides: list[Node] = []
+        known: list[Any] = []
+        for start, along in ((first, u), (second, w)):
+            if not isinstance(start, Step):
+                continue
+            path = _path(plan, pole, start.name)
+            last = by_ends.get((start.name, step.name))
+            if path is None or (last is None and start.name != pole):
+                continue
+            direction = direction_of(along)
+            own = last if start.name != pole else head
+            if direction and own:
+                known += [", "] if known else []
+                known += [Symbol(Row((letters(own), *_items(direction))))]
+            if start.name == pole:
+                continue
+            nodes: list[Node] = []
+            for symbol in path:
+                nodes += [Sign("+")] if nodes else []
+                nodes.append(Underlined(letters(symbol), 2))
+            if last is not None:
+                nodes += [Sign("+"), Underlined(letters(last), 1)] if nodes else [Underlined(letters(last), 1)]
+            sides.append(Row(tuple(nodes)))
+        if sides:
+            items: list[Node] = [letters(head)]
+            for side in sides:
+                items += [Sign("="), *_items(side)]
+            yield Row(tuple(items)), tuple(known)
+
+
+def _items(node: Node) -> tuple[Node, ...]:
+    return node.items if isinstance(node, Row) else (node,)
+
+
+def _path(plan: Plan, pole: str, name: str) -> list[str] | None:
+    """Vectors one after another from the pole to a point, the shortest way; None when there is none."""
+    ways: dict[str, list[str]] = {pole: []}
+    pending = [pole]
+    while pending:
+        at = pending.pop(0)
+        for s in plan.segments:
+            if s.tail.name == at and s.head.name not in ways:
+                ways[s.head.name] = [*ways[at], s.symbol]
+                pending.append(s.head.name)
+    return ways.get(name)
+
+
+def direction_of(along: Any) -> Node | None:
+    """A direction in letters: parallel or perpendicular to what."""
+    name = getattr(along, "name", "")
+    if not name:
+        return None
+    across = "⟂" in name
+    return Row((Sign("⟂" if across else "∥"), *_items(letters(named(name.replace("⟂", ""))))))
+
+
+def _vectors(r: Reader, plan: Plan) -> tuple[tuple[Text, ...], ...]:
+    """Vectors of a plan at the position that is told: letter, segment on the drawing, mm, size."""
+    scale = r.scales.get(plan.name)
+    said = words(r.language)["kinematics"]
+    if scale is None:
+        return ()
+    k = plan.labels.index(r.label) if r.label in plan.labels else 0
+    unit = r.unit(plan.unit)
+    rows: list[tuple[Text, ...]] = [((said["vector"],), (said["segment"],), (said["length"],), (said["size"].format(unit=unit),))]
+    for s in plan.segments:
+        size = abs(value_at(s.head, k) - value_at(s.tail, k))
+        rows.append(
+            (
+                (Symbol(letters(s.symbol)),),
+                (Symbol(_segment(s)),),
+                (r.fixed(float(scale.mm(size)), "", 1, r.id(s.head), r.label),),
+                (r.number(float(size), "", r.id(s.head), r.label, kind=_greatest(plan, k)),),
+            )
+        )
+    return tuple(rows)
+
+
+def _greatest(plan: Plan, k: int) -> float:
+    return max((float(abs(value_at(s.head, k) - value_at(s.tail, k))) for s in plan.segments), default=0.0)
+
+
+def _segment(s: Segment) -> Node:
+    return Row((letters(named(s.tail.name)), letters(named(s.head.name))))
+
+
+def _lengths(r: Reader, plan: Plan) -> Iterator[tuple[str, Said]]:
+    """Size of one vector of a plan from its segment: the first that is found by a crossing."""
+    scale = r.scales.get(plan.name)
+    if scale is None:
+        return
+    k = plan.labels.index(r.label) if r.label in plan.labels else 0
+    crossed = {step.name for step in plan if step.rule is LINE_LINE}
+    for s in plan.segments:
+        if s.head.name in crossed and s.tail.name == plan.pole:
+            size = float(abs(value_at(s.head, k) - value_at(s.tail, k)))
+            if not is_zero(size, _greatest(plan, k)):
+                mm = Quantity(f"{s.tail.name}{_marked(s.head.name)}", float(scale.mm(size)), "mm", r.id(s.head), r.label)
+                mu = Quantity(scale.symbol, scale.mu, "", f"scales.{scale.symbol}")
+                tree = expression.Argument(0) * expression.Argument(1)
+                said = r.written(
+                    s.symbol.replace("\u0305", ""), tree, [mm, mu], Quantity("", size, plan.unit, r.id(s.head), r.label)
+                )
+                yield "size", said
+                return
+
+
+def _marked(name: str) -> str:
+    return named(name)
+
+
+def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str, Any]]:
+    """Angular velocities or accelerations of links: each from a relative vector and a length."""
+    by_ends = {(s.tail.name, s.head.name): s.symbol for s in plan.segments}
+    second = plan.name.startswith("accelerations")
+    for link, step in steps.items():
+        if len(step.args) != 4 or not all(isinstance(x, Step) for x in step.args):
+            continue
+        a, b, tail, head = step.args
+        at = r.at(step, None)
+        length = abs(value_at(b, r.at(b, None)) - value_at(a, r.at(a, None)))
+        value = value_at(step, at)
+        size = abs(float(value)) * length  # of the vector across the link
+        symbol = by_ends.get((tail.name, head.name), f"V_{{{head.name}}}").replace("\u0305", "")
+        if second:
+            across = next(
+                (
+                    s
+                    for s in plan.segments
+                    if s.head is head
+                    and "τ" in s.symbol
+                    and abs(abs(value_at(s.head, at) - value_at(s.tail, at)) - size) <= 1e-9 * max(size, 1e-12)
+                ),
+                None,
+            )
+            symbol = across.symbol.replace("\u0305", "") if across is not None else f"a_{{{b.name}{a.name}}}^{{τ}}"
+        quantities = [
+            Quantity(symbol, size, plan.unit, r.id(head), r.label),
+            Quantity(f"l_{{{b.name}{a.name}}}", float(length), "m", r.id(b), r.label),
+        ]
+        letter = "ε" if second else "ω"
+        said = r.checked(f"{letter}_{{{link}}}", lambda x, length: x / length, quantities, step)
+        yield {"angular": said, "link": link, "positive": float(value) >= 0, "zero": is_zero(float(value), 1.0)}
+
+
+def _over_positions(r: Reader, plan: Plan, turning: dict[str, Step], key: str) -> tuple[tuple[Text, ...], ...]:
+    """Sizes of the vectors from the pole and angular quantities at all drawn positions."""
+    study = r.project.study
+    m = study.mechanism
+    columns: list[tuple[str, Any, Step, str]] = []
+    for s in plan.segments:
+        if s.tail.name == plan.pole and "^" not in s.symbol:
+            columns.append((s.symbol.replace("\u0305", ""), np.abs(s.head.value - s.tail.value), s.head, plan.unit))
+    letter, unit = ("ω", "rad/s") if key == "velocity" else ("ε", "rad/s2")
+    seen: list[Step] = []
+    for link, step in turning.items():
+        if link != m.frame and np.ndim(step.value) and len(step.args) == 4 and step not in seen:
+            seen.append(step)
+            columns.append((f"{letter}_{{{link}}}", np.real(step.value), step, unit))
+    columns = [c for c in columns if np.ndim(c[1]) and np.nanmax(np.abs(c[1])) > 0][:MOST_COLUMNS]
+    if not columns:
+        return ()
+    head: list[Text] = [(words(r.language)["position"],)]
+    head += [r.head(symbol, unit) for symbol, _, _, unit in columns]
+    rows: list[tuple[Text, ...]] = [tuple(head)]
+    for i, label in r.project.cycle.drawn:
+        cells: list[Text] = [(label,)]
+        for _, values, step, _ in columns:
+            usual = float(np.nanmedian(np.abs(values)))
+            cells.append((r.number(float(values[i]), "", r.id(step), label, kind=max(usual, float(abs(values[i])))),))
+        rows.append(tuple(cells))
+    return tuple(rows)

@@ -1,0 +1,95 @@
+"""Structure of the linkage: links, pairs, mobility, Assur groups."""
+
+from __future__ import annotations
+
+from tmm_sheets.construction import expression
+from tmm_sheets.note import phrases
+from tmm_sheets.note.document import Number, Symbol, Text
+from tmm_sheets.note.formula import letters, letters_of
+from tmm_sheets.note.phrases import Scope
+from tmm_sheets.note.reader import Quantity, Reader
+
+
+def scope(r: Reader) -> Scope:
+    """Links, pairs, mobility and groups of the mechanism."""
+    m = r.project.mechanism
+    words = phrases.words(r.language)
+    said = words["structure"]
+    n, p5 = len(m.links), len(m.pairs)
+    mobility = _mobility(r, "W", n, p5, m.mobility, "structure.W")
+    groups = []
+    for i, g in enumerate(reversed(m.groups), 1):
+        groups.append(
+            {
+                "links": g.name,
+                "kind": str(g.kind.number),
+                "form": g.form,
+                "nth": str(i),
+                "mobility": _mobility(r, f"W_{{{g.name}}}", 2, 3, 0, f"structure.groups[{i}]"),
+                "pairs": _pairs_of(r, g.name),
+            }
+        )
+    links: list[tuple[Text, ...]] = [tuple((h,) for h in said["links_head"]), (("0",), (said["frame"],), _points(tuple(m.fixed)))]
+    links += [((name,), (link.title or "–",), (_points(m.link_points(name)))) for name, link in m.links.items()]
+    pairs: list[tuple[Text, ...]] = [tuple((h,) for h in said["pairs_head"])]
+    pairs += [((Symbol(letters(_primed(p.name))),), (", ".join(p.links),), (said[p.motion],), ("5",)) for p in m.pairs]
+    turning = sum(p.motion == "rotation" for p in m.pairs)
+    figures = {
+        name: f
+        for name, f in (
+            ("scheme", r.pictures.figure(f"position plan {r.label}", own=True)),
+            ("structure", r.pictures.figure("kinematics.structure")),
+        )
+        if f is not None
+    }
+    fields = {
+        "groups": groups,
+        "n": Number(str(n), "structure.links", n),
+        "p5": Number(str(p5), "structure.pairs", p5),
+        "turning": Number(str(turning), "structure.pairs", turning),
+        "sliding": Number(str(p5 - turning), "structure.pairs", p5 - turning),
+        "structure": m.structure,
+        "grade": str(m.grade),
+        "W": Number(str(m.mobility), "structure.W", m.mobility),
+        "crank": m.crank.link,
+        "crank_title": m.links[m.crank.link].title or said["crank"],
+        "count": len(groups),
+        "several": len(groups) > 1,
+    }
+    return Scope(
+        fields,
+        {"mobility": mobility, "first": _mobility(r, f"W_{{{m.crank.link}}}", 1, 1, 1, "structure.first")},
+        {"links": tuple(links), "pairs": tuple(pairs)},
+        figures,
+    )
+
+
+def _points(names: tuple[str, ...]) -> Text:
+    found: list[object] = []
+    for i, name in enumerate(names):
+        found += [", "] if i else []
+        found.append(Symbol(letters(_primed(name))))
+    return tuple(found)  # type: ignore[arg-type]
+
+
+def _primed(name: str) -> str:
+    return letters_of(name)
+
+
+def _pairs_of(r: Reader, group: str) -> Text:
+    """The pairs of a group: with the link outside first, inside, outside."""
+    m = r.project.mechanism
+    g = next(x for x in m.groups if x.name == group)
+    found: list[object] = []
+    for p in g.kind.pairs(m, g):
+        found += [", "] if found else []
+        found += [Symbol(letters(_primed(p.name))), f" ({', '.join(p.links)})"]
+    return tuple(found)  # type: ignore[arg-type]
+
+
+def _mobility(r: Reader, symbol: str, n: int, p5: int, value: int, step: str) -> phrases.Said:
+    """Chebyshev's formula W = 3n - 2p5 - p4."""
+    a = [expression.Argument(i) for i in range(3)]
+    tree = expression.Operation("-", (3 * a[0] - 2 * a[1], a[2]))
+    quantities = [Quantity("n", n, step=step), Quantity("p_5", p5, step=step), Quantity("p_4", 0, step=step)]
+    return r.written(symbol, tree, quantities, Quantity("", value, step=step))

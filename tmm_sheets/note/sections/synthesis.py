@@ -1,0 +1,68 @@
+"""Lengths of the links: found from conditions, or given and checked by stroke and speeds of the strokes."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+from tmm_sheets.construction import expression
+from tmm_sheets.note.document import Symbol, Text
+from tmm_sheets.note.formula import letters
+from tmm_sheets.note.phrases import Scope, words
+from tmm_sheets.note.reader import Quantity, Reader, symbol_of
+
+
+def scope(r: Reader) -> Scope:
+    """Formulas of the synthesis, the table of lengths, what the dead positions give."""
+    variant = r.project.variant
+    found = Scope({"found": variant.synthesis is not None})
+    items: list[dict[str, Any]] = []
+    if variant.synthesis is not None:
+        _ = r.project.synthesis.lengths
+        plan = r.project.synthesis.plan
+        for step in plan:
+            said = r.formula(step)
+            if said is not None and said.numbers is not None:
+                items.append({"formula": said})
+            elif step.name.endswith("′") and isinstance(step.value, float):
+                items.append({"taken": Symbol(letters(symbol_of(step))), "value": r.of(step)})
+        figure = r.pictures.figure("synthesis.sizes")
+        if figure is not None:
+            found.figures["sizes"] = figure
+    found.fields["steps"] = items
+    found.tables["lengths"] = _lengths(r)
+    cycle = r.project.cycle
+    if cycle.strokes is not None:
+        s = cycle.strokes
+        found.fields |= {"stroke": r.number(s.length, "m", "cycle.strokes"), "output": Symbol(letters(s.output)), "strokes": True}
+        turn = (s.end - s.begin) % (2 * pi) if len(s.runs) else 0.0
+        if 0 < turn < 2 * pi and abs(turn - pi) > 1e-3:
+            a = expression.Argument(0)
+            tree = expression.Operation("/", (a, expression.Operation("-", (expression.Constant(360.0), a))))
+            degrees = turn * 180 / pi
+            ratio = turn / (2 * pi - turn)
+            found.formulas["ratio"] = r.written(
+                "K", tree, [Quantity("φ_{рх}", degrees, "deg", "dead-positions")], Quantity("", ratio, "", "dead-positions")
+            )
+            found.fields["ratio"] = r.number(ratio, "", "dead-positions")
+            asked = variant.cycle.coefficient if variant.cycle is not None else None
+            if asked:
+                found.fields["asked"] = r.number(float(asked), "", "cycle.coefficient")
+                found.fields["off"] = r.number(100 * abs(ratio - float(asked)) / float(asked), "%", "dead-positions", digits=2)
+                theta = expression.Constant(180.0) * (a - 1) / (a + 1)
+                found.formulas["theta"] = r.written(
+                    "θ",
+                    theta,
+                    [Quantity("K", float(asked), "", "cycle.coefficient")],
+                    Quantity("", 180 * (float(asked) - 1) / (float(asked) + 1), "deg", "cycle.coefficient"),
+                )
+    return found
+
+
+def _lengths(r: Reader) -> tuple[tuple[Text, ...], ...]:
+    said = words(r.language)["kinematics"]
+    rows: list[tuple[Text, ...]] = [tuple((h,) for h in said["sizes_head"])]
+    for g in r.givens("m"):
+        if g.symbol.startswith("l") and g.value:
+            rows.append(((Symbol(letters(g.symbol)),), (r.number(g.value, "", g.step),)))
+    return tuple(rows)

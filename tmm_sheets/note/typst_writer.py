@@ -1,0 +1,300 @@
+"""The note as PDF: a Typst source from the document tree, set by the package typst."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.note.document import (
+    Block,
+    Contents,
+    Figure,
+    Formula,
+    Heading,
+    NewPage,
+    Note,
+    Paragraph,
+    Sheet,
+    Symbol,
+    Table,
+    Text,
+    Where,
+)
+from tmm_sheets.note.formula import (
+    Barred,
+    Fenced,
+    Figures,
+    Fraction,
+    Letters,
+    Node,
+    Root,
+    Row,
+    Scripts,
+    Sign,
+    Underlined,
+    Words,
+)
+from tmm_sheets.note.phrases import plain_text
+from tmm_sheets.resources import template
+
+MISSING = ("the note as PDF needs the package typst", "install the extra: pip install 'tmm-sheets[note]'")
+
+
+def render(note: Note) -> tuple[bytes, dict[str, int]]:
+    """The PDF, and the pages by number of the headings ("toc-0" ...) and of all ("pages").
+
+    Raises
+    ------
+    CannotBuild
+        when the package typst is missing.
+    """
+    try:
+        import typst
+    except ImportError:
+        raise CannotBuild(*MISSING) from None
+    import json
+
+    with TemporaryDirectory(prefix="tmm-note-") as folder:
+        root = Path(folder)
+        for name, data in pictures(note.blocks()).items():
+            (root / name).write_bytes(data)
+        (root / "preamble.typ").write_bytes(template("note/preamble.typ").read_bytes())
+        (root / "note.typ").write_text(source(note), encoding="utf-8")
+        fonts = [str(template("note/fonts")), str(template("fonts"))]
+        compiler = typst.Compiler(str(root / "note.typ"), root=str(root), font_paths=fonts, ignore_system_fonts=True)
+        made = compiler.compile(format="pdf", timestamp=0, pdf_tags=False)
+        found = json.loads(compiler.query("<places>", field="value", one=True))
+    assert isinstance(made, bytes)
+    return made, found
+
+
+def pictures(blocks: Iterable[Block]) -> dict[str, bytes]:
+    """SVG files of the figures and sheets by their names."""
+    return {f"{file_name(b)}.svg": b.svg for b in blocks if isinstance(b, Figure | Sheet)}
+
+
+def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:
+    """Pictures of the figures and sheets as PNG by their names, turned as they stand on the page."""
+    import typst
+
+    drawn = [b for b in blocks if isinstance(b, Figure | Sheet)]
+    with TemporaryDirectory(prefix="tmm-note-") as folder:
+        root = Path(folder)
+        pages = []
+        for b in drawn:
+            name = file_name(b)
+            (root / f"{name}.svg").write_bytes(b.svg)
+            width = b.width if isinstance(b, Figure) else 224.0
+            image = f'image("{name}.svg", width: {width:.2f}mm)'
+            turned = isinstance(b, Sheet) or b.turned
+            pages.append(f"rotate(-90deg, reflow: true, {image})" if turned else image)
+        source = "#set page(width: auto, height: auto, margin: 0mm)\n" + "\n#pagebreak()\n".join(f"#{p}" for p in pages)
+        (root / "pictures.typ").write_text(source, encoding="utf-8")
+        made: Any = typst.compile(str(root / "pictures.typ"), format="png", ppi=dpi) if drawn else []
+    found: list[bytes] = [made] if isinstance(made, bytes) else list(made or [])
+    return {file_name(b): data for b, data in zip(drawn, found, strict=True)}
+
+
+def file_name(block: Figure | Sheet) -> str:
+    """Name of the file of a picture."""
+    return f"sheet-{block.number}" if isinstance(block, Sheet) else f"fig-{block.number.replace('.', '-')}"
+
+
+def source(note: Note) -> str:
+    """The Typst source of a note."""
+    w = _Writer()
+    body = "\n".join(map(w.block, note.body))
+    front = "\n".join(map(w.block, note.front))
+    reminders = "\n".join(map(w.block, note.reminders))
+    fields = ", ".join(f"{string(k)}: {string(v)}" for k, v in (note.frame.fields | note.frame.words).items())
+    title = ", ".join(f"{string(k)}: {_value(v)}" for k, v in note.title_page.items())
+    return (
+        '#import "preamble.typ": *\n'
+        f"#show: note.with(lang: {string(note.language)}, title: {string(note.title)}, author: {string(note.author)}, "
+        f"first: {note.first_page}, words: ({fields or ':'}))\n"
+        f"#title-page(({title}))\n{front}\n{body}\n#last-page()\n#places()\n" + (f"#reminders[{reminders}]\n" if reminders else "")
+    )
+
+
+def _value(value: Any) -> str:
+    return f"({', '.join(string(x) for x in value)},)" if isinstance(value, list | tuple) else string(str(value))
+
+
+def string(text: str) -> str:
+    """A string literal of Typst."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+
+
+class _Writer:
+    """Blocks as Typst, with the headings counted for the contents."""
+
+    def __init__(self) -> None:
+        self.headings = 0
+        self.height = 0.0
+        """About how far down it is from the beginning of the section, mm: no figure may stand above its heading."""
+
+    def block(self, b: Block) -> str:
+        """One block."""
+        self.height = 20.0 if isinstance(b, Heading) and b.level == 1 else self.height + height(b)
+        made: str = getattr(self, f"_{type(b).__name__.lower()}")(b)
+        return made
+
+    def _heading(self, b: Heading) -> str:
+        text = f"{b.number}  {b.text}" if b.number else b.text
+        self.headings += 1
+        return f"#title({b.level}, {string(text)}, toc: {'true' if b.number or b.level == 1 else 'false'})"
+
+    def _paragraph(self, b: Paragraph) -> str:
+        function = {"plain": "para", "item": "item", "centre": "middle", "right": "aside"}[b.look]
+        return f"#{function}[{text(b.text)}]\n"
+
+    def _formula(self, b: Formula) -> str:
+        lines = " ".join(f"${math(x)}$," for x in b.lines)
+        return f"#formula(({lines}), {string(b.number)})"
+
+    def _where(self, b: Where) -> str:
+        rows = " ".join(f"([${math(r.symbol)}$], {string(r.meaning + (', ' + r.unit if r.unit else ''))})," for r in b.rows)
+        return f"#where({string(b.word)}, ({rows}))"
+
+    def _table(self, b: Table) -> str:
+        columns = max(map(len, b.rows))
+        rows = ", ".join("(" + ", ".join(f"[{text(c)}]" for c in row) + ",)" for row in b.rows)
+        return f"#grid-table({string(b.number)}, {string(b.title)}, {columns}, ({rows},))"
+
+    def _figure(self, b: Figure) -> str:
+        turned = "true" if b.turned else "false"
+        place = "auto" if self.height > PAGE else "bottom"
+        size = f"{b.width:.2f}mm, {b.height:.2f}mm"
+        return f"#picture({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')}, {size}, {turned}, {place})"
+
+    def _sheet(self, b: Sheet) -> str:
+        return f"#sheet({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')})"
+
+    def _contents(self, b: Contents) -> str:
+        return f"#contents({string(b.title)})"
+
+    def _newpage(self, b: NewPage) -> str:
+        return "#pagebreak(weak: true)"
+
+
+PAGE = 250.0
+"""Height of the text on a page, mm."""
+
+
+def height(b: Block) -> float:
+    """About how high a block is, mm."""
+    if isinstance(b, Paragraph):
+        return 5.5 * (1 + len(plain_text(b.text)) / 88)
+    if isinstance(b, Table):
+        return 15.0 + 6.0 * len(b.rows)
+    if isinstance(b, Figure):
+        return (b.width if b.turned else b.height) + 10.0
+    return 5.0 * len(b.rows) if isinstance(b, Where) else 10.0
+
+
+def text(parts: Text) -> str:
+    """Running text."""
+    return "".join(
+        f"${math(x.node)}$"
+        if isinstance(x, Symbol)
+        else "#pages-of-all;"
+        if getattr(x, "step", "") == "note.pages"
+        else f"#{string(str(x))};"
+        for x in parts
+    )
+
+
+_SIGNS = {
+    "·": "dot.op",
+    "∥": "parallel",
+    "⟂": "perp",
+    "|": "bar.v",
+    "/": "slash",
+    "(": "\\(",
+    ")": "\\)",
+    ",": '","',
+    ";": '";"',
+    "′": "prime",
+    "″": "prime.double",
+    ":": '":"',
+    "°": '"°"',
+    "–": '"–"',
+    "%": '"%"',
+    "*": '"*"',
+    "…": "dots.h",
+}
+
+
+def math(node: Node) -> str:
+    """A formula in Typst's mathematics, between dollar signs."""
+    if isinstance(node, Letters):
+        return _letter(node.text)
+    if isinstance(node, Figures):
+        return string(node.text)
+    if isinstance(node, Words):
+        return " space " if node.text == " " else string(node.text)
+    if isinstance(node, Sign):
+        return _SIGNS.get(node.text, node.text)
+    if isinstance(node, Row):
+        return " ".join(map(math, node.items)) or '""'
+    if isinstance(node, Scripts):
+        parts = [math(node.base)]
+        if node.above is not None:
+            parts.append(f"t: {math(node.above)}")
+        if node.below is not None:
+            parts.append(f"b: {math(node.below)}")
+        return f"attach({', '.join(parts)})"
+    if isinstance(node, Fraction):
+        return f"frac({math(node.over)}, {math(node.under)})"
+    if isinstance(node, Root):
+        return f"sqrt({math(node.of)})"
+    if isinstance(node, Fenced):
+        left, right = (_SIGNS.get(x, x) for x in (node.left, node.right))
+        return f"lr({left} {math(node.of)} {right})"
+    if isinstance(node, Barred):
+        return f"overline({math(node.of)})"
+    assert isinstance(node, Underlined)
+    made = math(node.of)
+    for _ in range(node.times):
+        made = f"underline({made})"
+    return made
+
+
+_GREEK = {
+    "α": "alpha",
+    "β": "beta",
+    "γ": "gamma",
+    "δ": "delta",
+    "ε": "epsilon",
+    "ζ": "zeta",
+    "η": "eta",
+    "θ": "theta",
+    "κ": "kappa",
+    "λ": "lambda",
+    "μ": "mu",
+    "ν": "nu",
+    "ξ": "xi",
+    "π": "pi",
+    "ρ": "rho",
+    "σ": "sigma",
+    "τ": "tau",
+    "φ": "phi",
+    "χ": "chi",
+    "ψ": "psi",
+    "ω": "omega",
+    "Δ": "Delta",
+    "Σ": "Sigma",
+    "Φ": "Phi",
+    "Ψ": "Psi",
+    "Ω": "Omega",
+    "Θ": "Theta",
+}
+
+
+def _letter(c: str) -> str:
+    if c in _GREEK:
+        return _GREEK[c] if c not in "ΔΣ" else f"upright({_GREEK[c]})"
+    return c if c.isascii() and c.isalpha() and len(c) == 1 else string(c)
