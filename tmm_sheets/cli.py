@@ -231,18 +231,18 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool, w
             from tmm_sheets.note import note as writing
 
             words.set_paper(words.of_project(variant.project.language))
-            with watch.phase("pages of the note"):
+            with watch.phase(tell("pages of the note")):
                 variant = writing.run_on(variant, lambda what: progress.say(f"{what} ..."))
         built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
         paths, warnings = built.paths, built.warnings
         if with_note:
             from tmm_sheets import files
 
-            with watch.phase("note"):
+            with watch.phase(tell("note")):
                 written = writing.write(built.opened, ("pdf",), lambda what: progress.say(f"{what} ..."))
                 files.write_all({folder / name: data for name, data in written.files.items()})
             paths += tuple(folder / name for name in written.files)
-            warnings += tuple(f"left out: {problem}" for problem in written.problems)
+            warnings += tuple(tell("left out: {problem}").format(problem=problem) for problem in written.problems)
     for path in paths:
         click.echo(path)
     for warning in warnings:
@@ -403,7 +403,7 @@ def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path |
     for name in written.files:
         click.echo(folder / name)
     for problem in written.problems:
-        click.echo(f"{opened.variant.project.name}: left out: {problem}", err=True)
+        click.echo(f"{opened.variant.project.name}: {tell('left out: {problem}').format(problem=problem)}", err=True)
 
 
 def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.words import both, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -30,8 +31,9 @@ def check(formats: Iterable[str]) -> None:
     for form in formats:
         missing = [name for name in PACKAGES[form] if find_spec(name) is None]
         if missing:
-            names = " and ".join({"docx": "python-docx"}.get(name, name) for name in missing)
-            raise CannotBuild(f"the note as {form.upper()} needs {names}", "install the extra: pip install 'tmm-sheets[note]'")
+            names = both([{"docx": "python-docx"}.get(name, name) for name in missing])
+            raise CannotBuild(tell("the note as {form} needs {names}").format(form=form.upper(), names=names),
+                              tell("install the extra: pip install 'tmm-sheets[note]'"))
 
 
 def run_on(variant: Variant, say: Callable[[str], None] = lambda _: None) -> Variant:

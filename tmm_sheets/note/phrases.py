@@ -34,6 +34,7 @@ from tmm_sheets.note.document import (
 )
 from tmm_sheets.note.formula import Fenced, Figures, Fraction, Letters, Node, Root, Row, Scripts, Sign, Words, letters
 from tmm_sheets.resources import template
+from tmm_sheets.words import tell
 
 
 def folder(language: str) -> Path:
@@ -48,8 +49,9 @@ def folder(language: str) -> Path:
     if not found.is_dir():
         there = ", ".join(sorted(p.name for p in template("note").iterdir() if (p / "words.toml").is_file()))
         raise CannotBuild(
-            f'there are no templates of the note in the language "{language}"',
-            f"there are templates in {there}: --lang {there.split(', ')[0]}; others can be added as templates/note/{language}",
+            tell('there are no templates of the note in the language "{language}"').format(language=language),
+            tell("there are templates in {there}: --lang {first}; others can be added as templates/note/{language}").format(
+                there=there, first=there.split(", ")[0], language=language),
         )
     return found
 
@@ -254,11 +256,13 @@ class Writer:
             if name not in scope.formulas and word.endswith("?"):
                 return
             if name not in scope.formulas:
-                raise _Wrong(f'there is no formula "{name}" here; there are {", ".join(scope.formulas) or "none"}', n)
+                raise _Wrong(tell('there is no formula "{name}" here; there are {known}').format(
+                    name=name, known=", ".join(scope.formulas) or "–"), n)
             yield from self._formula(label(scope, name), scope.formulas[name])
         elif word == "table":
             if name not in scope.tables:
-                raise _Wrong(f'there is no table "{name}" here; there are {", ".join(scope.tables) or "none"}', n)
+                raise _Wrong(tell('there is no table "{name}" here; there are {known}').format(
+                    name=name, known=", ".join(scope.tables) or "–"), n)
             rows = scope.tables[name]
             if len(rows) > 1:
                 yield Table(self.numbering.next("table", label(scope, name)), "".join(map(str, self.text(title, n, scope))), rows)
@@ -275,7 +279,7 @@ class Writer:
                     figure.turned,
                 )
         else:
-            raise _Wrong(f'"%{word}" is no command of a template', n)
+            raise _Wrong(tell('"%{word}" is no command of a template').format(word=word), n)
 
     def _formula(self, name: str, said: Said | list[Said]) -> Iterator[Block]:
         for i, one in enumerate(said if isinstance(said, list) else [said]):
@@ -330,7 +334,8 @@ class Writer:
             return [plural(int(_count(_found(scope, key))), forms.split("|"), self.language)]
         value = _found(scope, name)
         if value is None:
-            raise _Wrong(f'there is no field "{name}" here; there are {", ".join(sorted(scope.fields))}', n)
+            raise _Wrong(tell('there is no field "{name}" here; there are {known}').format(
+                    name=name, known=", ".join(sorted(scope.fields))), n)
         if isinstance(value, str | Number | Symbol):
             return [value]
         if isinstance(value, int):
@@ -346,11 +351,11 @@ class Writer:
             try:
                 return Reference(f"[{self.numbering.cite(key)}{', ' + place if place else ''}]")
             except KeyError:
-                raise _Wrong(f'there is no source "{key}" in literature.toml', n) from None
+                raise _Wrong(tell('there is no source "{key}" in literature.toml').format(key=key), n) from None
         labels = self.numbering.labels
         found = labels.get(f"{kind}:{label(scope, name)}", labels.get(to))
         if found is None:
-            raise _Wrong(f'nothing has the label "{to}"', n)
+            raise _Wrong(tell('nothing has the label "{to}"').format(to=to), n)
         return Reference(f"({found})" if kind == "formula" else found, f"{kind}:{found}")
 
 
@@ -512,7 +517,7 @@ def _split(lines: list[tuple[int, str]], i: int, n: int) -> tuple[list[tuple[int
         elif word == "end":
             end = other if other >= 0 else j
             return lines[i:end], lines[end + 1 : j] if other >= 0 else [], j + 1
-    raise _Wrong("this command has no %end", n)
+    raise _Wrong(tell("this command has no %end"), n)
 
 
 def plain_text(text: Iterable[Inline]) -> str:

@@ -39,8 +39,9 @@ from tmm_sheets.note.formula import (
 )
 from tmm_sheets.note.phrases import plain_text
 from tmm_sheets.resources import template
+from tmm_sheets.words import marked, tell
 
-MISSING = ("the note as PDF needs the package typst", "install the extra: pip install 'tmm-sheets[note]'")
+MISSING = (marked("the note as PDF needs the package typst"), marked("install the extra: pip install 'tmm-sheets[note]'"))
 
 
 def render(note: Note) -> tuple[bytes, dict[str, int]]:
@@ -54,7 +55,7 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
     try:
         import typst
     except ImportError:
-        raise CannotBuild(*MISSING) from None
+        raise CannotBuild(*map(tell, MISSING)) from None
     import json
 
     with TemporaryDirectory(prefix="tmm-note-") as folder:
