@@ -422,9 +422,10 @@ def test_solve_imports_no_drawing():
                           env={**os.environ, "PYTHONPATH": str(ROOT)})  # fmt: skip
     loaded = set(done.stdout.splitlines())
     assert "tmm_sheets.results" in loaded
-    # Scale factors follow from the places on the sheets; their arithmetic knows nothing of drawing.
-    places = {f"tmm_sheets.sheets{m}" for m in ("", ".arrangement", ".frame", ".kinematic_frames", ".indicator")}
-    assert {m for m in loaded if m.startswith(("tmm_sheets.drawing", "tmm_sheets.sheets", "tmm_sheets.backends"))} <= places
+    # Scale factors follow from the places on the sheets, and these from what all views of the sheet need.
+    views = ("kinematics", "kinetics", "cam", "gear", "flywheel", "mertsalov", "reducer", "sheet")
+    assert loaded & {f"tmm_sheets.sheets.{m}" for m in views} == set()
+    assert {m for m in loaded if m.startswith(("tmm_sheets.drawing.labels", "tmm_sheets.backends"))} == set()
     assert loaded & {"shapely", "ezdxf", "reportlab", "matplotlib"} == set()
 
 

@@ -21,7 +21,7 @@ RULES = {
     "construction": ("", ""),
     "drawing": ("", ""),
     "methods": ("construction", ""),
-    "methods.linkage": ("construction mechanism", "task.schema"),
+    "methods.linkage": ("construction mechanism methods.integration", "task.schema"),
     "methods.flywheel": ("construction mechanism methods.integration methods.linkage", "task.schema"),
     "methods.gears": ("construction", "task.schema"),
     "methods.cams": ("construction methods.integration", "task.schema"),

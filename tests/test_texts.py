@@ -47,7 +47,7 @@ def test_redirected_output_is_utf_8(console, tmp_path):
     assert json.loads(done.stdout.decode("utf-8"))["project"] == "press"
     done = command("compare", "lugansk/cam_flat", "--template", "-o", tmp_path, console=console)
     assert done.returncode == 0
-    assert "проект" in (tmp_path / "measured.csv").read_text(encoding="utf-8-sig")
+    assert "# project: lugansk/cam_flat" in (tmp_path / "measured.csv").read_text(encoding="utf-8-sig")
     assert done.stdout.decode("utf-8")
 
 

@@ -274,7 +274,7 @@ def test_a_wrong_place_in_the_file_of_views_is_told_and_the_view_looked_for(tmp_
     ("[[view]]\nname = 'Эскиз маховика'\nours = [[1, nan], [3, 4]]\ntheirs = [[1, 2], [3, 4]]", "expected points"),
     ("", "has no .*view.* table"),
     ("[[view]]\nname = 'Схема'\nours = [[1, 2], [3, 4]]\ntheirs = [[1, 2], [3, 4]]", 'the sheet has no view "Схема"'),
-    ("[[view]]\nname = 'Эскиз маховика'\nours = [[1, 2], [30, 4]]\ntheirs = [[1, 2]]", "1 points, ours has 2"),
+    ("[[view]]\nname = 'Эскиз маховика'\nours = [[1, 2], [30, 4]]\ntheirs = [[1, 2]]", "1 point, ours has 2"),
     ("[[view]]\nname = 'Эскиз маховика'\nours = [1, 2]\ntheirs = [[1, 2]]\nmu = -1", "expected points(.|\n)*a positive number"),
     ("[[view]]\nname = 'Эскиз маховика'\nours = [[1, 2]]\ntheirs = [[1, 2]]\nsize = 2", "is not known here"),
     ("[[view", "Expected|expected"),

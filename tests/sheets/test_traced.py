@@ -33,7 +33,7 @@ def shaper():
 
 @pytest.mark.parametrize(("role", "step", "other"), [
     ("curve", "total-work/points", "work/A(φ)"), ("curve", "gear-sliding-between/theta1", "gear-sliding-between/theta2"),
-    ("curve", "gear-tooth-1/E", "gear-tooth-2/E"), ("point", "cam-profile/B", "cam-profile/N"),
+    ("curve", "gear-tooth-1/flank", "gear-tooth-2/flank"), ("point", "cam-profile/B", "cam-profile/N"),
     ("construction", "gear-engagement/rb1", "gear-engagement/rb2"), ("curve", "cam-profile-between/α", "cam-profile-between/OA")])
 def test_a_mark_of_a_graph_that_tells_a_wrong_step_is_found(shaper, role, step, other):
     project, sheets = shaper

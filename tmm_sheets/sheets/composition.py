@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
 """Place of the title block among the views."""
-MAIN = 3.0
+MAIN = 3
 """How much more than others the position plans count: the mechanism is what a sheet is about."""
 DESIGNATION = Box(20.0, 573.0, 92.0, 589.0)
 """Place of the turned designation, over the views in the upper left corner (GOST 2.104)."""
@@ -50,7 +50,7 @@ def arranged(project: Project, n: int) -> Arrangement:
         return plan
     if not any(view.draw in NEEDS for view in plan.views):
         return plan
-    if "positions" in project.parts and len(project.cycle.drawn) > kinematic_frames.MOST:
+    if any(view.needs in ("positions", "forces") for view in plan.views) and len(project.cycle.drawn) > kinematic_frames.MOST:
         return plan  # as many positions fit on no sheet
     there = [(view, parts) for view in plan.views if (parts := _parts(project, view))]
     columns = [joined(1, [node for _, node in parts], [1.0] * len(parts)) for _, parts in there]

@@ -80,11 +80,13 @@ def reach(project: Project) -> tuple[list[complex], list[complex]]:
     """Points of the paths and what the diagrams stick out of them on paper, mm: for the frame of the position plans."""
     z: list[complex] = []
     d: list[complex] = []
-    for one in indicators(project):
+    for n, one in enumerate(indicators(project)):
+        # Over the ordinate axis of the first one the scale factor is written, from side to side.
+        beyond = 28.0 if n == 0 and abs(one.side.real) > 0.5 else 10.0
         at = np.ravel(project.study.positions.points[str(one.force.point)].value)
         for p in (at[np.argmin((at * np.conj(one.along)).real)], at[np.argmax((at * np.conj(one.along)).real)]):
             z.append(complex(p))
-            d.append(one.side * (GAP + HEIGHT + 10.0))
+            d.append(one.side * (GAP + HEIGHT + beyond))
     return z, d
 
 

@@ -265,7 +265,7 @@ def test_scales_are_handy_and_fit_for_any_size(strength, mass, positions):
     s, space = f.scales, DiagramSpace()
     for scale in (s.angle, s.force, s.moment, s.work, s.energy, s.inertia):
         mantissa = float(f"{scale.mu:.6e}".split("e")[0])
-        assert mantissa in (1.0, 2.0, 2.5, 4.0, 5.0)
+        assert mantissa in (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
     assert s.work.mu == pytest.approx(s.moment.mu * s.angle.mu * s.pole, rel=1e-12)
     assert space.pole[0] <= s.pole <= space.pole[1]
     assert 0.5 * space.angle < s.angle.mm(2 * pi) <= space.angle
