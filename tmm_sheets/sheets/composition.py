@@ -335,9 +335,15 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
 # --- what follows from the places, without drawing ------------------------------------------------------------------------
 
 
+def _kinematic(project: Project, n: int) -> tuple[View, ...]:
+    """Views of sheet ``n`` (from 1) in their places if kinematic plans are among them; other sheets are not looked into."""
+    views = arrangement(project.sheets[n - 1]).fitted(project.parts).views
+    return arranged(project, n).views if any(view.draw.startswith("kinematics.") for view in views) else ()
+
+
 def left_out(project: Project, sheets: Iterable[int]) -> Iterator[str]:
     """What some sheets leave out of the velocity plans, and why, for the command line."""
-    for view in (view for n in sheets for view in arranged(project, n).views if view.draw == "kinematics.velocity_plans"):
+    for view in (view for n in sheets for view in _kinematic(project, n) if view.draw == "kinematics.velocity_plans"):
         layout = kinematic_frames.velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
         for i, times in layout.beyond:
             yield tell("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large "
@@ -359,7 +365,7 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
         return found  # as many plans fit on no sheet
     for n in range(1, len(project.sheets) + 1):
         kept = SimpleNamespace(scales={}, chosen=set())
-        for view in arranged(project, n).views:
+        for view in _kinematic(project, n):
             if view.draw == "kinematics.position_plans" and "positions" in parts:
                 kinematic_frames.positions(project, kept, view.box, view.options)
             elif view.draw == "kinematics.velocity_plans" and "velocities" in parts:
