@@ -25,12 +25,15 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_inversion import Inversion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
 
+EDGE = 3.0
+"""Room left free at both sides of the place, mm."""
+
 
 @for_cams
 def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
     cam: Cam = project.cam
-    room = Box(box.x0 + 3, box.y0 + 4, box.x1 - 3, box.y1 - 24)
+    room = Box(box.x0 + EDGE, box.y0 + 4, box.x1 - EDGE, box.y1 - 24)
     picture = _ProfilePicture(cam, room)
     if not picture.corner(_table_size(cam)):
         # No free corner: the figure leaves the foot of its place to the table.
@@ -92,6 +95,11 @@ def _figure(cam: Cam) -> tuple[Points, float, list[complex]]:
     return points, guide, turns
 
 
+def margin(cam: Cam) -> float:
+    """Room left free at both sides of the figure, mm: the rays of a rocker end in letters."""
+    return 7.0 if cam.kind == "rocker" else 0.0
+
+
 def figure_sizes(cam: Cam) -> list[tuple[float, float, float]]:
     """Width and height of the figure, m, in every direction it may be turned to, and what stands over and under it, mm."""
     points, guide, turns = _figure(cam)
@@ -117,10 +125,10 @@ class _ProfilePicture:
         inv = cam.inversion
         radius = float(getattr(cam, "roller", 0.0))
         points, self.guide, turns = _figure(cam)
-        margin, over = (7.0, 0.0) if self.kind == "rocker" else (0.0, GUIDE)
-        self.turn = max(turns, key=lambda turn: 1 / self._fitted(points * turn, margin, over).mu)
+        side, over = margin(cam), 0.0 if self.kind == "rocker" else GUIDE
+        self.turn = max(turns, key=lambda turn: 1 / self._fitted(points * turn, side, over).mu)
         self.points = points * self.turn
-        self.scale = self._fitted(self.points, margin, over)
+        self.scale = self._fitted(self.points, side, over)
         x0, x1 = float(self.points.real.min()), float(self.points.real.max())
         y0, y1 = float(self.points.imag.min()), float(self.points.imag.max())
         top = max(self.scale.mm(y1), self.scale.mm(self.guide) + over) if over else self.scale.mm(y1)

@@ -303,16 +303,17 @@ def _profile(project: Project, view: View) -> Node | None:
     from tmm_sheets.sheets import cam_profile
 
     sizes = cam_profile.figure_sizes(project.cam)
+    beside = 2 * (cam_profile.EDGE + cam_profile.margin(project.cam))
 
     @cache
     def in_place(width: int, height: int) -> float:
         most = 1.0
         for w, h, over in sizes:
             try:
-                mu = standard((w, width - 20.0), (h, height - over)).mu
+                mu = standard((w, width - beside), (h, height - over)).mu
             except CannotBuild:
                 continue
-            most = max(most, (w / mu + 20.0) * (h / mu + over))
+            most = max(most, (w / mu + beside) * (h / mu + over))
         return most
 
     return _leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
