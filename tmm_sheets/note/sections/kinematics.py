@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.plan import Plan, Segment
-from tmm_sheets.construction.rules import LINE_LINE
+from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note.document import Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
@@ -78,7 +78,7 @@ def scope(r: Reader) -> Scope:
 
 def _plain(step: Step) -> bool:
     """A move that is told already, or goes without saying."""
-    return step.rule.name in ("given point", "turn by 90 degrees")
+    return step.rule in (GIVEN, TURN)
 
 
 def _diagrams(r: Reader) -> Iterator[tuple[str, Any]]:
