@@ -4,6 +4,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from tmm_sheets import words
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, plain
 from tmm_sheets.drawing.marks import Line, Polyline, Text
@@ -129,3 +130,19 @@ def test_unknown_form_and_field_are_named():
         drawn(colour="red")
     assert set(FILLED) <= FIELDS
     assert (PAPER.width, PAPER.height) == (841, 594)
+
+
+LONG = {"title": "Синтез зубчатого зацепления и планетарного редуктора поперечно-строгального станка " * 3,
+        "checked": "Петров-Водкин Константин Сергеевич", "project": "Сверхдлинноеназваниебезпробелов" * 4}  # fmt: skip
+
+
+@pytest.mark.parametrize("language", ["ru", "uk", "en"])
+@pytest.mark.parametrize("changes", [{}, LONG], ids=["usual", "long"])
+@pytest.mark.parametrize("form", ["1", "2a"])
+def test_only_letter_heights_of_the_standard_and_none_unreadable(form, changes, language):
+    """GOST 2.304, 2: 2.5, 3.5, 5, 7 ...; a text that does not fit in 2.5 mm ends in dots and is told."""
+    canvas = Canvas()
+    with words.on_paper(language):
+        draw_frame(canvas, FILLED | changes, form, 1, 4)
+    assert {m.height for m in canvas.marks if isinstance(m, Text)} <= {2.5, 3.5, 5.0, 7.0}
+    assert set(canvas.shortened) == (set(LONG.values()) if changes and form == "1" else set())  # 2a has the designation only

@@ -21,6 +21,8 @@ SMALLEST = 2.5
 """Least height of letters, mm."""
 ARROW = (5.0, 0.85)
 """Length and half width of an arrow head, mm (GOST 2.307: about 20 degrees)."""
+CLEAR = 0.4
+"""Distance of a descending index from the rule under it, mm."""
 LOOSE = 0.25
 """Further distance of an index from its base in slanting lettering, mm."""
 
@@ -111,7 +113,8 @@ class Canvas:
     ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results; ``chosen``
     are the names of those that a project file may set.
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again;
-    ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things.
+    ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things;
+    ``shortened`` are texts that were too long for their cell of a form.
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -126,6 +129,7 @@ class Canvas:
     notes: list[Note] = field(default_factory=list)
     dimensions: list[Dimension] = field(default_factory=list)
     forms: list[Form] = field(default_factory=list)
+    shortened: list[str] = field(default_factory=list)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
@@ -351,7 +355,9 @@ class Canvas:
             for w, cell in zip(widths, cells, strict=True):
                 laid = fitted(cell, w - 1.0 + 1e-9, height)  # a column may be exactly as wide as its text needs
                 size = max((run.height for run in laid.runs), default=height)
-                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 0.5) * row - size / 2), 0.0, cell)
+                free = (row - laid.ascent - laid.descent) / 2  # an index that hangs low lifts its letters off the rule
+                low = max((row - size) / 2, laid.descent + min(CLEAR, free))
+                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 1) * row + low), 0.0, cell)
                 x += w
         return Box(x0, y0, x0 + total, y1)
 

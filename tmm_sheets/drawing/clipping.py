@@ -35,6 +35,20 @@ def arcs_inside(box: Box, centre: complex, radius: float) -> list[tuple[float, f
     return spans
 
 
+def chords(box: Box, centre: complex, radius: float) -> list[tuple[complex, complex]]:
+    """Parts of the box's sides inside a circle that it cuts, each in the sense of running round the box counter-clockwise."""
+    corners = complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)
+    found = []
+    for a, b in zip(corners, (*corners[1:], corners[0]), strict=True):
+        u = (b - a) / abs(b - a)
+        foot = a + ((centre - a) * u.conjugate()).real * u
+        inside = radius**2 - abs(centre - foot) ** 2
+        part = segment_inside(box, foot - sqrt(inside) * u, foot + sqrt(inside) * u) if inside > 0 else None
+        if part is not None:
+            found.append(part)
+    return found
+
+
 def segment_inside(box: Box, a: complex, b: complex) -> tuple[complex, complex] | None:
     """Part of a straight line inside the box (Liang and Barsky), None when there is none."""
     t0, t1 = 0.0, 1.0

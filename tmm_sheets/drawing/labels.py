@@ -59,6 +59,14 @@ class Crowded:
         )
 
 
+@dataclass(frozen=True)
+class Shortened(Crowded):
+    """A text of the title block that was too long for its cell."""
+
+    def __str__(self) -> str:
+        return tell('the title block has no room for all of "{text}": shorten it').format(text=self.text)
+
+
 def text_box(mark: Text) -> Points:
     """Corners of the rectangle round a run of text (slanted letters reach a little to the right of their advance)."""
     u = complex(np.cos(mark.angle), np.sin(mark.angle))

@@ -25,8 +25,10 @@ FRAME = Box(20, 5, 836, 589)
 TURNED = Box(20, 575, 90, 589)
 """Field 26: the designation turned by 180 degrees, in the corner opposite the title block."""
 CAPTION = 2.5
+DOTS, MOST = "...", 4
 PITCH = 1.7  # between lines of type B lettering, in letter heights
 SIDE, ENDS = 1.0, 1.25  # least distance of lettering to the lines at its sides, above and below, mm
+BESIDE = 0.5  # the same of the printed words, whose cells are as wide as the standard wants them
 NAME_WIDTH, NAME_HEIGHT = 23 - 2 * SIDE, 4.5
 
 FIELDS = frozenset({
@@ -120,7 +122,7 @@ def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str
     for number, kind, word, x0, y0, x1, y1 in cells:
         cell = Box(place.x0 + x0, place.y0 + y0, place.x0 + x1, place.y0 + y1)
         if kind == "caption":
-            _lines(canvas, cell, {"": _word(word)}, (CAPTION,))
+            _lines(canvas, cell, {"": _word(word)}, (CAPTION,), side=BESIDE)
         elif number == "10":
             role = word
             _left(canvas, cell, _word(word or ("Head" if fields.get("supervisor") else "")))
@@ -193,7 +195,10 @@ def _rise(laid: Lettering, size: float) -> float:
 
 
 def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, height: float) -> tuple[float, dict[str, list[str]]]:
-    """Letter height and lines of each part: the largest size at which they fit, in up to three lines, else squeezed."""
+    """Letter height and lines of each part: the largest size at which they fit, in up to four lines.
+
+    What is too long for the smallest size, which must stay readable, ends in dots.
+    """
     for size in sizes:
         room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
         wrapped = {name: _wrap(part, size, width) if room > 1 else [part] if part else [] for name, part in parts.items()}
@@ -202,19 +207,38 @@ def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, he
             return size, wrapped
         widest = max(line.width for line in laid)
         tall = size * (1 + PITCH * (len(laid) - 1)) + 2 * _rise(laid[0], size)
-        # Three lines need some air between the rules of their cell.
-        if widest <= width and tall <= height - (1.0 if len(laid) == 3 else 0.0) and len(laid) <= 3:
+        # Three lines and more need some air between the rules of their cell.
+        if widest <= width and tall <= height - (1.0 if len(laid) > 2 else 0.0) and len(laid) <= MOST:
             return size, wrapped
-    return size * min(width / widest, height / tall, 1.0), wrapped
+    return size, _shortened(wrapped, size, width, min(max(room, len(parts)), MOST))
 
 
-def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], turned: bool = False) -> list[FormField]:
+def _shortened(wrapped: Mapping[str, list[str]], size: float, width: float, room: int) -> dict[str, list[str]]:
+    """Parts cut down to so many lines together, the longest first, and to the width; what is left out shows as dots."""
+    count = {name: len(lines) for name, lines in wrapped.items()}
+    while sum(count.values()) > room:
+        count[max(count, key=lambda name: count[name])] -= 1
+    return {name: [_cut(line, size, width, whole=k + 1 < count[name] or count[name] == len(lines))
+                   for k, line in enumerate(lines[:count[name]])] for name, lines in wrapped.items()}
+
+
+def _cut(line: str, size: float, width: float, whole: bool) -> str:
+    """A line no wider than it may be, with dots where something is left out of it or after it (not ``whole``)."""
+    end = "" if whole else DOTS
+    while line and letter(plain(line + end), size).width > width:
+        line, end = line[:-1].rstrip(), DOTS
+    return line + end
+
+
+def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], turned: bool = False,
+           side: float = SIDE) -> list[FormField]:
     """Lettering in the middle of a cell.
 
     ``parts`` are texts by name, each begins a line. Returns the lines; a part without text has an empty one below the others.
     """
     room = cell.height - (2 * ENDS if cell.height > 5 else 0.5)
-    size, wrapped = _fitted(parts, sizes, cell.width - 2 * SIDE, room)
+    size, wrapped = _fitted(parts, sizes, cell.width - 2 * side, room)
+    canvas.shortened += [parts[name] for name, lines in wrapped.items() if " ".join(lines) != " ".join(parts[name].split())]
     sign, angle = (-1, pi) if turned else (1, 0.0)
     found = []
     count = sum(map(len, wrapped.values()))

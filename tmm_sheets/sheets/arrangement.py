@@ -79,8 +79,8 @@ MISSING_TABLE = (marked("the project has no [{part}]"), marked("add the table [{
 def arrangement(name: str) -> Arrangement:
     """Read an arrangement; :class:`BadInput` names the file and what is wrong with it.
 
-    ``like`` names another arrangement whose views it has, under a code or a title of its own; ``without`` by part of the results
-    that a project may lack the arrangement to take instead.
+    ``like`` names another arrangement whose views it has, under a code or a title of its own and with further ``options`` for all
+    of them; ``without`` by part of the results that a project may lack the arrangement to take instead.
     """
     path = template(f"sheets/{name}.toml")
     try:
@@ -93,7 +93,8 @@ def arrangement(name: str) -> Arrangement:
         raise BadInput(Problem(str(e), str(path))) from None
     if isinstance(data.get("like"), str):
         other = arrangement(data["like"])
-        return Arrangement(name, data.get("title", other.title), data.get("code", other.code), other.views)
+        views = tuple(replace(view, options={**view.options, **data.get("options", {})}) for view in other.views)
+        return Arrangement(name, data.get("title", other.title), data.get("code", other.code), views)
     try:
         views = tuple(View(v.pop("draw"), Box(*map(float, v.pop("box"))), v) for v in data.get("view", []))
         return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})))

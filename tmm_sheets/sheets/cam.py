@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""
+ANGLE = "α"
+"""Letter of the pressure angle; an arrangement may name another one as the option ``angle``."""
 View = Callable[[Any, Canvas, Box, dict[str, Any]], None]
 
 
@@ -154,15 +156,15 @@ def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], up
 
 
 def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
-    """Dimensions of the phases in a row that begins at ``base``; of narrow ones only the sign, below the row if need be."""
+    """Dimensions of the phases in a row that begins at ``base``; what is wider than its phase stands below the row."""
     for p in (m.law.rise, m.law.upper_dwell, m.law.fall):
         if p.angle > 0:
             a, b = (base + float(m.scales.phi.mm(v)) for v in (p.start, p.end))
-            wide = abs(b - a)
             full = f"{p.letters} = {number(degrees(p.angle))}°"
-            canvas.dimension(a, b, -8.0, full if wide > 28.0 else p.letters if wide > 9.0 else "")
-            if wide <= 9.0:
-                canvas.label((a + b) / 2 - 8j, p.letters, -1j, 3.5, 1.5, leader=False)
+            inside = letter(full, 3.5).width <= abs(b - a) - 2.0
+            canvas.dimension(a, b, -8.0, full if inside else "")
+            if not inside:
+                canvas.label((a + b) / 2 - 8j, full, -1j, 3.5, 1.5, leader=False)
 
 
 def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:
@@ -306,18 +308,19 @@ class OverAngle:
 def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Pressure angle over a turn of the cam, measured at the finished profile, with the permitted value."""
     cam: RollerCam = project.cam
-    dense, inv = cam.dense, cam.inversion
+    dense, inv, letter_of = cam.dense, cam.inversion, options.get("angle", ANGLE)
     found = dense.angles.value
     low, high = min(float(found.min()), -cam.alpha), max(float(found.max()), cam.alpha)
-    d = OverAngle.fitted(box.inset(10, 8, 18, 30), 2 * pi, (low, high), ("μ_α", tr("deg/mm")), 8.0, radians(1.0))
+    d = OverAngle.fitted(box.inset(10, 8, 18, 30), 2 * pi, (low, high), (f"μ_{letter_of}", tr("deg/mm")), 8.0,
+                        radians(1.0))
     canvas.title(box, tr("Pressure angle"), f"{d.tall},  {d.across}")
     course, marked = d.placed(canvas, dense.plan), d.placed(canvas, inv.plan)
-    d.axes(course, dense.angles, (9.0, 9.0), in_degrees("α"), 5.5)
+    d.axes(course, dense.angles, (9.0, 9.0), in_degrees(letter_of), 5.5)
     canvas.label(d.o + d.length + 5, in_degrees("φ"), -1j, 3.5, 1.5, leader=False)
     for side in (1, -1):
         level = course.frame(1j * side * cam.alpha)
         course.line(cam.zone.borders[0], level, level + d.length, "hidden", "axis")
-        name = f"[α] = {number(degrees(cam.alpha))}°" if side > 0 else "−[α]"
+        name = f"[{letter_of}] = {number(degrees(cam.alpha))}°" if side > 0 else f"−[{letter_of}]"
         canvas.label(level + 5 / 6 * d.length, name, 1j * side, 3.5, 0.8, leader=False)
     course.curve(dense.angles, course.frame(dense.phi + 1j * found))
     at, values = course.frame(inv.phi), inv.angles.value
@@ -340,7 +343,7 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     cam: Cam = project.cam
     second = _second_derivative(cam)
     rows = [[tr("Position"), *cam.motion.law.labels], [in_degrees("φ"), *(fixed(v, 2) for v in np.degrees(cam.inversion.phi))],
-            *_diagram_rows(cam.motion, second), *_check_values(cam, second)]
+            *_diagram_rows(cam.motion, second), *_check_values(cam, second, options.get("angle", ANGLE))]
     first = 32.0 if len(second) > 1 else 26.0
     width = (box.width - first) / (len(rows[0]) - 1)
     row = min(box.height / len(rows), 8.0)
@@ -367,10 +370,10 @@ def _diagram_rows(m: FollowerMotion, second: Mapping[str, Any]) -> Iterator[list
             yield [text.format(symbol=symbol + side), *(fixed(v * 1e3, 2) if straight else fixed(v, 3) for v in values)]
 
 
-def _check_values(cam: Cam, second: Mapping[str, Any]) -> Iterator[list[str]]:
+def _check_values(cam: Cam, second: Mapping[str, Any], letter_of: str) -> Iterator[list[str]]:
     """What the dimensions of the cam rest upon: the pressure angle, under a flat follower S + S''."""
     if "roller" in cam.traits:
-        yield [in_degrees("α"), *(fixed(v, 1) for v in np.degrees(cam.inversion.angles.value))]
+        yield [in_degrees(letter_of), *(fixed(v, 1) for v in np.degrees(cam.inversion.angles.value))]
         return
     before, after = cam.plate.sides  # type: ignore[attr-defined]
     for side, sums in zip(second, (before, after), strict=False):

@@ -11,11 +11,12 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.drawing.tables import needs
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import for_cams, in_degrees, in_mm, lines_of_text
+from tmm_sheets.sheets.cam import ANGLE, for_cams, in_degrees, in_mm, lines_of_text
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
@@ -54,7 +55,8 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
             # On the side from which the cam turns: the arcs of the inversion lie on the other.
             tip = rect(picture.roller, picture.first - cam.right * pi / 3)
             here.pen("F", "dimension").arrow(centre, centre + tip, "thin", 3.0)
-            canvas.label(centre + 0.6 * tip, "r_p", 1j * tip * -cam.right, 3.5, 0.6, leader=False)
+            canvas.label(centre + 0.6 * tip, f"r_p = {number(cam.roller * 1e3)}",  # type: ignore[attr-defined]
+                         1j * tip * -cam.right, 3.5, 0.6)
         here.dot(inv.centres, 0.6, "main")
         if k:
             canvas.label(centre, label, centre - picture.origin, 3.5, 0.8)
@@ -65,7 +67,7 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     _phase_angles(s, picture)
     size = _table_size(cam)
     corner = picture.corner(size) or complex(room.x0, room.y0 + size[1])
-    canvas.table(corner, _widths(cam), _given(cam), _ROW, 3.5)
+    canvas.table(corner, _widths(cam), _given(cam, options.get("angle", ANGLE)), _ROW, 3.5)
 
 
 GUIDE = 22.0
@@ -218,7 +220,7 @@ def _table_size(cam: Cam) -> tuple[float, float]:
     return sum(_widths(cam)), _ROW * len(_given(cam))
 
 
-def _given(cam: Any) -> list[list[str]]:
+def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
     """Given numbers and main dimensions."""
     d, law = cam.data, cam.law
     head = [tr("Parameter"), tr("Value")]
@@ -230,7 +232,8 @@ def _given(cam: Any) -> list[list[str]]:
                 [in_mm("r_{min}"), fixed(p.r_min * 1e3, 3)], [in_mm("r_0"), number(p.r0 * 1e3)],
                 [in_mm("l_1 / l_2"), f"{fixed(p.l1 * 1e3, 2)} / {fixed(p.l2 * 1e3, 2)}"]]
     z = cam.zone
-    angle = [tr("[α] on the rise, deg") if d.limit == "rise" else in_degrees("[α]"), number(degrees(d.pressure_angle))]
+    angle = [tr("[{angle}] on the rise, deg").format(angle=letter_of) if d.limit == "rise" else in_degrees(f"[{letter_of}]"),
+             number(degrees(d.pressure_angle))]
     if "rocker" in cam.traits:
         rows = [head, [tr("Angle of swing ψ, deg"), number(degrees(d.swing))],
                 [tr("Length of the rocker AB, mm"), number(d.arm * 1e3)], phases, angle,
@@ -266,8 +269,12 @@ def _circles(s: Stage, picture: _ProfilePicture) -> None:
             angle = start + cam.right * (idle.start + share * idle.angle)
             tip = origin + rect(scale.mm(radius), angle)
             s.pen("O", "dimension").arrow(origin + rect(3.0, angle), tip, "thin", 3.0)
-            back = max(scale.mm(radius) - 11.0, 0.6 * scale.mm(radius))
-            canvas.label(origin + rect(back, angle), name, 1j * rect(1, angle), 3.5, 0.6)
+            text = f"{name} = {fixed(radius * 1e3, 3)}"
+            wide = letter(text, 3.5).width
+            if scale.mm(radius) < 2.0 * wide:  # beyond its arrow, where there is more room
+                canvas.label(tip, text, rect(1, angle), 3.5, 1.0)
+            else:
+                canvas.label(origin + rect(scale.mm(radius) - 3.0 - wide / 2, angle), text, 1j * rect(1, angle), 3.5, 0.6)
     canvas.label(origin, "O", -1 - 1j, 5.0, 3.5)
 
 
@@ -358,7 +365,8 @@ def _rocker(s: Stage, picture: _ProfilePicture) -> None:
     pen.circle(b0, picture.hole, "main")
     canvas.label(a0, "A_0", (a0 - b0) / arm, 3.5, 3.0)
     canvas.label(b0, "B_0", -u + 1j, 3.5, 2.0)
-    canvas.label(picture.origin + 0.55 * (a0 - picture.origin), "l_0", 1j * (a0 - picture.origin), 3.5, 0.6)
+    canvas.label(picture.origin + 0.55 * (a0 - picture.origin), f"l_0 = {fixed(cam.zone.l0 * 1e3, 3)}",  # type: ignore[attr-defined]
+                 1j * (a0 - picture.origin), 3.5, 0.6)
 
 
 def _flat(s: Stage, picture: _ProfilePicture) -> None:
@@ -449,7 +457,13 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     placed(canvas, beside.plan, complex(origin), scale.mu).curve(beside.centres, at(near))
     for (a, b), end in zip(pairwise(chords), "DG", strict=True):
         s.line(f"{end}_ρ", at(a), at(b), "thin")
-        s.pen("M", "construction").ray_line(at(centre), at((a + b) / 2), "construction", 6.0, 6.0)
+        s.pen("M", "construction").ray_line(at(centre), at((a + b) / 2), "construction", 6.0,
+                                               0.9 * abs(at(b) - at(a)) + 3.0)
+        # Equal arcs about both ends meet on the perpendicular through the middle of the chord.
+        for end_, other in ((at(a), at(b)), (at(b), at(a))):
+            for side in (1, -1):
+                crossing = (end_ + other) / 2 + side * 0.9j * (at(b) - at(a))
+                s.pen("M", "symbol").arc_mark(end_, crossing, 2.5, "construction")
     s.pen("ρ_min", "dimension").arrow(at(centre), at(d), "thin", 3.0)
     s.dot("M", 0.7, "main")
     outwards = (d - centre) / abs(d - centre)
@@ -459,10 +473,11 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
     canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)
     drawn_rho, rules = float(plan["ρ_min"].value), cam.roller_rules
-    found = tr("ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm)")
+    found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm)")
     if cam.rho_min < cam.sharpest.rho * (1 - 1e-6):
-        found = tr("ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm); of the second disc {second} mm")
-    lines = [found.format(drawn=_mm(drawn_rho), exact=_mm(cam.sharpest.rho), second=_mm(cam.rho_min))]
+        found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm); of the second disc {second} mm")
+    lines = [found.format(length=fixed(scale.mm(drawn_rho), 1), drawn=_mm(drawn_rho), exact=_mm(cam.sharpest.rho),
+                          second=_mm(cam.rho_min))]
     for rule in rules:
         low, high = rule.limits
         if low == high:

@@ -14,13 +14,18 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import OverAngle, centred, distinct, for_cams, lines_of_text
+from tmm_sheets.sheets.cam import ANGLE, OverAngle, centred, distinct, for_cams, lines_of_text
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
+    from tmm_sheets.methods.cams.cam_zone import Zone
+
+
+NORMAL = 6.0
+"""Length of the strokes along the velocity of a rocker's roller, mm."""
 
 
 @for_cams
@@ -31,6 +36,8 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     slope = tan(z.alpha)
     curve, axis, apex = z.curve.value, complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
     stroke = cam.law.stroke
+    letter_of, rays = options.get("angle", ANGLE), bool(options.get("rays"))
+    beyond = z.tips(z.beyond).value if rays and z.beyond is not None else curve[:0]
     touches = [(complex(t.value), z.right * side) for t, side in zip(z.touching, (1.0, -1.0), strict=True)]
     tops = [apex + (min(t.imag + 0.25 * stroke, 1.05 * stroke) - apex.imag) * complex(side * slope, 1.0) for t, side in touches]
     room = box.inset(10, 27, 10, 34)
@@ -38,7 +45,7 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     def fitted(share: float) -> tuple[float, float, list[float]]:
         """Scale factor, the depth (m, negative) to which the zone is drawn, below the axis a share of the figure; abscissae, m."""
         depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + (apex - axis).imag
-        xs = [*curve.real, *(t.real for t in tops), apex.real - depth * slope, apex.real + depth * slope, 0.0]
+        xs = [*curve.real, *beyond.real, *(t.real for t in tops), apex.real - depth * slope, apex.real + depth * slope, 0.0]
         return handy(max(float(np.ptp(xs)) / room.width, (stroke - apex.imag + depth) / room.height)), -depth, xs
 
     # The finest scale factor counts, then the deepest zone.
@@ -60,13 +67,16 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
         if abs(touch) > 0:
             stage.dot(step, 0.6, "main", at(touch))
         canvas.label(at(touch), step.name, side + 0j, 3.5, 1.0)
-    reach = float(curve.real[np.argmax(np.abs(curve.real))])
+    course = np.concatenate((curve, beyond))
+    reach = float(course.real[np.argmax(z.right * course.real)])
     pen = smooth.pen(z.curve, "axis")
     pen.arrow(c - 4j, at(1j * stroke) + 9j, "axis", 3.0)
     pen.text(at(1j * stroke) + complex(-2.0, 5.5), tr("{symbol}, m").format(symbol="S"), 3.5, "right")
     pen.arrow(b, at(complex(reach)) + 10 * z.right, "axis", 3.0)
     canvas.label(at(complex(reach)) + 8 * z.right, tr("{symbol}, m").format(symbol="S'"), -1j, 3.5, 1.5, leader=False)
     smooth.curve(z.curve)
+    if rays:
+        _rays(stage, z, letter_of, pi / 2)
     points, labels = np.asarray(z.points.value), z.plan.labels
     for k in distinct(labels, points):
         here = stage.position(k)
@@ -83,8 +93,8 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.label(b, "B", -z.right + 0j, 3.5, 1.0)
     canvas.label(c, "C", -z.right - 1j, 3.5, 0.8)
     radius = 0.5 * scale.mm(z.s0)
-    canvas.angle_mark(v, pi / 2, pi / 2 + z.alpha, radius, "[α]")
-    canvas.angle_mark(v, pi / 2 - z.alpha, pi / 2, radius, "[α]")
+    canvas.angle_mark(v, pi / 2, pi / 2 + z.alpha, radius, f"[{letter_of}]")
+    canvas.angle_mark(v, pi / 2 - z.alpha, pi / 2, radius, f"[{letter_of}]")
     canvas.dimension(c, b, 9.0 * z.right, "S_0")
     if abs(o - c) > 6:
         canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8)
@@ -94,6 +104,35 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     if cam.data.eccentricity is not None:
         measured[1] = tr("e = {length} mm (given)").format(length=number(z.e * 1e3))
     lines_of_text(canvas, box, measured)
+
+
+def _rays(s: Stage, z: Zone, letter_of: str, axis: float | None = None) -> None:
+    """Rays from the cam's axis to the points of all positions, those of the fall with their part of the curve.
+
+    They stand off from the velocities of B by the pressure angles: from ``axis``, rad, where the follower moves along a line (the
+    greatest of the rise is marked), from short strokes at the points of a rocker.
+    """
+    canvas, at, o = s.canvas, s.frame, s.at("O")
+    law, step = z.exact.law, z.tips(z.every)
+    points, turn = np.asarray(step.value), placed(canvas, z.every, complex(at(0j)), s.frame.mu[0])
+    if z.beyond is not None:
+        placed(canvas, z.beyond, complex(at(0j)), s.frame.mu[0]).curve(z.tips(z.beyond), style="axis")
+    middle = points.mean()
+    for k in distinct(law.labels, law.positions.astype(complex)):
+        here = turn.position(k)
+        here.line(step, o, here.at(step))
+        if axis is None:
+            up = 1j * np.exp(1j * z.cones.turn * z.exact.law.s(law.positions[k]))
+            here.line(step, here.at(step), here.at(step) - NORMAL * up, "axis")
+        if z.beyond is not None and k > law.parts and min(abs(points[k] - points[[0, law.parts]])) * 1e9 > 1:
+            here.dot(step, 0.5, "main")
+            name, height = (law.labels[k], 3.5) if axis is not None else (f"{law.labels[k]}_D", 2.5)
+            canvas.label(here.at(step), name, complex(points[k] - middle), height, 0.8)
+    if axis is not None:
+        k = int(np.argmax(np.abs(np.angle(points[1:law.parts] - z.apex.value) - pi / 2))) + 1
+        ray = float(np.angle(points[k] - z.apex.value))
+        reach = abs(turn.position(k).at(step) - o)
+        canvas.angle_mark(o, min(axis, ray), max(axis, ray), 0.8 * reach, f"{letter_of}_{{{law.labels[k]}}}")
 
 
 def _measured(name: str, segment: str, value: float, scale: str, mu: float) -> str:
@@ -109,7 +148,9 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     z = cam.zone
     pivot, apex = complex(z.plan["A"].value), complex(z.apex.value)
     curve = z.curve.value
-    every = np.array([pivot, apex, 0j, *np.asarray(z.axis.value), *curve])
+    rays = bool(options.get("rays"))
+    beyond = z.tips(z.beyond).value if rays and z.beyond is not None else curve[:0]
+    every = np.array([pivot, apex, 0j, *np.asarray(z.axis.value), *curve, *beyond])
     x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
     measured = _rocker_lines(cam)
     beside = box.width > 1.3 * box.height
@@ -132,7 +173,10 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     _permitted(stage, cam, picture, scale)
     _rocker_positions(stage, cam)
     smooth.curve(z.curve)
-    _rocker_and_axis(stage, cam, picture)
+    letter_of = options.get("angle", ANGLE)
+    if rays:
+        _rays(stage, z, letter_of)
+    _rocker_and_axis(stage, cam, picture, letter_of)
     measured = _rocker_lines(cam, scale)
     if not beside:
         lines_of_text(canvas, box, measured)
@@ -182,7 +226,7 @@ def _rocker_positions(s: Stage, cam: RockerCam) -> None:
             canvas.label(complex(at(tips[k])), f"{labels[k]}_D", complex(tips[k] - starts[k]), 2.5, 0.6)
 
 
-def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box) -> None:
+def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box, letter_of: str) -> None:
     """The rocker, the cam's axis in the zone's apex, both main dimensions and the permitted angles at the roller."""
     z, canvas = cam.zone, s.canvas
     pivot = complex(z.plan["A"].value)
@@ -200,7 +244,7 @@ def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box) -> None:
     radius = 0.45 * min(abs(o - b), picture.height / 2)
     s.line("B_0", b, b - 1.3j * radius, "centre", "axis")
     for lo, hi in ((-pi / 2, -pi / 2 + z.alpha), (-pi / 2 - z.alpha, -pi / 2)):
-        canvas.angle_mark(b, lo, hi, radius, "[α]")
+        canvas.angle_mark(b, lo, hi, radius, f"[{letter_of}]")
 
 
 def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:

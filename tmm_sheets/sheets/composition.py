@@ -244,7 +244,7 @@ def _structure(project: Project, view: View) -> Node:
 def _motion_table(project: Project, view: View) -> Node | None:
     if not project.diagrams:
         return None
-    count = len(project.cycle.labels) + 1
+    count = len(project.cycle.labels) + (2 if view.options.get("links") else 1)
     return _rows(project, view, count, 9.0, (5.6 if count <= 26 else 4.0, 7.0), (100.0, 170.0))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import floor
@@ -14,12 +14,12 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
-from tmm_sheets.sheets.linkage import indexed
+from tmm_sheets.sheets.linkage import indexed, shapes
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -82,21 +82,52 @@ def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) 
 
 
 def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
-    """The values of the kinematic diagrams at the positions, one row each."""
+    """The values of the kinematic diagrams at the positions, one row each; with ``links`` those of the bars before them."""
     every = [(c.symbol, q.unit, c.at) for column in _columns(project, options) for q in column for c in q.curves]
     if not every:
         return
     # The same quantities of one output stand together.
     every.sort(key=lambda row: row[0][1:])
-    left = canvas.title(box, tr("Motion of the output link") if len(every) == 3 else tr("Motion of the output links"))
-    heads = [tr("No."), *(f"{symbol}, {unit}" for symbol, unit, _ in every)]
-    columns = [graphs.column(values) for _, _, values in every]
-    rows = [heads, *([label, *(c[i] for c in columns)] for i, label in enumerate(project.cycle.labels))]
+    beside = _of_bars(project, {symbol for symbol, _, _ in every}) if options.get("links") else []
+    title = tr("Motion of the output link") if len(every) == 3 else tr("Motion of the output links")
+    left = canvas.title(box, tr("Motion of the links") if beside else title)
+    every = [*beside, *every]
+    for digits in (4, 3):
+        rows = _motion_rows(project.cycle.labels, every, digits, two=bool(beside))
+        if sum(needs(rows, 2.5)) <= left.width:
+            break
     row = min(left.height / len(rows), 7.0)
-    first = 12.0
-    height = size_in(row)
+    height = size_in(row) if sum(needs(rows, 3.5)) <= left.width else 2.5
+    first = min(12.0, 0.06 * left.width + needs([[line[0]] for line in rows], height)[0])
     width = (left.width - first) / len(every)
-    canvas.table(complex(box.x0, left.y1), widened([first, *[width] * len(every)], rows, height), rows, row, height)
+    widths = widened([first, *[width] * len(every)], rows, height)
+    canvas.table(complex(box.x0, left.y1), widths, rows, row, height, header=2 if beside else 1)
+
+
+def _motion_rows(labels: Sequence[str], every: list[tuple[str, str, Any]], digits: int, *, two: bool) -> list[list[str]]:
+    """Rows of the table of motion with so many digits; the units stand in a row of their own if there are ``two`` of headings."""
+    heads = [[tr("No."), *(symbol for symbol, _, _ in every)], ["", *(unit for _, unit, _ in every)]] if two else \
+        [[tr("No."), *(f"{symbol}, {unit}" for symbol, unit, _ in every)]]
+    columns = [graphs.column(values, digits) for _, _, values in every]
+    return [*heads, *([label, *(c[i] for c in columns)] for i, label in enumerate(labels))]
+
+
+def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, Any]]:
+    """Angle, angular velocity and acceleration of every bar but the crank at the positions, without those that are ``known``.
+
+    A rocker's angle is counted from position 0, a rod's is its inclination to the guide of its other end (manual 001, table I).
+    """
+    m, motion = project.mechanism, project.motion
+    guides = {g.links[0]: g.guides[-1] for g in m.groups if g.kind.number == 2}
+    found = []
+    for shape in (shape for shape in shapes(project.study.positions)[1:] if shape.bar):
+        angle, omega, epsilon = motion.link(shape.link).at_positions
+        if shape.link in guides:
+            angle = motion.inclination(shape.link, guides[shape.link])
+        for step, unit in ((angle, tr("rad")), (omega, tr("s^{−1}")), (epsilon, tr("s^{−2}"))):
+            if step.symbol not in known:
+                found.append((step.symbol, unit, _row(step, project.study.turned)))
+    return found
 
 
 def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
@@ -203,7 +234,7 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
     axis = (q.curves[0].step.path, "", frames[0])
     with canvas.traced("axis", *axis):
         canvas.arrow(o, o + length + graphs.OVER, "axis", 3.0)
-        canvas.text(o + length + graphs.OVER - 5.5j, "φ_1", 3.5, "right")
+        graphs.turned_angle(canvas, o + length + graphs.OVER)
         canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)
         canvas.text(o + 1j * (top + graphs.OVER - 3.0) - 2.0, f"{q.letter}, {q.unit}", 3.5, "right")
     canvas.text(o + length + 1j * (top + graphs.OVER - 4.0), str(scale), 3.5, "right")

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, times
+from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
@@ -218,7 +218,9 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     fw = _with_tangents(project)
     s = fw.scales
     ratio = s.work.mu / s.energy.mu
-    graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), _enlarged(s.energy, ratio))
+    graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{s.energy}")
+    if abs(ratio - 1) > 1e-9:
+        canvas.note(box, _enlarged(ratio))
     canvas.of = fw.total_plan.name
     g = _energy_graph(fw, box, options)
     curve = s.angle.mm(fw.samples) + 1j * fw.energy_curve(fw.samples)
@@ -228,12 +230,10 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     axes(fw, of, "points", g, curve.imag.min(), curve.imag.max(), tr("ΔE, J"), fw.total_plan["points"].value.imag)
 
 
-def _enlarged(scale: Scale, ratio: float) -> str:
-    """The scale factor, and what the ordinates are against those of the graph of works."""
-    if abs(ratio - 1) < 1e-9:
-        return str(scale)
-    said = tr("{scale} (ordinates enlarged {times})") if ratio > 1 else tr("{scale} (ordinates reduced {times})")
-    return said.format(scale=scale, times=times(max(ratio, 1 / ratio)))
+def _enlarged(ratio: float) -> str:
+    """What the ordinates are against those of the graph of works."""
+    said = tr("Ordinates enlarged {times}") if ratio > 1 else tr("Ordinates reduced {times}")
+    return said.format(times=times(max(ratio, 1 / ratio)))
 
 
 def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -260,7 +260,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     reach = curve.imag.max() + graphs.OVER
     pen = of.pen("points", "axis")
     pen.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
-    pen.text(g(length + graphs.OVER) - 2, "φ_1", 5, "right")
+    pen.text(g(length + graphs.OVER) - 2, tr("{symbol}, rad").format(symbol="φ_1"), 3.5, "right")
     pen.arrow(g(-4j), g(1j * reach), "axis", 3.0)
     canvas.text(g(1j * reach) - 2 + 2j, tr("J^red, kg·m^2"), 3.5, "right")
 
@@ -314,9 +314,14 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
         of.dot(f"T_{name}", 0.7, "main")
         of.letters(end, end, -1 + (1j if (end == "a") == (fw.ab_mm >= 0) else -1j), height=5)
     ends = sorted((plan["a"].value, plan["b"].value), key=lambda z: float(z.imag))
-    length = fixed(fw.ab_mm, 1) if abs(fw.ab_mm) >= 1 else number(fw.ab_mm, 2)
+    length = _of_segment(fw)
     text = f"|ab| = {length}" if fw.ab_mm >= 0 else f"ab = {length}"
     _segment(of.pen("ab", "dimension"), g, ends[0], ends[1], [p.imag for p in points], text)
+
+
+def _of_segment(fw: Wittenbauer) -> str:
+    """Length of ab, mm, as it stands at the diagram and in the formulas."""
+    return fixed(fw.ab_mm, 2) if abs(fw.ab_mm) >= 10 else number(fw.ab_mm, 4)
 
 
 def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
@@ -372,7 +377,8 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
         _cut(canvas, side, half, sign * low, sign * r)
         if rim:
             _cut(canvas, side, half, sign * bore, sign * hub)
-            for x in (-1.0, 1.0):
+            for x in (-1.0, 1.0):  # the edges of the rim behind the cutting plane, and the spokes
+                canvas.line(side + x * half + 1j * sign * hub, side + x * half + 1j * sign * low, "main")
                 canvas.line(side + x * 0.3 * half + 1j * sign * hub, side + x * 0.22 * half + 1j * sign * low, "main")
             middle = side + 1j * sign * d * k / 2
             canvas.line(middle - half - 3, middle + half + 3, "centre")
@@ -448,7 +454,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     s, d = fw.scales, fw.data
     omega, psi = fw.reduced.omega1, fw.psi
     slope = {name: float(fw.energy_mass_plan.asides[f"tg ψ_{name}"].value) for name in ("max", "min")}
-    length = fixed(fw.ab_mm, 2) if abs(fw.ab_mm) >= 10 else number(fw.ab_mm, 4)
+    length = _of_segment(fw)
     drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
     inertia = tr("J_f = {segment}·μ_E/(δ·ω_1^2) − J_r·u^2 = {length}·{mu}/({delta}·{omega}^2) − {rotor} = {J} kg·m^2") \
         if fw.J_rotor else tr("J_f = {segment}·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {J} kg·m^2")
@@ -460,7 +466,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
         drawn.format(length=length),
         inertia.format(segment="|ab|" if fw.ab_mm >= 0 else "ab", length=length, mu=number(s.energy.mu), delta=number(d.delta),
-                       omega=fixed(omega, 3), rotor=number(fw.J_rotor, 4), J=number(fw.J_flywheel, 5)),
+                       omega=fixed(omega, 3), rotor=number(fw.J_rotor, 4), J=_alike(fw)[0]),
         _converged(fw),
         *disagreement(fw),
         *_sizes(fw),
@@ -471,12 +477,17 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.lines(complex(box.x0, left.y1 - step + 3), rows, step, height)
 
 
+def _alike(fw: Flywheel) -> list[str]:
+    """Moment of inertia of the drawn flywheel and of the converged one with the same decimals."""
+    return graphs.column([fw.J_flywheel, fw.J_flywheel_converged], 5)
+
+
 def _converged(fw: Flywheel) -> str:
     """The converged flywheel and how far the drawn one is from it: in percent, beside a small converged one in kg m2."""
     said = tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {difference} %)") \
         if fw.needed and abs(fw.difference_percent) < 100 else \
         tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {apart} kg·m^2)")
-    return said.format(J=number(fw.J_flywheel_converged, 7), difference=fixed(fw.difference_percent, 2),
+    return said.format(J=_alike(fw)[1], difference=fixed(fw.difference_percent, 2),
                        apart=number(fw.J_flywheel - fw.J_flywheel_converged, 3))
 
 
@@ -491,7 +502,8 @@ def _sizes(fw: Flywheel) -> list[str]:
         (tr("Disc:  κ = B/D = {width_ratio}"), tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m"),
          tr("m = 8J_f/D^2 = {mass} kg"))
     numbers = {"width_ratio": number(d.width_ratio), "thickness_ratio": number(d.thickness_ratio),
-               "diameter": fixed(w.diameter, 3), "width": fixed(w.width, 3), "thickness": fixed(w.thickness, 3),
+               "diameter": number(w.diameter, 5), "width": number(w.width, 4),
+               "thickness": number(w.thickness) if w.form == "rim" else "",
                "mass": number(w.mass, 4), "speed": fixed(w.speed, 2)}
     speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s")
     return [line.format(**numbers) for line in (*said, speed)]

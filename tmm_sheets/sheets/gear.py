@@ -66,7 +66,7 @@ class _GearPicture:
         self.at = Frame(self.mu, self.pole)
         self.stage = stage(canvas, gear.engagement, 0, self.at)
         self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
-        self.window = Window(canvas, self.box)
+        self.window = Window(canvas, self.box.inset(3))  # room for the kinks of break lines
         self.mm = self.mu.mm
 
     def of(self, name: str) -> complex:
@@ -94,6 +94,7 @@ class _GearPicture:
         for wheel in self.gear.wheels:
             centre = self.of(f"O{wheel.number}")
             self.window.circles(self.stage, [wheel])
+            self.window.breaks(self.stage, wheel)
             self.window.line(self.stage, f"O{wheel.number}", centre - 12, centre + 12, "centre")
             self.stage.pen(f"O{wheel.number}", "symbol").circle(centre, 2.0, "main")
             self.canvas.label(centre, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
@@ -195,7 +196,7 @@ class _GearPicture:
     def dimension_of_centres(self) -> None:
         """Centre distance at the edge of the picture."""
         top, bottom = self.of("O1"), self.of("O2")
-        reach = self.box.x1 - 6 - top.real
+        reach = self.box.x1 - 12 - top.real
         self.canvas.dimension(bottom + 12, top + 12, 12 - reach, f"a_w = {fixed(self.gear.a_w * 1e3, 2)}", 5.0)
 
     def unrolling(self, wheel: Any) -> None:
@@ -377,7 +378,10 @@ class _Detail:
 
 
 def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Speeds of the contact point along both profiles and the specific sliding, on one line of action N1N2."""
+    """Speeds of the contact point along both profiles and the specific sliding, on one line of action N1N2.
+
+    N1 stands on the side where it is in the engagement picture.
+    """
     gear = project.gear
     canvas.of = "gear-sliding"
     one, two = gear.wheels
@@ -388,23 +392,25 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     canvas.scales["gear-sliding"] = scale
     whole = scale.mm(one.t_pole + two.t_pole)
     plan = gear.sliding
-    first = one.t_pole / scale.mu
+    way = 1 if gear.engagement["N1"].value.real <= gear.engagement["N2"].value.real else -1
     upper = canvas.title(box, tr("Graphs of the velocities"), ratio(scale))
     left = (box.x0 + box.x1 - whole) / 2
     # rounded: where letters stand must not hang on the last digit
     y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
     highest = float(max(y1.max(), y2.max()))
     share = _ways(gear, plan) / scale.mu
-    xs = np.round(left + first + share, 9)
+    pole = left + one.t_pole / scale.mu if way > 0 else left + two.t_pole / scale.mu
+    xs = np.round(pole + way * share, 9)
     axis = upper.y1 - highest - 8
-    s = _along(canvas, gear, plan, complex(left + first, axis), scale)
-    _axis_line(s, gear, complex(left, axis), whole, first, scale)
+    s = _along(canvas, gear, plan, complex(pole, axis), scale, way)
+    _axis_line(s, gear, complex(left, axis), whole, pole - left, scale, way)
     ordinate = float(y1[np.argmin(np.abs(share))])
-    speeds = placed(canvas, plan, complex(left + first, axis), (scale.mu, 1.0))
-    speeds.line("yV1", complex(left, axis), complex(left + whole, axis + y1[-1]), "curve", "curve")
-    speeds.line("yV2", complex(left, axis + y2[0]), complex(left + whole, axis), "curve", "curve")
-    canvas.label(complex(left + whole, axis + y1[-1]), "V_1", away=-1 + 0.3j, height=5)
-    canvas.label(complex(left, axis + y2[0]), "V_2", away=1 + 0.5j, height=5)
+    speeds = placed(canvas, plan, complex(pole, axis), (scale.mu, 1.0), *_turned(way))
+    start, end = (complex(x, axis) for x in (left, left + whole)[::way])
+    speeds.line("yV1", start, end + 1j * y1[-1], "curve", "curve")
+    speeds.line("yV2", start + 1j * y2[0], end, "curve", "curve")
+    canvas.label(end + 1j * y1[-1], "V_1", away=-way + 0.3j, height=5)
+    canvas.label(start + 1j * y2[0], "V_2", away=way + 0.5j, height=5)
 
     lower = canvas.title(Box(box.x0, box.y0, box.x1, axis - 16), tr("Specific sliding"))
     worst = -min(gear.greatest_sliding)
@@ -413,8 +419,8 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     zero = lower.y1 - 14 - top
     deepest = zero - (lower.y0 + 2)
     origin = complex(left, zero)
-    t = _along(canvas, gear, plan, origin + first, scale)
-    _theta(placed(canvas, gear.smooth_sliding, origin + first, (scale.mu, mu.mu)), gear, -deepest * mu.mu)
+    t = _along(canvas, gear, plan, complex(pole, zero), scale, way)
+    _theta(placed(canvas, gear.smooth_sliding, complex(pole, zero), (scale.mu, mu.mu), *_turned(way)), gear, -deepest * mu.mu, way)
     t.line("K", origin - 6, origin + whole + 8, "axis", "axis")
     pen = t.pen("theta1", "axis")
     pen.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
@@ -431,7 +437,7 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         t.position(k).line("K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction", "axis")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
     said = tr("{length} mm").format(length=number(ordinate))
-    canvas.label(complex(left + first, axis + ordinate), said, away=1 - 0.2j, height=3.5)
+    canvas.label(complex(pole, axis + ordinate), said, away=1 - 0.2j, height=3.5)
 
 
 def _ways(gear: Any, plan: Plan) -> Any:
@@ -439,21 +445,27 @@ def _ways(gear: Any, plan: Plan) -> Any:
     return np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value))
 
 
-def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale) -> Stage:
-    """A plan with the line of action laid along the abscissa."""
-    return placed(canvas, plan, pole, scale.mu, -phase(complex(gear.engagement["N1N2"].value)))
+def _turned(way: int) -> tuple[float, bool]:
+    """Turn and mirroring of a frame whose abscissa runs to the right (1) or to the left (-1)."""
+    return (0.0, False) if way > 0 else (pi, True)
 
 
-def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, first: float, scale: Scale) -> None:
-    """The line of action as an abscissa with its points."""
+def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale, way: int) -> Stage:
+    """A plan with the line of action laid along the abscissa, N1N2 to the right or to the left."""
+    return placed(canvas, plan, pole, scale.mu, -phase(way * complex(gear.engagement["N1N2"].value)))
+
+
+def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, pole: float, scale: Scale, way: int) -> None:
+    """The line of action as an abscissa with its points, the pole so far from its beginning at the left."""
     canvas = s.canvas
     s.line("K", origin - 6, origin + whole + 8, "axis", "axis")
     one, two = gear.wheels
-    ends = [first + (one.t_low - one.t_pole) / scale.mu, first + (two.t_pole - two.t_low) / scale.mu]
+    ends = [pole + way * (one.t_low - one.t_pole) / scale.mu, pole + way * (two.t_pole - two.t_low) / scale.mu]
     names = ("A", "B") if gear.driver == 1 else ("B", "A")
-    e = _along(canvas, gear, gear.engagement, origin + first, scale)
+    e = _along(canvas, gear, gear.engagement, origin + pole, scale, way)
     e.line("B", origin + ends[0], origin + ends[1], "main", "curve")
-    for name, x in (("N_1", 0.0), ("P_w", first), ("N_2", whole), *zip(names, ends, strict=True)):
+    feet = (0.0, whole)[::way]
+    for name, x in (("N_1", feet[0]), ("P_w", pole), ("N_2", feet[1]), *zip(names, ends, strict=True)):
         e.dot(name.replace("_", ""), 0.8, "main")
         canvas.label(origin + x, name, away=-1j, height=3.5)
 
@@ -464,18 +476,18 @@ def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
     return mu, 1 / mu.mu
 
 
-def _theta(s: Stage, gear: Any, lowest: float) -> None:
+def _theta(s: Stage, gear: Any, lowest: float, way: int) -> None:
     """Both curves, cut where they leave the place on their way to minus infinity."""
     x = _ways(gear, s.plan)
     for i, onward in ((1, 1), (2, -1)):  # from where each comes up from below
-        way, y = x[::onward], np.asarray(s.plan[f"theta{i}"].value)[::onward]
+        along, y = x[::onward], np.asarray(s.plan[f"theta{i}"].value)[::onward]
         k = int(np.argmax(y >= lowest))
-        points = way[y >= lowest] + 1j * y[y >= lowest]
+        points = along[y >= lowest] + 1j * y[y >= lowest]
         if k and np.isfinite(y[k - 1]):
             t = (lowest - y[k]) / (y[k - 1] - y[k])
-            points = np.insert(points, 0, way[k] + t * (way[k - 1] - way[k]) + 1j * lowest)
+            points = np.insert(points, 0, along[k] + t * (along[k - 1] - along[k]) + 1j * lowest)
         s.curve(f"theta{i}", s.frame(points[::onward]))
-        s.canvas.label(complex(s.frame(points[0].real + 0.6j * points[0].imag)), f"θ_{i}", away=onward, height=5, gap=3)
+        s.canvas.label(complex(s.frame(points[0].real + 0.6j * points[0].imag)), f"θ_{i}", away=way * onward, height=5, gap=3)
 
 
 def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -537,7 +549,7 @@ def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
 def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Contact ratio from the drawn overlap angles and by the formula, greatest sliding, what was chosen."""
     gear = project.gear
-    plan = gear.engagement
+    plan, pole = gear.engagement, int(np.argmin(np.abs(gear.sliding["K"].value)))
     drawn = [float(plan[f"eps{i}"].value) for i in (1, 2)]
     mean = sum(drawn) / 2
     difference = abs(mean - gear.eps_alpha) / gear.eps_alpha * 100
@@ -561,13 +573,15 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         rows += [(tr("Tooth thickness at the tip, in modules (≥ 0.2)"), "s_{a1}; s_{a2}",
                   "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
     inner = canvas.title(box, tr("Quality indices"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 46, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 50, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
     one, two = gear.wheels
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
     notes = [
         tr("Taken: scale of the gear meshing {scale};").format(scale=proportion(scale)),
         tr("segments P_{{w}}N_1 and P_{{w}}N_2 divided into {one} and {two} parts;").format(
             one=gear.parts(one, scale), two=gear.parts(two, scale)),
+        *([tr("for the velocities into {one} and {two};").format(one=pole, two=len(gear.sliding.labels) - 1 - pole)]
+          if "gear-sliding" in canvas.scales else []),
         *([tr("ordinate of the velocities at the pitch point {length} mm;").format(
             length=number(float(gear.sliding["yV1"].value[3])))]
           if "gear-sliding" in canvas.scales or gear.profile == "fillet" else []),

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
-from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
+from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
 from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box, Role
 from tmm_sheets.drawing.tables import needs
@@ -19,6 +19,10 @@ from tmm_sheets.sheets.player import Stage
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
            ("rf", "r_{f%d}", "thin"))
 """Circles of a wheel: attribute, symbol, line type."""
+
+
+KINKS, OVER = 120.0, 3.0
+"""Distance of the kinks of a break line, and how far it runs beyond what it cuts, mm."""
 
 
 def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float) -> None:
@@ -52,6 +56,19 @@ class Window:
         x0, y0, x1, y1 = self.box
         corners = complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)
         self.canvas.tracing("frame").polyline(corners, "thin", closed=True)
+
+    def breaks(self, s: Stage, wheel: Any) -> None:
+        """Break lines where the edge of the picture cuts a wheel (GOST 2.303: thin, with a kink)."""
+        centre = s.at(f"O{wheel.number}")
+        radius = abs(complex(s.frame(wheel.ra)) - complex(s.frame(0)))
+        for a, b in chords(self.box, centre, radius):
+            u = (b - a) / abs(b - a)
+            kinks = max(round(abs(b - a) / KINKS), 1)
+            points = [a - OVER * u]
+            for k in range(kinks):
+                at = a + (k + 0.5) / kinks * (b - a)
+                points += [at - 2.0 * u, at - (1.0 - 3.0j) * u, at + (1.0 - 3.0j) * u, at + 2.0 * u]
+            s.pen(f"O{wheel.number}", "symbol").polyline(np.array([*points, b + OVER * u]), "thin")
 
     def circles(self, s: Stage, wheels: Iterable[Any], share: float | None = None, leave: tuple[str, ...] = ()) -> None:
         """What is seen of the circles of some wheels, but for those to ``leave``.

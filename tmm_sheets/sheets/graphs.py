@@ -15,7 +15,7 @@ from tmm_sheets.drawing.marks import Box, PlacedFrame
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
-from tmm_sheets.words import tell
+from tmm_sheets.words import tell, tr
 
 Options = dict[str, Any]
 OVER = 8.0
@@ -56,21 +56,26 @@ def check_room(box: Box, top: float, view: str) -> None:
 def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str) -> None:
     """Title and scale factor on one line over the angle axis: the left column has no height to give away."""
     x0 = options["axis"]
-    for size, height in ((5.0, 5.0), (5.0, 3.5), (3.5, 3.5), (3.5, 2.5), (2.5, 2.5)):
-        name, scale = letter(title, size), letter(factor, height)
+    for size in (5.0, 3.5, 2.5):
+        name, scale = letter(title, size), letter(factor, size)
         if x0 + name.width + scale.width + 8 <= box.x1:
             break
     start = (x0 + box.x1 - name.width - scale.width - 8) / 2
     canvas.put(name, complex(start, box.y1 - 6.0))
-    canvas.text(complex(start + name.width + 8, box.y1 - 6.0), factor, height)
+    canvas.text(complex(start + name.width + 8, box.y1 - 6.0), factor, size)
 
 
 def axes(canvas: Canvas, g: Graph, length: float, low: float, high: float, ordinate: str) -> None:
     """Angle axis of a length and ordinate axis over a range, mm, with their signs."""
     canvas.arrow(g(0j), g(length + OVER), "axis", 3.0)
-    canvas.text(complex(g(length + OVER)) - 5.5j, "φ_1", 3.5, "right")
+    turned_angle(canvas, complex(g(length + OVER)))
     canvas.arrow(g(1j * (low - 3 if low else 0)), g(1j * (high + OVER)), "axis", 3.0)
     canvas.text(complex(g(1j * (high + OVER))) - 2.0 - 2.5j, ordinate, 3.5, "right")
+
+
+def turned_angle(canvas: Canvas, tip: complex) -> None:
+    """Sign and unit of the crank angle at the end of its axis."""
+    canvas.label(tip - 5.0, tr("{symbol}, rad").format(symbol="φ_1"), -1j, 3.5, 1.5, leader=False)
 
 
 def numbers(canvas: Canvas, g: Graph, x: Any, labels: Sequence[str], heights: Any) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets import indicator
+from tmm_sheets.sheets import indicator, linkage
 from tmm_sheets.sheets.frame import Frame, ScaleBook, extent, fit_frame, pick
 from tmm_sheets.words import tell, tell_n, tr
 
@@ -98,6 +98,9 @@ def positions_reach(project: Project) -> tuple[Any, Any]:
         for offset in (wide, -wide, 8.0j, -11.0j if name in m.fixed else -9.0j):
             z.append(at)
             d.append(np.full(len(at), offset))
+    for end in (end for ends in linkage.free_ends(pos).values() for end in ends if end is not None):
+        z.append(np.ravel(end))
+        d.append(np.full(len(np.ravel(end)), 1j))
     beside, reach = indicator.reach(project)
     z.append(np.asarray(beside))
     d.append(np.asarray(reach))

@@ -61,6 +61,8 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     _rotations(project, s)
     if cycle.strokes is not None and project.variant.cycle is not None and project.variant.cycle.working:
         _strokes(project, s)
+    if options.get("angles"):
+        _named_angles(project, s)
     if graph:
         below = kinematic_frames.graph_below(project)
         y = box.y0 if below else box.y1 - 20.0 - graph
@@ -253,6 +255,27 @@ def _strokes(project: Project, s: Stage) -> None:
         lo, hi = min(a, b), max(a, b)
         share = at if b > a else 1 - at
         s.canvas.angle_mark(s.at(c.pivot), lo, hi, radius, f"{text} = {number(round(degrees(hi - lo), 6))}°", 3.5, share)
+
+
+def _named_angles(project: Project, s: Stage) -> None:
+    """Crank and slotted link in the positions that the angles φ_1k and φ_2k belong to, and these angles from position 0 on."""
+    plan, cycle, c = project.motion.named_angles, project.cycle, project.mechanism.crank
+    if plan is None:
+        return
+    here = stage(s.canvas, plan, 0, s.frame)
+    _, far, *_ = (step.name for step in plan)
+    pivot, start = here.at(c.pivot), float(cycle.world(cycle.turned[0]))
+    for k in (1, 2):
+        name = f"{c.pin}_{k}k"
+        for end in (c.pivot, far):
+            here.pen(name, "link", f"{end}–{name}").line(here.at(end), here.at(name), "hidden")
+        here.dot(name, 0.8, "main")
+        here.letters(name, f"{c.pin}_{{{k}k}}", here.at(name) - pivot, gap=1.5)
+        angle = float(plan[f"φ_{k}k"].value)
+        lo, hi = sorted((start, start + cycle.sense * angle))
+        radius = c.length / s.frame.mu[1] + 4.0 + 5.0 * k
+        text = f"φ_{{{k}k}} = {number(round(degrees(angle), 2), 5)}°"
+        here.pen(f"φ_{k}k", "dimension").angle_mark(pivot, lo, hi, radius, text)
 
 
 def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:

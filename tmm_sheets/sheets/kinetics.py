@@ -378,14 +378,15 @@ def _turned_letters(s: Stage, points: Mapping[str, Step]) -> None:
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """The balancing force by both methods and their difference."""
+    """The balancing force by both methods and their difference; moments are positive in the sense of rotation."""
     k, study = project.force_index, project.study
     forces: Kinetostatics = study.forces
     assert forces.balancing is not None
     assert study.lever.balancing is not None
     force, sign = project.driver is not None, _balancing(project)
     kind = forces.force_size(k) if force else forces.moment_size(k)
-    kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing))
+    kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing)) if force else \
+        (clean(float(study.balance[name].at(k)), kind) for name in ("M", "M_р"))
     unit = tr("N") if force else tr("N·m")
     difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
     rows = [[tr("Balancing force") if force else tr("Balancing moment"), tr("Value")],

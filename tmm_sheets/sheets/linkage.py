@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
@@ -139,27 +140,86 @@ def outlines(s: Stage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
     return sides + list(shape.arms)
 
 
+BEYOND = 0.04
+"""How far a slotted link runs on beyond the farthest place of its stone, in parts of its length."""
+
+
+def free_ends(pos: Positions) -> dict[str, tuple[NDArray[Any] | None, NDArray[Any] | None]]:
+    """Ends of bars along which stones slide, m, at the positions: they keep their lengths all round the turn.
+
+    Before and behind along the direction of the link; None where a hinge is the end. With its centre of mass between the stones it
+    is a uniform bar (manual 001: l_O3S3 is half of the rocker), unless that is too short for them.
+    """
+    found: dict[str, tuple[NDArray[Any] | None, NDArray[Any] | None]] = {}
+    for shape in shapes(pos):
+        names = (*shape.bar, *shape.over)
+        base, u = np.asarray(pos.points[names[0]].value) if shape.bar else 0j, np.asarray(pos.directions[shape.link].value)
+        ways = [(np.asarray(pos.points[name].value) - base) * np.conj(u) for name in names] if len(names) > 1 else []
+        size = max((float(np.nanmax(np.abs(way))) for way in ways), default=0.0)
+        if shape.arms or not size or any(np.nanmax(np.abs(way.imag)) > 1e-6 * size for way in ways):
+            continue
+        sliding = [way.real for way in ways if np.ptp(way.real) > 1e-6 * size]
+        fixed = [float(np.mean(way.real)) for way in ways if np.ptp(way.real) <= 1e-6 * size]
+        first, last = _ends(fixed, sliding, _centre(pos, shape, base, u))
+        if first is not None or last is not None:
+            found[shape.link] = (None if first is None else base + first * u, None if last is None else base + last * u)
+    return found
+
+
+def _centre(pos: Positions, shape: Shape, base: Any, u: Any) -> float | None:
+    """Place of a link's centre of mass along its bar, None if it is off the bar, or at its pivot."""
+    name = pos.mechanism.links[shape.link].centre
+    if name is None:
+        return None
+    way = (np.asarray(pos.points[name].value) - base) * np.conj(u)
+    here = float(np.mean(way.real))
+    return here if np.max(np.abs(way - here)) < 1e-6 * abs(here) else None
+
+
+def _ends(fixed: list[float], sliding: list[Any], centre: float | None) -> tuple[float | None, float | None]:
+    """Places of the free ends of a bar with its fixed points and its stones, whose places vary, along it."""
+    if not sliding:
+        return None, None
+    low, high = (float(f([f(way) for way in sliding])) for f in (np.min, np.max))
+    before, behind = low < min(fixed) - 1e-9, high > max(fixed) + 1e-9
+    pad = BEYOND * (max(high, *fixed) - min(low, *fixed))
+    first, last = (low - pad if before else min(fixed)), (high + pad if behind else max(fixed))
+    if centre is not None and first < centre < last:
+        first, last = min(first, 2 * centre - last) if before else first, max(last, 2 * centre - first) if behind else last
+    return first if before else None, last if behind else None
+
+
 def draw(s: Stage, pos: Positions, style: str, only: Collection[str] | None = None) -> None:
-    """Links of the mechanism at a position: with all symbols in style main, as bare lines otherwise."""
+    """Links of the mechanism at a position: with all symbols in style main, as bare lines otherwise.
+
+    The whole mechanism is drawn with slotted links in their full lengths, single links end at their stones.
+    """
+    ends = free_ends(pos) if only is None else {}
     drawn = [shape for shape in shapes(pos) if only is None or shape.link in only]
     # A dict, not a set: the order of the marks must be the same in every run.
     at = {name: s.at(pos.points[name]) for shape in drawn for name in (*shape.bar, shape.block or "") if name}
     gaps = at if style == "main" else [name for name in at if name in pos.mechanism.fixed]
     for shape in drawn:
         if shape.bar:
-            _draw_bar(s, pos, shape, [at[name] for name in gaps], style)
+            _draw_bar(s, pos, shape, [at[name] for name in gaps], style, ends.get(shape.link, (None, None)))
         elif shape.along is not None and (style == "main" or shape.slot is None):
             _draw_block(s, pos, shape, style)
     if style == "main":
         _draw_pairs(s, pos, at, whole=only is None)
 
 
-def _draw_bar(s: Stage, pos: Positions, shape: Shape, hinges: list[complex], style: str) -> None:
-    """A bar interrupted at hinges, in a bare plan from end to end."""
+def _draw_bar(s: Stage, pos: Positions, shape: Shape, hinges: list[complex], style: str,
+              ends: tuple[NDArray[Any] | None, NDArray[Any] | None]) -> None:
+    """A bar interrupted at hinges, in a bare plan from end to end; ``ends`` are free ones beyond its points."""
     for line in outlines(s, pos, shape):
         pen = s.pen(pos.directions[shape.link], "link", f"{line[0]}–{line[-1]}")
         points = [s.at(pos.points[name]) for name in (line if style == "main" else (line[0], line[-1]))]
         symbols.bar(pen, points, hinges, style)
+        for end in (end for end in ends if end is not None and line not in shape.arms):
+            free = complex(s.frame(complex(end[s.k or 0])))
+            nearest = min(points, key=lambda z: abs(z - free))
+            gap = symbols.HINGE if any(abs(nearest - hinge) < symbols.HINGE for hinge in hinges) else 0.0
+            s.line(pos.directions[shape.link], nearest + gap * (free - nearest) / abs(free - nearest), free, style, "symbol")
 
 
 def _draw_block(s: Stage, pos: Positions, shape: Shape, style: str) -> None:

@@ -169,7 +169,7 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         of.line(f"M_{name}", of.at(end), of.at(f"M_{name}") + 10)
         of.dot(f"M_{name}", 0.7, "main")
         of.letters(end, end, -1 + (1j if end == "a" else -1j), 5)
-    of.pen("ab", "dimension").dimension(of.at("b"), of.at("a"), 9.0, f"|ab| = {fixed(fw.ab_mm, 1)}")
+    of.pen("ab", "dimension").dimension(of.at("b"), of.at("a"), 9.0, f"|ab| = {fixed(fw.ab_mm, 2)}")
     axis, length, pen = speed.at("O"), s.angle.mm(fw.reduced.period), speed.pen("O", "axis")
     pen.line(axis - 5, axis + length + graphs.OVER, "centre")
     pen.label(axis + length - 4, tr("ω_{1m}"), 1j, height=3.5)
@@ -239,7 +239,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
             constant=constant, varying=varying, moment=fixed(moment, 1), held=held, sign=sign, inertia=fixed(inertia, 2)),
         tr("ε_1 = (M − ω_1^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
             sign=sign, held=held, epsilon=fixed(epsilon, 3)),
-        *_motor(fw), *flywheel.disagreement(fw), _size(fw)]
+        *_motor(fw), *flywheel.disagreement(fw), *_size(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):
@@ -277,19 +277,24 @@ def _motor(fw: Mertsalov) -> list[str]:
             steady.format(permitted=fixed(motor.permitted, 4))]
 
 
-def _size(fw: Mertsalov) -> str:
-    """Sizes and mass of the wheel, or that none is needed."""
+def _size(fw: Mertsalov) -> list[str]:
+    """Ratios, sizes and mass of the wheel, or that none is needed."""
     w, d = fw.wheel, fw.data
     if w is None:
-        return tr("I_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")
+        return [tr("I_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")]
     if w.form != "rim":
-        said = tr("Disc:  D = (32I_f/(πρκ))^{{1/5}} = {diameter} m;  B = {width} m;  m = {mass} kg")
+        said = (tr("Disc:  κ = B/D = {width_ratio};  ρ = {density} kg/m^3"),
+                tr("D = (32I_f/(πρκ))^{{1/5}} = {diameter} m;  B = {width} m;  m = {mass} kg"))
     elif d.rim_share < 1:
-        said = tr("Rim:  D = (4·{share}·I_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg")
+        said = (tr("Rim, it has {share}·I_f:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
+                tr("D = (4·{share}·I_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
     else:
-        said = tr("Rim:  D = (4·I_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg")
-    return said.format(share=number(d.rim_share), diameter=fixed(w.diameter, 3), width=fixed(w.width, 3),
-                       thickness=fixed(w.thickness, 3), mass=number(w.mass, 4))
+        said = (tr("Rim:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
+                tr("D = (4·I_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
+    numbers = {"share": number(d.rim_share), "density": number(d.density), "width_ratio": number(d.width_ratio),
+               "thickness_ratio": number(d.thickness_ratio), "diameter": number(w.diameter, 5), "width": number(w.width),
+               "thickness": number(w.thickness) if w.form == "rim" else "", "mass": number(w.mass)}
+    return [line.format(**numbers) for line in said]
 
 
 def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:

@@ -96,9 +96,10 @@ def stage(canvas: Canvas, plan: Plan, k: int | None, frame: Place) -> Stage:
     return Stage(canvas, plan, k, frame, number)
 
 
-def placed(canvas: Canvas, plan: Plan, origin: complex, mu: float | tuple[float, float], turn: float = 0.0) -> Stage:
+def placed(canvas: Canvas, plan: Plan, origin: complex, mu: float | tuple[float, float], turn: float = 0.0,
+           mirror: bool = False) -> Stage:
     """Place a plan of all positions with its zero at ``origin``, by the numbers of its :class:`PlacedFrame`."""
-    number = canvas.placed(plan.name, "", origin, mu, turn)
+    number = canvas.placed(plan.name, "", origin, mu, turn, mirror)
     return Stage(canvas, plan, None, canvas.frames[number], number)
 
 

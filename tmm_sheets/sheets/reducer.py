@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Mapping, Sequence
-from math import pi
+from math import ceil, pi
 from typing import Any
 
 import numpy as np
@@ -294,7 +294,9 @@ class _Scheme:
         c.scales["reducer-velocities"] = mu
         whole = mu.mm(high - low)
         zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
-        c.text(complex((self.picture.x0 + self.picture.x1) / 2, self.picture.y1 - 3.0), str(mu), 3.5, "centre")
+        # As large as the title, if the picture's part of the place is wide enough.
+        laid = fitted(str(mu), self.picture.width, 5.0)
+        c.put(laid, complex((self.picture.x0 + self.picture.x1 - laid.width) / 2, self.picture.y1 - 3.0), 0.0, str(mu))
 
         s = placed(c, plan, complex(zero, self.axis), (mu.mu, self.mu.mu))
         bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
@@ -416,6 +418,10 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     rows += [(tr("Wheels 1 and 2 of the gear meshing"),
               tr("{one} (z = {teeth}) and {two} (z = {teeth2})").format(
                   one=first.number, teeth=first.teeth, two=second.number, teeth2=second.teeth))]
+    each = ceil(len(r.wheels) / ceil(len(r.wheels) / 4))
+    for some in (r.wheels[i:i + each] for i in range(0, len(r.wheels), each)):
+        names = "; ".join(f"d_{{{w.number}}}" for w in some)
+        rows.append((tr("Pitch diameters {names}, mm").format(names=names), "; ".join(number(float(w.d.value)) for w in some)))
     inner = canvas.title(box, tr("Conditions and results of the reducer"))
     end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), 8.0)
     for k, text in enumerate(r.warnings):

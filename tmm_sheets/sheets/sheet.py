@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, MarkGroup, Part
-from tmm_sheets.drawing.labels import Crowded, place
+from tmm_sheets.drawing.labels import Crowded, Shortened, place
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Drawing, PlacedFrame, View
 from tmm_sheets.drawing.title_block import draw_frame
@@ -149,7 +149,8 @@ def composed(project: Project, n: int) -> Composed:
         canvas.begin(view.box, "", view.draw)
         _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
     canvas.begin(INSIDE, "", "labels")
-    crowded = place(canvas, INSIDE)
+    crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre) for text in dict.fromkeys(canvas.shortened)]
+    crowded += place(canvas, INSIDE)
     if canvas.notes:
         from tmm_sheets.drawing import notes
 

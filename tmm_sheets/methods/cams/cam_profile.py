@@ -357,7 +357,7 @@ class RollerCam(Cam):
         _ = self.roller
 
     def _dimension_plans(self) -> Iterable[Plan]:
-        yield from (*self.zone.plans.values(), self.zone.curve_plan)
+        yield from (*self.zone.plans.values(), *self.zone.display_plans())
         if self.discs is not None:
             yield self.discs
         yield from (self.curvature, self.near.at.plan, self.near.plan, self.choice)

@@ -10,7 +10,7 @@ velocity of B, its axis points against that velocity and its half angle is the p
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, cos, degrees, pi, sin, tan
@@ -29,8 +29,10 @@ from tmm_sheets.methods.cams.cam_displacement import (
     AT_SHARE,
     KINDS,
     SOURCE,
+    Displacement,
     ExactMotion,
     Phases,
+    displacement,
     in_phase,
     names,
 )
@@ -390,16 +392,51 @@ class Zone:
         x = np.linspace(0, 1, 129)
         phi = np.concatenate([p.phi(x) for p in self.cones.phases])
         at = self.exact.at("cam-zone-between", tr("Curve of S(S')"), phi, tr("nodes of a smooth curve"))
-        if self.cones.pivot is None:
-            at.plan.add("S(S')", CURVE, at.s, at.ds, self.right)
-        else:
-            at.plan.add("D(ψ)", ROCKER_CURVE, at.s, at.ds, *self.swing)
-        return at.plan
+        return self._tips(at)
 
     @property
     def curve(self) -> Step:
         """Smooth curve of the tips, S(S'), m: a row of points."""
-        return self.curve_plan["S(S')" if self.cones.pivot is None else "D(ψ)"]
+        return self.tips(self.curve_plan)
+
+    @property
+    def _curve_name(self) -> str:
+        return "S(S')" if self.cones.pivot is None else "D(ψ)"
+
+    def _tips(self, at: Displacement) -> Plan:
+        """Record the tips of a motion."""
+        if self.cones.pivot is None:
+            at.plan.add(self._curve_name, CURVE, at.s, at.ds, self.right)
+        else:
+            at.plan.add(self._curve_name, ROCKER_CURVE, at.s, at.ds, *self.swing)
+        return at.plan
+
+    @cached_property
+    def every(self) -> Plan:
+        """Plan of the tips in all numbered positions, also those of a phase that does not limit the zone."""
+        law = self.exact.law
+        plan = Plan("cam-zone-every-between", tr("Points of the curve S(S') in all positions"), "m", law.labels)
+        phi = Given(law.positions, "cam.parts", choice=tr("numbered positions in order"), unit="rad")
+        return self._tips(displacement(plan, law, self.exact.phases, phi))
+
+    @cached_property
+    def beyond(self) -> Plan | None:
+        """Plan of the smooth curve of the tips in the fall where it does not limit the zone; None where it does."""
+        fall = self.exact.law.fall
+        if fall in self.cones.phases:
+            return None
+        return self._tips(self.exact.at("cam-zone-fall-between", tr("Curve of S(S') in the fall"), fall.phi(np.linspace(0, 1, 129)),
+                                        tr("nodes of a smooth curve")))
+
+    def tips(self, plan: Plan) -> Step:
+        """Tips of one of the plans of the curve, m: a row of points."""
+        return plan[self._curve_name]
+
+    def display_plans(self) -> Iterator[Plan]:
+        """Plans of what is drawn beyond the construction."""
+        yield from (self.curve_plan, self.every)
+        if self.beyond is not None:
+            yield self.beyond
 
     @property
     def swing(self) -> tuple[Any, ...]:

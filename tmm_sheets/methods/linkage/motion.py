@@ -14,6 +14,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.linkage.dead_positions import named_angles
 from tmm_sheets.methods.linkage.study import Study
 from tmm_sheets.words import marked, tr
 
@@ -36,6 +37,9 @@ VELOCITY = Rule("velocity along a path", _projection, ("point", "direction"), "n
                 marked("Projection of {0} on the direction of the way: {name} = {value} m/s."), unit="m/s")
 ACCELERATION = Rule("acceleration along a path", _projection, ("point", "direction"), "number",
                     marked("Projection of {0} on the direction of the way: {name} = {value} m/s²."), unit="m/s2")
+INCLINATION = Rule("inclination of a rod", lambda u, along: np.arctan((u * np.conj(along)).imag / (u * np.conj(along)).real),
+                   ("direction", "direction"), "angle",
+                   marked("Inclination of the rod {0} to the guide {1}: {name} = {value}."), unit="rad", source="001, (10)")
 FIRST = Rule("first direction of a link", take, ("direction", "number"), "direction",
              marked("Measure the angle from the direction {name}."))
 ANGLE = Rule("angle turned from the beginning",
@@ -76,8 +80,19 @@ class Motion:
 
     @property
     def plans(self) -> dict[str, Plan]:
-        """The plan of what was asked for."""
-        return {self.plan.name: self.plan} if self.plan.steps else {}
+        """The plans of what was asked for."""
+        named = vars(self).get("named_angles")
+        return {plan.name: plan for plan in (self.plan, named) if plan is not None and plan.steps}
+
+    @cached_property
+    def named_angles(self) -> Plan | None:
+        """Crank angles φ_1k and φ_2k of the rocker on the crank pin; None without one."""
+        return named_angles(self.study.mechanism, self.study.cycle.start, self.study.cycle.sense)
+
+    def inclination(self, link: str, guide: str) -> Step:
+        """Inclination of a rod to the guide of its other end, rad, positive counter-clockwise, at the positions."""
+        u, along = self.study.positions.directions[link], self.study.positions.guide_directions[guide]
+        return self.plan.add(f"θ_{link}", INCLINATION, u, along, symbol=f"θ_{{{link}}}")
 
     @cached_property
     def turned(self) -> Any:
