@@ -102,6 +102,10 @@ class Plan:
         if self.search is not None:
             step.__dict__["seconds"] = self.search
 
+    def lettered(self, step: Step, symbol: str) -> None:
+        """Give a step its letter in lettering markup when all of the plan is known."""
+        step.__dict__["symbol"] = symbol
+
     def _step(self, name: str, rule: Rule, args: tuple[Any, ...], say: str | None = None, symbol: str = "") -> Step:
         if self.search is None:
             return Step(name, rule, args, say, symbol, plan=self.name)

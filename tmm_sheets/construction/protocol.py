@@ -34,7 +34,7 @@ def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "
     sizes = _sizes(plan, k)
     for step in plan:
         said = sentence(step, k, to_mm, unit, sizes)
-        segments = [f"|{name}{step.name}| = {_said(vector, 'vector', to_mm, unit, sizes[_sort(step)])}"
+        segments = [f"|{name}{letter_of(step)}| = {_said(vector, 'vector', to_mm, unit, sizes[_sort(step)])}"
                     for name, vector in _segments(plan, step, k)]
         if segments:
             told = tr_n("Segment {segments}.", "Segments {segments}.", len(segments)).format(segments=", ".join(segments))
@@ -75,7 +75,7 @@ def _segments(plan: Plan, step: Step, k: int) -> list[tuple[str, Any]]:
     points = [a for a in step.args if isinstance(a, Step) and a.name in plan and a.rule.gives in ("point", "vector")]
     laid_off = step.rule.laid_off and points
     starts = points[:1] if laid_off else [plan[plan.pole], *(points if step.rule is LINE_LINE else ())]
-    return [(s.name, end - value_at(s, k)) for s in dict.fromkeys(starts)]
+    return [(letter_of(s), end - value_at(s, k)) for s in dict.fromkeys(starts)]
 
 
 _GREEK = {"alpha": "α", "phi": "φ", "psi": "ψ", "eps": "ε", "theta": "θ", "rho": "ρ"}

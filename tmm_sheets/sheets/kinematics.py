@@ -390,7 +390,7 @@ def _draw_plan(s: Stage, pole: str, symbols_at: bool = False) -> list[str]:
     centre = s.frame(np.mean(list(points.values())))
     for names in joined({name: s.frame(z) for name, z in points.items()}, tiny):
         q = s.at(names[0])
-        shown = [linkage.indexed(n) for n in names if n != pole]
+        shown = [linkage.indexed(s.plan[n].symbol or n) for n in names if n != pole]
         s.dot(names[0])
         # A long row of letters leaves the pole's own to itself.
         rows = ([[pole], shown] if len(shown) > 2 else [[pole, *shown]]) if pole in names else [shown]

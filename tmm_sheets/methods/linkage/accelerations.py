@@ -168,7 +168,17 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
         g.kind.acceleration(acc, g)
         for link in g.links:
             _further_points(acc, link)
+    _number_alike(plan)
     return acc
+
+
+def _number_alike(plan: Plan) -> None:
+    """Ends of the normal and of the Coriolis segments are numbered in their order where there are several."""
+    for letter, rule in (("n", NORMAL), ("k", CORIOLIS)):
+        alike = [step for step in plan if step.rule is rule and step.name.startswith(letter)]
+        for i, step in enumerate(alike, 1):
+            if len(alike) > 1:
+                plan.lettered(step, f"{letter}{i}")
 
 
 def _free(plan: Plan, letter: str) -> str:
