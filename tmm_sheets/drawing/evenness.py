@@ -24,7 +24,7 @@ def empty_cells(drawing: Drawing) -> float:
     """Share of the cells of the field in which nothing is drawn, 0 .. 1."""
     nx, ny = round(FIELD.width / CELL), round(FIELD.height / CELL)
     inked = np.zeros((nx, ny), bool)
-    for z in (*(_dense(mark) for mark in drawing.marks if mark.of != FRAME), *(_over(box) for box in TAKEN)):
+    for z in (*(dense(mark, 4.0) for mark in drawing.marks if mark.of != FRAME), *(_over(box) for box in TAKEN)):
         i = ((z.real - FIELD.x0) / FIELD.width * nx).astype(int)
         j = ((z.imag - FIELD.y0) / FIELD.height * ny).astype(int)
         there = (i >= 0) & (i < nx) & (j >= 0) & (j < ny)
@@ -46,10 +46,10 @@ def _outline(mark: Mark) -> Points:
     return text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
 
 
-def _dense(mark: Mark) -> Points:
-    """Points along a mark, a few millimetres apart."""
+def dense(mark: Mark, step: float) -> Points:
+    """Points along a mark, or round its lettering, no more than ``step`` mm apart."""
     z = _outline(mark)
-    steps = [np.linspace(a, b, 2 + int(abs(b - a) / 4.0)) for a, b in pairwise(z)]
+    steps = [np.linspace(a, b, 2 + int(abs(b - a) / step)) for a, b in pairwise(z)]
     return np.concatenate(steps) if steps else z
 
 

@@ -29,22 +29,31 @@ class View:
 
 NEEDS = {
     "kinematics": "positions", "diagrams": "positions", "given_position": "positions", "load_diagram": "positions",
-    "synthesis": "positions", "kinetics": "forces", "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
+    "synthesis": "positions", "kinetics": "forces", "moments": "forces",
+    "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
     "flywheel": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear", "reducer": "reducer",
     "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
 }
 """Parts of the results that views need, by module or by view."""
 
 
+ANYWHERE = Box(0.0, 0.0, 0.0, 0.0)
+"""Place of a view that is offered: where room is left."""
+
+
 @dataclass(frozen=True)
 class Arrangement:
-    """What stands where on one sheet, from ``templates/sheets/<name>.toml``."""
+    """What stands where on one sheet, from ``templates/sheets/<name>.toml``.
+
+    ``offers`` are views for the room that is left, by :mod:`tmm_sheets.sheets.offers`, the ones most wanted first.
+    """
 
     name: str
     title: str
     code: str
     views: tuple[View, ...]
     without: dict[str, str] = field(default_factory=dict)
+    offers: tuple[View, ...] = ()
 
     def fitted(self, parts: Collection[str]) -> Arrangement:
         """What is left of it, or stands instead of it, for a project that has only these parts of the results.
@@ -59,12 +68,13 @@ class Arrangement:
             if part in self.without:
                 return arrangement(self.without[part]).fitted(parts)
         views = tuple(v for v in self.views if v.needs not in missing)
+        offers = tuple(v for v in self.offers if not v.needs or v.needs in parts)
         if not any(v.needs for v in views):
             lacks, hints = zip(*(map(tell, MISSING.get(part, MISSING_TABLE)) for part in missing), strict=True)
             raise CannotBuild("; ".join(said.format(part=part) for said, part in zip(lacks, missing, strict=True)),
                               tell("{hints}, or leave the sheet out").format(
                                   hints="; ".join(said.format(part=part) for said, part in zip(hints, missing, strict=True))))
-        return replace(self, views=views)
+        return replace(self, views=views, offers=offers)
 
 
 MISSING = {
@@ -94,10 +104,12 @@ def arrangement(name: str) -> Arrangement:
     if isinstance(data.get("like"), str):
         other = arrangement(data["like"])
         views = tuple(replace(view, options={**view.options, **data.get("options", {})}) for view in other.views)
-        return Arrangement(name, data.get("title", other.title), data.get("code", other.code), views)
+        return replace(other, name=name, title=data.get("title", other.title), code=data.get("code", other.code), views=views,
+                       without={})
     try:
         views = tuple(View(v.pop("draw"), Box(*map(float, v.pop("box"))), v) for v in data.get("view", []))
-        return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})))
+        offers = tuple(View(v.pop("draw"), ANYWHERE, v) for v in data.get("offer", []))
+        return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})), offers)
     except (KeyError, TypeError, ValueError) as e:
         raise BadInput(Problem(tell("expected title and [[view]] tables with draw and box, found {found!r}").format(found=e),
                                str(path))) from None

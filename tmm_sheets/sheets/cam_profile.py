@@ -14,7 +14,7 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
-from tmm_sheets.drawing.tables import needs
+from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cam import ANGLE, for_cams, in_degrees, in_mm, lines_of_text
 from tmm_sheets.sheets.frame import ratio, standard
@@ -246,6 +246,36 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
         rows.append([tr("Angle between the arms"), f"{fixed(degrees(cam.spread), 2)}°"] if "rocker" in cam.traits
                     else [tr("Between the rollers L, mm"), fixed(cam.distance * 1e3, 3)])
     return rows
+
+
+def radii_sizes(project: Any, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of radii can do with, mm."""
+    rows = len(_radii(project.cam))
+    return [(width, 11.0 + row * rows) for width, row in ((96.0, 7.0), (84.0, 6.4), (76.0, 5.6), (70.0, 4.6))]
+
+
+def radii(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Radii of the centre profile and of the profile at the numbered positions."""
+    cam: Cam = project.cam
+    rows = _radii(cam)
+    canvas.of = cam.inversion.plan.name
+    inside = canvas.title(box.inset(0, 0, 0, 2), tr("Radii of the profile"))
+    row = min(inside.height / len(rows), 7.0)
+    height = size_in(row)
+    widths = widened([0.16 * box.width, *[0.84 * box.width / (len(rows[0]) - 1)] * (len(rows[0]) - 1)], rows, height)
+    canvas.table(complex(box.x0, inside.y1), widths, rows, row, height)
+
+
+def _radii(cam: Cam) -> list[list[str]]:
+    """Cam angle and radii, mm, from the drawn points."""
+    inv = cam.inversion
+    columns = [(in_degrees("φ"), np.degrees(inv.phi), 2)]
+    if "roller" in cam.traits:
+        columns.append((in_mm("|OB|"), inv.plan.length(inv.plan["O"], inv.centres).value * 1e3, 2))
+    columns.append((in_mm("|OF|"), inv.plan.length(inv.plan["O"], inv.plan["F"]).value * 1e3, 2))
+    rows = [[tr("No."), *(head for head, _, _ in columns)]]
+    return rows + [[inv.plan.labels[k], *(fixed(float(values[k]), places) for _, values, places in columns)]
+                   for k in range(len(inv.plan.labels))]
 
 
 def _circles(s: Stage, picture: _ProfilePicture) -> None:

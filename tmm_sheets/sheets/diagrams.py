@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import floor
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.motion import Output
     from tmm_sheets.project import Project
 
+TITLED = 74.0
+"""Width of the title of the table of motion, mm."""
 _LEFT, _RIGHT = 24.0, 12.0
 """Room beside the angle axis for the sign of the ordinate and for the arrow."""
 
@@ -93,7 +95,7 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Opt
     left = canvas.title(box, tr("Motion of the links") if beside else title)
     every = [*beside, *every]
     for digits in (4, 3):
-        rows = _motion_rows(project.cycle.labels, every, digits, two=bool(beside))
+        rows = _motion_rows(_rows_of(project), every, digits, two=bool(beside))
         if sum(needs(rows, 2.5)) <= left.width:
             break
     row = min(left.height / len(rows), 7.0)
@@ -104,12 +106,28 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Opt
     canvas.table(complex(box.x0, left.y1), widths, rows, row, height, header=2 if beside else 1)
 
 
-def _motion_rows(labels: Sequence[str], every: list[tuple[str, str, Any]], digits: int, *, two: bool) -> list[list[str]]:
+def motion_table_sizes(project: Project, options: graphs.Options) -> list[tuple[float, float]]:
+    """Places that the table can do with, mm: rows of 7 mm to 4.6 mm, columns of 26 mm to 16 mm."""
+    if not project.diagrams:
+        return []
+    rows, columns = len(_rows_of(project)) + 1, 3 * len(project.diagrams)
+    sizes = ((26.0, 7.0), (22.0, 7.0), (20.0, 5.6), (16.0, 4.6))
+    return [(max(12.0 + wide * columns, TITLED), 11.0 + row * rows) for wide, row in sizes]
+
+
+def _rows_of(project: Project) -> tuple[tuple[int, str], ...]:
+    """Positions of the table of motion: those of a later turn that repeat the first stand in its rows."""
+    same = project.cycle.drawn
+    return same if len(same) < len(project.cycle.labels) else tuple(enumerate(project.cycle.labels))
+
+
+def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, Any]], digits: int, *,
+                 two: bool) -> list[list[str]]:
     """Rows of the table of motion with so many digits; the units stand in a row of their own if there are ``two`` of headings."""
     heads = [[tr("No."), *(symbol for symbol, _, _ in every)], ["", *(unit for _, unit, _ in every)]] if two else \
         [[tr("No."), *(f"{symbol}, {unit}" for symbol, unit, _ in every)]]
     columns = [graphs.column(values, digits) for _, _, values in every]
-    return [*heads, *([label, *(c[i] for c in columns)] for i, label in enumerate(labels))]
+    return [*heads, *([label, *(c[i] for c in columns)] for i, label in labels)]
 
 
 def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, Any]]:

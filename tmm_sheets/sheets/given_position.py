@@ -48,6 +48,13 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         y = drawn.y0
 
 
+def values_sizes(project: Project, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the tables can do with, mm."""
+    tables = [_points(project), _links(project), *(loads for loads in [_loads(project)] if len(loads) > 1)]
+    rows = sum(map(len, tables))
+    return [(width, 8.0 * len(tables) + row * rows) for width, row in ((176.0, 7.0), (160.0, 6.4), (150.0, 5.6), (140.0, 4.6))]
+
+
 def _points(project: Project) -> list[list[str]]:
     """Moving points side by side: name, speed, acceleration."""
     study, m, k = project.study, project.mechanism, project.force_index

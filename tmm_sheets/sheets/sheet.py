@@ -22,7 +22,7 @@ from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import places
-from tmm_sheets.sheets.composition import arranged
+from tmm_sheets.sheets.composition import DESIGNATION, arranged
 from tmm_sheets.words import marked, of_file, tell, tr
 
 if TYPE_CHECKING:
@@ -148,6 +148,10 @@ def composed(project: Project, n: int) -> Composed:
         canvas.of = view.draw
         canvas.begin(view.box, "", view.draw)
         _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
+    if plan.offers:
+        from tmm_sheets.sheets import offers
+
+        offers.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
     canvas.begin(INSIDE, "", "labels")
     crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre) for text in dict.fromkeys(canvas.shortened)]
     crowded += place(canvas, INSIDE)

@@ -43,6 +43,14 @@ def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.lines(complex(right.x0, inside.y1 - 0.7 * step), lines, step, height)
 
 
+def sizes_sizes(project: Project, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the figure beside its formulas can do with, mm; none for a project whose lengths are given."""
+    if project.variant.synthesis is None:
+        return []
+    high = 12.0 + LINE * len(project.synthesis.derivation)
+    return [(width, max(high, tall)) for width, tall in ((200.0, 90.0), (180.0, 70.0), (170.0, 60.0))]
+
+
 def _frame(project: Project, canvas: Canvas, box: Box, points: list[complex], around: tuple[complex, ...]) -> Frame:
     z = [p for p in points for _ in around]
     return fit_frame(project, canvas, "synthesis", "μ_l", tr("m/mm"), z, list(around) * len(points), box)

@@ -39,6 +39,10 @@ ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), 
            marked("Arm {name} = {value} from the equation of moments."))
 
 
+FORCE_ARM = Rule("arm of a force", ar.arm, ("point", "point", "force"), "ordinate",
+                 marked("Arm of the force {2} about {0}: {value}."), unit="m")
+
+
 def _tangential(total: Any, centre: Any, at: Any) -> Any:
     r = at - centre
     return -total / np.abs(r) * 1j * r / np.abs(r)
@@ -143,6 +147,10 @@ class Kinetostatics:
             for couple in self.link_couples.get(link, ()):
                 terms += [about, 0j, couple]
         return self.plan.add(name, MOMENTS, *terms)
+
+    def arm(self, about: Step, at: Step, vector: Step) -> Step:
+        """Signed arm of a force about a point as it is read off a scheme, m; whoever asks first."""
+        return self.plan.aside(f"h({about.name}, {vector.name})", FORCE_ARM, about, at, vector)
 
     def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
         """Part of F_jk at a point across its line to the centre of the moments, from their sum."""

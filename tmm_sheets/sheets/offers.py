@@ -1,0 +1,112 @@
+"""Views for the room that a sheet has left, found on the ink of the others; in the order in which its arrangement offers them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmm_sheets.box import Box
+from tmm_sheets.drawing.canvas import Canvas, Label
+from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Mark, Points
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.sheets.arrangement import View
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+CELL = 2.0
+"""Side of the cells in which room is looked for, mm."""
+REACH = 2.0
+"""How far a label may stand off beyond its gap, mm."""
+APART = (12.0, 9.0, 6.0)
+"""Distances from all else with which a place is looked for, mm: the widest first."""
+
+
+def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box, closed: Sequence[Box]) -> None:
+    """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
+
+    A view ``module.function`` tells its sizes, from what it wants down to what it can do with, by ``module.function_sizes``; none
+    where it has nothing to show.
+    """
+    for view in offered:
+        module, _, function = view.draw.partition(".")
+        room = import_module(f"tmm_sheets.sheets.{module}")
+        sizes: Callable[..., Sequence[tuple[float, float]]] = getattr(room, f"{function}_sizes")
+        try:
+            wanted = sizes(project, view.options)
+        except CannotBuild:
+            continue  # what it shows cannot be had; the views that need it have said so
+        box = _place(canvas, wanted, inside, closed) if wanted else None
+        if box is not None:
+            canvas.of = view.draw
+            canvas.begin(box, "", view.draw)
+            getattr(room, function)(project, canvas, box, view.options)
+
+
+def _place(canvas: Canvas, sizes: Sequence[tuple[float, float]], inside: Box, closed: Sequence[Box]) -> Box | None:
+    """The first of the sizes for which there is room, where it is farthest from all else."""
+    taken = _taken(canvas, inside, closed)
+    table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int64)
+    table[1:, 1:] = taken.cumsum(axis=0).cumsum(axis=1)
+    for width, height in sizes:
+        for apart in APART:
+            nx, ny = (int(np.ceil((length + 2 * apart) / CELL)) for length in (width, height))
+            if nx >= table.shape[0] or ny >= table.shape[1]:
+                continue
+            free = np.argwhere(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny] == 0)
+            if len(free):
+                # In the middle of the room there is, if it is one; else at its beginning.
+                i, j = free[np.argmin(np.abs(free - np.median(free, axis=0)).sum(axis=1))]
+                corner = complex(inside.x0 + i * CELL + apart, inside.y0 + j * CELL + apart)
+                return Box(corner.real, corner.imag, corner.real + width, corner.imag + height)
+    return None
+
+
+def _taken(canvas: Canvas, inside: Box, closed: Sequence[Box]) -> NDArray[np.int64]:
+    """Cells of the sheet with ink, or between the ink of one part of a view: within its picture nothing else may stand."""
+    shape = tuple(int(length / CELL) for length in (inside.width, inside.height))
+    taken = np.zeros(shape, np.int64)
+    for marks, labels in _parts(canvas):
+        own = np.zeros(shape, bool)
+        for z in (*(dense(mark, CELL) for mark in marks), *map(_about, labels)):
+            i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
+            there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
+            own[i[there], j[there]] = True
+        taken |= _between(own, 0) | _between(own, 1)
+    for box in closed:
+        i0, i1 = (int((x - inside.x0) / CELL) for x in (box.x0, box.x1))
+        j0, j1 = (int((y - inside.y0) / CELL) for y in (box.y0, box.y1))
+        taken[max(i0, 0):i1 + 1, max(j0, 0):j1 + 1] = 1
+    return taken
+
+
+def _parts(canvas: Canvas) -> Iterator[tuple[list[Mark], list[Label]]]:
+    """Marks of each part of a view, and the labels that it has asked for."""
+    ends = [*(part.first for part in canvas.parts), len(canvas.marks)]
+    for k, (first, end) in enumerate(pairwise(ends)):
+        if canvas.parts[k].draw != "title block":
+            yield canvas.marks[first:end], [label for label in canvas.labels if label.part == k]
+
+
+def _about(label: Label) -> Points:
+    """Points about a label's anchor as far away as its lettering may reach."""
+    laid = letter(label.text, label.height)
+    width, height = (size + label.gap + REACH for size in (laid.width, laid.ascent + laid.descent))
+    if not label.away:
+        return label.anchor + np.array([width, -width, 1j * height, -1j * height])
+    u = label.away / abs(label.away)
+    return label.anchor + np.array([0j, complex(u.real * width, u.imag * height)])
+
+
+def _between(cells: NDArray[np.bool_], axis: int) -> NDArray[np.int64]:
+    """Cells between the first and the last inked one of every line along an axis."""
+    before = np.maximum.accumulate(cells, axis=axis)
+    behind = np.flip(np.maximum.accumulate(np.flip(cells, axis), axis=axis), axis)
+    return np.asarray(before & behind, dtype=np.int64)
