@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.note.alphabets import characters
 from tmm_sheets.note.document import (
     Block,
     Contents,
@@ -32,7 +33,7 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.formula import Fenced, Figures, Fraction, Letters, Node, Root, Row, Scripts, Sign, Words, letters
+from tmm_sheets.note.formula import Fenced, Fraction, Node, Row, Sign, letters
 from tmm_sheets.resources import template
 from tmm_sheets.words import tell
 
@@ -285,7 +286,7 @@ class Writer:
         for i, one in enumerate(said if isinstance(said, list) else [said]):
             number = self.numbering.next("formula", name if not i else f"{name}-{i}")
             rows = tuple(self._explained(one))
-            together = one.numbers is not None and weight(one.letters) + weight(one.numbers) < LONGEST
+            together = one.numbers is not None and characters(one.letters) + characters(one.numbers) < LONGEST
             if one.numbers is not None and together:
                 yield Formula((Row((*items(one.letters), Sign("="), *items(one.numbers))),), f"({number})")
             else:
@@ -369,11 +370,11 @@ WIDEST = 72
 
 def broken(node: Node) -> tuple[Node, ...]:
     """A formula in lines: a long sum is broken at its signs, which are repeated; a long numerator becomes a bracket."""
-    if weight(node) <= WIDEST:
+    if characters(node) <= WIDEST:
         return (node,)
     flat: list[Node] = []
     for x in items(node):
-        if isinstance(x, Fraction) and weight(x.over) > WIDEST // 2:
+        if isinstance(x, Fraction) and characters(x.over) > WIDEST // 2:
             under = x.under if not isinstance(x.under, Row) or len(x.under.items) == 1 else Fenced("(", x.under, ")")
             flat += [Sign("("), *items(x.over), Sign(")"), Sign("/"), *items(under)]
         else:
@@ -381,7 +382,7 @@ def broken(node: Node) -> tuple[Node, ...]:
     lines: list[list[Node]] = [[]]
     for i, x in enumerate(flat):
         rest = next((j for j in range(i + 1, len(flat)) if flat[j] in _BREAKS), len(flat))
-        if x in _BREAKS and lines[-1] and weight(Row((*lines[-1], *flat[i:rest]))) > WIDEST:
+        if x in _BREAKS and lines[-1] and characters(Row((*lines[-1], *flat[i:rest]))) > WIDEST:
             lines[-1].append(x)
             lines.append([])
         lines[-1].append(x)
@@ -399,22 +400,6 @@ def items(node: Node) -> tuple[Node, ...]:
 def label(scope: Scope, name: str) -> str:
     """Label of a figure, table or formula: in a list that of its item, where the items are counted."""
     return f"{name}-{scope.fields['nth']}" if "nth" in scope.fields else name
-
-
-def weight(node: Node) -> int:
-    """About how many characters wide a formula is."""
-    if isinstance(node, Letters):
-        return 1
-    if isinstance(node, Figures | Words):
-        return len(node.text)
-    if isinstance(node, Sign):
-        return 2 if node.text in "=+−·" else 1
-    if isinstance(node, Fraction):
-        return max(weight(node.over), weight(node.under)) + 1
-    if isinstance(node, Scripts):
-        inner = max((weight(x) for x in (node.below, node.above) if x is not None), default=0)
-        return weight(node.base) + (7 * inner + 9) // 10
-    return sum(map(weight, node.parts())) + (1 if isinstance(node, Fenced | Root) else 0)
 
 
 def _left(node: Node) -> Node | None:
