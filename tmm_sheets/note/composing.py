@@ -24,14 +24,14 @@ from tmm_sheets.note.document import (
     Table,
     Text,
 )
-from tmm_sheets.note.formula import letters
+from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Numbering, Scope, Writer
 from tmm_sheets.note.pictures import Pictures
 from tmm_sheets.note.reader import Reader
 from tmm_sheets.resources import template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from tmm_sheets.project import Project
 
@@ -45,11 +45,24 @@ def _order() -> dict[str, Any]:
         raise BadInput(Problem(str(e), str(path))) from None
 
 
-def literature(language: str) -> dict[str, str]:
-    """Entries of the literature by their keys."""
-    path = phrases.folder(language) / "literature.toml"
-    found: dict[str, str] = tomllib.loads(path.read_text(encoding="utf-8"))
+@cache
+def literature() -> dict[str, str]:
+    """Entries of the literature by their keys, each in the language of the source."""
+    found: dict[str, str] = tomllib.loads(template("note/literature.toml").read_text(encoding="utf-8"))
     return found
+
+
+def reader_of(project: Project, say: Callable[[str], None] = lambda _: None) -> Reader:
+    """What the sections of a note read: the project with its sheets drawn; those that cannot be are told among the problems."""
+    from tmm_sheets.sheets import sheet
+
+    attempt = sheet.every(project, say)
+    scales: dict[str, Any] = {}
+    for composed in attempt.drawn.values():
+        scales |= composed.scales
+    reader = Reader(project, catalogues.paper(), Pictures(attempt.drawn), scales)
+    reader.problems += [f"{name}: {e}" for name, e in attempt.refused.items()]
+    return reader
 
 
 def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> Note:
@@ -60,17 +73,11 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     CannotBuild
         when there are no templates of that language, or nothing of the project can be drawn.
     """
-    from tmm_sheets.sheets import sheet
-
     language = catalogues.paper()
     said = phrases.words(language)
-    attempt = sheet.every(project, say)
-    scales: dict[str, Any] = {}
-    for composed in attempt.drawn.values():
-        scales |= composed.scales
+    reader = reader_of(project, say)
     say("note")
-    reader = Reader(project, language, Pictures(attempt.drawn), scales)
-    numbering = Numbering(literature(language))
+    numbering = Numbering(literature())
     writer = Writer(language, numbering)
     parts = _parts(project)
     made: list[Block] = []
@@ -94,7 +101,7 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
         sections.append(name)
     summary = dict(base.fields)
     for name, found in scopes.items():
-        summary[name] = {**found.fields, "is": True}
+        summary[name] = {**dict.fromkeys(found.formulas, True), **found.fields, "is": True}
     body += writer.blocks("conclusion", Scope(summary))
     body += _sources(language, numbering)
     sheets = reader.pictures.pages()
@@ -113,8 +120,6 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
         *made,
     ]
     reminders = writer.blocks("reminders", base)
-    if attempt.refused:
-        reader.problems += [f"{name}: {e}" for name, e in attempt.refused.items()]
     block = project.variant.title_block
     return Note(
         language,
@@ -167,6 +172,7 @@ def _general(r: Reader, parts: set[str]) -> Scope:
         "project": v.project.name,
         "machine": v.project.title,
         "sheets": len(r.pictures.sheets),
+        "transport": v.project.name.startswith("transport/"),
         "institution": v.title_block.institution,
         **{f"has_{p}": True for p in parts},
     }
@@ -181,7 +187,7 @@ def _general(r: Reader, parts: set[str]) -> Scope:
     moment = v.balancing is None or v.balancing.kind == "moment"
     fields |= said["balancing"]["moment" if moment else "force"]
     if "positions" in parts:
-        fields |= {"mobile": r.project.mechanism.mobility == 1, "label": r.label}
+        fields["label"] = r.label
     return Scope(fields)
 
 
@@ -201,7 +207,7 @@ def _task(r: Reader) -> Scope:
     except CannotBuild as e:
         r.problems.append(str(e))
     r._book = None
-    rows += _data(r)
+    rows += [*_data(r), *_places(r)]
     figures = {}
     if r.project.variant.crank is not None and r.project.variant.cycle is not None:
         figure = r.pictures.figure(f"position plan {r.label}", own=True)
@@ -214,41 +220,73 @@ def _task(r: Reader) -> Scope:
 def _data(r: Reader) -> list[tuple[Text, ...]]:
     """Rows of the table of inputs: what the project file gives, as it is written there, and ``[data]`` has words for."""
     said = phrases.words(r.language)
+    own = {q.step: q.symbol for q in r.givens()}
     rows: list[tuple[Text, ...]] = []
     for key, entry in said["data"].items():
         for path, value, item in _values(r.project.variant.data, key.split(".")):
-            for number in value if isinstance(value, list) else [value]:
-                symbol, meaning = (text.replace("*", item) for text in entry[:2])
-                row = _row(r, ".".join(path), number, symbol, meaning)
-                if row is not None:
-                    rows.append(row)
+            symbol, meaning = (text.replace("*", item) for text in entry[:2])
+            if path in own and not path.startswith("crank.speed"):
+                symbol = own[path]
+            symbol = letters_of(symbol)
+            if isinstance(value, list):  # of a force by a table the greatest
+                value = max((force for _, force in value), key=lambda force: float(str(force).split()[0]))
+            row = _row(r, path, value, symbol, meaning or phrases.meaning_of(symbol, r.language))
+            if row is not None:
+                rows.append(row)
     return rows
 
 
-def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str) -> tuple[Text, ...] | None:
+def _places(r: Reader) -> Iterator[tuple[Text, ...]]:
+    """Rows of the fixed points and guides: coordinates from the pivot of the crank, x to the right, y up."""
+    said = phrases.words(r.language)["task"]
+    data = r.project.variant.data
+    for name, place in data.get("points", {}).items():
+        if any(float(str(v).split()[0]) for v in place):
+            for axis, v in zip("xy", place, strict=True):
+                yield from _place(r, f"points.{name}", v, f"{axis}_{{{name}}}", said[axis].format(name=name))
+    for i, guide in enumerate(data.get("guide", ())):
+        name = r.quoted(guide["name"])
+        through = guide.get("through", ())
+        for axis, v in zip("xy", through if isinstance(through, list) else (), strict=False):
+            yield from _place(r, f"guide[{i}].through", v, "", said[f"guide_{axis}"].format(name=name))
+        if "direction" in guide and "link" not in guide:
+            yield from _place(r, f"guide[{i}].direction", guide["direction"], "", said["guide_angle"].format(name=name))
+
+
+def _place(r: Reader, path: str, value: Any, symbol: str, meaning: str) -> Iterator[tuple[Text, ...]]:
+    row = _row(r, path, value, symbol, meaning, zero=True)
+    if row is not None:
+        yield row
+
+
+def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str, zero: bool = False) -> tuple[Text, ...] | None:
     """A row of the inputs; None for a value that is no number."""
     text, _, unit = (str(value).strip() + " ").partition(" ")
     try:
         number = float(text.replace(",", "."))
     except ValueError:
         return None
-    if isinstance(value, bool) or not number:
+    if isinstance(value, bool) or not (number or zero):
         return None
     named = r.unit(unit.strip())
-    return (meaning,), ((Symbol(letters(symbol)),) if symbol else ("–",)), (named or "–",), (r.number(number, "", path),)
+    shown: Text = (Symbol(letters(symbol)),) if symbol else ("–",)
+    return tuple(phrases.set_text(meaning)), shown, (named or "–",), (r.number(number, "", path),)
 
 
-def _values(data: Any, path: list[str], before: tuple[str, ...] = (), item: str = "") -> list[tuple[tuple[str, ...], Any, str]]:
-    """Values under a path of the project file; ``*`` stands for every table of a list, which is called by its name."""
+def _values(data: Any, path: list[str], before: str = "", item: str = "") -> list[tuple[str, Any, str]]:
+    """Values under a path of the project file, with where they stand and what they are called there.
+
+    ``*`` stands for every table of a list, which is called by its name, ``#`` for every entry, which is called by its number.
+    """
     if not path:
         return [(before, data, item)]
     key, rest = path[0], path[1:]
     if key == "*" and isinstance(data, list):
-        return [x for i, inner in enumerate(data) for x in _values(inner, rest, (*before, str(i)), str(inner.get("name", i + 1)))]
+        return [x for i, inner in enumerate(data) for x in _values(inner, rest, f"{before}[{i}]", str(inner.get("name", i + 1)))]
     if key == "#" and isinstance(data, list):
-        return [x for i, inner in enumerate(data) for x in _values(inner, rest, (*before, str(i)), str(i + 1))]
+        return [x for i, inner in enumerate(data) for x in _values(inner, rest, f"{before}[{i}]", str(i + 1))]
     if isinstance(data, dict) and key in data:
-        return _values(data[key], rest, (*before, key), item)
+        return _values(data[key], rest, f"{before}.{key}".lstrip("."), item)
     return []
 
 

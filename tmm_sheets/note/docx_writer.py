@@ -327,7 +327,8 @@ class _Writer:
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(10))
             p.add_run((b.word if not i else "") + "\t")
             _math(p, row.symbol)
-            p.add_run(f" – {row.meaning}{', ' + row.unit if row.unit else ''}{'.' if i == len(b.rows) - 1 else ';'}")
+            end = "." if i == len(b.rows) - 1 else ";"
+            self._text(p, (" – ", *row.meaning, f", {row.unit}{end}" if row.unit else end))
 
     def _table(self, b: Table) -> None:
         from docx.enum.table import WD_TABLE_ALIGNMENT

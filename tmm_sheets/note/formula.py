@@ -152,7 +152,7 @@ def letters(markup: str) -> Node:
     if markup.startswith("inv "):
         return Row((Words("inv "), letters(markup[4:])))
     found: list[Node] = []
-    for m in _TOKEN.finditer(_INDEX.sub(r"_{\1}", markup)):
+    for m in _TOKEN.finditer(_INDEX.sub(r"_{\1}", markup.replace("²", "^2"))):
         below, above = (
             next((x for x in m.group(1, 2) if x is not None), None),
             next((x for x in m.group(3, 4) if x is not None), None),

@@ -33,7 +33,7 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.formula import Fenced, Fraction, Node, Row, Sign, letters
+from tmm_sheets.note.formula import Fenced, Fraction, Node, Row, Sign, letters, letters_of
 from tmm_sheets.resources import template
 from tmm_sheets.words import tell
 
@@ -160,6 +160,8 @@ class Writer:
         self.known: set[tuple[str, str]] = set()
         self.template = ""
         self.pending: set[str] = set()
+        self.running: list[Inline] = []
+        """the paragraph that is being written: it ends with an empty line or with what is no text"""
 
     def blocks(self, name: str, scope: Scope) -> list[Block]:
         """The blocks of a template.
@@ -174,7 +176,7 @@ class Writer:
         self._foresee(name, scope)
         lines = list(enumerate(text_of(self.language, name).splitlines(), 1))
         try:
-            return list(self._made(lines, scope))
+            return [*self._made(lines, scope), *self._paragraph()]
         except _Wrong as e:
             path = str(folder(self.language) / f"{name}.txt")
             raise BadInput(Problem(e.what, path, e.line)) from None
@@ -193,40 +195,37 @@ class Writer:
             pass  # told by the reading that counts
         finally:
             self.numbering, self.known = numbering, known
+            self.running.clear()
         numbering.labels |= {k: v for k, v in trial.labels.items() if v != "0"}
 
     def _made(self, lines: list[tuple[int, str]], scope: Scope) -> Iterator[Block]:
-        paragraph: list[str] = []
         i = 0
         while i < len(lines):
             n, line = lines[i]
             i += 1
             if line.startswith("#"):
                 continue
-            if command := _COMMAND.fullmatch(line):
-                yield from self._paragraph(paragraph, n, scope)
-                if command[1] in ("if", "each"):
-                    inner, other, i = _split(lines, i, n)
-                    yield from self._conditional(command[1], command[2], inner, other, n, scope)
-                else:
+            command = _COMMAND.fullmatch(line)
+            if command and command[1] in ("if", "each"):
+                inner, other, i = _split(lines, i, n)
+                yield from self._conditional(command[1], command[2], inner, other, scope)
+            elif command or line.startswith(("=", "- ")) or not line.strip():
+                yield from self._paragraph()
+                if command:
                     yield from self._command(command[1], command[2], n, scope)
-            elif line.startswith("="):
-                yield from self._paragraph(paragraph, n, scope)
-                yield self._heading(line, n, scope)
-            elif not line.strip() or line.startswith("- "):
-                yield from self._paragraph(paragraph, n, scope)
-                if line.startswith("- "):
+                elif line.startswith("="):
+                    yield self._heading(line, n, scope)
+                elif line.strip():
                     yield Paragraph(self.text("– " + line[2:], n, scope), "item")
             else:
-                paragraph.append(line.strip())
-        yield from self._paragraph(paragraph, lines[-1][0] if lines else 0, scope)
+                self.running += [*self.text(line.strip(), n, scope), " "]
 
-    def _paragraph(self, lines: list[str], n: int, scope: Scope) -> Iterator[Block]:
-        if lines:
-            text = self.text(" ".join(lines), n, scope)
-            lines.clear()
-            if any(not isinstance(x, str) or x.strip() for x in text):
-                yield Paragraph(text)
+    def _paragraph(self) -> Iterator[Block]:
+        """The paragraph that the lines so far make."""
+        text = tuple(_tidied(self.running))
+        self.running.clear()
+        if text:
+            yield Paragraph(text)
 
     def _heading(self, line: str, n: int, scope: Scope) -> Heading:
         level = len(line) - len(line.lstrip("="))
@@ -235,15 +234,15 @@ class Writer:
         return Heading(level, number, "".join(map(str, self.text(text.lstrip("! "), n, scope))))
 
     def _conditional(
-        self, word: str, what: str, inner: list[tuple[int, str]], other: list[tuple[int, str]], n: int, scope: Scope
+        self, word: str, what: str, inner: list[tuple[int, str]], other: list[tuple[int, str]], scope: Scope
     ) -> Iterator[Block]:
         if word == "if":
             negated = what.startswith("not ")
             name = what.removeprefix("not ").strip()
             yield from self._made(inner if bool(_found(scope, name)) != negated else other, scope)
             return
-        for item in _found(scope, what) or ():
-            yield from self._made(inner, scope.within(item))
+        made = [block for item in _found(scope, what) or () for block in self._made(inner, scope.within(item))]
+        yield from [*made[:-1], *map(_closed, made[-1:])]
 
     def _command(self, word: str, what: str, n: int, scope: Scope) -> Iterator[Block]:
         name, _, title = (part.strip() for part in what.partition("|"))
@@ -302,7 +301,7 @@ class Writer:
             once = ("" if meaning.endswith(_OF_INDEX) else bare(markup), meaning)
             if meaning and once not in self.known:
                 self.known.add(once)
-                yield Explained(letters(markup), meaning.removesuffix(_OF_INDEX).rstrip(), unit)
+                yield Explained(letters(markup), tuple(set_text(meaning.removesuffix(_OF_INDEX).rstrip())), unit)
 
     def text(self, line: str, n: int, scope: Scope) -> Text:
         """A line with its fields filled in."""
@@ -358,6 +357,13 @@ class Writer:
         if found is None:
             raise _Wrong(tell('nothing has the label "{to}"').format(to=to), n)
         return Reference(f"({found})" if kind == "formula" else found, f"{kind}:{found}")
+
+
+def set_text(meaning: str) -> Iterator[Inline]:
+    """A meaning with the points in it, between dollar signs, set as letters."""
+    for i, part in enumerate(meaning.split("$")):
+        if part:
+            yield Symbol(letters(letters_of(part))) if i % 2 else part
 
 
 _OF_INDEX = "…"
@@ -471,6 +477,30 @@ def unit(name: str, language: str) -> str:
     return units.get(name, name)
 
 
+def _tidied(text: Iterable[Inline]) -> Iterator[Inline]:
+    """The same with one space between words and none at the ends."""
+    joined: list[Inline] = []
+    for x in text:
+        if isinstance(x, str) and joined and isinstance(joined[-1], str):
+            joined[-1] += x
+        else:
+            joined.append(x)
+    for i, x in enumerate(joined):
+        if isinstance(x, str):
+            x = re.sub(" +", " ", x)
+            x = x.lstrip(" ") if not i else x
+            x = x.rstrip(" ") if i == len(joined) - 1 else x
+        if x != "":
+            yield x
+
+
+def _closed(block: Block) -> Block:
+    """The last item of a list ends with a full stop."""
+    if isinstance(block, Paragraph) and block.look == "item" and isinstance(block.text[-1], str) and block.text[-1].endswith(";"):
+        return Paragraph((*block.text[:-1], block.text[-1][:-1] + "."), "item")
+    return block
+
+
 class _Wrong(Exception):
     def __init__(self, what: str, line: int) -> None:
         super().__init__(what)
@@ -484,7 +514,7 @@ def _found(scope: Scope, name: str) -> Any:
         if value is None:
             break
     if value is None:
-        return True if name in scope.formulas or name in scope.tables or name in scope.figures else None
+        return name in scope.formulas or name in scope.figures or len(scope.tables.get(name, ())) > 1 or None
     return value
 
 

@@ -139,7 +139,7 @@ class _Writer:
         return f"#formula(({lines}), {string(b.number)})"
 
     def _where(self, b: Where) -> str:
-        rows = " ".join(f"([${spelt(r.symbol, TYPST)}$], {string(r.meaning + (', ' + r.unit if r.unit else ''))})," for r in b.rows)
+        rows = " ".join(f"([${spelt(r.symbol, TYPST)}$], [{text((*r.meaning, f', {r.unit}' if r.unit else ''))}])," for r in b.rows)
         return f"#where({string(b.word)}, ({rows}))"
 
     def _table(self, b: Table) -> str:
