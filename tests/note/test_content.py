@@ -235,7 +235,7 @@ def test_what_is_said_follows_the_record(reader, section, fields, said, unsaid):
     scope = import_module(f"tmm_sheets.note.sections.{section}").scope(reader)
     assert fields.keys() <= scope.fields.keys()
     assert all(bool(scope.fields[k]) != bool(v) for k, v in fields.items())
-    scope.fields |= fields | {"balancing_acc": "", "balancing_nom": "", "Balancing_found": ""}
+    scope.fields = composing.general(reader).fields | scope.fields | fields
     numbering = phrases.Numbering(composing.literature())
     text = " ".join(plain_text(b.text) for b in phrases.Writer("ru", numbering).blocks(section, scope) if isinstance(b, Paragraph))
     assert said in text

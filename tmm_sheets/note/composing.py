@@ -83,7 +83,7 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     made: list[Block] = []
     sections: list[str] = []
     scopes: dict[str, Scope] = {}
-    base = _general(reader, parts)
+    base = general(reader)
     task = writer.blocks("task", _with(_task(reader), base))
     made += task
     body: list[Block] = writer.blocks("introduction", base)
@@ -163,8 +163,9 @@ def _parts(project: Project) -> set[str]:
     return found
 
 
-def _general(r: Reader, parts: set[str]) -> Scope:
+def general(r: Reader) -> Scope:
     """Fields that every template may use."""
+    parts = _parts(r.project)
     v = r.project.variant
     fields: dict[str, Any] = {
         "name": v.project.title,
