@@ -179,13 +179,13 @@ def test_the_ratio_of_strokes_by_the_formula_of_the_manual(note):
 
 def test_templates_hold_no_digit():
     """Numbers come from the record: a digit stands only in letters (ω_1), in names of sources and behind a dash of a remark."""
-    for language in ("ru",):
+    for language in words.LANGUAGES:
         for name in phrases.names(language):
             for n, line in enumerate(phrases.text_of(language, name).splitlines(), 1):
                 if line.startswith(("#", "%formula", "%figure", "%table", "%if")):
                     line = line.partition("|")[2] if "|" in line else ""
                 bare = re.sub(r"\$[^$]*[^\d\s,.$][^$]*\$|\{[^{}]*\}", "", line)
-                assert not re.search(r"\d", bare.replace("формата А1", "")), f"{name}.txt:{n}: {line}"
+                assert not re.search(r"\d", re.sub("формат[ау] А1|size A1", "", bare)), f"{name}.txt:{n}: {line}"
 
 
 @pytest.mark.parametrize(("name", "sections"), [
@@ -276,9 +276,44 @@ def test_words_stay_on_the_paper_alone():
     assert words.paper() == "ru"
 
 
-def test_no_sentence_breaks_off_before_a_number():
+@pytest.mark.parametrize("language", words.LANGUAGES)
+def test_no_sentence_breaks_off_before_a_number(language):
     """An optional part of a template never ends between the word for a figure and its number."""
-    for name in phrases.names("ru"):
-        for n, line in enumerate(phrases.text_of("ru", name).splitlines(), 1):
-            assert not re.search(r"(рис\.|табл\.|таблице)\s*(\]\]|\[\[|$)", line), f"{name}.txt:{n}"
+    for name in phrases.names(language):
+        for n, line in enumerate(phrases.text_of(language, name).splitlines(), 1):
+            assert not re.search(r"(рис\.|табл\.|таблице|таблиці|fig\.|table)\s*(\]\]|\[\[|$)", line), f"{name}.txt:{n}"
             assert line.count("[[") == line.count("]]"), f"{name}.txt:{n}"
+
+
+@pytest.mark.parametrize("language", ["uk", "en"])
+def test_the_languages_tell_the_same(language):
+    """Every template asks for the same things under the same conditions, and words.toml has the same entries."""
+    assert phrases.names(language) == phrases.names("ru")
+    for name in phrases.names("ru"):
+        asked = {of: [m for line in phrases.text_of(of, name).splitlines() for m in _asked(line)] for of in ("ru", language)}
+        assert asked[language] == asked["ru"], name
+    for table, entries in phrases.words("ru").items():
+        if isinstance(entries, dict) and table not in ("several", "guides", "indices"):
+            assert entries.keys() <= phrases.words(language)[table].keys(), table
+
+
+def _asked(line):
+    """Commands with what they name, and the fields that lead to something else, of a line."""
+    if line.startswith("%"):
+        yield line.partition("|")[0].split("{")[0].split()[:2] if not line.startswith(("%centre", "%contents")) else line.split()[0]
+    yield from sorted(re.findall(r"\{@[^{}]*\}", line))
+
+
+@pytest.mark.parametrize(("language", "name", "foreign"), [("en", "lugansk/shaper", "[а-яА-Я]"), ("uk", "press", "[ыэъёЫЭЪЁ]")])
+def test_a_note_in_another_language(language, name, foreign):
+    made = composed(opened(name), language)
+    sources = [b for b in made.body if isinstance(b, Paragraph) and re.match(r"\d+\. ", plain_text(b.text))]
+    said = [plain_text(b.text) for b in made.blocks() if isinstance(b, Paragraph) and b not in sources]
+    said += [b.text for b in made.blocks() if isinstance(b, Heading)]
+    said += [plain_text(r.meaning) for b in made.blocks() if isinstance(b, Where) for r in b.rows]
+    said += [plain_text(cell) for b in made.blocks() if isinstance(b, Table) for row in b.rows for cell in row]
+    assert not [text for text in said if re.search(foreign, text)]
+    assert not made.problems
+    test_nothing_is_empty_or_unfilled(made)
+    test_every_reference_leads_somewhere(made)
+    test_every_figure_and_table_is_spoken_of(made)

@@ -13,7 +13,9 @@ from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import (
     Block,
+    Explained,
     Figure,
+    Formula,
     Frame,
     Heading,
     Note,
@@ -23,15 +25,17 @@ from tmm_sheets.note.document import (
     Symbol,
     Table,
     Text,
+    Where,
 )
-from tmm_sheets.note.formula import letters, letters_of
+from tmm_sheets.note.formula import letters, letters_of, reworded
 from tmm_sheets.note.phrases import Numbering, Scope, Writer
 from tmm_sheets.note.pictures import Pictures
 from tmm_sheets.note.reader import Reader
+from tmm_sheets.note.sections import errata
 from tmm_sheets.resources import template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from tmm_sheets.project import Project
 
@@ -43,6 +47,16 @@ def _order() -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as e:
         raise BadInput(Problem(str(e), str(path))) from None
+
+
+def _order_of(project: Project) -> tuple[list[str], list[dict[str, Any]]]:
+    """Names of the parts before the sections, and the sections, in the order of the manual that the project comes from."""
+    order = _order()
+    own: dict[str, Any] = next((of for name, of in order["manuals"].items() if project.variant.project.name.startswith(name)), {})
+    sections = order["section"]
+    if "sections" in own:
+        sections = sorted(sections, key=lambda s: own["sections"].index(s["template"]) if s["template"] in own["sections"] else -1)
+    return own.get("front", order["front"]), sections
 
 
 @cache
@@ -80,15 +94,16 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     numbering = Numbering(literature())
     writer = Writer(language, numbering)
     parts = _parts(project)
-    made: list[Block] = []
-    sections: list[str] = []
+    front_order, sections = _order_of(project)
     scopes: dict[str, Scope] = {}
     base = general(reader)
-    task = writer.blocks("task", _with(_task(reader), base))
-    made += task
-    body: list[Block] = writer.blocks("introduction", base)
-    for section in _order()["section"]:
-        if section["needs"] and section["needs"] not in parts:
+    before: dict[str, list[Block]] = {}
+    for name in front_order:
+        if name != "abstract":  # which tells of all the others
+            before[name] = writer.blocks(name, _with(_task(reader), base) if name == "task" else base)
+    body: list[Block] = []
+    for section in sections:
+        if section["needs"] not in parts:
             continue
         name = section["template"]
         try:
@@ -98,32 +113,33 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
             continue
         scopes[name] = found
         body += writer.blocks(name, _with(found, base))
-        sections.append(name)
     summary = dict(base.fields)
     for name, found in scopes.items():
         summary[name] = {**dict.fromkeys(found.formulas, True), **found.fields, "is": True}
     body += writer.blocks("conclusion", Scope(summary))
+    if project.variant.misprints or errata.of(project):
+        body += writer.blocks("errata", errata.scope(reader))
     body += _sources(language, numbering)
     sheets = reader.pictures.pages()
     body += _appendices(sheets)
+    told = [*(b for blocks in before.values() for b in blocks), *body]
     counts = {
-        "figures": sum(isinstance(b, Figure) for b in [*made, *body]),
-        "tables": sum(isinstance(b, Table) for b in [*made, *body]),
+        "figures": sum(isinstance(b, Figure) for b in told),
+        "tables": sum(isinstance(b, Table) for b in told),
         "sources": len(numbering.cited),
         "sheets": len(sheets),
         "formulas": numbering.total.get("formula", 0),
     }
-    front = [
-        *writer.blocks(
-            "abstract", Scope(summary | {k: Number(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
-        ),
-        *made,
-    ]
+    before["abstract"] = writer.blocks(
+        "abstract", Scope(summary | {k: Number(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
+    )
+    front = [b for name in front_order for b in before[name]]
     reminders = writer.blocks("reminders", base)
     block = project.variant.title_block
+    front, body, reminders = (list(_reworded(blocks, said["indices"])) for blocks in (front, body, reminders))
     return Note(
         language,
-        f"{project.variant.project.title}. {said['title']}",
+        f"{catalogues.of_file(project.variant.project.title)}. {said['title']}",
         block.student or "tmm_sheets",
         tuple(front),
         _title_page(reader),
@@ -133,6 +149,25 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
         1,
         tuple(dict.fromkeys(reader.problems)),
     )
+
+
+def _reworded(blocks: Iterable[Block], table: dict[str, str]) -> Iterator[Block]:
+    """Blocks with the indices of letters in the language of the note."""
+
+    def text(parts: Text) -> Text:
+        return tuple(Symbol(reworded(x.node, table)) if isinstance(x, Symbol) else x for x in parts)
+
+    for b in blocks:
+        if isinstance(b, Paragraph):
+            yield replace(b, text=text(b.text))
+        elif isinstance(b, Formula):
+            yield replace(b, lines=tuple(reworded(x, table) for x in b.lines))
+        elif isinstance(b, Where):
+            yield replace(b, rows=tuple(Explained(reworded(r.symbol, table), text(r.meaning), r.unit) for r in b.rows))
+        elif isinstance(b, Table):
+            yield replace(b, rows=tuple(tuple(map(text, row)) for row in b.rows))
+        else:
+            yield b
 
 
 PAGES = Number("\u0001", "note.pages", 0)
@@ -168,20 +203,18 @@ def general(r: Reader) -> Scope:
     parts = _parts(r.project)
     v = r.project.variant
     fields: dict[str, Any] = {
-        "name": v.project.title,
-        "variant": v.project.variant or "",
-        "project": v.project.name,
-        "machine": v.project.title,
+        "name": catalogues.of_file(v.project.title),
         "sheets": len(r.pictures.sheets),
         "transport": v.project.name.startswith("transport/"),
-        "institution": v.title_block.institution,
+        "institution": catalogues.of_file(v.title_block.institution or ""),
         **{f"has_{p}": True for p in parts},
     }
     said = phrases.words(r.language)
     fields |= {f"keys_{p}": said["keys"][p] if p in parts else "" for p in said["keys"]}
     fields["objects"] = _listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
     fields["aims"] = _listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
-    fields["variant_text"] = said["phrases"]["variant"].format(variant=v.project.variant) if v.project.variant else ""
+    variant = catalogues.of_file(v.project.variant or "")
+    fields["variant_text"] = said["phrases"]["variant"].format(variant=variant) if variant else ""
     fields["and_forces"] = said["phrases"]["and_forces"] if "forces" in parts else ""
     fields["checked_text"] = said["phrases"]["checked"] if {"forces", "flywheel"} & parts else ""
     fields["way_text"] = said["phrases"]["way_forces" if "forces" in parts else "way_positions"] if "positions" in parts else ""
@@ -309,11 +342,11 @@ def _title_page(r: Reader) -> dict[str, Any]:
     page = said["title_page"]
     return {
         "ministry": page["ministry"],
-        "institution": block.institution or page["institution"],
+        "institution": catalogues.of_file(block.institution or "") or page["institution"],
         "kind": page["kind"],
         "course": page["course"],
-        "theme": page["theme"].format(name=r.project.variant.project.title),
-        "designation": f"{block.designation} {page['code']}".strip(),
+        "theme": page["theme"].format(name=catalogues.of_file(r.project.variant.project.title)),
+        "designation": f"{catalogues.of_file(block.designation or '')} {page['code']}".strip(),
         "people": [page["student"], page["supervisor"], page["checker"]],
         "names": [block.student or "", block.supervisor or "", block.checker or ""],
         "place": page["place"],
@@ -327,13 +360,13 @@ def _frame(r: Reader) -> Frame:
     said = phrases.words(r.language)
     block = r.project.variant.title_block
     fields = {
-        "designation": f"{block.designation} {said['title_page']['code']}".strip(),
+        "designation": f"{catalogues.of_file(block.designation or '')} {said['title_page']['code']}".strip(),
         "student": block.student or "",
         "checker": block.checker or "",
         "supervisor": block.supervisor or "",
         "letter": block.letter or "",
-        "institution": block.institution or "",
-        "group": block.group or "",
+        "institution": catalogues.of_file(block.institution or ""),
+        "group": catalogues.of_file(block.group or ""),
         "subject": said["stamp_subject"],
     }
     return Frame(fields, dict(said["stamp"]))

@@ -186,6 +186,7 @@ class Writer:
         numbering, known = self.numbering, self.known
         trial = Numbering(numbering.literature)
         trial.section, trial.labels = numbering.section, dict.fromkeys(self.pending, "0") | numbering.labels
+        trial.part, trial.counts = numbering.part, dict(numbering.counts)
         self.numbering, self.known = trial, set(known)
         try:
             lines = list(enumerate(text_of(self.language, name).splitlines(), 1))

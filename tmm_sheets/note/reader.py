@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from math import degrees, floor, isfinite, log10
@@ -341,6 +341,7 @@ class Reader:
         to_mm, name = (scale.mm, "mm") if scale is not None else (float, plan.unit)
         k = plan.labels.index(self.label) if self.label in plan.labels else min(2, len(plan.labels) - 1)
         position = plan.labels[k] if len(plan.labels) > 1 else ""
+        names = {s.name for step in plan for s in (step, *step.args) if isinstance(s, Step | Given)}
         told: list[tuple[Step, str]] = []
         for step, sentence in zip(plan, protocol.sentences(plan, k, to_mm, name), strict=True):
             if skip(step) or _bare(sentence):
@@ -352,7 +353,7 @@ class Reader:
                 told.append((step, sentence))
         found: list[Inline] = []
         for step, sentence in told:
-            found += [*marked(self.quoted(sentence), self.id(step), position, self.language), " "]
+            found += [*marked(self.quoted(sentence), self.id(step), position, self.language, names), " "]
         return tuple(found)
 
     def _together(self, first: str, second: str) -> str:
@@ -466,12 +467,14 @@ def _marked(language: str) -> re.Pattern[str]:
     )
 
 
-def marked(sentence: str, step: str, position: str, language: str) -> Iterator[Inline]:
-    """A sentence with its letters as symbols and its numbers as numbers of a step."""
+def marked(sentence: str, step: str, position: str, language: str, names: Collection[str] = ()) -> Iterator[Inline]:
+    """A sentence with its letters as symbols and its numbers as numbers of a step; ``names`` are those of its steps."""
     at = 0
     for m in _marked(language).finditer(sentence):
         before = sentence[m.start() - 1 : m.start()]
         if before.isalpha() or (m["word"] and sentence[m.end() : m.end() + 1].isalpha() and _cyrillic(sentence[m.end()])):
+            continue
+        if m["word"] and language == "en" and not _lettered(m["word"], sentence[: m.start()], names):
             continue
         if m.start() > at:
             yield sentence[at : m.start()]
@@ -483,6 +486,13 @@ def marked(sentence: str, step: str, position: str, language: str) -> Iterator[I
             bare = text.rstrip("°").replace("−", "-").replace(",", ".")
             yield Number(text, step, float(bare), position, 0, unit_)
     yield sentence[at:]
+
+
+def _lettered(word: str, before: str, names: Collection[str]) -> bool:
+    """Whether an English sentence means letters by a word: a name, points one after another, a segment between bars."""
+    if word in ("a", "A"):
+        return re.search(r"(\b(point|points|[Tt]hrough|[Ff]rom|and|centre)|\||:) ?$", before) is not None
+    return word in names or bool(re.search(r"[\d_′″*'̅α-ωΑ-Ωϕϑ∞]|^([A-Z]\d?)+$", word)) or before.endswith("|")
 
 
 def _cyrillic(c: str) -> bool:

@@ -178,7 +178,7 @@ def _equations(r: Reader, plan: Plan) -> Iterator[tuple[Node, Text]]:
             last = by_ends.get((start.name, step.name))
             if path is None or (last is None and start.name != pole):
                 continue
-            direction = direction_of(along)
+            direction = direction_of(r, along)
             own = last if start.name != pole else head
             if direction and own:
                 known += [", "] if known else []
@@ -216,13 +216,15 @@ def _path(plan: Plan, pole: str, name: str) -> list[str] | None:
     return ways.get(name)
 
 
-def direction_of(along: Any) -> Node | None:
-    """A direction in letters: parallel or perpendicular to what."""
+def direction_of(r: Reader, along: Any) -> Node | None:
+    """A direction in letters, or the name of a guide: parallel or perpendicular to what."""
     name = getattr(along, "name", "")
     if not name:
         return None
-    across = "⟂" in name
-    return Row((Sign("⟂" if across else "∥"), *_items(letters(named(name.replace("⟂", ""))))))
+    to = name.replace("⟂", "")
+    said = r.quoted(to)
+    of = (Words(f" {said}"),) if said != to else _items(letters(named(to)))
+    return Row((Sign("⟂" if "⟂" in name else "∥"), *of))
 
 
 def _greatest_acceleration(r: Reader, plan: Plan) -> dict[str, Any]:
