@@ -9,6 +9,6 @@ def opened(name):
     return Project(catalogue.read(name, False))
 
 
-def composed(project):
-    with words.on_paper("ru"):
+def composed(project, language="ru"):
+    with words.on_paper(language):
         return composing.compose(project)

@@ -9,7 +9,7 @@ import pytest
 
 from tests.note.opened import composed, opened
 from tmm_sheets import results, words
-from tmm_sheets.note import phrases
+from tmm_sheets.note import composing, phrases
 from tmm_sheets.note.document import Contents, Figure, Formula, Heading, Number, Paragraph, Reference, Sheet, Table, Where, numbers
 from tmm_sheets.note.formula import Letters, Words
 from tmm_sheets.note.phrases import plain_text
@@ -53,6 +53,12 @@ def test_every_reference_leads_somewhere(note):
     assert set(asked) <= targets
 
 
+def test_every_figure_and_table_is_spoken_of(note):
+    asked = {x.target for b in note.blocks() if isinstance(b, Paragraph) for x in b.text if isinstance(x, Reference)}
+    assert {f"figure:{b.number}" for b in note.blocks() if isinstance(b, Figure)} <= asked
+    assert {f"table:{b.number}" for b in note.blocks() if isinstance(b, Table)} <= asked
+
+
 def test_the_abstract_counts_what_is_there(note):
     text = next(plain_text(b.text) for b in note.front if isinstance(b, Paragraph))
     blocks = list(note.blocks())
@@ -75,7 +81,7 @@ def test_a_letter_is_explained_once(note):
 
 def test_letters_of_numbered_formulas_are_explained(note):
     """Each formula of the section on the flywheel and of the gear is followed by words for what is new in it."""
-    explained = {r.meaning for b in note.blocks() if isinstance(b, Where) for r in b.rows}
+    explained = {plain_text(r.meaning) for b in note.blocks() if isinstance(b, Where) for r in b.rows}
     for meaning in ("момент инерции маховика", "коэффициент неравномерности движения", "угол зацепления", "средний диаметр обода",
                     "приведённый момент сил", "угловая скорость звена 3"):  # fmt: skip
         assert meaning in explained
@@ -173,13 +179,13 @@ def test_the_ratio_of_strokes_by_the_formula_of_the_manual(note):
 
 def test_templates_hold_no_digit():
     """Numbers come from the record: a digit stands only in letters (ω_1), in names of sources and behind a dash of a remark."""
-    for language in ("ru",):
+    for language in words.LANGUAGES:
         for name in phrases.names(language):
             for n, line in enumerate(phrases.text_of(language, name).splitlines(), 1):
                 if line.startswith(("#", "%formula", "%figure", "%table", "%if")):
                     line = line.partition("|")[2] if "|" in line else ""
                 bare = re.sub(r"\$[^$]*[^\d\s,.$][^$]*\$|\{[^{}]*\}", "", line)
-                assert not re.search(r"\d", bare.replace("формата А1", "")), f"{name}.txt:{n}: {line}"
+                assert not re.search(r"\d", re.sub("формат[ау] А1|size A1", "", bare)), f"{name}.txt:{n}: {line}"
 
 
 @pytest.mark.parametrize(("name", "sections"), [
@@ -199,7 +205,41 @@ def test_what_a_project_lacks_is_left_out_and_the_rest_renumbered(name, sections
     assert not made.problems
     test_nothing_is_empty_or_unfilled(made)
     test_every_reference_leads_somewhere(made)
+    test_every_figure_and_table_is_spoken_of(made)
     test_formulas_hold_no_name_of_the_program(made)
+
+
+@pytest.mark.parametrize(("section", "fields", "said", "unsaid"), [
+    ("structure", {"mobile": False}, "отличается от числа начальных звеньев", "является механизмом"),
+    ("structure", {"turning_only": True}, "все они вращательные", "поступательных"),
+    ("synthesis", {"near": False}, "следует учитывать при оценке", "незаметно"),
+    ("forces", {"agree": False}, "направления сил и уравнения групп следует проверить", "Результаты совпадают"),
+    ("flywheel", {"needed": False}, "маховик не нужен", "принимаем значение"),
+    ("flywheel", {"close": False}, "следует увеличить", "допустима, поэтому"),
+    ("flywheel", {"above": False}, "меньше предела", "больше предела"),
+    ("flywheel", {"slow": False}, "превышает 30\u00a0м/с, допустимые", "для чугунного обода она допустима"),
+    ("flywheel", {"even": False}, "следует учитывать", "Это мало"),
+    ("gear", {"undercut": True}, "Принимаем коэффициенты", "зубья обоих колёс не подрезаются"),
+    ("gear", {"overlaps": False}, "контакт зубьев прерывается", "без разрыва"),
+    ("gear", {"worse": ""}, "почти одинаковы", "Сильнее скользит"),
+    ("gear", {"radial": False}, "С окружностью впадин эвольвенту", "продолжаем по радиусу"),
+    ("cam", {"kept": False}, "Условие нарушено", "Условие выполнено"),
+    ("cam", {"exceeds_elsewhere": False}, "График угла давления", "На остальных фазах"),
+    ("cam", {"round": False}, "самопересекается", "\0"),
+    ("cam", {"central": True}, "Толкатель центральный", "Эксцентриситет равен"),
+])  # fmt: skip
+def test_what_is_said_follows_the_record(reader, section, fields, said, unsaid):
+    """A sentence about a result stands only where the record bears it out; here the record says the contrary of the shaper's."""
+    from importlib import import_module
+
+    scope = import_module(f"tmm_sheets.note.sections.{section}").scope(reader)
+    assert fields.keys() <= scope.fields.keys()
+    assert all(bool(scope.fields[k]) != bool(v) for k, v in fields.items())
+    scope.fields = composing.general(reader).fields | scope.fields | fields
+    numbering = phrases.Numbering(composing.literature())
+    text = " ".join(plain_text(b.text) for b in phrases.Writer("ru", numbering).blocks(section, scope) if isinstance(b, Paragraph))
+    assert said in text
+    assert unsaid not in text
 
 
 def test_an_own_mechanism_without_forces(tmp_path):
@@ -236,9 +276,44 @@ def test_words_stay_on_the_paper_alone():
     assert words.paper() == "ru"
 
 
-def test_no_sentence_breaks_off_before_a_number():
+@pytest.mark.parametrize("language", words.LANGUAGES)
+def test_no_sentence_breaks_off_before_a_number(language):
     """An optional part of a template never ends between the word for a figure and its number."""
-    for name in phrases.names("ru"):
-        for n, line in enumerate(phrases.text_of("ru", name).splitlines(), 1):
-            assert not re.search(r"(рис\.|табл\.|таблице)\s*(\]\]|\[\[|$)", line), f"{name}.txt:{n}"
+    for name in phrases.names(language):
+        for n, line in enumerate(phrases.text_of(language, name).splitlines(), 1):
+            assert not re.search(r"(рис\.|табл\.|таблице|таблиці|fig\.|table)\s*(\]\]|\[\[|$)", line), f"{name}.txt:{n}"
             assert line.count("[[") == line.count("]]"), f"{name}.txt:{n}"
+
+
+@pytest.mark.parametrize("language", ["uk", "en"])
+def test_the_languages_tell_the_same(language):
+    """Every template asks for the same things under the same conditions, and words.toml has the same entries."""
+    assert phrases.names(language) == phrases.names("ru")
+    for name in phrases.names("ru"):
+        asked = {of: [m for line in phrases.text_of(of, name).splitlines() for m in _asked(line)] for of in ("ru", language)}
+        assert asked[language] == asked["ru"], name
+    for table, entries in phrases.words("ru").items():
+        if isinstance(entries, dict) and table not in ("several", "guides", "indices"):
+            assert entries.keys() <= phrases.words(language)[table].keys(), table
+
+
+def _asked(line):
+    """Commands with what they name, and the fields that lead to something else, of a line."""
+    if line.startswith("%"):
+        yield line.partition("|")[0].split("{")[0].split()[:2] if not line.startswith(("%centre", "%contents")) else line.split()[0]
+    yield from sorted(re.findall(r"\{@[^{}]*\}", line))
+
+
+@pytest.mark.parametrize(("language", "name", "foreign"), [("en", "lugansk/shaper", "[а-яА-Я]"), ("uk", "press", "[ыэъёЫЭЪЁ]")])
+def test_a_note_in_another_language(language, name, foreign):
+    made = composed(opened(name), language)
+    sources = [b for b in made.body if isinstance(b, Paragraph) and re.match(r"\d+\. ", plain_text(b.text))]
+    said = [plain_text(b.text) for b in made.blocks() if isinstance(b, Paragraph) and b not in sources]
+    said += [b.text for b in made.blocks() if isinstance(b, Heading)]
+    said += [plain_text(r.meaning) for b in made.blocks() if isinstance(b, Where) for r in b.rows]
+    said += [plain_text(cell) for b in made.blocks() if isinstance(b, Table) for row in b.rows for cell in row]
+    assert not [text for text in said if re.search(foreign, text)]
+    assert not made.problems
+    test_nothing_is_empty_or_unfilled(made)
+    test_every_reference_leads_somewhere(made)
+    test_every_figure_and_table_is_spoken_of(made)

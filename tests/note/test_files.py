@@ -10,6 +10,7 @@ import pytest
 
 from tests.note.opened import composed, opened
 from tmm_sheets.__main__ import run
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.note import note as writing
 
 pypdfium2 = pytest.importorskip("pypdfium2")
@@ -94,22 +95,12 @@ def test_wrong_usage_is_told(arguments, told, capsys):
     assert told in capsys.readouterr().err
 
 
-def test_a_language_without_templates_is_told(capsys, tmp_path):
-    pytest.importorskip("typst")
-    from tmm_sheets import words
+def test_a_language_without_templates_is_told():
+    from tmm_sheets.note import phrases
 
-    before = words.paper(), words.asked()
-    try:
-        words.ask_paper("en")
-        status = run(["note", "lugansk/cam_flat", "--lang", "en", "-o", str(tmp_path / "x")])
-    finally:
-        words.set_paper(before[0])
-        words.ask_paper(before[1])
-    if status == 0:
-        pytest.skip("there are templates in English by now")
-    assert status == 1
-    assert "there are no templates of the note" in capsys.readouterr().err
-    assert not (tmp_path / "x").exists()
+    with pytest.raises(CannotBuild, match="there are no templates of the note in the language") as told:
+        phrases.folder("eo")
+    assert "en, ru, uk" in str(told.value)
 
 
 def test_a_wrong_template_is_told_with_its_line(monkeypatch):

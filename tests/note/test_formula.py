@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from tmm_sheets.construction import expression as e
-from tmm_sheets.note import omml
+from tmm_sheets.note.alphabets import TYPST, equation, spelt, string
 from tmm_sheets.note.formula import (
     Fenced,
     Figures,
@@ -21,7 +21,6 @@ from tmm_sheets.note.formula import (
     letters_of,
     of_tree,
 )
-from tmm_sheets.note.typst_writer import math, string
 
 
 @pytest.mark.parametrize(("name", "markup"), [
@@ -44,7 +43,7 @@ A, B, C = (e.Argument(i) for i in range(3))
 
 
 def shown(tree, *texts):
-    return math(of_tree(tree, [Operand(letters(t), None, t.startswith("−")) for t in texts]))
+    return spelt(of_tree(tree, [Operand(letters(t), None, t.startswith("−")) for t in texts]), TYPST)
 
 
 def test_a_negative_factor_stands_in_brackets():
@@ -72,13 +71,13 @@ def test_an_angle_is_in_degrees_inside_a_function_only():
 
     tree = np.tan(A) - A
     node = of_tree(tree, [Operand(Figures("0,3491"), Figures("20°"))])
-    assert math(node) == '"tg " "20°" − "0,3491"'
+    assert spelt(node, TYPST) == '"tg " "20°" − "0,3491"'
 
 
 def test_every_node_is_well_formed_omml():
     node = Row((Fraction(letters("a_1"), letters("b^2")), Sign("="), Fenced("(", Underlined(letters("V̅_B"), 2), ")"),
                 Words("кг & м"), of_tree(e.Operation("sqrt", (A,)), [Operand(letters("x"))]), letters("F_{21}^{τ}")))  # fmt: skip
-    tree = ET.fromstring(omml.equation(node))
+    tree = ET.fromstring(equation(node))
     tags = {x.tag.rpartition("}")[2] for x in tree.iter()}
     assert {"f", "num", "den", "sSub", "sSup", "sSubSup", "d", "bar", "rad"} <= tags
     assert "кг & м" in "".join(tree.itertext())

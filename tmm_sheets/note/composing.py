@@ -13,7 +13,9 @@ from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import (
     Block,
+    Explained,
     Figure,
+    Formula,
     Frame,
     Heading,
     Note,
@@ -23,15 +25,17 @@ from tmm_sheets.note.document import (
     Symbol,
     Table,
     Text,
+    Where,
 )
-from tmm_sheets.note.formula import letters
+from tmm_sheets.note.formula import letters, letters_of, reworded
 from tmm_sheets.note.phrases import Numbering, Scope, Writer
 from tmm_sheets.note.pictures import Pictures
 from tmm_sheets.note.reader import Reader
+from tmm_sheets.note.sections import errata
 from tmm_sheets.resources import template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable, Iterator
 
     from tmm_sheets.project import Project
 
@@ -45,11 +49,34 @@ def _order() -> dict[str, Any]:
         raise BadInput(Problem(str(e), str(path))) from None
 
 
-def literature(language: str) -> dict[str, str]:
-    """Entries of the literature by their keys."""
-    path = phrases.folder(language) / "literature.toml"
-    found: dict[str, str] = tomllib.loads(path.read_text(encoding="utf-8"))
+def _order_of(project: Project) -> tuple[list[str], list[dict[str, Any]]]:
+    """Names of the parts before the sections, and the sections, in the order of the manual that the project comes from."""
+    order = _order()
+    own: dict[str, Any] = next((of for name, of in order["manuals"].items() if project.variant.project.name.startswith(name)), {})
+    sections = order["section"]
+    if "sections" in own:
+        sections = sorted(sections, key=lambda s: own["sections"].index(s["template"]) if s["template"] in own["sections"] else -1)
+    return own.get("front", order["front"]), sections
+
+
+@cache
+def literature() -> dict[str, str]:
+    """Entries of the literature by their keys, each in the language of the source."""
+    found: dict[str, str] = tomllib.loads(template("note/literature.toml").read_text(encoding="utf-8"))
     return found
+
+
+def reader_of(project: Project, say: Callable[[str], None] = lambda _: None) -> Reader:
+    """What the sections of a note read: the project with its sheets drawn; those that cannot be are told among the problems."""
+    from tmm_sheets.sheets import sheet
+
+    attempt = sheet.every(project, say)
+    scales: dict[str, Any] = {}
+    for composed in attempt.drawn.values():
+        scales |= composed.scales
+    reader = Reader(project, catalogues.paper(), Pictures(attempt.drawn), scales)
+    reader.problems += [f"{name}: {e}" for name, e in attempt.refused.items()]
+    return reader
 
 
 def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> Note:
@@ -60,28 +87,23 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     CannotBuild
         when there are no templates of that language, or nothing of the project can be drawn.
     """
-    from tmm_sheets.sheets import sheet
-
     language = catalogues.paper()
     said = phrases.words(language)
-    attempt = sheet.every(project, say)
-    scales: dict[str, Any] = {}
-    for composed in attempt.drawn.values():
-        scales |= composed.scales
+    reader = reader_of(project, say)
     say("note")
-    reader = Reader(project, language, Pictures(attempt.drawn), scales)
-    numbering = Numbering(literature(language))
+    numbering = Numbering(literature())
     writer = Writer(language, numbering)
     parts = _parts(project)
-    made: list[Block] = []
-    sections: list[str] = []
+    front_order, sections = _order_of(project)
     scopes: dict[str, Scope] = {}
-    base = _general(reader, parts)
-    task = writer.blocks("task", _with(_task(reader), base))
-    made += task
-    body: list[Block] = writer.blocks("introduction", base)
-    for section in _order()["section"]:
-        if section["needs"] and section["needs"] not in parts:
+    base = general(reader)
+    before: dict[str, list[Block]] = {}
+    for name in front_order:
+        if name != "abstract":  # which tells of all the others
+            before[name] = writer.blocks(name, _with(_task(reader), base) if name == "task" else base)
+    body: list[Block] = []
+    for section in sections:
+        if section["needs"] not in parts:
             continue
         name = section["template"]
         try:
@@ -91,34 +113,33 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
             continue
         scopes[name] = found
         body += writer.blocks(name, _with(found, base))
-        sections.append(name)
     summary = dict(base.fields)
     for name, found in scopes.items():
-        summary[name] = {**found.fields, "is": True}
+        summary[name] = {**dict.fromkeys(found.formulas, True), **found.fields, "is": True}
     body += writer.blocks("conclusion", Scope(summary))
+    if project.variant.misprints or errata.of(project):
+        body += writer.blocks("errata", errata.scope(reader))
     body += _sources(language, numbering)
     sheets = reader.pictures.pages()
     body += _appendices(sheets)
+    told = [*(b for blocks in before.values() for b in blocks), *body]
     counts = {
-        "figures": sum(isinstance(b, Figure) for b in [*made, *body]),
-        "tables": sum(isinstance(b, Table) for b in [*made, *body]),
+        "figures": sum(isinstance(b, Figure) for b in told),
+        "tables": sum(isinstance(b, Table) for b in told),
         "sources": len(numbering.cited),
         "sheets": len(sheets),
         "formulas": numbering.total.get("formula", 0),
     }
-    front = [
-        *writer.blocks(
-            "abstract", Scope(summary | {k: Number(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
-        ),
-        *made,
-    ]
+    before["abstract"] = writer.blocks(
+        "abstract", Scope(summary | {k: Number(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
+    )
+    front = [b for name in front_order for b in before[name]]
     reminders = writer.blocks("reminders", base)
-    if attempt.refused:
-        reader.problems += [f"{name}: {e}" for name, e in attempt.refused.items()]
     block = project.variant.title_block
+    front, body, reminders = (list(_reworded(blocks, said["indices"])) for blocks in (front, body, reminders))
     return Note(
         language,
-        f"{project.variant.project.title}. {said['title']}",
+        f"{catalogues.of_file(project.variant.project.title)}. {said['title']}",
         block.student or "tmm_sheets",
         tuple(front),
         _title_page(reader),
@@ -128,6 +149,25 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
         1,
         tuple(dict.fromkeys(reader.problems)),
     )
+
+
+def _reworded(blocks: Iterable[Block], table: dict[str, str]) -> Iterator[Block]:
+    """Blocks with the indices of letters in the language of the note."""
+
+    def text(parts: Text) -> Text:
+        return tuple(Symbol(reworded(x.node, table)) if isinstance(x, Symbol) else x for x in parts)
+
+    for b in blocks:
+        if isinstance(b, Paragraph):
+            yield replace(b, text=text(b.text))
+        elif isinstance(b, Formula):
+            yield replace(b, lines=tuple(reworded(x, table) for x in b.lines))
+        elif isinstance(b, Where):
+            yield replace(b, rows=tuple(Explained(reworded(r.symbol, table), text(r.meaning), r.unit) for r in b.rows))
+        elif isinstance(b, Table):
+            yield replace(b, rows=tuple(tuple(map(text, row)) for row in b.rows))
+        else:
+            yield b
 
 
 PAGES = Number("\u0001", "note.pages", 0)
@@ -158,30 +198,30 @@ def _parts(project: Project) -> set[str]:
     return found
 
 
-def _general(r: Reader, parts: set[str]) -> Scope:
+def general(r: Reader) -> Scope:
     """Fields that every template may use."""
+    parts = _parts(r.project)
     v = r.project.variant
     fields: dict[str, Any] = {
-        "name": v.project.title,
-        "variant": v.project.variant or "",
-        "project": v.project.name,
-        "machine": v.project.title,
+        "name": catalogues.of_file(v.project.title),
         "sheets": len(r.pictures.sheets),
-        "institution": v.title_block.institution,
+        "transport": v.project.name.startswith("transport/"),
+        "institution": catalogues.of_file(v.title_block.institution or ""),
         **{f"has_{p}": True for p in parts},
     }
     said = phrases.words(r.language)
     fields |= {f"keys_{p}": said["keys"][p] if p in parts else "" for p in said["keys"]}
     fields["objects"] = _listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
     fields["aims"] = _listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
-    fields["variant_text"] = said["phrases"]["variant"].format(variant=v.project.variant) if v.project.variant else ""
+    variant = catalogues.of_file(v.project.variant or "")
+    fields["variant_text"] = said["phrases"]["variant"].format(variant=variant) if variant else ""
     fields["and_forces"] = said["phrases"]["and_forces"] if "forces" in parts else ""
     fields["checked_text"] = said["phrases"]["checked"] if {"forces", "flywheel"} & parts else ""
     fields["way_text"] = said["phrases"]["way_forces" if "forces" in parts else "way_positions"] if "positions" in parts else ""
     moment = v.balancing is None or v.balancing.kind == "moment"
     fields |= said["balancing"]["moment" if moment else "force"]
     if "positions" in parts:
-        fields |= {"mobile": r.project.mechanism.mobility == 1, "label": r.label}
+        fields["label"] = r.label
     return Scope(fields)
 
 
@@ -201,7 +241,7 @@ def _task(r: Reader) -> Scope:
     except CannotBuild as e:
         r.problems.append(str(e))
     r._book = None
-    rows += _data(r)
+    rows += [*_data(r), *_places(r)]
     figures = {}
     if r.project.variant.crank is not None and r.project.variant.cycle is not None:
         figure = r.pictures.figure(f"position plan {r.label}", own=True)
@@ -214,41 +254,73 @@ def _task(r: Reader) -> Scope:
 def _data(r: Reader) -> list[tuple[Text, ...]]:
     """Rows of the table of inputs: what the project file gives, as it is written there, and ``[data]`` has words for."""
     said = phrases.words(r.language)
+    own = {q.step: q.symbol for q in r.givens()}
     rows: list[tuple[Text, ...]] = []
     for key, entry in said["data"].items():
         for path, value, item in _values(r.project.variant.data, key.split(".")):
-            for number in value if isinstance(value, list) else [value]:
-                symbol, meaning = (text.replace("*", item) for text in entry[:2])
-                row = _row(r, ".".join(path), number, symbol, meaning)
-                if row is not None:
-                    rows.append(row)
+            symbol, meaning = (text.replace("*", item) for text in entry[:2])
+            if path in own and not path.startswith("crank.speed"):
+                symbol = own[path]
+            symbol = letters_of(symbol)
+            if isinstance(value, list):  # of a force by a table the greatest
+                value = max((force for _, force in value), key=lambda force: float(str(force).split()[0]))
+            row = _row(r, path, value, symbol, meaning or phrases.meaning_of(symbol, r.language))
+            if row is not None:
+                rows.append(row)
     return rows
 
 
-def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str) -> tuple[Text, ...] | None:
+def _places(r: Reader) -> Iterator[tuple[Text, ...]]:
+    """Rows of the fixed points and guides: coordinates from the pivot of the crank, x to the right, y up."""
+    said = phrases.words(r.language)["task"]
+    data = r.project.variant.data
+    for name, place in data.get("points", {}).items():
+        if any(float(str(v).split()[0]) for v in place):
+            for axis, v in zip("xy", place, strict=True):
+                yield from _place(r, f"points.{name}", v, f"{axis}_{{{name}}}", said[axis].format(name=name))
+    for i, guide in enumerate(data.get("guide", ())):
+        name = r.quoted(guide["name"])
+        through = guide.get("through", ())
+        for axis, v in zip("xy", through if isinstance(through, list) else (), strict=False):
+            yield from _place(r, f"guide[{i}].through", v, "", said[f"guide_{axis}"].format(name=name))
+        if "direction" in guide and "link" not in guide:
+            yield from _place(r, f"guide[{i}].direction", guide["direction"], "", said["guide_angle"].format(name=name))
+
+
+def _place(r: Reader, path: str, value: Any, symbol: str, meaning: str) -> Iterator[tuple[Text, ...]]:
+    row = _row(r, path, value, symbol, meaning, zero=True)
+    if row is not None:
+        yield row
+
+
+def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str, zero: bool = False) -> tuple[Text, ...] | None:
     """A row of the inputs; None for a value that is no number."""
     text, _, unit = (str(value).strip() + " ").partition(" ")
     try:
         number = float(text.replace(",", "."))
     except ValueError:
         return None
-    if isinstance(value, bool) or not number:
+    if isinstance(value, bool) or not (number or zero):
         return None
     named = r.unit(unit.strip())
-    return (meaning,), ((Symbol(letters(symbol)),) if symbol else ("–",)), (named or "–",), (r.number(number, "", path),)
+    shown: Text = (Symbol(letters(symbol)),) if symbol else ("–",)
+    return tuple(phrases.set_text(meaning)), shown, (named or "–",), (r.number(number, "", path),)
 
 
-def _values(data: Any, path: list[str], before: tuple[str, ...] = (), item: str = "") -> list[tuple[tuple[str, ...], Any, str]]:
-    """Values under a path of the project file; ``*`` stands for every table of a list, which is called by its name."""
+def _values(data: Any, path: list[str], before: str = "", item: str = "") -> list[tuple[str, Any, str]]:
+    """Values under a path of the project file, with where they stand and what they are called there.
+
+    ``*`` stands for every table of a list, which is called by its name, ``#`` for every entry, which is called by its number.
+    """
     if not path:
         return [(before, data, item)]
     key, rest = path[0], path[1:]
     if key == "*" and isinstance(data, list):
-        return [x for i, inner in enumerate(data) for x in _values(inner, rest, (*before, str(i)), str(inner.get("name", i + 1)))]
+        return [x for i, inner in enumerate(data) for x in _values(inner, rest, f"{before}[{i}]", str(inner.get("name", i + 1)))]
     if key == "#" and isinstance(data, list):
-        return [x for i, inner in enumerate(data) for x in _values(inner, rest, (*before, str(i)), str(i + 1))]
+        return [x for i, inner in enumerate(data) for x in _values(inner, rest, f"{before}[{i}]", str(i + 1))]
     if isinstance(data, dict) and key in data:
-        return _values(data[key], rest, (*before, key), item)
+        return _values(data[key], rest, f"{before}.{key}".lstrip("."), item)
     return []
 
 
@@ -270,11 +342,11 @@ def _title_page(r: Reader) -> dict[str, Any]:
     page = said["title_page"]
     return {
         "ministry": page["ministry"],
-        "institution": block.institution or page["institution"],
+        "institution": catalogues.of_file(block.institution or "") or page["institution"],
         "kind": page["kind"],
         "course": page["course"],
-        "theme": page["theme"].format(name=r.project.variant.project.title),
-        "designation": f"{block.designation} {page['code']}".strip(),
+        "theme": page["theme"].format(name=catalogues.of_file(r.project.variant.project.title)),
+        "designation": f"{catalogues.of_file(block.designation or '')} {page['code']}".strip(),
         "people": [page["student"], page["supervisor"], page["checker"]],
         "names": [block.student or "", block.supervisor or "", block.checker or ""],
         "place": page["place"],
@@ -288,13 +360,13 @@ def _frame(r: Reader) -> Frame:
     said = phrases.words(r.language)
     block = r.project.variant.title_block
     fields = {
-        "designation": f"{block.designation} {said['title_page']['code']}".strip(),
+        "designation": f"{catalogues.of_file(block.designation or '')} {said['title_page']['code']}".strip(),
         "student": block.student or "",
         "checker": block.checker or "",
         "supervisor": block.supervisor or "",
         "letter": block.letter or "",
-        "institution": block.institution or "",
-        "group": block.group or "",
+        "institution": catalogues.of_file(block.institution or ""),
+        "group": catalogues.of_file(block.group or ""),
         "subject": said["stamp_subject"],
     }
     return Frame(fields, dict(said["stamp"]))

@@ -86,7 +86,7 @@ class Explained:
     """A letter of a formula, what it means, its unit in words."""
 
     symbol: Node
-    meaning: str
+    meaning: Text
     unit: str
 
 

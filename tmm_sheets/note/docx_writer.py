@@ -10,7 +10,7 @@ from itertools import count
 from typing import Any
 from xml.sax.saxutils import escape
 
-from tmm_sheets.note import omml
+from tmm_sheets.note.alphabets import characters, equation
 from tmm_sheets.note.document import (
     Block,
     Contents,
@@ -327,7 +327,8 @@ class _Writer:
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(10))
             p.add_run((b.word if not i else "") + "\t")
             _math(p, row.symbol)
-            p.add_run(f" – {row.meaning}{', ' + row.unit if row.unit else ''}{'.' if i == len(b.rows) - 1 else ';'}")
+            end = "." if i == len(b.rows) - 1 else ";"
+            self._text(p, (" – ", *row.meaning, f", {row.unit}{end}" if row.unit else end))
 
     def _table(self, b: Table) -> None:
         from docx.enum.table import WD_TABLE_ALIGNMENT
@@ -463,10 +464,10 @@ class _Writer:
 
 def widths_of(b: Table) -> list[float]:
     """Widths of the columns of a table, mm, by what stands in them; together at most that of the text."""
-    from tmm_sheets.note.phrases import plain_text, weight
+    from tmm_sheets.note.phrases import plain_text
 
     def size(text: Text) -> float:
-        return len(plain_text(text)) + sum(weight(x.node) for x in text if isinstance(x, Symbol))
+        return len(plain_text(text)) + sum(characters(x.node) for x in text if isinstance(x, Symbol))
 
     columns = max(map(len, b.rows))
     wanted = [6.0 + 2.1 * min(max(size(row[i]) for row in b.rows if i < len(row)), 40) for i in range(columns)]
@@ -491,7 +492,7 @@ def _parsed(xml: str) -> Any:
 
 
 def _math(p: Any, node: Node) -> None:
-    p._p.append(_parsed(omml.equation(node)))
+    p._p.append(_parsed(equation(node)))
 
 
 def _begin(p: Any, instruction: str) -> None:

@@ -21,6 +21,16 @@ class Node:
         """The nodes it is made of."""
         return tuple(x for v in vars(self).values() for x in (v if isinstance(v, tuple) else (v,)) if isinstance(x, Node))
 
+    def of_parts(self, change: Callable[[Node], Node]) -> Node:
+        """The same kind of node made of other nodes."""
+
+        def changed(value: Any) -> Any:
+            if isinstance(value, Node):
+                return change(value)
+            return tuple(map(changed, value)) if isinstance(value, tuple) else value
+
+        return type(self)(*map(changed, vars(self).values()))
+
     def numbers(self) -> Iterator[Any]:
         """Numbers of the record in it, in order."""
         if isinstance(self, Figures) and self.source is not None:
@@ -116,7 +126,7 @@ class Underlined(Node):
 # --- letters ------------------------------------------------------------------------------------------------------
 
 _NAME = re.compile(
-    r"([FMGRVaωεφhJmzrψθ])(и?[\d–]+)([τn]?)([′″]*)|([FM])(Ми|и|пс|ур|д|с)(\d*)|([a-zπ])(\d+)([′″]*)|([A-Z])(\d+)([′″]*)"
+    r"([FMGRVaωεφhJmzrψθ])(и?[\d–]+)([τn]?)([′″]*)|([FM])(Ми|и|пс|ур|д|с|c)(\d*)|([a-zπ])(\d+)([′″]*)|([A-Z])(\d+)([′″]*)"
 )
 
 
@@ -152,7 +162,7 @@ def letters(markup: str) -> Node:
     if markup.startswith("inv "):
         return Row((Words("inv "), letters(markup[4:])))
     found: list[Node] = []
-    for m in _TOKEN.finditer(_INDEX.sub(r"_{\1}", markup)):
+    for m in _TOKEN.finditer(_INDEX.sub(r"_{\1}", markup.replace("²", "^2"))):
         below, above = (
             next((x for x in m.group(1, 2) if x is not None), None),
             next((x for x in m.group(3, 4) if x is not None), None),
@@ -166,6 +176,21 @@ def letters(markup: str) -> Node:
         elif m[5] != "\\":
             _append(found, m[5])
     return found[0] if len(found) == 1 else Row(tuple(found))
+
+
+def reworded(node: Node, table: Mapping[str, str]) -> Node:
+    """The same with other indices: ``table`` knows them by themselves, or with the letter before (пр, Jпр)."""
+    if not isinstance(node, Scripts):
+        return node.of_parts(lambda part: reworded(part, table))
+    letter = node.base.text if isinstance(node.base, Letters) else ""
+
+    def index(part: Node) -> Node:
+        if isinstance(part, Words):
+            return Words(table.get(letter + part.text, table.get(part.text, part.text)))
+        return part.of_parts(index)
+
+    below, above = (index(x) if x is not None else None for x in (node.below, node.above))
+    return Scripts(reworded(node.base, table), below, above)
 
 
 def _attach(found: list[Node], below: str | None, above: str | None) -> None:

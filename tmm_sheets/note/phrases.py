@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.note.alphabets import characters
 from tmm_sheets.note.document import (
     Block,
     Contents,
@@ -32,7 +33,7 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.formula import Fenced, Figures, Fraction, Letters, Node, Root, Row, Scripts, Sign, Words, letters
+from tmm_sheets.note.formula import Fenced, Fraction, Node, Row, Sign, letters, letters_of
 from tmm_sheets.resources import template
 from tmm_sheets.words import tell
 
@@ -159,6 +160,8 @@ class Writer:
         self.known: set[tuple[str, str]] = set()
         self.template = ""
         self.pending: set[str] = set()
+        self.running: list[Inline] = []
+        """the paragraph that is being written: it ends with an empty line or with what is no text"""
 
     def blocks(self, name: str, scope: Scope) -> list[Block]:
         """The blocks of a template.
@@ -173,7 +176,7 @@ class Writer:
         self._foresee(name, scope)
         lines = list(enumerate(text_of(self.language, name).splitlines(), 1))
         try:
-            return list(self._made(lines, scope))
+            return [*self._made(lines, scope), *self._paragraph()]
         except _Wrong as e:
             path = str(folder(self.language) / f"{name}.txt")
             raise BadInput(Problem(e.what, path, e.line)) from None
@@ -183,6 +186,7 @@ class Writer:
         numbering, known = self.numbering, self.known
         trial = Numbering(numbering.literature)
         trial.section, trial.labels = numbering.section, dict.fromkeys(self.pending, "0") | numbering.labels
+        trial.part, trial.counts = numbering.part, dict(numbering.counts)
         self.numbering, self.known = trial, set(known)
         try:
             lines = list(enumerate(text_of(self.language, name).splitlines(), 1))
@@ -192,40 +196,37 @@ class Writer:
             pass  # told by the reading that counts
         finally:
             self.numbering, self.known = numbering, known
+            self.running.clear()
         numbering.labels |= {k: v for k, v in trial.labels.items() if v != "0"}
 
     def _made(self, lines: list[tuple[int, str]], scope: Scope) -> Iterator[Block]:
-        paragraph: list[str] = []
         i = 0
         while i < len(lines):
             n, line = lines[i]
             i += 1
             if line.startswith("#"):
                 continue
-            if command := _COMMAND.fullmatch(line):
-                yield from self._paragraph(paragraph, n, scope)
-                if command[1] in ("if", "each"):
-                    inner, other, i = _split(lines, i, n)
-                    yield from self._conditional(command[1], command[2], inner, other, n, scope)
-                else:
+            command = _COMMAND.fullmatch(line)
+            if command and command[1] in ("if", "each"):
+                inner, other, i = _split(lines, i, n)
+                yield from self._conditional(command[1], command[2], inner, other, scope)
+            elif command or line.startswith(("=", "- ")) or not line.strip():
+                yield from self._paragraph()
+                if command:
                     yield from self._command(command[1], command[2], n, scope)
-            elif line.startswith("="):
-                yield from self._paragraph(paragraph, n, scope)
-                yield self._heading(line, n, scope)
-            elif not line.strip() or line.startswith("- "):
-                yield from self._paragraph(paragraph, n, scope)
-                if line.startswith("- "):
+                elif line.startswith("="):
+                    yield self._heading(line, n, scope)
+                elif line.strip():
                     yield Paragraph(self.text("– " + line[2:], n, scope), "item")
             else:
-                paragraph.append(line.strip())
-        yield from self._paragraph(paragraph, lines[-1][0] if lines else 0, scope)
+                self.running += [*self.text(line.strip(), n, scope), " "]
 
-    def _paragraph(self, lines: list[str], n: int, scope: Scope) -> Iterator[Block]:
-        if lines:
-            text = self.text(" ".join(lines), n, scope)
-            lines.clear()
-            if any(not isinstance(x, str) or x.strip() for x in text):
-                yield Paragraph(text)
+    def _paragraph(self) -> Iterator[Block]:
+        """The paragraph that the lines so far make."""
+        text = tuple(_tidied(self.running))
+        self.running.clear()
+        if text:
+            yield Paragraph(text)
 
     def _heading(self, line: str, n: int, scope: Scope) -> Heading:
         level = len(line) - len(line.lstrip("="))
@@ -234,15 +235,15 @@ class Writer:
         return Heading(level, number, "".join(map(str, self.text(text.lstrip("! "), n, scope))))
 
     def _conditional(
-        self, word: str, what: str, inner: list[tuple[int, str]], other: list[tuple[int, str]], n: int, scope: Scope
+        self, word: str, what: str, inner: list[tuple[int, str]], other: list[tuple[int, str]], scope: Scope
     ) -> Iterator[Block]:
         if word == "if":
             negated = what.startswith("not ")
             name = what.removeprefix("not ").strip()
             yield from self._made(inner if bool(_found(scope, name)) != negated else other, scope)
             return
-        for item in _found(scope, what) or ():
-            yield from self._made(inner, scope.within(item))
+        made = [block for item in _found(scope, what) or () for block in self._made(inner, scope.within(item))]
+        yield from [*made[:-1], *map(_closed, made[-1:])]
 
     def _command(self, word: str, what: str, n: int, scope: Scope) -> Iterator[Block]:
         name, _, title = (part.strip() for part in what.partition("|"))
@@ -285,7 +286,7 @@ class Writer:
         for i, one in enumerate(said if isinstance(said, list) else [said]):
             number = self.numbering.next("formula", name if not i else f"{name}-{i}")
             rows = tuple(self._explained(one))
-            together = one.numbers is not None and weight(one.letters) + weight(one.numbers) < LONGEST
+            together = one.numbers is not None and characters(one.letters) + characters(one.numbers) < LONGEST
             if one.numbers is not None and together:
                 yield Formula((Row((*items(one.letters), Sign("="), *items(one.numbers))),), f"({number})")
             else:
@@ -301,7 +302,7 @@ class Writer:
             once = ("" if meaning.endswith(_OF_INDEX) else bare(markup), meaning)
             if meaning and once not in self.known:
                 self.known.add(once)
-                yield Explained(letters(markup), meaning.removesuffix(_OF_INDEX).rstrip(), unit)
+                yield Explained(letters(markup), tuple(set_text(meaning.removesuffix(_OF_INDEX).rstrip())), unit)
 
     def text(self, line: str, n: int, scope: Scope) -> Text:
         """A line with its fields filled in."""
@@ -359,6 +360,13 @@ class Writer:
         return Reference(f"({found})" if kind == "formula" else found, f"{kind}:{found}")
 
 
+def set_text(meaning: str) -> Iterator[Inline]:
+    """A meaning with the points in it, between dollar signs, set as letters."""
+    for i, part in enumerate(meaning.split("$")):
+        if part:
+            yield Symbol(letters(letters_of(part))) if i % 2 else part
+
+
 _OF_INDEX = "…"
 """How a meaning ends that holds for every letter of its kind: it is told once."""
 LONGEST = 58
@@ -369,11 +377,11 @@ WIDEST = 72
 
 def broken(node: Node) -> tuple[Node, ...]:
     """A formula in lines: a long sum is broken at its signs, which are repeated; a long numerator becomes a bracket."""
-    if weight(node) <= WIDEST:
+    if characters(node) <= WIDEST:
         return (node,)
     flat: list[Node] = []
     for x in items(node):
-        if isinstance(x, Fraction) and weight(x.over) > WIDEST // 2:
+        if isinstance(x, Fraction) and characters(x.over) > WIDEST // 2:
             under = x.under if not isinstance(x.under, Row) or len(x.under.items) == 1 else Fenced("(", x.under, ")")
             flat += [Sign("("), *items(x.over), Sign(")"), Sign("/"), *items(under)]
         else:
@@ -381,7 +389,7 @@ def broken(node: Node) -> tuple[Node, ...]:
     lines: list[list[Node]] = [[]]
     for i, x in enumerate(flat):
         rest = next((j for j in range(i + 1, len(flat)) if flat[j] in _BREAKS), len(flat))
-        if x in _BREAKS and lines[-1] and weight(Row((*lines[-1], *flat[i:rest]))) > WIDEST:
+        if x in _BREAKS and lines[-1] and characters(Row((*lines[-1], *flat[i:rest]))) > WIDEST:
             lines[-1].append(x)
             lines.append([])
         lines[-1].append(x)
@@ -399,22 +407,6 @@ def items(node: Node) -> tuple[Node, ...]:
 def label(scope: Scope, name: str) -> str:
     """Label of a figure, table or formula: in a list that of its item, where the items are counted."""
     return f"{name}-{scope.fields['nth']}" if "nth" in scope.fields else name
-
-
-def weight(node: Node) -> int:
-    """About how many characters wide a formula is."""
-    if isinstance(node, Letters):
-        return 1
-    if isinstance(node, Figures | Words):
-        return len(node.text)
-    if isinstance(node, Sign):
-        return 2 if node.text in "=+−·" else 1
-    if isinstance(node, Fraction):
-        return max(weight(node.over), weight(node.under)) + 1
-    if isinstance(node, Scripts):
-        inner = max((weight(x) for x in (node.below, node.above) if x is not None), default=0)
-        return weight(node.base) + (7 * inner + 9) // 10
-    return sum(map(weight, node.parts())) + (1 if isinstance(node, Fenced | Root) else 0)
 
 
 def _left(node: Node) -> Node | None:
@@ -486,6 +478,30 @@ def unit(name: str, language: str) -> str:
     return units.get(name, name)
 
 
+def _tidied(text: Iterable[Inline]) -> Iterator[Inline]:
+    """The same with one space between words and none at the ends."""
+    joined: list[Inline] = []
+    for x in text:
+        if isinstance(x, str) and joined and isinstance(joined[-1], str):
+            joined[-1] += x
+        else:
+            joined.append(x)
+    for i, x in enumerate(joined):
+        if isinstance(x, str):
+            x = re.sub(" +", " ", x)
+            x = x.lstrip(" ") if not i else x
+            x = x.rstrip(" ") if i == len(joined) - 1 else x
+        if x != "":
+            yield x
+
+
+def _closed(block: Block) -> Block:
+    """The last item of a list ends with a full stop."""
+    if isinstance(block, Paragraph) and block.look == "item" and isinstance(block.text[-1], str) and block.text[-1].endswith(";"):
+        return Paragraph((*block.text[:-1], block.text[-1][:-1] + "."), "item")
+    return block
+
+
 class _Wrong(Exception):
     def __init__(self, what: str, line: int) -> None:
         super().__init__(what)
@@ -499,7 +515,7 @@ def _found(scope: Scope, name: str) -> Any:
         if value is None:
             break
     if value is None:
-        return True if name in scope.formulas or name in scope.tables or name in scope.figures else None
+        return name in scope.formulas or name in scope.figures or len(scope.tables.get(name, ())) > 1 or None
     return value
 
 

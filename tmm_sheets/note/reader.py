@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from math import degrees, floor, isfinite, log10
@@ -193,6 +193,11 @@ class Reader:
                     found.setdefault(a.symbol, Quantity(a.symbol, float(a), a.unit, a.name))
         return list(found.values())
 
+    def length(self, a: str, b: str) -> str:
+        """Letters of the length between two points, as it is given or as they follow each other."""
+        known = {q.symbol for q in self.givens("m")}
+        return next((s for s in (f"l_{{{a}{b}}}", f"l_{{{b}{a}}}") if s in known), f"l_{{{a}{b}}}")
+
     # --- formulas
 
     def formula(
@@ -335,12 +340,42 @@ class Reader:
         scale = self.scales.get(plan.name)
         to_mm, name = (scale.mm, "mm") if scale is not None else (float, plan.unit)
         k = plan.labels.index(self.label) if self.label in plan.labels else min(2, len(plan.labels) - 1)
-        said = list(protocol.sentences(plan, k, to_mm, name))
+        position = plan.labels[k] if len(plan.labels) > 1 else ""
+        names = {s.name for step in plan for s in (step, *step.args) if isinstance(s, Step | Given)}
+        told: list[tuple[Step, str]] = []
+        for step, sentence in zip(plan, protocol.sentences(plan, k, to_mm, name), strict=True):
+            if skip(step) or _bare(sentence):
+                continue
+            together = self._together(told[-1][1], sentence) if told else ""
+            if together:
+                told[-1] = (told[-1][0], together)
+            else:
+                told.append((step, sentence))
         found: list[Inline] = []
-        for step, sentence in zip(plan, said, strict=True):
-            if not skip(step) and not _bare(sentence):
-                found += [*marked(sentence, self.id(step), plan.labels[k] if len(plan.labels) > 1 else "", self.language), " "]
+        for step, sentence in told:
+            found += [*marked(self.quoted(sentence), self.id(step), position, self.language, names), " "]
         return tuple(found)
+
+    def _together(self, first: str, second: str) -> str:
+        """Two sentences that end with different letters as one: draw the lines AB, CD; empty where they differ in more."""
+        alike, _, letter = second.rpartition(" ")
+        for one, many in phrases.words(self.language)["several"].items():
+            for begun in (alike, alike[: len(alike) - len(one)] + many):
+                if alike.endswith(one) and re.fullmatch(rf"{re.escape(begun)} [^ .:;]+(, [^ .:;]+)*\.", first):
+                    return f"{alike[: len(alike) - len(one)]}{many}{first[len(begun):-1]}, {letter}"
+        return ""
+
+    def quoted(self, text: str) -> str:
+        """A text in which names of guides that are words stand between quotation marks, in the language of the note."""
+        said: dict[str, Any] = phrases.words(self.language)
+        for guide in self.project.variant.guide:
+            if re.search(r"[^\W\d_]{3}", guide.name):
+                name = guide.name
+                for russian, own in said["guides"].items():
+                    name = name.replace(russian, own)
+                for end in ("₀", ""):
+                    text = re.sub(rf"(?<![«“\w]){guide.name + end}", said["quoted"].format(name=name + end), text)
+        return text
 
     # --- tables
 
@@ -432,12 +467,14 @@ def _marked(language: str) -> re.Pattern[str]:
     )
 
 
-def marked(sentence: str, step: str, position: str, language: str) -> Iterator[Inline]:
-    """A sentence with its letters as symbols and its numbers as numbers of a step."""
+def marked(sentence: str, step: str, position: str, language: str, names: Collection[str] = ()) -> Iterator[Inline]:
+    """A sentence with its letters as symbols and its numbers as numbers of a step; ``names`` are those of its steps."""
     at = 0
     for m in _marked(language).finditer(sentence):
         before = sentence[m.start() - 1 : m.start()]
         if before.isalpha() or (m["word"] and sentence[m.end() : m.end() + 1].isalpha() and _cyrillic(sentence[m.end()])):
+            continue
+        if m["word"] and language == "en" and not _lettered(m["word"], sentence[: m.start()], names):
             continue
         if m.start() > at:
             yield sentence[at : m.start()]
@@ -451,6 +488,13 @@ def marked(sentence: str, step: str, position: str, language: str) -> Iterator[I
     yield sentence[at:]
 
 
+def _lettered(word: str, before: str, names: Collection[str]) -> bool:
+    """Whether an English sentence means letters by a word: a name, points one after another, a segment between bars."""
+    if word in ("a", "A"):
+        return re.search(r"(\b(point|points|[Tt]hrough|[Ff]rom|and|centre)|\||:) ?$", before) is not None
+    return word in names or bool(re.search(r"[\d_′″*'̅α-ωΑ-Ωϕϑ∞]|^([A-Z]\d?)+$", word)) or before.endswith("|")
+
+
 def _cyrillic(c: str) -> bool:
     return "\u0400" <= c <= "\u04ff"
 
@@ -458,7 +502,7 @@ def _cyrillic(c: str) -> bool:
 def named(word: str) -> str:
     """Markup of letters as sentences write them: pb3 is p and b with the index 3, F21τ a force with its mark."""
     if "_" in word or "^" in word:
-        return re.sub(r"_(\w+)", r"_{\1}", word) if "{" not in word else word
+        return re.sub(r"_(\d+|[α-ωа-я]+|\w+)", r"_{\1}", word) if "{" not in word else word
     found = letters_of(word)
     if found != word:
         return found

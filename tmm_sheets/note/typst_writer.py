@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.note.alphabets import TYPST, spelt, string
 from tmm_sheets.note.document import (
     Block,
     Contents,
@@ -22,20 +23,6 @@ from tmm_sheets.note.document import (
     Table,
     Text,
     Where,
-)
-from tmm_sheets.note.formula import (
-    Barred,
-    Fenced,
-    Figures,
-    Fraction,
-    Letters,
-    Node,
-    Root,
-    Row,
-    Scripts,
-    Sign,
-    Underlined,
-    Words,
 )
 from tmm_sheets.note.phrases import plain_text
 from tmm_sheets.resources import template
@@ -124,11 +111,6 @@ def _value(value: Any) -> str:
     return f"({', '.join(string(x) for x in value)},)" if isinstance(value, list | tuple) else string(str(value))
 
 
-def string(text: str) -> str:
-    """A string literal of Typst."""
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
-
-
 class _Writer:
     """Blocks as Typst, with the headings counted for the contents."""
 
@@ -153,11 +135,11 @@ class _Writer:
         return f"#{function}[{text(b.text)}]\n"
 
     def _formula(self, b: Formula) -> str:
-        lines = " ".join(f"${math(x)}$," for x in b.lines)
+        lines = " ".join(f"${spelt(x, TYPST)}$," for x in b.lines)
         return f"#formula(({lines}), {string(b.number)})"
 
     def _where(self, b: Where) -> str:
-        rows = " ".join(f"([${math(r.symbol)}$], {string(r.meaning + (', ' + r.unit if r.unit else ''))})," for r in b.rows)
+        rows = " ".join(f"([${spelt(r.symbol, TYPST)}$], [{text((*r.meaning, f', {r.unit}' if r.unit else ''))}])," for r in b.rows)
         return f"#where({string(b.word)}, ({rows}))"
 
     def _table(self, b: Table) -> str:
@@ -199,103 +181,10 @@ def height(b: Block) -> float:
 def text(parts: Text) -> str:
     """Running text."""
     return "".join(
-        f"${math(x.node)}$"
+        f"${spelt(x.node, TYPST)}$"
         if isinstance(x, Symbol)
         else "#pages-of-all;"
         if getattr(x, "step", "") == "note.pages"
         else f"#{string(str(x))};"
         for x in parts
     )
-
-
-_SIGNS = {
-    "·": "dot.op",
-    "∥": "parallel",
-    "⟂": "perp",
-    "|": "bar.v",
-    "/": "slash",
-    "(": "\\(",
-    ")": "\\)",
-    ",": '","',
-    ";": '";"',
-    "′": "prime",
-    "″": "prime.double",
-    ":": '":"',
-    "°": '"°"',
-    "–": '"–"',
-    "%": '"%"',
-    "*": '"*"',
-    "…": "dots.h",
-}
-
-
-def math(node: Node) -> str:
-    """A formula in Typst's mathematics, between dollar signs."""
-    if isinstance(node, Letters):
-        return _letter(node.text)
-    if isinstance(node, Figures):
-        return string(node.text)
-    if isinstance(node, Words):
-        return " space " if node.text == " " else string(node.text)
-    if isinstance(node, Sign):
-        return _SIGNS.get(node.text, node.text)
-    if isinstance(node, Row):
-        return " ".join(map(math, node.items)) or '""'
-    if isinstance(node, Scripts):
-        parts = [math(node.base)]
-        if node.above is not None:
-            parts.append(f"t: {math(node.above)}")
-        if node.below is not None:
-            parts.append(f"b: {math(node.below)}")
-        return f"attach({', '.join(parts)})"
-    if isinstance(node, Fraction):
-        return f"frac({math(node.over)}, {math(node.under)})"
-    if isinstance(node, Root):
-        return f"sqrt({math(node.of)})"
-    if isinstance(node, Fenced):
-        left, right = (_SIGNS.get(x, x) for x in (node.left, node.right))
-        return f"lr({left} {math(node.of)} {right})"
-    if isinstance(node, Barred):
-        return f"overline({math(node.of)})"
-    assert isinstance(node, Underlined)
-    made = math(node.of)
-    for _ in range(node.times):
-        made = f"underline({made})"
-    return made
-
-
-_GREEK = {
-    "α": "alpha",
-    "β": "beta",
-    "γ": "gamma",
-    "δ": "delta",
-    "ε": "epsilon",
-    "ζ": "zeta",
-    "η": "eta",
-    "θ": "theta",
-    "κ": "kappa",
-    "λ": "lambda",
-    "μ": "mu",
-    "ν": "nu",
-    "ξ": "xi",
-    "π": "pi",
-    "ρ": "rho",
-    "σ": "sigma",
-    "τ": "tau",
-    "φ": "phi",
-    "χ": "chi",
-    "ψ": "psi",
-    "ω": "omega",
-    "Δ": "Delta",
-    "Σ": "Sigma",
-    "Φ": "Phi",
-    "Ψ": "Psi",
-    "Ω": "Omega",
-    "Θ": "Theta",
-}
-
-
-def _letter(c: str) -> str:
-    if c in _GREEK:
-        return _GREEK[c] if c not in "ΔΣ" else f"upright({_GREEK[c]})"
-    return c if c.isascii() and c.isalpha() and len(c) == 1 else string(c)

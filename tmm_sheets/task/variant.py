@@ -20,6 +20,7 @@ from tmm_sheets.task import synthesis_refs, units
 from tmm_sheets.task.cam_keys import check_cam
 from tmm_sheets.task.letters import check_letters, freed
 from tmm_sheets.task.messages import of_parser, said
+from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.task.names import check_names
 from tmm_sheets.task.schema import (
     BalancingTable,
@@ -81,6 +82,7 @@ class Variant(Table):
     _data: dict[str, Any] = PrivateAttr(default_factory=dict)
     _text: str = PrivateAttr(default="")
     _warnings: tuple[str, ...] = PrivateAttr(default=())
+    _misprints: tuple[Misprint, ...] = PrivateAttr(default=())
 
     @property
     def text(self) -> str:
@@ -91,6 +93,11 @@ class Variant(Table):
     def warnings(self) -> tuple[str, ...]:
         """What is doubtful in the numbers, one line each: suspected misprints of the manuals' tables."""
         return self._warnings
+
+    @property
+    def misprints(self) -> tuple[Misprint, ...]:
+        """The suspected misprints among its numbers."""
+        return self._misprints
 
     @property
     def file(self) -> str:
@@ -185,8 +192,8 @@ def read(path: Path | str) -> Variant:
     return parse(texts.cleaned(text), file, (note,) if note else ())
 
 
-def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
-    """Read the text of a project file; ``file`` is its name in messages, ``warnings`` are kept for the user.
+def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple[Misprint, ...] = ()) -> Variant:
+    """Read the text of a project file; ``file`` is its name in messages, ``warnings`` and ``misprints`` are kept for the user.
 
     Raises
     ------
@@ -218,6 +225,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = ()) -> Variant:
     variant._data = data
     variant._text = text
     variant._warnings = warnings
+    variant._misprints = misprints
     return variant
 
 

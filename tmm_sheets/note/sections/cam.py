@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees
+from math import degrees, radians
 from typing import Any
 
 import numpy as np
@@ -12,10 +12,13 @@ from tmm_sheets.note.phrases import Scope, words
 from tmm_sheets.note.reader import Reader
 from tmm_sheets.note.sections.forces import scale_text
 
+MINUTE = radians(1 / 60)
+"""What an angle in degrees and minutes does not show, rad."""
+
 
 def scope(r: Reader) -> Scope:
     """Formulas of the cam's plans by name, the table of the law, figures."""
-    cam = r.project.cam
+    cam: Any = r.project.cam
     results = cam.results()
     table: Any = r.project.variant.cam
     found = Scope(
@@ -25,6 +28,7 @@ def scope(r: Reader) -> Scope:
             "plate": "flat" in table.follower or "plate" in table.follower,
             "law": words(r.language)["cam"]["laws"].get(str(table.law), ""),
             "roller": "r_roller" in results,
+            "geometric": table.closure != "force",
         }
     )
     for name in (
@@ -49,11 +53,18 @@ def scope(r: Reader) -> Scope:
                 unit = r.unit_of(step)
                 key = f"{name.removeprefix('cam-')}-{step.name}"
                 found.fields[key] = r.angle(float(value), r.id(step)) if unit == "rad" else r.of(step)
+    sizes: dict[str, float] = {}
     for name in ("r0", "e", "l0", "r_roller", "rho_min"):
         told = results.get(name)
         behind: Any = getattr(told, "step", told)
         if behind is not None and hasattr(behind, "rule"):
-            found.fields[name] = r.number(abs(float(np.real(behind.value))) * 1e3, "mm", r.id(behind))
+            sizes[name] = abs(float(np.real(behind.value)))
+            found.fields[name] = r.number(sizes[name] * 1e3, "mm", r.id(behind), kind=1.0)
+    found.fields["central"] = sizes.get("e", 1.0) < 1e-9
+    if "r_roller" in sizes:
+        found.fields["round"] = sizes["r_roller"] < sizes["rho_min"]
+        found.fields["by_rule"] = all(sizes["r_roller"] <= rule.limits[1] * (1 + 1e-9) for rule in cam.roller_rules)
+    _pressure(r, found)
     for name in ("cam-zone", "cam-profile"):
         scale = r.scales.get(name)
         if scale is not None:
@@ -63,9 +74,11 @@ def scope(r: Reader) -> Scope:
             found.fields[f"{name.removeprefix('cam-')}_steps"] = r.sentences(plan)
     found.fields["phases"] = list(_phases(r))
     _law(r, found)
-    found.fields["motion"] = [{"part": f} for f in r.pictures.parts("cam.motion")]
+    found.fields["motion"] = [
+        {"motion_part": f, "nth": str(i)} for i, f in enumerate(r.pictures.parts("cam.motion"), 1)
+    ]
     profile = r.pictures.figure("cam_profile.profile", focus=("curve", "cam-profile/O"))
-    found.fields["profiles"] = [{"part": profile}] if profile is not None else []
+    found.fields["profiles"] = [{"profile_part": profile, "nth": "1"}] if profile is not None else []
     for name, picture in (
         ("zone", "cam_zone.of_tappet"),
         ("zone_rocker", "cam_zone.of_rocker"),
@@ -90,7 +103,7 @@ def _phases(r: Reader) -> Any:
     from tmm_sheets.note.reader import symbol_of
 
     for step in plan or ():
-        if step.name.startswith("φ_") and step.name[2:] in ("у", "дс", "с", "бс"):
+        if step.name.startswith("φ_") and step.name[2:] in ("у", "дс", "с", "бс") and step.value > 0:
             yield {
                 "letter": Symbol(letters(symbol_of(step))),
                 "value": r.angle(float(step.value), r.id(step)),
@@ -126,6 +139,24 @@ def _law(r: Reader, found: Scope) -> None:
             cells.append((r.fixed(degrees(float(alpha.value[i])), "", 1, r.id(alpha), label),))
         rows.append(tuple(cells))
     found.tables["law"] = tuple(rows)
-    if alpha is not None:
-        worst = float(np.nanmax(np.abs(alpha.value)))
-        found.fields["pressure_greatest"] = r.angle(worst, r.id(alpha))
+
+
+def _pressure(r: Reader, found: Scope) -> None:
+    """Greatest pressure angle of the phases on which it is limited, and of the whole turn, by many positions."""
+    cam = r.project.cam
+    inversion = cam.dense
+    phi, alpha = np.asarray(inversion.at.phi.value), np.abs(np.asarray(inversion.plan["α"].value))
+    limited = cam.data.limit
+    on = np.zeros(len(phi), dtype=bool)
+    for phase in [cam.law.rise, *([cam.law.fall] if limited == "both" else [])]:
+        on |= (phi >= phase.start - 1e-12) & (phi <= phase.end + 1e-12)
+    step = inversion.plan["α"]
+    greatest, worst = float(alpha[on].max()), float(alpha.max())
+    found.fields |= {
+        "pressure_limited": r.angle(greatest, r.id(step)),
+        "pressure_allowed": r.angle(cam.alpha, "cam.pressure_angle"),
+        "pressure_greatest": r.angle(worst, r.id(step)),
+        "limit_both": limited == "both",
+        "kept": greatest <= cam.alpha + MINUTE,
+        "exceeds_elsewhere": worst > cam.alpha + MINUTE,
+    }

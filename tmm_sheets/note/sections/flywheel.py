@@ -14,8 +14,12 @@ from tmm_sheets.note.reader import Quantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
 from tmm_sheets.numbers import is_zero
 
+CLOSE = 5.0
+"""Difference from the limit, per cent, that engineers allow."""
 EVEN = 0.05
 """Share of the square of the angular velocity below which an angular acceleration changes no inertia force noticeably."""
+DRAWN = 0.05
+"""What no drawing shows, mm."""
 SAFE = 30.0
 """Speed up to which a rim of cast iron is safe, m/s (000, 5.7)."""
 PLANS = (
@@ -82,7 +86,7 @@ def scope(r: Reader) -> Scope:
     if diagram is not None:
         found.figures["energy_mass"] = diagram
     for i, figure in enumerate(r.pictures.parts("mertsalov.column")):
-        found.fields.setdefault("column", []).append({"part": figure, "nth": str(i + 1)})
+        found.fields.setdefault("column", []).append({"column_part": figure, "nth": str(i + 1)})
     n = r.pictures.sheet_of("flywheel.wheel") or r.pictures.sheet_of("mertsalov.results") or r.pictures.sheet_of("flywheel.results")
     found.fields["sheet"] = str(n) if n is not None else ""
     return found
@@ -111,11 +115,11 @@ def _reduction(r: Reader, found: Scope) -> None:
             r.checked("J_{пр}", total, [omega, *terms], inertia) if not _crank_part(r) else _with_crank(r, omega, terms, inertia)
         )
     for name, step in plan.steps.items():
-        if name.startswith("N_") and not name.startswith("N_G") and "(" not in name:
-            value = float(np.real(value_at(step, r.at(step, None))))
-            found.fields.setdefault("powers", []).append({"power": r.of(step), "force": Symbol(letters(letters_of(name[2:])))})
-            if not is_zero(value, 1.0):
-                found.fields["moves"] = True
+        own = name.startswith("N_") and not name.startswith("N_G") and "(" not in name
+        if own and not is_zero(float(np.real(value_at(step, r.at(step, None)))), 1.0):
+            found.fields.setdefault("powers", []).append(
+                {"power": r.of(step), "symbol": Symbol(letters(letters_of(name[2:]))), "force": not name.startswith("N_M")}
+            )
     moment = at.moment()
     n = r.of(moment)
     power = Quantity("ΣN", n.value * fw.omega1, "W", r.id(moment), n.position)
@@ -152,13 +156,14 @@ def _results(r: Reader, found: Scope) -> None:
         found.fields[name] = r.of(step)
     found.fields["J_flywheel_limit"] = r.of(fw.limit_plan["J_м∞"])
     found.fields["difference"] = r.number(abs(fw.difference_percent), "%", "flywheel-limit/разность", digits=2)
-    found.fields["above"] = fw.difference_percent >= 0
+    found.fields |= {"above": fw.difference_percent >= 0, "close": abs(fw.difference_percent) < CLOSE}
     work = fw.work_plan
     for name in ("∫M", "ΔA"):
         if name in work:
-            found.fields["closing" if name == "ΔA" else "area"] = r.fixed(
-                float(np.real(work[name].value)), "mm", 1, r.id(work[name])
-            )
+            value = float(np.real(work[name].value))
+            if name == "ΔA":
+                found.fields["exact_area"] = abs(value) < DRAWN
+            found.fields["closing" if name == "ΔA" else "area"] = r.fixed(abs(value), "mm", 1, r.id(work[name]))
     wheel = fw.wheel
     if wheel is not None:
         for name in ("D", "B", "H", "m", "V"):
@@ -167,7 +172,7 @@ def _results(r: Reader, found: Scope) -> None:
                 found.fields[f"wheel_{name}"] = r.of(plan[name])
     found.fields["wheel"] = wheel is not None
     speed = found.fields.get("wheel_V")
-    found.fields["slow"] = speed is not None and speed.value < SAFE
+    found.fields |= {"slow": speed is not None and speed.value < SAFE, "safe": r.number(SAFE, "m/s", "flywheel.safe", digits=2)}
     found.tables["comparison"] = (
         (
             (words(r.language)["flywheel"]["quantity"],),

@@ -17,6 +17,8 @@ from tmm_sheets.note.reader import Differs, Quantity, Reader
 from tmm_sheets.numbers import is_zero
 
 BAR = "\u0305"
+AGREES = 1.0
+"""Difference of two results, per cent, that the accuracy of a drawing explains."""
 
 
 def scope(r: Reader) -> Scope:
@@ -35,14 +37,14 @@ def scope(r: Reader) -> Scope:
     )
     _loads(r, found)
     found.fields["applied"] = list(_applied(r))
-    found.fields["groups"] = [_group(r, g, i) for i, g in enumerate(reversed(m.groups), 1)]
+    told: set[str] = set()
+    found.fields["groups"] = [_group(r, g, i, told) for i, g in enumerate(reversed(m.groups), 1)]
     found.fields["crank_part"] = _crank(r)
     _lever(r, found)
     found.tables["reactions"] = _reactions(r)
-    found.tables["balance"] = _comparison(r)
+    _compare(r, found)
     for name, picture in (
         ("crank", "kinetics.crank"),
-        ("crank_plan", f"force-{m.crank.link}"),
         ("lever", "kinetics.lever"),
         ("balancing", "diagrams.balancing"),
     ):
@@ -128,10 +130,19 @@ def _weight_formulas(r: Reader, found: Scope, link: Any, loads: dict[str, Any], 
 
 
 def _applied(r: Reader) -> Iterator[dict[str, Any]]:
-    """Technological forces at the position that is told."""
-    for load in r.project.study.forces.external:
-        if load.role == "applied" and abs(value_at(load.vector, r.k)) and load.vector is not r.project.study.forces.balancing:
-            yield {"symbol": Symbol(letters(load.symbol.replace(BAR, ""))), "link": load.link, "value": r.of(load.vector)}
+    """Technological forces and moments, with their values at the position that is told."""
+    study = r.project.study
+    for load in study.forces.external:
+        if load.role == "applied" and load.vector is not study.forces.balancing:
+            symbol = Symbol(letters(load.symbol.replace(BAR, "")))
+            acts = bool(abs(value_at(load.vector, r.k)))
+            yield {"symbol": symbol, "link": load.link, "value": r.of(load.vector), "acts": acts, "force": True}
+    for link, couples in study.loads[1].items():
+        for couple in couples:
+            if not couple.name.startswith("Mи") and couple is not study.forces.balancing:
+                symbol = Symbol(letters(letters_of(couple.name)))
+                acts = bool(value_at(couple, r.at(couple, None)))
+                yield {"symbol": symbol, "link": link, "value": _size(r, couple, None), "acts": acts, "force": False}
 
 
 def _terms(r: Reader, total: Step) -> Iterator[tuple[str, complex, complex, float, Step, float]]:
@@ -194,8 +205,8 @@ def index_of(symbol: str) -> str:
     return symbol.replace("_", "").replace("{", "").replace("}", "").replace("^", "")
 
 
-def _group(r: Reader, g: Any, nth: int) -> dict[str, Any]:
-    """One Assur group: its figure, moments, force plans."""
+def _group(r: Reader, g: Any, nth: int, told: set[str]) -> dict[str, Any]:
+    """One Assur group: its figure, moments, force plans, and the arms that no group before it has ``told``."""
     forces = r.project.study.forces
     found: dict[str, Any] = {"links": g.name, "kind": str(g.kind.number), "nth": str(nth)}
     for name in (f"group {g.name}", f"group {'–'.join(g.links)}"):
@@ -210,7 +221,7 @@ def _group(r: Reader, g: Any, nth: int) -> dict[str, Any]:
         total = part.vector.args[0]
         a, b = (complex(value_at(x, r.k)) for x in part.vector.args[1:3])
         length = Quantity(
-            f"l_{{{part.at}{part.centre}}}", abs(b - a), "m", r.id(r.project.study.positions.points[part.at]), r.label
+            r.length(part.at, part.centre), abs(b - a), "m", r.id(r.project.study.positions.points[part.at]), r.label
         )
         made = _sum(r, total, letters_of(part.vector.name), part.vector, length)
         item: dict[str, Any] = {
@@ -224,9 +235,10 @@ def _group(r: Reader, g: Any, nth: int) -> dict[str, Any]:
             item["equation"] = _shown(made[1], total.name, part.centre)
         tangential.append(item)
     found["tangential"] = tangential
-    found["plans"] = [_force_plan(r, forces.plans[name]) for name in g.kind.force_plans(g)]
-    found["arms"] = [_arm(r, name, step) for name, step in forces.arms.items() if _of_group(name, g.links)]
-    found["arms"] = [x for x in found["arms"] if x]
+    found["plans"] = [{**_force_plan(r, forces.plans[name]), "nth": f"{nth}-{i}"} for i, name in enumerate(g.kind.force_plans(g))]
+    arms = [_arm(r, name, step) for name, step in forces.arms.items() if _of_group(name, g.links) and name not in told]
+    told |= {name for name in forces.arms if _of_group(name, g.links)}
+    found["arms"] = [x for x in arms if x]
     return found
 
 
@@ -306,7 +318,7 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
             ]
             tree: Any = expression.Argument(0) * expression.Argument(1)
             results.append({"result": r.written(plain, tree, q, Quantity("", abs(f), "N", r.id(force), r.label))})
-        else:
+        elif f:
             sides += [", "] if sides else []
             sides += [Symbol(letters(plain)), " – ", r.fixed(mm, "mm", 1, r.id(force), r.label)]
     found["sides"] = tuple(sides)
@@ -413,18 +425,19 @@ def _lever(r: Reader, found: Scope) -> None:
         )
 
 
-def _comparison(r: Reader) -> tuple[tuple[Text, ...], ...]:
-    """The balancing force or moment by both methods, with the difference."""
+def _compare(r: Reader, found: Scope) -> None:
+    """The balancing force or moment by both methods, with the difference, and whether a drawing would show it."""
     study = r.project.study
     said = words(r.language)["forces"]
     if study.forces.balancing is None or study.lever.balancing is None:
-        return ()
+        return
     first = study.balance["along"] if study.lever.line is not None else study.forces.balancing
     unit = "N" if study.lever.line is not None else "N*m"
     name = letters_of(r.project.balancing)
     delta = study.balance["Δ"]
     value = float(value_at(delta, r.at(delta, None)))
-    return (
+    found.fields |= {"agree": abs(value) < AGREES, "balance_off": r.number(abs(value), "%", r.id(delta), r.label, 2, kind=100.0)}
+    found.tables["balance"] = (
         ((said["quantity"],), (said["kinetostatics"],), (said["lever"],), (said["difference"],)),
         (
             (Symbol(letters(name)), f", {r.unit(unit)}"),
@@ -435,9 +448,9 @@ def _comparison(r: Reader) -> tuple[tuple[Text, ...], ...]:
     )
 
 
-def _size(r: Reader, step: Step) -> Number:
+def _size(r: Reader, step: Step, unit: str | None = "") -> Number:
     """A force or moment without its sign: the formulas give its size."""
-    n = r.of(step, None, "")
+    n = r.of(step, None, unit)
     return replace(n, text=n.text.removeprefix("−"))
 
 

@@ -14,6 +14,10 @@ from tmm_sheets.note.sections.forces import scale_text
 BOTH = ("x", "r", "rb", "rw", "ra", "rf", "s", "s_chord", "p_chord", "rho_a", "alpha_a", "sa", "sa_m", "tau", "phi_alpha")
 
 
+ALIKE = 0.05
+"""Share by which specific slidings differ at least, for one tooth to wear faster."""
+SAME = 1.0
+"""Difference of the contact ratios, per cent, that the accuracy of the drawing explains."""
 TALL = 300.0
 """Height of the graphs of sliding that a page takes, mm of the sheet: they go to infinity below."""
 
@@ -52,11 +56,16 @@ def scope(r: Reader) -> Scope:
             step = plan[name]
             found.fields[name] = r.angle(step.value, r.id(step)) if name.startswith("alpha") else r.of(step)
     x1, x2 = (float(plan[n].value) for n in ("x1", "x2"))
+    wheels = pair.wheels
+    undercut = [w for w in wheels if (w.rack.undercut if pair.profile == "rack" else w.shift < w.least_shift - 5e-5)]
     found.fields |= {
         "shifted": bool(x1 or x2),
-        "equal": x1 == -x2 and bool(x1),
         "thin": min(float(plan[f"sa_m{i}"].value) if f"sa_m{i}" in plan else 1.0 for i in (1, 2)) < 0.2,
-        "from_reducer": str(getattr(r.project.variant.gear, "teeth", "")) == "reducer",
+        "undercut": bool(undercut),
+        "rack": pair.profile == "rack",
+        "radial": any(w.rf < w.rb for w in wheels),
+        "pole": abs(sum(w.rw for w in wheels) - pair.a_w) < 1e-9 * pair.a_w,
+        "warnings": [{"warning": text} for text in pair.warnings],
     }
     found.tables["wheels"] = _wheels(r, plan)
     _overlap(r, found)
@@ -123,10 +132,12 @@ def _overlap(r: Reader, found: Scope) -> None:
     rows: list[tuple[Text, ...]] = [((said["way"],), r.head("ε_{α}"), (said["difference"],))]
     first = float(geometry["eps_alpha"].value)
     rows.append(((said["by_line"],), (r.of(geometry["eps_alpha"]),), ("–",)))
+    worst = 0.0
     for i, name in ((1, "eps1"), (2, "eps2")):
         if drawn is not None and name in drawn:
             value = float(drawn[name].value)
             difference = 100 * (value - first) / first
+            worst = max(worst, abs(difference))
             rows.append(
                 (
                     (said["by_angle"].format(n=i),),
@@ -135,6 +146,7 @@ def _overlap(r: Reader, found: Scope) -> None:
                 )
             )
     found.tables["overlap"] = tuple(rows)
+    found.fields |= {"agree": worst < SAME, "overlaps": first > 1.0}
 
 
 def _sliding(r: Reader, found: Scope) -> None:
@@ -155,6 +167,10 @@ def _sliding(r: Reader, found: Scope) -> None:
     found.tables["sliding"] = tuple(rows)
     worst = r.plan("gear-greatest-sliding")
     if worst is not None:
-        for name in ("theta1", "theta2"):
-            if name in worst:
-                found.fields[f"{name}_greatest"] = r.of(worst[name])
+        sizes = {i: abs(float(worst[f"theta{i}"].value)) for i in (1, 2) if f"theta{i}" in worst}
+        for i in sizes:
+            found.fields[f"theta{i}_greatest"] = r.of(worst[f"theta{i}"])
+        if len(sizes) == 2:
+            more = max(sizes, key=lambda i: sizes[i])
+            alike = abs(sizes[1] - sizes[2]) < ALIKE * sizes[more]
+            found.fields |= {"worse": "" if alike else str(more), "slides": True}

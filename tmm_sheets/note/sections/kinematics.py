@@ -12,12 +12,13 @@ from tmm_sheets.construction import expression
 from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.note.document import Symbol, Text
+from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, words
 from tmm_sheets.note.reader import Quantity, Reader, named
 from tmm_sheets.numbers import is_zero
 
+BAR = "\u0305"
 MOST_COLUMNS = 9
 """Columns of a table over the positions beside the number of the position."""
 
@@ -38,6 +39,8 @@ def scope(r: Reader) -> Scope:
         "velocity_steps": r.sentences(v.plan, _plain),
         "acceleration_steps": r.sentences(a.plan, _plain),
         "dead": cycle.plan is not None,
+        "own_scale": "positions" in r.project.variant.scales,
+        "slides": any(p.motion == "translation" and study.mechanism.frame not in p.links for p in study.mechanism.pairs),
         "first_label": cycle.labels[0],
     }
     if cycle.plan is not None:
@@ -54,6 +57,8 @@ def scope(r: Reader) -> Scope:
         found.tables[f"{key}_vectors"] = _vectors(r, plan)
         found.formulas |= {f"{key}-{name}": said for name, said in _lengths(r, plan)}
         found.fields[f"{key}_angular"] = list(_angular(r, plan, v.omega if key == "velocity" else a.epsilon))
+        found.fields[f"{key}_several"] = len(found.fields[f"{key}_equations"]) > 1
+    found.fields |= _greatest_acceleration(r, a.plan)
     found.tables["lengths"] = _drawn_lengths(r)
     found.tables["velocities"] = _over_positions(r, v.plan, v.omega, "velocity")
     found.tables["accelerations"] = _over_positions(r, a.plan, a.epsilon, "acceleration")
@@ -72,7 +77,7 @@ def scope(r: Reader) -> Scope:
         n = r.pictures.sheet_of(picture)
         if n is not None:
             found.fields[f"sheet_{name}"] = str(n)
-    found.fields["diagrams"] = [{"diagram": f, "of": name} for name, f in _diagrams(r)]
+    found.fields["diagrams"] = [{"diagram": f, "nth": str(i)} for i, f in enumerate(_diagrams(r), 1)]
     return found
 
 
@@ -81,10 +86,9 @@ def _plain(step: Step) -> bool:
     return step.rule in (GIVEN, TURN)
 
 
-def _diagrams(r: Reader) -> Iterator[tuple[str, Any]]:
+def _diagrams(r: Reader) -> Iterator[Figure]:
     for name in ("diagrams.motion", "diagrams.output"):
-        for figure in r.pictures.parts(name):
-            yield name, figure
+        yield from r.pictures.parts(name)
 
 
 def _scale(r: Reader, scale: Any) -> Text:
@@ -174,7 +178,7 @@ def _equations(r: Reader, plan: Plan) -> Iterator[tuple[Node, Text]]:
             last = by_ends.get((start.name, step.name))
             if path is None or (last is None and start.name != pole):
                 continue
-            direction = direction_of(along)
+            direction = direction_of(r, along)
             own = last if start.name != pole else head
             if direction and own:
                 known += [", "] if known else []
@@ -212,13 +216,36 @@ def _path(plan: Plan, pole: str, name: str) -> list[str] | None:
     return ways.get(name)
 
 
-def direction_of(along: Any) -> Node | None:
-    """A direction in letters: parallel or perpendicular to what."""
+def direction_of(r: Reader, along: Any) -> Node | None:
+    """A direction in letters, or the name of a guide: parallel or perpendicular to what."""
     name = getattr(along, "name", "")
     if not name:
         return None
-    across = "⟂" in name
-    return Row((Sign("⟂" if across else "∥"), *_items(letters(named(name.replace("⟂", ""))))))
+    to = name.replace("⟂", "")
+    said = r.quoted(to)
+    of = (Words(f" {said}"),) if said != to else _items(letters(named(to)))
+    return Row((Sign("⟂" if "⟂" in name else "∥"), *of))
+
+
+def _greatest_acceleration(r: Reader, plan: Plan) -> dict[str, Any]:
+    """Which point beside the pin of the crank has the greatest acceleration, and in which position."""
+    pin = r.project.study.mechanism.crank.pin
+    found = [
+        (float(sizes[i]), s.symbol, plan.labels[i], s.head)
+        for s in plan.segments
+        if s.tail.name == plan.pole and "^" not in s.symbol and s.symbol.replace(BAR, "") != f"a_{{{pin}}}"
+        for sizes in [np.atleast_1d(np.abs(s.head.value - s.tail.value))]
+        for i in [int(np.argmax(sizes))]
+        if len(sizes) == len(plan.labels)
+    ]
+    if not found:
+        return {}
+    size, symbol, label, step = max(found, key=lambda x: x[0])
+    return {
+        "greatest": r.number(size, plan.unit, r.id(step), label),
+        "greatest_letter": Symbol(letters(symbol.replace(BAR, ""))),
+        "greatest_label": label,
+    }
 
 
 def _vectors(r: Reader, plan: Plan) -> tuple[tuple[Text, ...], ...]:
@@ -262,18 +289,14 @@ def _lengths(r: Reader, plan: Plan) -> Iterator[tuple[str, Said]]:
         if s.head.name in crossed and s.tail.name == plan.pole:
             size = float(abs(value_at(s.head, k) - value_at(s.tail, k)))
             if not is_zero(size, _greatest(plan, k)):
-                mm = Quantity(f"{s.tail.name}{_marked(s.head.name)}", float(scale.mm(size)), "mm", r.id(s.head), r.label)
+                mm = Quantity(f"{s.tail.name}{named(s.head.name)}", float(scale.mm(size)), "mm", r.id(s.head), r.label)
                 mu = Quantity(scale.symbol, scale.mu, "", f"scales.{scale.symbol}")
                 tree = expression.Argument(0) * expression.Argument(1)
                 said = r.written(
-                    s.symbol.replace("\u0305", ""), tree, [mm, mu], Quantity("", size, plan.unit, r.id(s.head), r.label)
+                    s.symbol.replace(BAR, ""), tree, [mm, mu], Quantity("", size, plan.unit, r.id(s.head), r.label)
                 )
                 yield "size", said
                 return
-
-
-def _marked(name: str) -> str:
-    return named(name)
 
 
 def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str, Any]]:
@@ -288,7 +311,7 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
         length = abs(value_at(b, r.at(b, None)) - value_at(a, r.at(a, None)))
         value = value_at(step, at)
         size = abs(float(value)) * length  # of the vector across the link
-        symbol = by_ends.get((tail.name, head.name), f"V_{{{head.name}}}").replace("\u0305", "")
+        symbol = by_ends.get((tail.name, head.name), f"V_{{{head.name}}}").replace(BAR, "")
         if second:
             across = next(
                 (
@@ -300,10 +323,10 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
                 ),
                 None,
             )
-            symbol = across.symbol.replace("\u0305", "") if across is not None else f"a_{{{b.name}{a.name}}}^{{τ}}"
+            symbol = across.symbol.replace(BAR, "") if across is not None else f"a_{{{b.name}{a.name}}}^{{τ}}"
         quantities = [
             Quantity(symbol, size, plan.unit, r.id(head), r.label),
-            Quantity(f"l_{{{b.name}{a.name}}}", float(length), "m", r.id(b), r.label),
+            Quantity(r.length(b.name, a.name), float(length), "m", r.id(b), r.label),
         ]
         letter = "ε" if second else "ω"
         said = r.checked(f"{letter}_{{{link}}}", lambda x, length: x / length, quantities, step)
@@ -317,7 +340,7 @@ def _over_positions(r: Reader, plan: Plan, turning: dict[str, Step], key: str) -
     columns: list[tuple[str, Any, Step, str]] = []
     for s in plan.segments:
         if s.tail.name == plan.pole and "^" not in s.symbol:
-            columns.append((s.symbol.replace("\u0305", ""), np.abs(s.head.value - s.tail.value), s.head, plan.unit))
+            columns.append((s.symbol.replace(BAR, ""), np.abs(s.head.value - s.tail.value), s.head, plan.unit))
     letter, unit = ("ω", "rad/s") if key == "velocity" else ("ε", "rad/s2")
     seen: list[Step] = []
     for link, step in turning.items():

@@ -24,6 +24,22 @@ def scope(r: Reader) -> Scope:
             if isinstance(value, int | float):
                 found.fields[step.name] = r.of(step)
         found.fields[name.removeprefix("reducer-")] = items
+    conditions = r.plan("reducer-conditions")
+    if conditions is not None:
+        coaxial, assembly, beside = (float(conditions[n].value) for n in ("coaxiality", "assembly", "neighbourhood"))
+        whole = abs(assembly - round(assembly)) < 1e-9
+        found.fields |= {"coaxial": abs(coaxial) < 1e-9, "assembles": whole, "apart": beside > 0}
+        found.fields["met"] = all(found.fields[n] for n in ("coaxial", "assembles", "apart"))
+        found.fields["quotient"] = r.of(conditions["assembly"])
+    ratio, table = r.plan("reducer-ratio"), r.project.variant.reducer
+    if table is not None and ratio is not None and "u_deviation" in ratio:
+        off = 100 * float(ratio["u_deviation"].value)
+        found.fields |= {
+            "deviation": r.number(abs(off), "%", r.id(ratio["u_deviation"]), digits=2),
+            "tolerance": r.number(100 * table.tolerance, "%", "reducer.tolerance", digits=2),
+            "within": abs(off) <= 100 * table.tolerance + 1e-9,
+        }
+    found.fields["warnings"] = [{"warning": text} for text in r.project.reducer.warnings]
     for name in ("scheme", "speeds"):
         figure = r.pictures.figure(f"reducer.{name}")
         if figure is not None:

@@ -8,6 +8,7 @@ from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import Quantity, Reader
+from tmm_sheets.words import of_file
 
 
 def scope(r: Reader) -> Scope:
@@ -30,7 +31,7 @@ def scope(r: Reader) -> Scope:
             }
         )
     links: list[tuple[Text, ...]] = [tuple((h,) for h in said["links_head"]), (("0",), (said["frame"],), _points(tuple(m.fixed)))]
-    links += [((name,), (link.title or "–",), (_points(m.link_points(name)))) for name, link in m.links.items()]
+    links += [((name,), (of_file(link.title or "–"),), _points(m.link_points(name))) for name, link in m.links.items()]
     pairs: list[tuple[Text, ...]] = [tuple((h,) for h in said["pairs_head"])]
     pairs += [((Symbol(letters(_primed(p.name))),), (", ".join(p.links),), (said[p.motion],), ("5",)) for p in m.pairs]
     turning = sum(p.motion == "rotation" for p in m.pairs)
@@ -49,10 +50,12 @@ def scope(r: Reader) -> Scope:
         "turning": Number(str(turning), "structure.pairs", turning),
         "sliding": Number(str(p5 - turning), "structure.pairs", p5 - turning),
         "structure": m.structure,
+        "mobile": m.mobility == 1,
+        "turning_only": turning == p5,
+        "second_class": m.grade == 2,
         "grade": str(m.grade),
         "W": Number(str(m.mobility), "structure.W", m.mobility),
         "crank": m.crank.link,
-        "crank_title": m.links[m.crank.link].title or said["crank"],
         "count": len(groups),
         "several": len(groups) > 1,
     }

@@ -7,9 +7,12 @@ from typing import Any
 
 from tmm_sheets.construction import expression
 from tmm_sheets.note.document import Symbol, Text
-from tmm_sheets.note.formula import letters
+from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope, words
 from tmm_sheets.note.reader import Quantity, Reader, symbol_of
+
+NEAR = 1.0
+"""Difference from what is asked, per cent, that a drawing does not show."""
 
 
 def scope(r: Reader) -> Scope:
@@ -34,8 +37,13 @@ def scope(r: Reader) -> Scope:
     cycle = r.project.cycle
     if cycle.strokes is not None:
         s = cycle.strokes
-        found.fields |= {"stroke": r.number(s.length, "m", "cycle.strokes"), "output": Symbol(letters(s.output)), "strokes": True}
+        found.fields |= {
+            "stroke": r.number(s.length, "m", "cycle.strokes"),
+            "output": Symbol(letters(letters_of(s.output))),
+            "strokes": True,
+        }
         turn = (s.end - s.begin) % (2 * pi) if len(s.runs) else 0.0
+        found.fields["equal"] = abs(turn - pi) <= 1e-3
         if 0 < turn < 2 * pi and abs(turn - pi) > 1e-3:
             a = expression.Argument(0)
             tree = expression.Operation("/", (a, expression.Operation("-", (expression.Constant(360.0), a))))
@@ -45,10 +53,12 @@ def scope(r: Reader) -> Scope:
                 "K", tree, [Quantity("φ_{рх}", degrees, "deg", "dead-positions")], Quantity("", ratio, "", "dead-positions")
             )
             found.fields["ratio"] = r.number(ratio, "", "dead-positions")
+            found.fields["faster"] = r.number(1 / ratio, "", "dead-positions") if ratio < 1 else None
             asked = variant.cycle.coefficient if variant.cycle is not None else None
             if asked:
                 found.fields["asked"] = r.number(float(asked), "", "cycle.coefficient")
-                found.fields["off"] = r.number(100 * abs(ratio - float(asked)) / float(asked), "%", "dead-positions", digits=2)
+                off = 100 * abs(ratio - float(asked)) / float(asked)
+                found.fields |= {"off": r.number(off, "%", "dead-positions", digits=2), "near": off < NEAR}
                 theta = expression.Constant(180.0) * (a - 1) / (a + 1)
                 found.formulas["theta"] = r.written(
                     "θ",

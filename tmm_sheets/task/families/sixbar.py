@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
+from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -24,20 +25,15 @@ TASKS, VARIANTS = range(1, 11), range(1, 6)
 
 
 @dataclass(frozen=True)
-class Misprint:
-    """A number of the table that is probably printed wrong: symbol, unit, as printed, suggested, why."""
+class Doubt(Misprint):
+    """A misprint with how certain it is."""
 
-    symbol: str
-    unit: str
-    printed: Decimal
-    suggested: Decimal
     certainty: str
-    reason: str
 
-    def warning(self, corrected: bool) -> str:
+    def warning(self) -> str:
         """One line about it."""
         said = (tell("{symbol} = {printed} {unit} is a suspected misprint ({certainty}), suggested {suggested} {unit}: {reason}; "
-                     "the suggested value is used") if corrected else
+                     "the suggested value is used") if self.corrected else
                 tell("{symbol} = {printed} {unit} is a suspected misprint ({certainty}), suggested {suggested} {unit}: {reason}; "
                      "the printed value is used, --corrected takes {suggested}"))
         return said.format(symbol=self.symbol, printed=self.printed, unit=self.unit, certainty=tell(self.certainty),
@@ -60,8 +56,8 @@ def read(name: str, corrected: bool = False) -> Variant:
     from tmm_sheets.task import variant
 
     task, number = _parts(name)
-    text, warnings = project_file(task, number, corrected)
-    return variant.parse(text, name, warnings)
+    text, misprints = project_file(task, number, corrected)
+    return variant.parse(text, name, tuple(m.warning() for m in misprints), misprints)
 
 
 def _parts(name: str) -> tuple[int, int]:
@@ -79,8 +75,8 @@ def _parts(name: str) -> tuple[int, int]:
     return task, number
 
 
-def project_file(task: int, number: int, corrected: bool = False) -> tuple[str, tuple[str, ...]]:
-    """Text of the project file of a variant, and the warnings about its misprints."""
+def project_file(task: int, number: int, corrected: bool = False) -> tuple[str, tuple[Doubt, ...]]:
+    """Text of the project file of a variant, and its misprints."""
     table = tomllib.loads((resources.variants() / f"sixbar/task{task:02d}.toml").read_text(encoding="utf-8"), parse_float=Decimal)
     values = {symbol: Decimal(row[number - 1]) for symbol, row in table["values"].items()} | table.get("dash", {})
     sources = {symbol: f"001, task {task}, variant {number}: {symbol}" for symbol in values}
@@ -88,7 +84,7 @@ def project_file(task: int, number: int, corrected: bool = False) -> tuple[str, 
         sources[symbol] += " is a dash"
     for symbol, note in table.get("note", {}).items():
         sources[symbol] += f", {note}"
-    misprints = _misprints(table, number)
+    misprints = _misprints(table, number, corrected)
     for m in misprints:
         if corrected:
             values[m.symbol] = m.suggested
@@ -104,15 +100,15 @@ def project_file(task: int, number: int, corrected: bool = False) -> tuple[str, 
         "number": f"{task:02d}.{number:02d}",
     }  # fmt: skip
     parts = (resources.template(f"schemes/{name}.toml").read_text(encoding="utf-8") for name in ("sixbar", f"sixbar_{task:02d}"))
-    return Template("\n".join(parts)).substitute(fields), tuple(m.warning(corrected) for m in misprints)
+    return Template("\n".join(parts)).substitute(fields), misprints
 
 
-def _misprints(table: dict[str, Any], number: int) -> list[Misprint]:
-    return [
-        Misprint(m["quantity"], table["unit"][m["quantity"]], Decimal(table["values"][m["quantity"]][number - 1]),
-                 Decimal(m["suggested"]), m["certainty"], m["reason"])
+def _misprints(table: dict[str, Any], number: int, corrected: bool) -> tuple[Doubt, ...]:
+    return tuple(
+        Doubt(m["quantity"], table["unit"][m["quantity"]], Decimal(table["values"][m["quantity"]][number - 1]),
+              Decimal(m["suggested"]), m["reason"], corrected, m["certainty"])
         for m in table.get("misprint", []) if m["variant"] == number
-    ]  # fmt: skip
+    )  # fmt: skip
 
 
 def _derived(task: int, d: dict[str, Decimal]) -> dict[str, Decimal]:

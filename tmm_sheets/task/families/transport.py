@@ -11,6 +11,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from decimal import Decimal
 from difflib import get_close_matches
 from functools import cache
 from math import acos, cos, degrees, radians, sin
@@ -19,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import resources
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
@@ -109,29 +111,34 @@ def chosen(rows: Iterable[Mapping[str, Any]], digits: Mapping[str, int], correct
     return found
 
 
-def misprints(rows: Iterable[Mapping[str, Any]], digits: Mapping[str, int], corrected: bool) -> Iterator[str]:
-    """One line for each suspected misprint among the values that the cipher chooses."""
+@dataclass(frozen=True)
+class Doubt(Misprint):
+    """A misprint with the table and the column where it stands."""
+
+    table: str
+    column: int
+
+    def warning(self) -> str:
+        """One line about it."""
+        said = (
+            tell("table {table}, {symbol}, column {column}: {printed}{unit} is probably a misprint of {suggested}{unit} "
+                 "({reason}); {value:g} is used") if self.corrected else
+            tell("table {table}, {symbol}, column {column}: {printed}{unit} is probably a misprint of {suggested}{unit} "
+                 "({reason}); {value:g} is kept; --corrected takes the other one"))
+        return said.format(
+            table=self.table, symbol=self.symbol, column=self.column, printed=self.printed, unit=self.unit and f" {self.unit}",
+            suggested=self.suggested, reason=tell(self.reason), value=self.suggested if self.corrected else self.printed,
+        )  # fmt: skip
+
+
+def misprints(rows: Iterable[Mapping[str, Any]], digits: Mapping[str, int], corrected: bool) -> Iterator[Doubt]:
+    """The suspected misprints among the values that the cipher chooses."""
     for row in rows:
         column = digits[row["letter"]]
         suggested = row.get("suggested", {}).get(str(column))
         if suggested is not None:
-            unit = f" {row['unit']}" if "unit" in row else ""
-            said = (
-                tell("table {table}, {symbol}, column {column}: {printed}{unit} is probably a misprint of {suggested}{unit} "
-                     "({reason}); {value:g} is used") if corrected else
-                tell("table {table}, {symbol}, column {column}: {printed}{unit} is probably a misprint of {suggested}{unit} "
-                     "({reason}); {value:g} is kept; --corrected takes the other one"))
-            value, reason = suggested if corrected else row["values"][column], row["misprint"]
-            yield said.format(
-                table=row["table"],
-                symbol=row.get("symbol", row["key"]),
-                column=column,
-                printed=row["values"][column],
-                unit=unit,
-                suggested=suggested,
-                reason=tell(reason),
-                value=value,
-            )
+            yield Doubt(row.get("symbol", row["key"]), row.get("unit", ""), Decimal(str(row["values"][column])),
+                        Decimal(str(suggested)), row["misprint"], corrected, row["table"], column)
 
 
 # --- reading --------------------------------------------------------------------------------------------------------
@@ -155,12 +162,12 @@ def read(name: str, corrected: bool = False) -> Variant:
     """
     from tmm_sheets.task import variant
 
-    text, warnings = project_file(name, corrected)
-    return variant.parse(text, name, warnings)
+    text, warnings, doubts = project_file(name, corrected)
+    return variant.parse(text, name, warnings, doubts)
 
 
-def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ...]]:
-    """Text of the project file of a machine and a cipher, and what is doubtful in it.
+def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ...], tuple[Doubt, ...]]:
+    """Text of the project file of a machine and a cipher, what is doubtful in it, the misprints among that.
 
     Raises
     ------
@@ -184,18 +191,17 @@ def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ..
     if student.speciality != data["speciality"]:
         notes.append(tell("the ciphers of specialty {own} have this machine, not those of {given}").format(
             own=data["speciality"], given=student.speciality))
-    notes += misprints(data["row"], student.digits, corrected)
+    doubts = (*misprints(data["row"], student.digits, corrected), *misprints(_data("cam")["row"], student.digits, corrected))
+    notes += [doubt.warning() for doubt in doubts]
     values |= DERIVED[machine](values)
     refuse(machine, values)
     notes += NOTES[machine](values)
-    cam_rows = _data("cam")["row"]
-    notes += misprints(cam_rows, student.digits, corrected)
     heading = {"name": f"transport/{machine}@{student.text}", "cipher": student.text, "digits": str(student)}
     values |= {key: Value(value, 0.0, "") for key, value in heading.items()}
-    cam = chosen(cam_rows, student.digits, corrected)
+    cam = chosen(_data("cam")["row"], student.digits, corrected)
     parts = [_filled(scheme, values | {"n_cam": cam["n"]})
              for scheme in (f"transport_{machine}", f"transport_reducer_{machine}", "transport_gear")]
-    return "".join((*parts, _cam(cam))), tuple(notes)
+    return "".join((*parts, _cam(cam))), tuple(notes), doubts
 
 
 def _filled(scheme: str, values: Mapping[str, Value]) -> str:
