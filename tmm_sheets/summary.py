@@ -66,8 +66,8 @@ def _structure(m: Mechanism) -> Iterator[str]:
     yield "\n" + tell("Mobility W = {formula}").format(formula=f"3n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {m.mobility}")
     yield "\n" + tell("Assur groups, the farthest first")
     kind = tell("kind {n} ({form})")
-    grade = tell("class 2, order 2")
-    yield from _table([(g.name, grade, kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
+    grade = tell("class {grade}, order {order}")
+    yield from _table([(g.name, grade.format(grade=g.kind.grade, order=g.kind.order), kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
     yield "\n" + tell("Formula of structure: {formula}").format(formula=m.structure)
 
 

@@ -141,7 +141,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     drawn = [shape for shape in linkage.shapes(pos) if shape.link in g.links]
     hinges, centres = scheme_points(project, g, drawn)
     points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
-    about = complex(pos.points[g.kind.about(g)].at(k))
+    about = complex(pos.place(g.kind.about(g)).at(k))
     around = scheme(project, g, k)
     frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm"), *around, box.inset(*SCHEME))
     canvas.of = f"group {g.name}"

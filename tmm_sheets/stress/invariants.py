@@ -192,11 +192,10 @@ def geometry(s: State) -> Iterator[Residual]:
     """Lengths of links, closures on guides, sides of assembly, points fixed on links."""
     for g in s.m.groups:
         yield from LOOPS[g.kind].residuals(s, g)
-        if g.inner:
-            for name in g.guides:
-                p, u = s.guide(name)
-                reach = s.reach + np.abs(s.z[g.inner] - p)
-                yield "closure on guides", np.abs(cross(u, s.z[g.inner] - p)) / reach
+        for point, name in g.kind.guided(g):
+            p, u = s.guide(name)
+            reach = s.reach + np.abs(s.z[point] - p)
+            yield "closure on guides", np.abs(cross(u, s.z[point] - p)) / reach
         for link in g.links:
             yield "link lengths", np.abs(np.abs(s.u[link]) - 1)
     for point in s.m.points:
@@ -222,16 +221,16 @@ def rigidity(s: State) -> Iterator[Residual]:
             yield "velocity closure", np.abs(s.v[p] - s.v[names[0]] - 1j * w * r) / (fastest * far)
             yield "acceleration closure", np.abs(s.a[p] - s.a[names[0]] - (1j * e - w * w) * r) / (sharpest * far)
     for g in s.m.groups:
-        for _, name in g.kind.sliders(g):
-            guide = s.m.guides[name]
-            at, (through, u) = s.z[str(g.inner)], s.guide(name)
+        for link, name in g.kind.sliders(g):
+            guide, point = s.m.guides[name], g.kind.block(g, link)
+            at, (through, u) = s.z[point], s.guide(name)
             carried: Any = 0j if guide.link == s.m.frame else s.velocities.coincident.get(
-                on_link(str(g.inner), guide.link), s.velocities.points[str(guide.through)])
+                on_link(point, guide.link), s.velocities.points[str(guide.through)])
             if guide.link != s.m.frame:
                 start = str(guide.through)
                 base = s.velocities.coincident.get(on_link(start, guide.link), s.velocities.points[start])
                 carried = s.spread(base) + 1j * s.omega[guide.link] * (at - through)
-            yield "velocity closure", np.abs(cross(u, s.v[str(g.inner)] - carried)) / fastest
+            yield "velocity closure", np.abs(cross(u, s.v[point] - carried)) / fastest
 
 
 def assembled(s: State) -> Iterator[Residual]:

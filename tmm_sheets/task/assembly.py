@@ -11,7 +11,8 @@ from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber, Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.groups import KINDS
+from tmm_sheets.mechanism.groups import KINDS, TRIAD
+from tmm_sheets.mechanism.groups.triad import Leg, TriadGroup
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
@@ -254,6 +255,8 @@ def unit(angle: float) -> complex:
 
 
 def _group(of: Givens, i: int, g: GroupTable) -> StructuralGroup:
+    if g.kind == TRIAD.number:
+        return _triad(of, i, g)
     ends = [p + str(g.inner) for p in g.outer]
     lengths: tuple[float, ...] = ()
     if g.lengths is not None:
@@ -265,3 +268,23 @@ def _group(of: Givens, i: int, g: GroupTable) -> StructuralGroup:
     slot = of.number(pi / 2 if g.slot is None else g.slot, "", "rad", "group", i, "slot")
     return StructuralGroup(KINDS[g.kind], g.links, g.outer, g.inner, lengths, guides, of.number(g.side, "", "", "group", i, "side"),
                            of.length(g.offset, "e", "group", i, "offset"), slot)
+
+
+def _triad(of: Givens, i: int, g: GroupTable) -> TriadGroup:
+    """A group of class III."""
+    assert g.sides is not None
+    assert g.angle is not None
+    assert g.direction is not None
+    legs = []
+    for n, (leg, link) in enumerate(zip(g.leg, g.links[1:], strict=True)):
+        at: tuple[str | int, ...] = ("group", i, "leg", n)
+        length = of.length(leg.length, f"l_{{{leg.outer}{leg.corner}}}", *at, "length") if leg.length is not None else 0.0
+        slot = None if leg.slot is None else of.number(leg.slot, "", "rad", *at, "slot")
+        legs.append(Leg(link, leg.corner, leg.outer or "", leg.guide or "", length, slot))
+    first, second, third = (leg.corner for leg in legs)
+    one, two = (of.length(x, f"l_{{{first}{corner}}}", "group", i, "sides", n)
+                for n, (x, corner) in enumerate(zip(g.sides, (second, third), strict=True)))
+    outer, guides = (tuple(name for leg in legs if (name := getattr(leg, key))) for key in ("outer", "guide"))
+    return TriadGroup(TRIAD, g.links, outer, None, (), guides, legs=tuple(legs), sides=(one, two),
+                      angle=of.number(g.angle, "", "rad", "group", i, "angle"),
+                      near=of.number(g.direction, "", "rad", "group", i, "direction"), when=of.number(g.at, "", "rad", "group", i, "at"))
