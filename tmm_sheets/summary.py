@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import plain
 from tmm_sheets.words import of_file, tell
 
@@ -67,8 +68,29 @@ def _structure(m: Mechanism) -> Iterator[str]:
     yield "\n" + tell("Assur groups, the farthest first")
     kind = tell("kind {n} ({form})")
     grade = tell("class {grade}, order {order}")
-    yield from _table([(g.name, grade.format(grade=g.kind.grade, order=g.kind.order), kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
+    yield from _table([(g.name, grade.format(grade=g.kind.grade, order=g.kind.order),
+                        kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
+    for g in m.groups:
+        if g.kind.grade == 3:
+            yield "\n" + _ways(m, g)
     yield "\n" + tell("Formula of structure: {formula}").format(formula=m.structure)
+
+
+def _ways(m: Mechanism, g: Any) -> str:
+    """The ways in which a group of class III can be put together, and which one is taken."""
+    import numpy as np
+
+    from tmm_sheets.methods.linkage.positions import position_plan
+
+    try:
+        way = position_plan(m, np.array([g.when]), purpose="ways of assembly").course(g)
+    except CannotBuild as e:
+        return str(e)
+    angles = [f"{np.degrees(np.angle(u)) % 360:.1f}" for _, u in way.found]
+    if angles:
+        angles[way.taken] = tell("{angle} (taken)").format(angle=angles[way.taken])
+    return tell("Ways of assembly of group {group} at crank angle {angle:g} deg: {side} at {ways} deg").format(
+        group=g.name, angle=np.degrees(g.when), side=g.legs[0].corner + g.legs[1].corner, ways=", ".join(angles) or "–")
 
 
 def _links(m: Mechanism) -> Iterator[tuple[str, str, str]]:

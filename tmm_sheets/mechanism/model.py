@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 from tmm_sheets.construction.tally import Tally
-
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -81,8 +80,9 @@ class Guide:
 class GroupKind(ABC):
     """A kind of group (вид группы Ассура; manual 000, table 3.1); a kind has no state of its own.
 
-    ``number`` is the manual's, ``grade`` and ``order`` are its class and order; ``form`` is its pairs, outer, inner, outer, R turning, P sliding, looked up when it is said.
-    ``orders`` are the same pairs as R and P, in every order the two links can be met in.
+    ``number`` is the manual's, ``grade`` and ``order`` are its class and order; ``form`` is its pairs, outer, inner,
+    outer, R turning, P sliding, looked up when it is said. ``orders`` are the same pairs as R and P, in every order the links can
+    be met in.
     """
 
     number: ClassVar[int]

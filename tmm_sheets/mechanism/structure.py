@@ -49,14 +49,14 @@ def _group(i: str, j: str, pairs: list[Pair], placed: set[str]) -> StructuralGro
 
 def _triad(i: str, pairs: list[Pair], placed: set[str]) -> TriadGroup | None:
     """The group of class III about a link, if it has three pairs with links that each have one more, with the links placed."""
-    inner = [p for p in pairs if i in p.links]
-    legs = [next(n for n in p.links if n != i) for p in inner]
-    outer = [_between(leg, placed, pairs) for leg in legs]
-    if len(set(legs)) != 3 or any(len(found) != 1 for found in outer) or set(legs) & placed:
+    every = [(p, next(n for n in p.links if n != i)) for p in pairs if i in p.links]
+    found = [(p, leg, outer[0]) for p, leg in every if leg not in placed and len(outer := _between(leg, placed, pairs)) == 1]
+    if len(found) < 3 or any(leg in placed for _, leg in every):
         return None
-    return TriadGroup(TRIAD, (i, *legs), tuple(p.name for (p,) in outer), legs=tuple(
+    found = found[:3]
+    return TriadGroup(TRIAD, (i, *(leg for _, leg, _ in found)), tuple(q.name for _, _, q in found), legs=tuple(
         Leg(leg, p.name, "" if q.motion == "translation" else q.name, q.name if q.motion == "translation" else "",
-            slot=0.0 if p.motion == "translation" else None) for leg, p, (q,) in zip(legs, inner, outer, strict=True)))
+            slot=0.0 if p.motion == "translation" else None) for p, leg, q in found))
 
 
 def _between(link: str, others: set[str], pairs: list[Pair]) -> list[Pair]:

@@ -266,7 +266,7 @@ BUILD = {1: rrr, 2: rrp, 3: rpr, 4: prp, 5: rpp}
 
 
 def triad(d: Draft, links: tuple[str, ...]) -> None:
-    """A triangle on three legs, the first of them on a moving point, the others on anything; the second now and then a stone in a slot."""
+    """A triangle on three legs, the first on a moving point, the others on anything; the second now and then a stone in a slot."""
     triangle, first, second, third = links
     p, owner = d.moving()
     theta, sides, angle = d.angle(), (d.length(), d.length()), d.side() * d.between(0.0, 2.5)
@@ -304,7 +304,7 @@ def triad(d: Draft, links: tuple[str, ...]) -> None:
         outer.append(q)
     n = [v / abs(v) for v, _ in normals]
     m = [((at - k).conjugate() * v).imag / max(sides) for v, (_, at) in zip(n, normals, strict=True)]
-    det = sum(m[i] * (n[j].conjugate() * n[l]).imag for i, j, l in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
+    det = sum(m[a] * (n[b].conjugate() * n[c]).imag for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
     want(abs(det) > SURE)
     d.groups.append(TriadGroup(TRIAD, links, tuple(outer), None, (), tuple(guides), legs=tuple(legs), sides=sides, angle=angle,
                                near=theta, when=d.phi))

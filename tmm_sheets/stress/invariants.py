@@ -192,10 +192,10 @@ def geometry(s: State) -> Iterator[Residual]:
     """Lengths of links, closures on guides, sides of assembly, points fixed on links."""
     for g in s.m.groups:
         yield from LOOPS[g.kind].residuals(s, g)
-        for point, name in g.kind.guided(g):
+        for at, name in g.kind.guided(g):
             p, u = s.guide(name)
-            reach = s.reach + np.abs(s.z[point] - p)
-            yield "closure on guides", np.abs(cross(u, s.z[point] - p)) / reach
+            reach = s.reach + np.abs(s.z[at] - p)
+            yield "closure on guides", np.abs(cross(u, s.z[at] - p)) / reach
         for link in g.links:
             yield "link lengths", np.abs(np.abs(s.u[link]) - 1)
     for point in s.m.points:

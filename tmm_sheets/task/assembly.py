@@ -287,4 +287,5 @@ def _triad(of: Givens, i: int, g: GroupTable) -> TriadGroup:
     outer, guides = (tuple(name for leg in legs if (name := getattr(leg, key))) for key in ("outer", "guide"))
     return TriadGroup(TRIAD, g.links, outer, None, (), guides, legs=tuple(legs), sides=(one, two),
                       angle=of.number(g.angle, "", "rad", "group", i, "angle"),
-                      near=of.number(g.direction, "", "rad", "group", i, "direction"), when=of.number(g.at, "", "rad", "group", i, "at"))
+                      near=of.number(g.direction, "", "rad", "group", i, "direction"),
+                      when=of.number(g.at, "", "rad", "group", i, "at"))

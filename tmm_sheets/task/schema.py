@@ -132,7 +132,10 @@ class GuideTable(Table):
 
 
 class LegTable(Table):
-    """``[[group.leg]]``: a leg of a group of kind 6: a rod (``outer``, ``length``), a slider (``guide``), a stone (``outer``, ``slot``)."""
+    """``[[group.leg]]``: a leg of a group of kind 6.
+
+    A rod (``outer``, ``length``), a slider (``guide``) or a stone (``outer``, ``slot``).
+    """
 
     corner: Name = Field(description=marked("corner of the triangle the leg belongs to"))
     outer: Name | None = None
@@ -142,8 +145,8 @@ class LegTable(Table):
     guide: Name | None = None
     """a slider's guide; the corner moves along it"""
     slot: Angle | None = None
-    """the leg is a stone on the outer point in a slot of the triangle through the corner: the slot's direction against the line from the first
-    corner to the second; for the second leg only
+    """the leg is a stone on the outer point in a slot of the triangle through the corner: the slot's direction against the line
+    from the first corner to the second; for the second leg only
     """
 
     @model_validator(mode="after")
@@ -191,7 +194,9 @@ class GroupTable(Table):
     angle: Angle | None = None
     """kind 6: from the first of these sides to the second, counter-clockwise"""
     direction: Angle | None = None
-    """kind 6: about the direction from the first corner to the second, at the crank angle `at`; the way of assembly nearest to it is taken"""
+    """kind 6: about the direction from the first corner to the second, at the crank angle `at`; the way of assembly nearest to it
+    is taken
+    """
     at: Angle = 0.0
     """kind 6: crank angle at which `direction` is told, against the x axis"""
 

@@ -31,7 +31,9 @@ class PositionPlan(Protocol[M, G]):
     rays: dict[tuple[str, str], Step]
     feet: dict[str, str]
     special: dict[str, SpecialPoint]
+    false: dict[str, Plan]
     angle: Any
+    where: str
 
     @property
     def mechanism(self) -> M:

@@ -2,10 +2,10 @@
 
 A leg keeps a corner of the triangle on a circle (hinged at both ends) or on a line (a slider), or a line of the triangle through a
 point (a stone in a slot). The triangle stands by its first corner k, m, and the unit direction u from there to its second. A method
-of false positions finds the same on paper: two legs and the triangle move by themselves, the third corner draws its locus, and where
-the locus crosses the circle or the guide of the third leg the group is put together. Here the crossing is refined by Newton's method on
-the three conditions themselves, so that it is as exact as the lengths. The ways of assembly are up to six; which one is meant is told at one crank angle,
-and it is followed from there: each step of the way must be so small that Newton's corrections shrink at once.
+of false positions finds the same on paper: two legs and the triangle move by themselves, the third corner draws its locus, and
+where the locus crosses the circle or the guide of the third leg the group is put together. Here the crossing is refined by Newton's
+method on the three conditions themselves, so that it is as exact as the lengths. The ways of assembly are up to six; which one is
+meant is told at one crank angle and followed from there: each step must be so small that Newton's corrections shrink at once.
 """
 
 from __future__ import annotations
@@ -22,8 +22,9 @@ from tmm_sheets.construction.expression import primitive
 CIRCLE, LINE, SLOT = 0.0, 1.0, 2.0
 """What a leg does: its corner on a circle, on a line; a line of the triangle through a point."""
 Legs = tuple[Any, ...]
-"""Three legs of five values each, shape (n,) or one number: what it does; a point, m, the centre, on the guide, or in the slot; direction of the guide;
-length, m, or angle of the slot, rad, to the line from the first corner to the second; the corner in the triangle's own frame, m."""
+"""Three legs of five values each, shape (n,) or one number: what it does; a point, m, the centre, on the guide, or in the slot;
+direction of the guide; length, m, or angle of the slot, rad, to the line from the first corner to the second; the corner in the
+triangle's own frame, m."""
 Pose = tuple[complex, complex]
 """First corner of the triangle, m, and its direction."""
 Floats = npt.NDArray[np.float64]
@@ -167,6 +168,15 @@ def false_side(k: Any, u: Any, amount: Any, *legs: Any) -> Any:
     return np.where((np.conj(p - k) * u * np.exp(1j * size)).real >= 0, 1.0, -1.0)
 
 
+def locus_sine(k: Any, u: Any, *legs: Any) -> Any:
+    """Sine of the angle at which the locus of the third corner crosses the circle or the guide of its leg."""
+    k, u = solved(k, u, legs)
+    _, normals, _ = conditions(k, u, legs)
+    ahead, turned = _freely(k, u, legs, 1.0, legs[14])
+    along = ahead - k + legs[14] * u * np.angle(turned / u) * 1j
+    return (np.conj(normals[2]) * along).real / np.abs(along)
+
+
 def _moved(k: Any, u: Any, amount: Any, legs: Legs) -> tuple[Any, Any]:
     """The triangle and two legs moved on by themselves: the third corner goes so far along its locus, m, in small steps."""
     k, u, *legs_at = _broadcast(k, u, *legs)
@@ -230,7 +240,7 @@ def places(u: Any, i: int, j: int, legs: Legs) -> list[Any]:
 
 
 def modes(legs: Legs) -> list[Pose]:
-    """Every way of assembly at one crank angle: first corner, m, and direction, sorted by the direction's angle from 0 to 360 degrees."""
+    """Every way of assembly at one crank angle, sorted by the direction's angle from 0 to 360 degrees."""
     theta = 2 * np.pi / SCAN * (np.arange(SCAN + 1) + 0.371)
     u = np.exp(1j * theta)
     size = float(extent(legs))
@@ -259,8 +269,10 @@ def modes(legs: Legs) -> list[Pose]:
 @dataclass(frozen=True)
 class Course:
     """One way of assembly round the turn: crank angles from the one it was told at, rad, ascending over one turn; first corner, m,
-    and direction of the triangle there, NaN where the group does not reach. ``back`` is False when after the turn it is another way.
-    ``normals`` are those of the three legs, in order. ``found`` are all ways of assembly at the first angle, ``taken`` the number of the one followed, from 0; -1 for none.
+    and direction of the triangle there, NaN where the group does not reach.
+
+    ``normals`` are those of the three legs, in order. ``back`` is False when after the turn it is another way. ``found`` are all
+    ways of assembly at the first angle, ``taken`` is the number of the one followed, from 0; -1 for none.
     """
 
     angles: Floats
@@ -280,7 +292,7 @@ def course(before: Callable[[Floats], Legs], at: float, near: float) -> Course:
     start = before(np.array([at]))
     one = tuple(x if i % 5 == 0 else _one(x) for i, x in enumerate(start))
     found = tuple(modes(one))
-    grid = at + 2 * np.pi / NODES * np.arange(NODES + 1)
+    grid: Floats = np.asarray(at + 2 * np.pi / NODES * np.arange(NODES + 1), dtype=np.float64)
     grid[-1] = at + 2 * np.pi
     if not found:
         nothing = np.full(len(grid), np.nan, dtype=complex)
@@ -318,7 +330,7 @@ class _Way:
         self.legs = before(grid)
 
     def follow(self, pose: Pose, backwards: bool = False) -> tuple[Floats, Complex, Complex]:
-        """Angles from the first one on (or from the last one back), and where the triangle stands; NaN behind the end of the way."""
+        """Angles from the first one on (or from the last one back), and where the triangle stands; NaN behind its end."""
         order = range(len(self.grid) - 1, -1, -1) if backwards else range(len(self.grid))
         found: list[tuple[float, Pose | None]] = []
         here: Pose | None = pose
@@ -403,7 +415,7 @@ def gap(k: complex, u: complex, legs: Legs) -> tuple[float, complex, complex]:
 
 
 def nearest(legs: Legs) -> tuple[float, int]:
-    """By how much a group that cannot be put together at all misses, m, and the number of the leg that misses; inf when two miss."""
+    """By how much a group that cannot be put together misses, m, and the number of the leg that misses; inf when two miss."""
     u = np.exp(2j * np.pi / SCAN * np.arange(SCAN))
     best, leg = np.inf, 2
     with np.errstate(all="ignore"):

@@ -1,10 +1,10 @@
 """Kind 6, a group of class III, order 3: a triangle on three legs.
 
 Each leg is hinged to a corner of the triangle and turns about an outer hinge or slides along an outer guide; the second may be a
-stone that is hinged outside and slides in a slot of the triangle. Positions by the method of false positions (метод ложных положений):
-without its third leg the group moves by itself, the third corner draws its locus, which the circle or the guide of the third leg
-cuts. Velocities and accelerations by Assur's special point (особая точка Ассура), where the normals of two legs meet: seen as a point of
-the triangle its velocity follows from both legs at once. Forces by the moments of the whole group about it.
+stone that is hinged outside and slides in a slot of the triangle. Positions by the method of false positions (метод ложных
+положений): without its third leg the group moves by itself, the third corner draws its locus, which the circle or the guide of the
+third leg cuts. Velocities and accelerations by Assur's special point (особая точка Ассура), where the normals of two legs meet:
+seen as a point of the triangle its velocity follows from both legs at once. Forces by the moments of the whole group about it.
 
 Source: I. I. Artobolevsky, Теория механизмов и машин, 1988, § 22, 24 and 61; L. V. Assur.
 """
@@ -21,8 +21,9 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import three_legs
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, lacking
@@ -30,12 +31,13 @@ from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGro
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.mechanism.groups.three_legs import Course
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
-FALSE = (-3, -2, -1, 0, 1, 2, 3)
+FALSE = (-3, -2, -1, 1, 2, 3)
 """False positions, counted from the true one."""
-APART = 0.12
-"""Way of the third corner between false positions, in lengths of its leg or of the triangle's side."""
+APART = 0.15
+"""Way of the third corner between false positions, in the least of its leg's and the triangle's lengths."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +45,8 @@ class Leg:
     """A leg: its link and the ``corner`` of the triangle it belongs to.
 
     ``outer`` is its outer hinge, ``length`` m from there to the corner; or ``guide`` the outer guide it slides along; or, with
-    ``outer`` and ``slot``, it is a stone in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of the
-    first corner to the second.
+    ``outer`` and ``slot``, it is a stone in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of
+    the first corner to the second.
     """
 
     link: str
@@ -69,8 +71,8 @@ class Leg:
 class TriadGroup(StructuralGroup):
     """A group of class III, order 3; ``links`` are the triangle and its three legs.
 
-    ``sides`` are the distances of the second and third corner from the first, m, ``angle`` that between them, rad. ``near`` is about the
-    direction from the first corner to the second, rad, in the way of assembly that is meant, at the crank angle ``when``.
+    ``sides`` are the distances of the second and third corner from the first, m, ``angle`` that between them, rad. ``near`` is
+    about the direction from the first corner to the second, rad, in the way of assembly that is meant, at the crank angle ``when``.
     """
 
     legs: tuple[Leg, ...] = ()
@@ -113,6 +115,7 @@ def _cut(a: tuple[Any, ...], v: Any) -> tuple[Helper, ...]:
 LOCUS = Rule(
     "locus cut", three_legs.corner_on_legs, ("point", "direction"), "point",
     marked("Where the locus cuts the circle or the guide of the third leg lies point {name}."), _cut,
+    sine=lambda z, k, u, *legs: three_legs.locus_sine(k, u, *legs),
 )
 ON_LOCUS = Rule("direction on the locus", three_legs.direction_on_legs, ("point", "direction"), "direction",
                 marked("Put the triangle there: direction {name}."))
@@ -127,8 +130,8 @@ FROM_THIRD = Rule("corner from another", _from_third, ("point", "direction", "nu
                   lambda a, v: (Helper("line", a[0], v),))
 FALSE_CORNER = Rule("false position of the first leg", three_legs.false_place, ("point", "direction"), "point",
                     marked("Let the first leg take a false position: point {name}."))
-FALSE_SIDE = Rule("side of a false position", three_legs.false_side, ("point", "direction"), "number", "{name} = {value}.", unit="1",
-                  exact=True)
+FALSE_SIDE = Rule("side of a false position", three_legs.false_side, ("point", "direction"), "number", "{name} = {value}.",
+                  unit="1", exact=True)
 
 
 def _transferred(first: Any, second: Any, two: Any, three: Any) -> Any:
@@ -136,7 +139,8 @@ def _transferred(first: Any, second: Any, two: Any, three: Any) -> Any:
 
 
 TRANSFER = Rule("triangle on its side", _transferred, ("point", "point", "length", "number"), "point",
-                marked("On {0}{1} put up the triangle: point {name} of the locus."))
+                marked("On {0}{1} put up the triangle: point {name} of the locus."),
+                lambda a, v: (Helper("line", a[0], a[1]), Helper("line", a[0], v), Helper("line", a[1], v)))
 
 
 def _in_slot(first: Any, u: Any, three: Any, slot: Any) -> Any:
@@ -144,7 +148,8 @@ def _in_slot(first: Any, u: Any, three: Any, slot: Any) -> Any:
 
 
 IN_SLOT = Rule("triangle by its slot", _in_slot, ("point", "direction", "number", "angle"), "point",
-               marked("From {0} along its slot put up the triangle: point {name} of the locus."))
+               marked("From {0} along its slot put up the triangle: point {name} of the locus."),
+               lambda a, v: (Helper("line", a[0], v),))
 
 
 def _slot_direction(first: Any, pivot: Any, two: Any, slot: Any, side: Any) -> Any:
@@ -213,6 +218,7 @@ class TriadKind(GroupKind):
         triad, plan = _of(g), pos.plan
         a, b, c = triad.legs
         way = pos.course(g)
+        _check(triad, way)
         angles, k, u = (Given(value, f"{what} of group {g.name}", over="curve",
                               choice=f"way of assembly whose triangle is nearest to {np.degrees(triad.near):g} deg at crank angle "
                                      f"{np.degrees(triad.when):g} deg, followed round the turn")
@@ -222,10 +228,9 @@ class TriadKind(GroupKind):
         held = self._held(pos, triad)
         if plan.search is None:
             self._false_positions(pos, triad, near, held)
-        what = dict(locus=c.corner, triangle=g.links[0], leg=c.link)
         third = plan.add(c.corner, LOCUS, *near, *held, say=(
             tr("The locus of {locus} cuts the guide of slider {leg}: point {{name}}.") if c.guide else
-            tr("The locus of {locus} cuts the circle of leg {leg}: point {{name}}.")).format(**what))
+            tr("The locus of {locus} cuts the circle of leg {leg}: point {{name}}.")).format(locus=c.corner, leg=c.link))
         along = plan.add(plan.free(a.corner + b.corner), ON_LOCUS, *near, *held)
         pos.points[c.corner], pos.rays[a.corner, b.corner], pos.directions[g.links[0]] = third, along, along
         own = held[14]
@@ -258,24 +263,24 @@ class TriadKind(GroupKind):
     @staticmethod
     def _false_positions(pos: Positions, g: TriadGroup, near: tuple[Step, Step], held: tuple[Any, ...]) -> None:
         """Without the third leg: some places of the first, of the second by compasses, of the third corner by the triangle."""
-        plan, (a, b, c) = pos.plan, g.legs
+        a, b, c = g.legs
+        title = tr("False positions of group {name}").format(name=g.name)
+        plan = pos.false[g.name] = Plan(f"false-positions-{g.name}{pos.where}", title, "m", pos.plan.labels)
         size = APART * min(x for x in (c.length, g.sides[0], g.sides[1]) if x > 0)
         two, three = held[9], held[14]
         for n in FALSE:
-            sign = f"({n:+d})" if n else "(0)"
-            first = plan.add(plan.free(f"{a.corner}{sign}"), FALSE_CORNER, *near, n * size, *held, say=tr(
+            at = sign(n)
+            first = plan.add(f"{a.corner}{at}", FALSE_CORNER, *near, n * size, *held, say=tr(
                 "Leg {leg} takes a false position: point {{name}}.").format(leg=a.link))
             side = plan.aside(f"side {first.name}", FALSE_SIDE, *near, n * size, *held)
-            name = plan.free(f"{b.corner}{sign}")
-            if b.guide:
-                second = plan.add(name, rules.ARC_LINE, first, two, held[6], held[7], side)
-            elif b.slot is None:
-                second = plan.add(name, rules.ARC_ARC, first, two, held[6], held[8], side)
+            name = f"{b.corner}{at}"
+            if b.slot is None:
+                second = (plan.add(name, rules.ARC_LINE, first, two, held[6], held[7], side) if b.guide else
+                          plan.add(name, rules.ARC_ARC, first, two, held[6], held[8], side))
+                plan.add(f"{c.corner}{at}", TRANSFER, first, second, two, three)
             else:
                 u = plan.add(name, SLOT_DIRECTION, first, held[6], two, b.slot, side)
-                plan.add(plan.free(f"{c.corner}{sign}"), IN_SLOT, first, u, three, b.slot)
-                continue
-            plan.add(plan.free(f"{c.corner}{sign}"), TRANSFER, first, second, two, three)
+                plan.add(f"{c.corner}{at}", IN_SLOT, first, u, three, b.slot)
 
     def _special_point(self, pos: Positions, g: TriadGroup) -> None:
         """Where the normals of two legs meet, of those two that meet best at the angles of the plan."""
@@ -290,8 +295,8 @@ class TriadKind(GroupKind):
         name = special_name(g.links[0])
         step = plan.add(name, rules.LINE_LINE, pos.points[first.at], self._normal(pos, first), pos.points[second.at],
                         self._normal(pos, second), say=tr(
-                            "The normals of legs {first} and {second} meet at Assur's special point {{name}} of link {link}.").format(
-                                first=first.link, second=second.link, link=g.links[0]))
+                            "The normals of legs {first} and {second} meet at Assur's special point {{name}} of link {link}."
+                        ).format(first=first.link, second=second.link, link=g.links[0]))
         pos.special[name] = SpecialPoint(name, step, (first, second), third)
 
     @staticmethod
@@ -361,7 +366,7 @@ class TriadKind(GroupKind):
                 plan.coincident[on_link(leg.outer, tri)] = plan.similar(leg.outer, w, step, start, c.at, on_link(leg.outer, tri))
 
     def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
-        plan, pos, vel, tri = acc.plan, acc.positions, acc.velocities, g.links[0]
+        plan, pos, tri = acc.plan, acc.positions, g.links[0]
         s = pos.special[special_name(tri)]
         (a, b), c = s.pair, s.third
         ends = []
@@ -386,7 +391,6 @@ class TriadKind(GroupKind):
                 acc.turning(leg.link, leg.outer, leg.corner, z[leg.outer], z[leg.corner])
             else:
                 acc.turns_with(leg.link, tri)
-        del vel
 
     @staticmethod
     def _known(acc: Accelerations, leg: Leg, tri: str) -> tuple[Step, Step]:
@@ -405,10 +409,10 @@ class TriadKind(GroupKind):
     # --- forces -------------------------------------------------------------------------------------------------------
 
     def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
-        """Tangential parts from moments of each leg, one normal part from those of the group about the special point, two from its plan."""
+        """Kind 6: tangential parts from moments of each leg, a normal one from those of the group about the special point."""
         pos, m, triad, tri = forces.positions, forces.positions.mechanism, _of(g), g.links[0]
         s = pos.special[special_name(tri)]
-        (a, b), c = s.pair, s.third
+        c = s.third
         owner = {leg: m.guides[leg.guide].link if leg.guide else m.owner(leg.outer) for leg in triad.legs}
         part: dict[Leg, Step] = {}
         couple: dict[Leg, Step] = {}
@@ -426,7 +430,8 @@ class TriadKind(GroupKind):
                 part[leg] = forces.plan.add(f"F{pair_index(leg.link, owner[leg])}τ", ALONG_SLOT, pos.directions[leg.link], *own)
             more.append((pos.points[leg.outer], part[leg], 0.0))
         total = forces.moment_sum(f"ΣM{s.name}", s.step, g.links, more)
-        normal = forces.plan.add(f"F{pair_index(c.link, owner[c])}n", BY_MOMENTS, total, s.step, pos.points[c.at], self._normal(pos, c))
+        normal = forces.plan.add(f"F{pair_index(c.link, owner[c])}n", BY_MOMENTS, total, s.step, pos.points[c.at],
+                                 self._normal(pos, c))
         whole = self._polygon(forces, triad, s, owner, part, normal)
         for leg in triad.legs:
             if leg.guide:
@@ -439,7 +444,7 @@ class TriadKind(GroupKind):
 
     def _polygon(self, forces: Kinetostatics, g: TriadGroup, s: SpecialPoint, owner: dict[Leg, str], part: dict[Leg, Step],
                  normal: Step) -> dict[Leg, Step]:
-        """Plan of the whole group: first leg, triangle, third leg, second leg; a line more for each leg gives the force on the triangle."""
+        """Plan of the whole group: first leg, triangle, third leg, second leg; inner reactions by a line more each."""
         pos, tri = forces.positions, g.links[0]
         (a, b), c = s.pair, s.third
         fp = forces.plan_of(g.name, g.links)
@@ -499,8 +504,8 @@ class TriadKind(GroupKind):
         leg = triad.legs[2]
 
         def say(lack: float) -> str:
-            said = (tell("the locus of {corner} does not come to the guide {guide} of slider {leg}: {lack} are missing") if leg.guide else
-                    tell("the locus of {corner} does not come to the circle of leg {leg}: {lack} are missing"))
+            said = (tell("the locus of {corner} does not come to the guide {guide} of slider {leg}: {lack} are missing")
+                    if leg.guide else tell("the locus of {corner} does not come to the circle of leg {leg}: {lack} are missing"))
             return said.format(corner=leg.corner, guide=leg.guide, leg=leg.link, lack=lacking(lack))
 
         return [AssemblyLimit(m.crank.length, partial(self._margin, triad), say, partial(_hint, triad))]
@@ -569,6 +574,17 @@ class TriadKind(GroupKind):
         return next(leg.at for leg in _of(g).legs if leg.link == link)
 
 
+def false_points(pos: Positions, g: TriadGroup) -> list[tuple[Step, ...]]:
+    """Steps of the false positions that a plan has: the corners, and the slot's direction instead of the second of a stone's."""
+    names, plan = [leg.corner for leg in g.legs], pos.false[g.name]
+    return [tuple(plan[f"{name}{sign(n)}"] for name in names) for n in FALSE]
+
+
+def sign(n: int) -> str:
+    """Number of a false position behind a name."""
+    return f"({n:+d})"
+
+
 PAIRS = ((0, 1), (0, 2), (1, 2))
 
 
@@ -577,14 +593,42 @@ def special_name(triangle: str) -> str:
     return f"W{triangle}"
 
 
+SURELY = np.radians(45.0)
+"""Beyond it the told direction belongs to no way of assembly."""
+
+
+def _ways(g: TriadGroup, way: Course) -> dict[str, Any]:
+    """Ways of assembly for a message."""
+    return {"group": "-".join(g.links), "side": g.legs[0].corner + g.legs[1].corner, "angle": np.degrees(g.when),
+            "told": np.degrees(g.near), "ways": ", ".join(f"{np.degrees(np.angle(u)) % 360:.1f}" for _, u in way.found)}
+
+
+def _check(g: TriadGroup, way: Course) -> None:
+    """Refuse a direction near which the group has no way of assembly, and one that is another after a turn of the crank.
+
+    Raises
+    ------
+    CannotBuild
+        with the ways of assembly at the crank angle where the direction is told.
+    """
+    if way.taken < 0:
+        return  # the limits tell by how much
+    if abs(np.angle(way.found[way.taken][1] * np.exp(-1j * g.near))) > SURELY:
+        message = tell("group {group}: no way of assembly at crank angle {angle:g} deg has {side} near {told:g} deg")
+        raise CannotBuild(message.format(**_ways(g, way)), tell("take one of {ways} deg").format(**_ways(g, way)))
+    if not way.back:
+        message = tell("group {group}: after a turn of the crank it stands in another way of assembly")
+        hint = tell("make the crank shorter; ways of assembly at crank angle {angle:g} deg have {side} at {ways} deg")
+        raise CannotBuild(message.format(**_ways(g, way)), hint.format(**_ways(g, way)))
+
+
 def _hint(g: TriadGroup, pos: Positions) -> str:
     way = pos.course(g)
     if not way.found:
         return tell("no way of assembly at crank angle {angle:g} deg: lengthen a leg or bring the pivots nearer").format(
             angle=np.degrees(g.when))
-    return tell("make the crank shorter, or the legs longer; other ways of assembly at crank angle {angle:g} deg have {side} at {ways} deg").format(
-        angle=np.degrees(g.when), side=g.legs[0].corner + g.legs[1].corner,
-        ways=", ".join(f"{np.degrees(np.angle(u)) % 360:.1f}" for _, u in way.found))
+    return tell("make the crank shorter, or the legs longer; ways of assembly at crank angle {angle:g} deg have {side} at "
+                "{ways} deg").format(**_ways(g, way))
 
 
 TRIAD = TriadKind()

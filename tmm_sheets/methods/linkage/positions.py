@@ -25,7 +25,8 @@ class Positions:
     ``directions`` are unit vectors of the links, from the first named point of each to its next; ``feet`` name, for rockers
     with an offset, the foot of the perpendicular from the pivot on the slot. ``sines`` are, by the first link of a group next to
     the crank, those of the angle between its lines in the plans of velocities, where they are known better than the lines.
-    ``special`` are Assur's special points of groups of class III by their names.
+    ``special`` are Assur's special points of groups of class III by their names, ``false`` the plans of their false positions by
+    the groups' names.
     """
 
     mechanism: Mechanism
@@ -41,6 +42,7 @@ class Positions:
     feet: dict[str, str] = field(default_factory=dict)
     sines: dict[str, Step] = field(default_factory=dict)
     special: dict[str, SpecialPoint] = field(default_factory=dict)
+    false: dict[str, Plan] = field(default_factory=dict)
 
     @property
     def phi(self) -> Any:
