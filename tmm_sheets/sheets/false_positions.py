@@ -47,8 +47,9 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     s = stage(canvas, pos.plan, k, frame)
     there = [steps for steps in false_points(pos, g) if not any(np.isnan(step.at(k)) for step in steps)]
     false = stage(canvas, pos.false[g.name], k, frame)
+    play(false, cut=2.0)
     for steps in there:
-        _false(false, g, pos, steps)
+        false.dot(steps[2], 0.5, "thin")
     third = g.legs[2]
     play(s, [pos.points[third.corner]], "thin", cut=16.0)
     _locus(false, there, pos.points[third.corner])
@@ -67,15 +68,6 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         a, b = s.at(pos.points[ends[0]]), s.at(pos.points[ends[-1]])
         s.letters(pos.directions[shape.link], shape.link, 1j * (b - a) if shape.bar else 1 + 1j, 5.0, 1.4 if shape.bar else 6.0,
                   a + 0.4 * (b - a))
-
-
-def _false(s: Stage, g: TriadGroup, pos: Positions, steps: tuple[Step, ...]) -> None:
-    """One false position: both legs and the triangle thin, the locus's point with its number."""
-    play(s, steps, "construction", cut=2.0)
-    for leg, step in zip(g.legs[:2], steps, strict=False):
-        if leg.form == "RR":
-            s.line(step, s.at(pos.points[leg.outer]), s.at(step))
-    s.dot(steps[2], 0.5, "thin")
 
 
 def _locus(s: Stage, there: list[tuple[Step, ...]], found: Step) -> None:

@@ -156,7 +156,9 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     _link_numbers(s, pos, drawn)
     for name in centres:
         symbols.centre_of_mass(s.pen(name, "symbol"), s.at(name))
-    draw_arms(s, about, shown)
+    # About a special point the reaction of a guide has no arm: its couple is known before.
+    own = [] if g.kind.grade == 2 else list(project.study.forces.arms.values())
+    draw_arms(s, about, [force for force in shown if force.arm not in own])
     if g.kind.about(g) in pos.special:
         point = pos.special[g.kind.about(g)].step
         s.dot(point, 0.9, "main")

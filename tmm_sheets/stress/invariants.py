@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, GroupKind
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD, GroupKind
+from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
@@ -182,9 +183,25 @@ def _stone_in_slot(s: State, g: StructuralGroup) -> Iterator[Residual]:
     yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - s.z[g.outer[0]])) / s.reach
 
 
+def _triangle(s: State, g: StructuralGroup) -> Iterator[Residual]:
+    """The sides of the triangle and the three legs, from the points alone."""
+    assert isinstance(g, TriadGroup)
+    first, second, third = (s.z[leg.corner] for leg in g.legs)
+    across = (g.sides[0] ** 2 + g.sides[1] ** 2 - 2 * g.sides[0] * g.sides[1] * np.cos(g.angle)) ** 0.5
+    for side, length in ((second - first, g.sides[0]), (third - first, g.sides[1]), (third - second, across)):
+        yield "link lengths", np.abs(np.abs(side) - length) / s.reach
+    for leg in g.legs:
+        at = s.z[leg.corner]
+        if leg.slot is not None:
+            u = (second - first) / g.sides[0] * np.exp(1j * leg.slot)
+            yield "closure on guides", np.abs(cross(u, s.z[leg.outer] - at)) / s.reach
+        elif not leg.guide:
+            yield "link lengths", np.abs(np.abs(at - s.z[leg.outer]) - leg.length) / s.reach
+
+
 LOOPS: dict[GroupKind, Loop] = {
     RRR: Loop(_two_rods, _two_rods_reach), RRP: Loop(_rod_on_guide, _rod_reach), RPR: Loop(_stone_on_rocker, _stone_reach),
-    PRP: Loop(_on_two_guides), RPP: Loop(_stone_in_slot),
+    PRP: Loop(_on_two_guides), RPP: Loop(_stone_in_slot), TRIAD: Loop(_triangle),
 }
 
 

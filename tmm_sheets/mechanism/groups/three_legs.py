@@ -42,8 +42,10 @@ SCAN = 1440
 """Directions of the triangle in which ways of assembly are looked for."""
 
 
-def _broadcast(*values: Any) -> list[Any]:
-    return [np.atleast_1d(x) for x in np.broadcast_arrays(*values)]
+def _spread(k: Any, u: Any, legs: Legs) -> tuple[Any, Any, Legs]:
+    """Place, direction and legs of one shape (n,); what a leg does stays one number."""
+    k, u, *many = (np.atleast_1d(x) for x in np.broadcast_arrays(k, u, *legs))
+    return k, u, tuple(float(np.ravel(legs[i])[0]) if i % 5 == 0 else x for i, x in enumerate(many))
 
 
 def conditions(k: Any, u: Any, legs: Legs) -> tuple[Any, Any, Any]:
@@ -98,13 +100,12 @@ def extent(legs: Legs) -> Any:
     """Size of the group, m: what its rounding is a share of."""
     reach = sum(np.abs(corner) for corner in legs[4::5])
     sizes = sum(np.abs(size) for does, size in zip(legs[0::5], legs[3::5], strict=True) if does == CIRCLE)
-    return reach + sizes + max(np.max(np.abs(p)) for p in legs[1::5])
+    return reach + sizes + max(np.max(np.abs(p), initial=0.0) for p in legs[1::5])
 
 
 def solved(k: Any, u: Any, legs: Legs) -> tuple[Complex, Complex]:
     """First corner, m, and direction of the triangle on its legs, next to where it is supposed; NaN where it has no place there."""
-    k, u, *legs_at = _broadcast(k, u / np.abs(u), *legs)
-    many = tuple(float(x[0]) if i % 5 == 0 else x for i, x in enumerate(legs_at))
+    k, u, many = _spread(k, u / np.abs(u), legs)
     size, start, turned = extent(many), k, u
     with np.errstate(all="ignore"):
         for _ in range(40):
@@ -179,8 +180,7 @@ def locus_sine(k: Any, u: Any, *legs: Any) -> Any:
 
 def _moved(k: Any, u: Any, amount: Any, legs: Legs) -> tuple[Any, Any]:
     """The triangle and two legs moved on by themselves: the third corner goes so far along its locus, m, in small steps."""
-    k, u, *legs_at = _broadcast(k, u, *legs)
-    many = tuple(float(x[0]) if i % 5 == 0 else x for i, x in enumerate(legs_at))
+    k, u, many = _spread(k, u, legs)
     corner = many[14]
     with np.errstate(all="ignore"):
         for _ in range(MOVES):

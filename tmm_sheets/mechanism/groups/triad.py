@@ -274,9 +274,13 @@ class TriadKind(GroupKind):
                 "Leg {leg} takes a false position: point {{name}}.").format(leg=a.link))
             side = plan.aside(f"side {first.name}", FALSE_SIDE, *near, n * size, *held)
             name = f"{b.corner}{at}"
+            if a.form == "RR":
+                plan.add(f"{a.outer}{first.name}", rules.RAY, held[1], first)
             if b.slot is None:
                 second = (plan.add(name, rules.ARC_LINE, first, two, held[6], held[7], side) if b.guide else
                           plan.add(name, rules.ARC_ARC, first, two, held[6], held[8], side))
+                if b.form == "RR":
+                    plan.add(f"{b.outer}{name}", rules.RAY, held[6], second)
                 plan.add(f"{c.corner}{at}", TRANSFER, first, second, two, three)
             else:
                 u = plan.add(name, SLOT_DIRECTION, first, held[6], two, b.slot, side)
