@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from cmath import phase
 from collections.abc import Iterator
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
@@ -32,7 +34,8 @@ def text(variant: Variant) -> str:
     if variant.crank is not None:
         from tmm_sheets.task.assembly import mechanism_of
 
-        lines += list(_structure(mechanism_of(variant)))
+        m = mechanism_of(variant)
+        lines += [*_structure(m), *(_ways(variant, g) for g in m.groups if g.kind.grade == 3)]
     return "\n".join(lines)
 
 
@@ -70,27 +73,22 @@ def _structure(m: Mechanism) -> Iterator[str]:
     grade = tell("class {grade}, order {order}")
     yield from _table([(g.name, grade.format(grade=g.kind.grade, order=g.kind.order),
                         kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
-    for g in m.groups:
-        if g.kind.grade == 3:
-            yield "\n" + _ways(m, g)
     yield "\n" + tell("Formula of structure: {formula}").format(formula=m.structure)
 
 
-def _ways(m: Mechanism, g: Any) -> str:
+def _ways(variant: Variant, g: Any) -> str:
     """The ways in which a group of class III can be put together, and which one is taken."""
-    import numpy as np
-
-    from tmm_sheets.methods.linkage.positions import position_plan
+    from tmm_sheets.project import Project
 
     try:
-        way = position_plan(m, np.array([g.when]), purpose="ways of assembly").course(g)
+        way = Project(variant).way_of_assembly(g)
     except CannotBuild as e:
         return str(e)
-    angles = [f"{np.degrees(np.angle(u)) % 360:.1f}" for _, u in way.found]
+    angles = [f"{degrees(phase(u)) % 360:.1f}" for _, u in way.found]
     if angles:
         angles[way.taken] = tell("{angle} (taken)").format(angle=angles[way.taken])
-    return tell("Ways of assembly of group {group} at crank angle {angle:g} deg: {side} at {ways} deg").format(
-        group=g.name, angle=np.degrees(g.when), side=g.legs[0].corner + g.legs[1].corner, ways=", ".join(angles) or "–")
+    return "\n" + tell("Ways of assembly of group {group} at crank angle {angle:g} deg: {side} at {ways} deg").format(
+        group=g.name, angle=degrees(g.when), side=g.legs[0].corner + g.legs[1].corner, ways=", ".join(angles) or "–")
 
 
 def _links(m: Mechanism) -> Iterator[tuple[str, str, str]]:

@@ -25,10 +25,6 @@ if TYPE_CHECKING:
 Motion = Literal["rotation", "translation"]
 
 
-ROMAN = {2: "II", 3: "III"}
-"""Classes of groups as they are written."""
-
-
 @dataclass(frozen=True)
 class Link:
     """A link; ``mass`` kg at point ``centre``, ``inertia`` kg m2 about it; None where the task gives none.
@@ -181,6 +177,11 @@ class GroupKind(ABC):
         """Links that are blocks on guides, each with its guide."""
         return ()
 
+    @property
+    def roman(self) -> str:
+        """Its class as it is written."""
+        return {2: "II", 3: "III"}[self.grade]
+
     def told(self, g: StructuralGroup) -> str:
         """Number and pairs as they stand on a sheet."""
         return f"{self.number} ({tr(g.form)})"
@@ -321,7 +322,7 @@ class Mechanism:
     def structure(self) -> str:
         """Formula of structure in Russian, from the initial mechanism outwards."""
         parts = [f"I(0,{self.crank.link})"]
-        parts += [f"{ROMAN[g.kind.grade]}({','.join(g.links)})" for g in self.groups]
+        parts += [f"{g.kind.roman}({','.join(g.links)})" for g in self.groups]
         return " → ".join(parts)
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -11,14 +11,14 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.mechanism.groups.triad import TriadGroup, false_points
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import fit_frame
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.groups.triad import SpecialPoint
+    from tmm_sheets.mechanism.groups.hints import SpecialPoint
+    from tmm_sheets.mechanism.groups.triad import TriadGroup
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
@@ -30,7 +30,7 @@ NEAR = 1.6
 
 def triads(project: Project) -> list[TriadGroup]:
     """Groups of class III, in order of attachment."""
-    return [g for g in project.mechanism.groups if isinstance(g, TriadGroup)]
+    return [cast("TriadGroup", g) for g in project.mechanism.groups if g.kind.grade == 3]
 
 
 def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -45,7 +45,7 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.title(box, tr("False positions of group {name} (position {label})").format(
         name=g.name, label=project.cycle.labels[k]), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
-    there = [steps for steps in false_points(pos, g) if not any(np.isnan(step.at(k)) for step in steps)]
+    there = [steps for steps in g.false_points(pos.false[g.name]) if not any(np.isnan(step.at(k)) for step in steps)]
     false = stage(canvas, pos.false[g.name], k, frame)
     play(false, cut=2.0)
     for steps in there:
@@ -113,6 +113,6 @@ def reach(project: Project, g: TriadGroup) -> tuple[Any, Any]:
     z = [complex(step.at(k)) for step in _points(pos, g)]
     if abs(complex(special.at(k)) - _middle(pos, g, k)) < NEAR * _size(pos, g, k):
         z.append(complex(special.at(k)))
-    z += [complex(step.at(k)) for steps in false_points(pos, g) for step in steps if step.rule.gives == "point"]
+    z += [complex(step.at(k)) for steps in g.false_points(pos.false[g.name]) for step in steps if step.rule.gives == "point"]
     around = (10.0, -10.0, 8.0j, -10.0j)
     return np.repeat(z, len(around)), np.tile(around, len(z))

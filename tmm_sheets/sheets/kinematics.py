@@ -17,7 +17,6 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import size_in, widened
-from tmm_sheets.mechanism.model import ROMAN
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
@@ -536,6 +535,6 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
         return
     rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
     for g, found in zip(reversed(m.groups), decompose(m), strict=True):
-        rows.append([g.name, ROMAN[g.kind.grade], str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
+        rows.append([g.name, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
     canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD
-from tmm_sheets.mechanism.groups.triad import Leg, TriadGroup
+from tmm_sheets.mechanism.groups.hints import Leg
+from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 
 SURE = 0.25

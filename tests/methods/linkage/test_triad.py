@@ -1,7 +1,7 @@
 """Groups of class III: positions, velocities, accelerations, forces, ways of assembly, limits.
 
-Truth: Newton's method on the equations of the legs in 50 digits and its derivatives, the sextic of all ways of assembly, the power of all
-forces, a scan of the locus by compasses. None of them shares anything with the false positions and special points on trial.
+Truth: Newton's method on the equations of the legs in 50 digits and its derivatives, the sextic of all ways of assembly, the power
+of all forces, a scan of the locus by compasses. None of them shares anything with the false positions and special points on trial.
 """
 
 from dataclasses import replace
@@ -48,7 +48,8 @@ def exactly(m, phi):
 
     for g in m.groups:
         if g.kind.number == 1:
-            solve(lambda p, g=g: [abs(p[g.inner] - p[q]) ** 2 - mp.mpf(length) ** 2 for q, length in zip(g.outer, g.lengths)], [g.inner])
+            rods = tuple(zip(g.outer, g.lengths, strict=True))
+            solve(lambda p, g=g, rods=rods: [abs(p[g.inner] - p[q]) ** 2 - mp.mpf(length) ** 2 for q, length in rods], [g.inner])
         elif g.kind.number == 2:
             guide = m.guides[g.guides[0]]
             solve(lambda p, g=g, guide=guide: [abs(p[g.inner] - p[g.outer[0]]) ** 2 - mp.mpf(g.lengths[0]) ** 2,
@@ -141,7 +142,7 @@ def powers(project, k, z, h, w):
 
 
 def sextic(g, p):
-    """Directions, rad, of all ways of assembly of a triangle on three rods about the points ``p``: roots of one polynomial of e^{iθ}."""
+    """Directions, rad, of all ways of assembly of a triangle on three rods about points ``p``: roots of a polynomial of e^{iθ}."""
     l1, l2, l3 = (leg.length for leg in g.legs)
     corners = (0j, complex(g.sides[0]), g.sides[1] * np.exp(1j * g.angle))
     n = 32
@@ -197,8 +198,8 @@ def shorter(length):
 def test_where_the_locus_does_not_reach():
     """A rocker 5 that is too short on a part of the turn, and one that is too short all round: where, and by how much."""
     with pytest.raises(CannotBuild, match=(
-            r"group 3-2-4-5 does not assemble at crank angles 164\.7\.\.216\.8 deg: the locus of F does not come to the circle of leg 5: "
-            r"4\.188 mm are missing at worst \(crank angle 191\.0 deg\); reachable crank angles: -143\.2\.\.164\.7 deg")):
+            r"group 3-2-4-5 does not assemble at crank angles 164\.7\.\.216\.8 deg: the locus of F does not come to the circle of leg 5"
+            r": 4\.188 mm are missing at worst \(crank angle 191\.0 deg\); reachable crank angles: -143\.2\.\.164\.7 deg")):
         check_turn(shorter(0.30))
     assert missed(shorter(0.30), np.radians(191.0), 0.30) == pytest.approx(4.188e-3, abs=1e-6)
     # The ends: there the compasses just reach.
@@ -242,7 +243,7 @@ def test_structure(project):
 
 
 def test_false_positions_lie_on_the_locus(project):
-    """Each of the first two legs keeps its length or its guide, each corner the triangle's sides; the third leg's corner is elsewhere."""
+    """The first two legs keep their lengths or guides, each corner the triangle's sides; the third leg's corner is elsewhere."""
     pos, m = project.study.positions, project.mechanism
     g = next(g for g in m.groups if g.kind.number == 6)
     plan = pos.false[g.name]

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role
+    from tmm_sheets.mechanism.groups.hints import SpecialPoint
     from tmm_sheets.mechanism.groups.three_legs import Course
-    from tmm_sheets.mechanism.groups.triad import SpecialPoint
 
 M = TypeVar("M", covariant=True)
 G = TypeVar("G", contravariant=True)

@@ -25,7 +25,7 @@ from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import three_legs
-from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
+from tmm_sheets.mechanism.groups.hints import Leg, OuterReaction, Outline, SpecialPoint
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, lacking
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 from tmm_sheets.words import marked, tell, tr
@@ -38,33 +38,6 @@ FALSE = (-3, -2, -1, 1, 2, 3)
 """False positions, counted from the true one."""
 APART = 0.15
 """Way of the third corner between false positions, in the least of its leg's and the triangle's lengths."""
-
-
-@dataclass(frozen=True)
-class Leg:
-    """A leg: its link and the ``corner`` of the triangle it belongs to.
-
-    ``outer`` is its outer hinge, ``length`` m from there to the corner; or ``guide`` the outer guide it slides along; or, with
-    ``outer`` and ``slot``, it is a stone in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of
-    the first corner to the second.
-    """
-
-    link: str
-    corner: str
-    outer: str = ""
-    guide: str = ""
-    length: float = 0.0
-    slot: float | None = None
-
-    @property
-    def form(self) -> str:
-        """Its outer and its inner pair: R turning, P sliding."""
-        return "PR" if self.guide else "RR" if self.slot is None else "RP"
-
-    @property
-    def at(self) -> str:
-        """Point of the triangle where it is held: its normal passes there."""
-        return self.corner if self.slot is None else self.outer
 
 
 @dataclass(frozen=True)
@@ -86,15 +59,9 @@ class TriadGroup(StructuralGroup):
         """Pairs of its legs."""
         return "–".join(leg.form for leg in self.legs)
 
-
-@dataclass(frozen=True)
-class SpecialPoint:
-    """Where the normals of the legs of a ``pair`` meet; the ``third`` leg is the other one."""
-
-    name: str
-    step: Step
-    pair: tuple[Leg, Leg]
-    third: Leg
+    def false_points(self, plan: Plan) -> list[tuple[Step, ...]]:
+        """Steps of its false positions: the corners, and the slot's direction instead of the second of a stone's."""
+        return [tuple(plan[f"{leg.corner}{sign(n)}"] for leg in self.legs) for n in FALSE]
 
 
 def _third_corner(length: Any, angle: Any) -> Any:
@@ -215,6 +182,13 @@ class TriadKind(GroupKind):
     # --- positions ------------------------------------------------------------------------------------------------
 
     def position(self, pos: Positions, g: StructuralGroup) -> None:
+        """Construct the corners, the special point and the false positions.
+
+        Raises
+        ------
+        CannotBuild
+            when no way of assembly is near the direction told, or a turn of the crank leads to another one.
+        """
         triad, plan = _of(g), pos.plan
         a, b, c = triad.legs
         way = pos.course(g)
@@ -576,12 +550,6 @@ class TriadKind(GroupKind):
 
     def block(self, g: StructuralGroup, link: str) -> str:
         return next(leg.at for leg in _of(g).legs if leg.link == link)
-
-
-def false_points(pos: Positions, g: TriadGroup) -> list[tuple[Step, ...]]:
-    """Steps of the false positions that a plan has: the corners, and the slot's direction instead of the second of a stone's."""
-    names, plan = [leg.corner for leg in g.legs], pos.false[g.name]
-    return [tuple(plan[f"{name}{sign(n)}"] for name in names) for n in FALSE]
 
 
 def sign(n: int) -> str:
