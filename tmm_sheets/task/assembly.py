@@ -26,6 +26,7 @@ from tmm_sheets.methods.linkage.loads import (
     OutputMotion,
     Table,
     angle_law,
+    steady_law,
     straight_motion,
     stroke_law,
     turning_motion,
@@ -179,6 +180,11 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
     numbers = () if f.bore is None else (of.number(f.bore, "D", "m", "force", i, "bore"),
                                          of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
     diagrams = _diagrams(of, plan, f, tables, PISTON if numbers else None, numbers, "force", i)
+    strokes = f.over == "stroke" and (f.sense is not None or (c is not None and f.point == c.output))
+    if isinstance(f.direction, float) and _steady(f) and not strokes:
+        law, jumps = steady_law(f.value or 0.0)
+        toward = unit(f.direction)
+        return Applied(f.name, f.link, f.point, toward, law, jumps, None, diagrams, _along(of, i, toward))
     if f.over == "angle":
         if not isinstance(f.direction, float) or tables[0] is None:
             raise CannotBuild(tell("force {name}: a diagram over the angle needs a fixed direction").format(name=f.name),
@@ -202,6 +208,12 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
     return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, _along(of, i, toward))
 
 
+def _steady(load: ForceTable | MomentTable) -> bool:
+    """Whether a load is the same all the time, whatever moves."""
+    whole = isinstance(load, MomentTable) or (load.bore is None and (load.from_, load.to) == (0.0, 1.0))
+    return load.value is not None and load.stroke == "both" and whole
+
+
 def _along(of: Givens, i: int, toward: complex) -> GivenPoint:
     """Direction of a force."""
     return GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
@@ -222,6 +234,10 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
     sense = -1 if m.sense == "clockwise" else 1
     tables = m.diagrams()
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
+    if fixed is not None and _steady(m):
+        law, jumps = steady_law(fixed * (m.value or 0.0))
+        return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None, _diagrams(of, plan, m, tables, None, (), "moment", i),
+                       sign=GivenNumber(fixed, f"moment[{i}].direction"))
     if m.over == "angle":
         if fixed is None or tables[0] is None:
             raise CannotBuild(tell("moment {name}: a diagram over the angle needs a fixed direction").format(name=m.name),

@@ -198,7 +198,8 @@ def shorter(length):
 def test_where_the_locus_does_not_reach():
     """A rocker 5 that is too short on a part of the turn, and one that is too short all round: where, and by how much."""
     with pytest.raises(CannotBuild, match=(
-            r"group 3-2-4-5 does not assemble at crank angles 164\.7\.\.216\.8 deg: the locus of F does not come to the circle of leg 5"
+            r"group 3-2-4-5 does not assemble at crank angles 164\.7\.\.216\.8 deg: the locus of F does not come to the circle of "
+            r"leg 5"
             r": 4\.188 mm are missing at worst \(crank angle 191\.0 deg\); reachable crank angles: -143\.2\.\.164\.7 deg")):
         check_turn(shorter(0.30))
     assert missed(shorter(0.30), np.radians(191.0), 0.30) == pytest.approx(4.188e-3, abs=1e-6)

@@ -543,7 +543,7 @@ class TriadKind(GroupKind):
 
 
     def told(self, g: StructuralGroup) -> str:
-        return g.form
+        return "–".join(tr(FORMS[leg.form]) for leg in _of(g).legs)
 
     def joints(self, g: StructuralGroup) -> tuple[str, ...]:
         return (*(leg.corner for leg in _of(g).legs), *g.outer)
@@ -557,6 +557,8 @@ def sign(n: int) -> str:
     return f"({n:+d})"
 
 
+FORMS = {"RR": marked("RR"), "PR": marked("PR"), "RP": marked("RP")}
+"""Pairs of a leg, outer and inner."""
 PAIRS = ((0, 1), (0, 2), (1, 2))
 
 
