@@ -12,6 +12,8 @@ from tmm_sheets.words import marked, tell
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.tally import Tally
+    from tmm_sheets.mechanism.groups.three_legs import Course
+    from tmm_sheets.mechanism.groups.triad import TriadGroup
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.cams.cam_profile import Cam
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
@@ -93,6 +95,14 @@ class Project:
         from tmm_sheets.task.assembly import mechanism_of
 
         return mechanism_of(self.variant, self.synthesis if self.variant.synthesis is not None else None)
+
+    def way_of_assembly(self, g: TriadGroup) -> Course:
+        """Ways of assembly of a group of class III, and the one that is taken, round the turn."""
+        import numpy as np
+
+        from tmm_sheets.methods.linkage.positions import FOLLOWED, position_plan
+
+        return position_plan(self.mechanism, np.array([g.when]), purpose=FOLLOWED, until=g).course(g)
 
     @cached_property
     def synthesis(self) -> Synthesis:

@@ -234,7 +234,7 @@ def _structure(project: Project) -> dict[str, Any]:
     return {
         "W": m.mobility,
         "class": m.grade,
-        "groups": [{"links": list(g.links), "class": 2, "order": 2, "kind": g.kind.number} for g in m.groups],
+        "groups": [{"links": list(g.links), "class": g.kind.grade, "order": g.kind.order, "kind": g.kind.number} for g in m.groups],
         "formula": m.structure,
     }
 
@@ -291,19 +291,27 @@ def _all(study: Study, steps: Mapping[str, Step], part: Part = "") -> dict[str, 
     return {name: Spread(step, part, (), len(study.labels)) for name, step in steps.items()}
 
 
+def _special(study: Study, steps: Mapping[str, Step]) -> dict[str, Any]:
+    """Assur's special points of groups of class III, where there are some."""
+    return {"special": _all(study, steps)} if steps else {}
+
+
 def _positions(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     p = study.positions
-    return {"points": _all(study, p.points), "angles": _all(study, p.directions, "angle")}
+    special = {name: s.step for name, s in p.special.items()}
+    return {"points": _all(study, p.points), "angles": _all(study, p.directions, "angle"), **_special(study, special)}
 
 
 def _velocities(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     v, frame = study.velocities, study.mechanism.frame
-    return {"points": _all(study, v.points), "omega": _all(study, {k: step for k, step in v.omega.items() if k != frame})}
+    return {"points": _all(study, v.points), "omega": _all(study, {k: step for k, step in v.omega.items() if k != frame}),
+            **_special(study, v.special)}
 
 
 def _accelerations(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     a, frame = study.accelerations, study.mechanism.frame
-    return {"points": _all(study, a.points), "epsilon": _all(study, {k: step for k, step in a.epsilon.items() if k != frame})}
+    return {"points": _all(study, a.points), "epsilon": _all(study, {k: step for k, step in a.epsilon.items() if k != frame}),
+            **_special(study, a.special)}
 
 
 def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from cmath import phase
 from collections.abc import Iterator
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import plain
 from tmm_sheets.words import of_file, tell
 
@@ -31,7 +34,8 @@ def text(variant: Variant) -> str:
     if variant.crank is not None:
         from tmm_sheets.task.assembly import mechanism_of
 
-        lines += list(_structure(mechanism_of(variant)))
+        m = mechanism_of(variant)
+        lines += [*_structure(m), *(_ways(variant, g) for g in m.groups if g.kind.grade == 3)]
     return "\n".join(lines)
 
 
@@ -66,9 +70,25 @@ def _structure(m: Mechanism) -> Iterator[str]:
     yield "\n" + tell("Mobility W = {formula}").format(formula=f"3n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {m.mobility}")
     yield "\n" + tell("Assur groups, the farthest first")
     kind = tell("kind {n} ({form})")
-    grade = tell("class 2, order 2")
-    yield from _table([(g.name, grade, kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
+    grade = tell("class {grade}, order {order}")
+    yield from _table([(g.name, grade.format(grade=g.kind.grade, order=g.kind.order),
+                        kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
     yield "\n" + tell("Formula of structure: {formula}").format(formula=m.structure)
+
+
+def _ways(variant: Variant, g: Any) -> str:
+    """The ways in which a group of class III can be put together, and which one is taken."""
+    from tmm_sheets.project import Project
+
+    try:
+        way = Project(variant).way_of_assembly(g)
+    except CannotBuild as e:
+        return str(e)
+    angles = [f"{degrees(phase(u)) % 360:.1f}" for _, u in way.found]
+    if angles:
+        angles[way.taken] = tell("{angle} (taken)").format(angle=angles[way.taken])
+    return "\n" + tell("Ways of assembly of group {group} at crank angle {angle:g} deg: {side} at {ways} deg").format(
+        group=g.name, angle=degrees(g.when), side=g.legs[0].corner + g.legs[1].corner, ways=", ".join(angles) or "–")
 
 
 def _links(m: Mechanism) -> Iterator[tuple[str, str, str]]:

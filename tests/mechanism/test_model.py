@@ -113,13 +113,23 @@ def test_a_loose_link(monkeypatch):
 
 
 def test_three_links_on_a_triangle_are_of_class_three(monkeypatch):
-    """Three rods to a common plate: a group of class III, which cannot be taken apart into pairs of links."""
+    """Three rods to a common plate: a group of class III."""
     m = with_pairs(
         monkeypatch, ("A", "0-1", "rotation"), ("B", "1-2", "rotation"), ("C", "2-5", "rotation"), ("D", "3-5", "rotation"),
         ("E", "3-0", "rotation"), ("F", "4-5", "rotation"), ("G", "4-0", "rotation"),
     )
     assert m.mobility == 1
-    with pytest.raises(ValueError, match="links 2, 5, 3, 4 form no group of class II"):
+    (found,) = decompose(m)
+    assert (found.kind.grade, found.kind.order, found.links[0], set(found.links[1:])) == (3, 3, "5", {"2", "3", "4"})
+
+
+def test_a_plate_on_four_rods_is_no_group(monkeypatch):
+    """Two groups of two links each hang on nothing: class IV."""
+    m = with_pairs(
+        monkeypatch, ("A", "0-1", "rotation"), ("B", "1-2", "rotation"), ("C", "2-3", "rotation"), ("D", "2-4", "rotation"),
+        ("E", "3-5", "rotation"), ("F", "4-5", "rotation"), ("G", "5-0", "rotation"),
+    )
+    with pytest.raises(ValueError, match="links 2, 3, 4, 5 form no group of class II or III"):
         decompose(m)
 
 

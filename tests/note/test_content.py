@@ -14,6 +14,7 @@ from tmm_sheets.note.document import Contents, Figure, Formula, Heading, Number,
 from tmm_sheets.note.formula import Letters, Words
 from tmm_sheets.note.phrases import plain_text
 from tmm_sheets.note.pictures import LETTERS, READABLE
+from tmm_sheets.note.sections import forces
 from tmm_sheets.record.recording import book_of
 
 
@@ -317,3 +318,12 @@ def test_a_note_in_another_language(language, name, foreign):
     test_nothing_is_empty_or_unfilled(made)
     test_every_reference_leads_somewhere(made)
     test_every_figure_and_table_is_spoken_of(made)
+
+
+def test_arms_belong_to_the_links_of_their_index():
+    """Link 2 has no part in h21,0; one digit each is told without a comma."""
+    assert forces._of_group("h50", ("4", "5"))
+    assert forces._of_group("h21,0", ("20", "21"))
+    assert not forces._of_group("h21,0", ("2", "3"))
+    assert forces._of_group("h2,10", ("2", "3"))
+    assert not forces._of_group("h2,10", ("1", "4"))

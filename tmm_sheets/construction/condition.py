@@ -47,7 +47,7 @@ def condition(step: Step) -> Floats | None:
     """Condition number of a crossing, 1/sin(alpha), shape (n,) or (1,): 1 at right angles, infinite at tangency, NaN where nothing
     crosses. None for a step that is no crossing.
     """
-    sine = _SINES.get(step.rule)
+    sine = step.rule.sine or _SINES.get(step.rule)
     if sine is None:
         return None
     with np.errstate(invalid="ignore", divide="ignore"):

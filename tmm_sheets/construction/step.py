@@ -68,6 +68,8 @@ class Rule:
         manual and section a formula is taken from.
     laid_off
         True for a vector laid off from the first argument: that is where it is measured from.
+    sine
+        of a crossing: ``sine(value, *args)`` is that of the angle at which the lines cross; None for those every plan knows.
     exact
         True for a number that is computed, not drawn: the error analysis takes it as a given one.
 
@@ -85,6 +87,7 @@ class Rule:
     source: str = ""
     exact: bool = False
     laid_off: bool = False
+    sine: Callable[..., Any] | None = None
 
     def tree(self, count: int) -> Expression | None:
         """The rule's arithmetic on ``count`` arguments as an expression."""

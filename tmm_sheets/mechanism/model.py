@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 from tmm_sheets.construction.tally import Tally
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -73,15 +74,18 @@ class Guide:
 
 
 class GroupKind(ABC):
-    """A kind of two-link group (вид группы Ассура; manual 000, table 3.1); a kind has no state of its own.
+    """A kind of group (вид группы Ассура; manual 000, table 3.1); a kind has no state of its own.
 
-    ``number`` is the manual's; ``form`` is its pairs, outer, inner, outer, R turning, P sliding, looked up when it is said.
-    ``orders`` are the same pairs as R and P, in every order the two links can be met in.
+    ``number`` is the manual's, ``grade`` and ``order`` are its class and order; ``form`` is its pairs, outer, inner,
+    outer, R turning, P sliding, looked up when it is said. ``orders`` are the same pairs as R and P, in every order the links can
+    be met in.
     """
 
     number: ClassVar[int]
     form: ClassVar[str]
     orders: ClassVar[tuple[str, ...]]
+    grade: ClassVar[int] = 2
+    order: ClassVar[int] = 2
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other)
@@ -99,6 +103,10 @@ class GroupKind(ABC):
     def carried(self, g: StructuralGroup) -> dict[str, str]:
         """Points the group brings along, each with the link it is fixed on."""
         return {g.inner: g.links[0]} if g.inner else {}
+
+    def guided(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
+        """Points the group brings along a guide, each with the guide."""
+        return tuple((g.inner, guide) for guide in g.guides) if g.inner else ()
 
     @abstractmethod
     def position(self, pos: Positions, g: StructuralGroup) -> None:
@@ -166,8 +174,26 @@ class GroupKind(ABC):
         return str(g.inner)
 
     def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
-        """Links that are blocks at the inner point, each with its guide."""
+        """Links that are blocks on guides, each with its guide."""
         return ()
+
+    @property
+    def roman(self) -> str:
+        """Its class as it is written."""
+        return {2: "II", 3: "III"}[self.grade]
+
+    def told(self, g: StructuralGroup) -> str:
+        """Number and pairs as they stand on a sheet."""
+        return f"{self.number} ({tr(g.form)})"
+
+    def joints(self, g: StructuralGroup) -> tuple[str, ...]:
+        """Names of the pairs of a group that was found by its structure: outer, inner, outer."""
+        first, last = g.outer
+        return first, str(g.inner), last
+
+    def block(self, g: StructuralGroup, link: str) -> str:
+        """The point of a link that is a block: the inner one, unless a kind says otherwise."""
+        return str(g.inner)
 
     def ram(self, g: StructuralGroup) -> str | None:
         """The guided link with a slot for the other's stone."""
@@ -180,14 +206,14 @@ class GroupKind(ABC):
 
 @dataclass(frozen=True)
 class StructuralGroup:
-    """An Assur group of class II, order 2 (группа Ассура).
+    """An Assur group (группа Ассура): of class II, order 2, unless it is a kind of its own.
 
     ``outer`` are the points of its outer turning pairs, ``inner`` the point of its inner turning pair (or, for RPP,
     of the guided link on the guide), ``side`` the assembly side, ``guides`` the guides of its outer sliding pairs.
     """
 
     kind: GroupKind
-    links: tuple[str, str]
+    links: tuple[str, ...]
     outer: tuple[str, ...]
     inner: str | None = None
     lengths: tuple[float, ...] = ()
@@ -239,7 +265,7 @@ class Crank:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A mechanism of class II: crank and groups in order of attachment, with the points and links they carry."""
+    """A mechanism of class II or III: crank and groups in order of attachment, with the points and links they carry."""
 
     crank: Crank
     fixed: dict[str, complex]
@@ -250,6 +276,8 @@ class Mechanism:
     frame: str = "0"
     searches: dict[str, Tally] = field(default_factory=dict, compare=False, repr=False)
     """what has been looked for with plans of this mechanism, by purpose"""
+    courses: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
+    """ways of assembly of its groups of class III round the turn, by the groups' names"""
 
     def search(self, purpose: str) -> Tally | None:
         """Count of the plans that search for something; None without a purpose, for a plan to be drawn or told."""
@@ -286,7 +314,7 @@ class Mechanism:
 
     @property
     def mobility(self) -> int:
-        """Degree of freedom by Chebyshev: W = 3n - 2 p5 - p4 (no pairs of class 4 in a class II mechanism)."""
+        """Degree of freedom by Chebyshev: W = 3n - 2 p5 - p4 (no pairs of class 4)."""
         moving = {name for pair in self.pairs for name in pair.links} - {self.frame}
         return 3 * len(moving) - 2 * len(self.pairs)
 
@@ -294,13 +322,13 @@ class Mechanism:
     def structure(self) -> str:
         """Formula of structure in Russian, from the initial mechanism outwards."""
         parts = [f"I(0,{self.crank.link})"]
-        parts += [f"II({','.join(g.links)})" for g in self.groups]
+        parts += [f"{g.kind.roman}({','.join(g.links)})" for g in self.groups]
         return " → ".join(parts)
 
     @property
     def grade(self) -> int:
         """Class of the mechanism: the highest class among its groups."""
-        return 2 if self.groups else 1
+        return max((g.kind.grade for g in self.groups), default=1)
 
     def link_points(self, link: str) -> tuple[str, ...]:
         """Names of the points fixed on a link: its pairs first, then its further points."""

@@ -4,28 +4,31 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from tmm_sheets.mechanism.groups import KINDS
+from tmm_sheets.mechanism.groups import KINDS, TRIAD
+from tmm_sheets.mechanism.groups.hints import Leg
+from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup
 
 
 def decompose(m: Mechanism) -> tuple[StructuralGroup, ...]:
     """Groups found from links and pairs alone, the farthest from the crank first.
 
-    From the frame and the crank outwards, two links that touch each other and the links already placed form a group;
-    detaching starts at the other end.
+    From the frame and the crank outwards, two links that touch each other and the links already placed form a group; where no two
+    do, a link with three pairs, each with a link that touches those already placed. Detaching starts at the other end.
 
     Raises
     ------
     ValueError
-        when what remains is no mechanism of class II.
+        when what remains is no mechanism of class II or III.
     """
     placed, order = {m.frame, m.crank.link}, []
     pairs = [p for p in m.pairs if set(p.links) != placed]
     names = list(dict.fromkeys(n for p in pairs for n in p.links if n not in placed))
     while names:
         group = next(filter(None, (_group(i, j, pairs, placed) for i, j in combinations(names, 2))), None)
+        group = group or next(filter(None, (_triad(i, pairs, placed) for i in names)), None)
         if group is None:
-            raise ValueError(f"links {', '.join(names)} form no group of class II with the links before them")
+            raise ValueError(f"links {', '.join(names)} form no group of class II or III with the links before them")
         order.append(group)
         placed |= set(group.links)
         names = [n for n in names if n not in placed]
@@ -43,6 +46,18 @@ def _group(i: str, j: str, pairs: list[Pair], placed: set[str]) -> StructuralGro
     if kind is None:
         raise ValueError(f"links {i} and {j} with pairs {'-'.join(motions)} can slide without turning: no group of class II")
     return StructuralGroup(kind, (i, j), (outer_i.name, outer_j.name), inner.name)
+
+
+def _triad(i: str, pairs: list[Pair], placed: set[str]) -> TriadGroup | None:
+    """The group of class III about a link, if it has three pairs with links that each have one more, with the links placed."""
+    every = [(p, next(n for n in p.links if n != i)) for p in pairs if i in p.links]
+    found = [(p, leg, outer[0]) for p, leg in every if leg not in placed and len(outer := _between(leg, placed, pairs)) == 1]
+    if len(found) < 3 or any(leg in placed for _, leg in every):
+        return None
+    found = found[:3]
+    return TriadGroup(TRIAD, (i, *(leg for _, leg, _ in found)), tuple(q.name for _, _, q in found), legs=tuple(
+        Leg(leg, p.name, "" if q.motion == "translation" else q.name, q.name if q.motion == "translation" else "",
+            slot=0.0 if p.motion == "translation" else None) for p, leg, q in found))
 
 
 def _between(link: str, others: set[str], pairs: list[Pair]) -> list[Pair]:

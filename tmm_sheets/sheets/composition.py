@@ -17,7 +17,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets import kinematic_frames, kinetic_frames
+from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
 from tmm_sheets.sheets.frame import needed, standard
 from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
@@ -174,6 +174,14 @@ def _accelerations(project: Project, view: View) -> Node:
     return _leaf(view.box, Need((real.width, real.height), around, (88.0, 80.0)), 0.8)
 
 
+def _false_positions(project: Project, view: View) -> Node | None:
+    found, nth = false_positions.triads(project), int(view.options.get("group", 1))
+    if nth > len(found):
+        return None
+    reach = false_positions.reach(project, found[nth - 1])
+    return _leaf(view.box, _reaching(view.box, *reach, false_positions.AROUND, (110.0, 90.0)))
+
+
 def _group(project: Project, view: View) -> Node | None:
     """Loaded scheme and force plans: side by side, or the plans one under another, or the scheme over them: what fills most."""
     k, forces = project.force_index, project.study.forces
@@ -328,7 +336,8 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "cam_profile.roller": _cam((0.88, 0.8), 0.6), "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),
-    "given_position.values": _values, "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
+    "given_position.values": _values, "false_positions.group": _false_positions,
+    "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
 }
 """Views that tell what they need; others keep the size of their boxes."""
 

@@ -48,24 +48,32 @@ def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
         (tr("Graph of the force {shown}"), tr("Graphs of the forces {shown}"), "F", tr("N")))
     title = one if len(names) == 1 else many
     graphs.heading(canvas, box, options, title.format(shown=", ".join(f"{n}(φ_1)" for n in names)), f"{s.force}")
-    g = graphs.Graph(complex(options["axis"], box.y0 + _BELOW))
+    acting = {name: _acting(fw, name) for name in names}
+    low = min((float(line.imag.min()) for lines in acting.values() for line in lines), default=0.0)
+    g = graphs.Graph(complex(options["axis"], box.y0 + _BELOW - min(low, 0.0)))
     top = 0.0
     of = stage(canvas, r.numbered.plan, None, g.place(s.angle.mu, s.force.mu))
     steps = dict(zip(names, r.force_steps, strict=True))
     for name in names:
-        for line in _acting(fw, name):
+        for line in acting[name]:
             of.curve(steps[name], g(_down_to_axis(line)))
             highest = line[int(np.argmax(line.imag))]
             top = max(top, float(highest.imag))
             if len(names) > 1 and highest.imag > 4.0:
                 canvas.label(g(highest), name, 1 + 0.3j, 3.5)
     graphs.check_room(box, g.origin.imag + top, "flywheel.force_graph")
-    axes(fw, of, r.force_steps[0], g, 0.0, top, f"{names[0] if len(names) == 1 else letter_of}, {unit}", np.ones(len(fw.labels)))
+    ordinate = f"{names[0] if len(names) == 1 else letter_of}, {unit}"
+    axes(fw, of, r.force_steps[0], g, min(low, 0.0), top, ordinate, np.ones(len(fw.labels)))
     for k, x in enumerate(s.angle.mm(r.phi)):
         if top and k:
-            here, name = max((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items())
+            here, name = max(((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items()), key=_size)
             at = of.position(k % len(r.labels))
             at.line(steps[name], g(x), g(x + 1j * s.force.mm(here)), "thin")
+
+
+def _size(of: tuple[float, str]) -> tuple[float, str]:
+    """By magnitude, then by name."""
+    return abs(of[0]), of[1]
 
 
 def _acting(fw: Flywheel, name: str) -> list[Any]:

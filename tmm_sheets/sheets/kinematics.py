@@ -74,18 +74,25 @@ def _paths(project: Project, s: Stage, room: Box) -> None:
     turned = np.linspace(0, 2 * pi, 181)
     pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
     m = pos.mechanism
-    for name in [p.name for p in m.points] + [g.inner for g in m.groups if g.inner and not g.guides]:
+    for name in [p.name for p in m.points] + list(_free_points(m)):
         if np.ndim(pos.points[name].value):
             s.pen(pos.points[name], "curve").polyline(s.frame(np.asarray(pos.points[name].value)), "thin")
-    for name in dict.fromkeys(name for g in m.groups if g.inner for name in g.guides):
+    for name in dict.fromkeys(name for g in m.groups for _, name in g.kind.guided(g)):
         if m.guides[name].link == m.frame:
             _guide_line(project.study.positions, s, name, room)
+
+
+def _free_points(m: Mechanism) -> Iterator[str]:
+    """Points that groups bring along and that slide on nothing."""
+    for g in m.groups:
+        on = [point for point, _ in g.kind.guided(g)]
+        yield from (name for name in g.kind.carried(g) if name not in on)
 
 
 def _guide_line(pos: Positions, s: Stage, name: str, room: Box) -> None:
     """Centre line of a fixed guide over the path of its slider and beyond, as far as there is room: not into the title."""
     u, q = (complex(of[name].at(0)) for of in (pos.guide_directions, pos.guide_points))
-    on = [g.inner for g in pos.mechanism.groups if name in g.guides and g.inner]
+    on = [point for g in pos.mechanism.groups for point, guide in g.kind.guided(g) if guide == name]
     z = np.concatenate([np.atleast_1d(pos.points[p].value) for p in on])
     t = ((z - q) * np.conj(u)).real
     inside = segment_inside(room, s.frame(q + u * np.nanmin(t)) - 24.0 * u, s.frame(q + u * np.nanmax(t)) + 24.0 * u)
@@ -97,7 +104,7 @@ def _position_numbers(project: Project, s: Stage) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
     pos, m = project.study.positions, project.mechanism
     # A point on a fixed guide has its marks there; one that slides on a moving link is told by the marks of others.
-    sliding = {str(g.inner): guide for g in m.groups for guide in g.guides if m.guides[guide].link == m.frame}
+    sliding = {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
     for name in dict.fromkeys(_hinges(m, sliding)):
         z = np.asarray(s.frame(pos.points[name].value))
         _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j)
@@ -117,8 +124,8 @@ def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
     yield from (p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))
     for g in m.groups:
         carried = len(g.kind.sliders(g)) == 1 and m.guides[g.guides[0]].link != m.frame
-        if g.inner and g.inner not in sliding and not carried and not g.kind.ram(g):
-            yield g.inner
+        if not carried and not g.kind.ram(g):
+            yield from (name for name in g.kind.carried(g) if name not in sliding)
 
 
 def _hinge_numbers(project: Project, s: Stage, name: str, middle: complex) -> None:
@@ -551,7 +558,6 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
         return
     rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
     for g, found in zip(reversed(m.groups), decompose(m), strict=True):
-        outer_i, outer_j = found.outer
-        rows.append([g.name, "II", "2", f"{found.kind.number} ({tr(found.form)})", f"{outer_i}, {found.inner}, {outer_j}"])
+        rows.append([g.name, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
     canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)

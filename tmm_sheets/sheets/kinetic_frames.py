@@ -67,7 +67,7 @@ FAR = 0.75
 def outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Shown], list[Couple]]:
     """External and inertia forces of a group's links and the reactions of the links outside it."""
     forces = project.study.forces
-    about = project.study.positions.points[g.kind.about(g)]
+    about = project.study.positions.place(g.kind.about(g))
     shown = [shown_load(forces, load, about, k) for link in g.links for load in forces.loads[link]
              if load.source not in g.links]
     couples: list[Couple] = []
@@ -75,7 +75,7 @@ def outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sho
         if reaction.guide is None:
             shown += _hinge(project, reaction, k)
         else:
-            force, beside = _guided(project, str(g.inner), reaction, k)
+            force, beside = _guided(project, reaction.point, reaction, k)
             shown.append(force)
             couples += beside
     return acting(shown, forces.force_size(k)), couples
@@ -155,7 +155,7 @@ def scheme(project: Project, g: StructuralGroup, k: int) -> tuple[list[complex],
     shown, _ = outer_forces(project, g, k)
     hinges, centres = scheme_points(project, g, [shape for shape in linkage.shapes(pos) if shape.link in g.links])
     points = [complex(pos.points[name].at(k)) for name in (*hinges, *dict.fromkeys(centres))]
-    return loaded([*points, *(force.at for force in shown)], shown, complex(pos.points[g.kind.about(g)].at(k)))
+    return loaded([*points, *(force.at for force in shown)], shown, complex(pos.place(g.kind.about(g)).at(k)))
 
 
 def on_crank(project: Project, k: int) -> list[Shown]:

@@ -141,11 +141,12 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     drawn = [shape for shape in linkage.shapes(pos) if shape.link in g.links]
     hinges, centres = scheme_points(project, g, drawn)
     points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
-    about = complex(pos.points[g.kind.about(g)].at(k))
+    about = complex(pos.place(g.kind.about(g)).at(k))
     around = scheme(project, g, k)
     frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm"), *around, box.inset(*SCHEME))
     canvas.of = f"group {g.name}"
-    canvas.title(box, tr("Assur group {name} (kind {number})").format(name=g.name, number=g.kind.number), str(frame.scale))
+    title = tr("Assur group {name} (kind {number})") if g.kind.grade == 2 else tr("Assur group {name} (class III, order 3)")
+    canvas.title(box, title.format(name=g.name, number=g.kind.number), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if g.kind.ram(g) is None:
         linkage.draw_guides(s, pos, g.links)
@@ -155,7 +156,13 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     _link_numbers(s, pos, drawn)
     for name in centres:
         symbols.centre_of_mass(s.pen(name, "symbol"), s.at(name))
-    draw_arms(s, about, shown)
+    # About a special point the reaction of a guide has no arm: its couple is known before.
+    own = [] if g.kind.grade == 2 else list(project.study.forces.arms.values())
+    draw_arms(s, about, [force for force in shown if force.arm not in own])
+    if g.kind.about(g) in pos.special:
+        point = pos.special[g.kind.about(g)].step
+        s.dot(point, 0.9, "main")
+        s.letters(point, linkage.indexed(point.name), gap=1.5)
     draw_forces(s, shown)
     _from_moments(project, canvas, box, g, k, frame.scale)
     for c in couples:
@@ -194,6 +201,13 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
             said.append(tr("ΣM_{centre} = 0: F_{{{index}}}^τ = {value} N").format(
                 centre=part.centre, index=pair_index(part.link, part.source), value=value))
     about = g.kind.about(g)
+    if about in project.study.positions.special:
+        third = project.study.positions.special[about].third
+        pair = pair_index(third.link, m.guides[third.guide].link if third.guide else m.owner(third.outer))
+        value = newtons(clean(abs(complex(forces.plan[f"F{pair}n"].at(k))), forces.force_size(k)))
+        equation = (tr("ΣM_{centre} = 0: F_{{{index}}} = {value} N") if third.guide else
+                    tr("ΣM_{centre} = 0: F_{{{index}}}^n = {value} N"))
+        said.append(equation.format(centre=f"{{{about}}}", index=pair, value=value))
     for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")
         length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf

@@ -70,10 +70,9 @@ def _bar(m: Mechanism, link: str, base: tuple[str, ...], aim: str | None = None)
     over, arms = [], []
     for guide in guides:
         along = not guide.direction and guide.through in base and guide.towards in (*base, aim)
-        for g in m.groups:
-            if g.inner and guide.name in g.guides:
-                over += [g.inner] * along
-                arms += [(str(guide.through), g.inner)] * (not along)
+        for point in (point for g in m.groups for point, name in g.kind.guided(g) if name == guide.name):
+            over += [point] * along
+            arms += [(str(guide.through), point)] * (not along)
     return Shape(link, bar, over=tuple(over), arms=tuple(arms))
 
 
@@ -81,7 +80,8 @@ def _carried(pos: Positions, link: str) -> tuple[str, Step] | None:
     """The stone that slides in a block and the direction of its slot."""
     m = pos.mechanism
     slots = (name for name, guide in m.guides.items() if guide.link == link)
-    return next(((str(g.inner), pos.guide_directions[name]) for name in slots for g in m.groups if name in g.guides), None)
+    return next(((point, pos.guide_directions[name]) for name in slots for g in m.groups
+                 for point, guide in g.kind.guided(g) if guide == name), None)
 
 
 def along_bar(s: Stage, pos: Positions, shape: Shape) -> tuple[str, ...]:
@@ -322,7 +322,7 @@ def draw_guides(s: Stage, pos: Positions, only: Collection[str] | None = None) -
         for link, name in (*([(ram, g.guides[0])] if ram else []), *g.kind.sliders(g)):
             if (only is None or link in only) and m.guides[name].link == m.frame:
                 pen = s.pen(pos.guide_directions[name], "symbol")
-                z, u = s.at(pos.points[str(g.inner)]), complex(s.value(pos.guide_directions[name]))
+                z, u = s.at(pos.points[g.kind.block(g, link)]), complex(s.value(pos.guide_directions[name]))
                 if link == ram:
                     _guide(pen, z, u, ((10.0, 19.5), (-19.5, -10.0)), 6.2, "axis")
                 else:

@@ -35,24 +35,25 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     turned = _angles(shown, cycle.period)
     kind, unit = ("F", tr("N")) if shown[0].point is not None else ("M", tr("N·m"))
     inside = box.inset(10.0, 8.0, 14.0, 24.0)
-    top = max(float(np.max(f.magnitude(turned))) for f in shown)
-    scale = pick(project, canvas, "loads", f"μ_{kind}", tr("{unit}/mm").format(unit=unit), top / inside.height)
+    top = max(0.0, *(float(np.max(f.shown(turned))) for f in shown))
+    low = min(0.0, *(float(np.min(f.shown(turned))) for f in shown))
+    scale = pick(project, canvas, "loads", f"μ_{kind}", tr("{unit}/mm").format(unit=unit), (top - low) / inside.height)
     angle = Scale("μ_φ", cycle.period / inside.width, tr("rad/mm"))
     title = tr("Technological load (taken)") if _accepted(project, shown) else tr("Technological load")
     canvas.title(box, title, f"{scale}, {angle}")
-    at = Frame(scale, complex(inside.x0, inside.y0), angle)
+    at = Frame(scale, complex(inside.x0, inside.y0 - low / scale.mu), angle)
     if (said := _many_strokes(project, shown)) is not None:
         canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
     frame, o = canvas.placed("loads", "", at.origin, at.mu), at.origin
     with canvas.traced("axis", f"loads/{shown[0].name}", "", frame):
-        canvas.arrow(o, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)
+        canvas.arrow(o + 1j * low / scale.mu, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)
         canvas.arrow(o, o + inside.width + 10.0, "axis", 3.0)
         canvas.label(o + 1j * (top / scale.mu + 6.0), f"{', '.join(indexed(f.name) for f in shown)}, {unit}", 1 + 0j, 3.5, 1.5)
         canvas.label(o + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
     _positions(project, canvas, shown, at, frame)
     for f in shown:
         with canvas.traced("curve", f"loads/{f.name}", "", frame):
-            canvas.polyline(at(turned + 1j * f.magnitude(turned)), "curve")
+            canvas.polyline(at(turned + 1j * f.shown(turned)), "curve")
             if len(shown) > 1:
                 _sign(canvas, f, turned, at)
 
@@ -86,17 +87,22 @@ def _sign(canvas: Canvas, f: Applied, turned: Any, at: Frame) -> None:
     """Sign of one of several loads over the middle of where it is at least half its greatest."""
     acting = turned[f.magnitude(turned) >= 0.5 * f.magnitude(turned).max()]
     middle = float(acting[len(acting) // 2]) if len(acting) else pi
-    canvas.label(complex(at(complex(middle, np.ravel(f.magnitude(middle))[0]))), indexed(f.name), 1j, 3.5, 1.5)
+    canvas.label(complex(at(complex(middle, np.ravel(f.shown(middle))[0]))), indexed(f.name), 1j, 3.5, 1.5)
+
+
+def _size(of: tuple[float, str]) -> tuple[float, str]:
+    """By magnitude, then by name."""
+    return abs(of[0]), of[1]
 
 
 def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Frame, frame: int) -> None:
     """Numbers of the positions under the axis, and ordinates of the largest load over those inside the turn."""
     cycle = project.cycle
     for label, angle in (*zip(cycle.labels, cycle.turned, strict=True), (cycle.labels[0], cycle.period)):
-        value, largest = max((float(np.ravel(f.magnitude(angle, side))[0]), f.name) for f in shown for side in (-1, 1))
+        value, largest = max(((float(np.ravel(f.shown(angle, side))[0]), f.name) for f in shown for side in (-1, 1)), key=_size)
         foot = complex(at(angle))
         with canvas.traced("curve", f"loads/{largest}", label, frame):
-            if value > 0 and 0 < angle < cycle.period:
+            if value and 0 < angle < cycle.period:
                 canvas.line(foot, complex(at(angle + 1j * value)), "thin")
         with canvas.traced("axis", f"loads/{largest}", label, frame):
             canvas.line(foot - 1j, foot, "thin")

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.mechanism.groups import RRP, RRR
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups import RRP, RRR, TRIAD
 from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
 from tmm_sheets.stress import truth
 from tmm_sheets.stress.draw import chain, crank_of, loaded
@@ -294,6 +295,18 @@ def _mirror(rng: np.random.Generator) -> Iterator[Residual]:
     yield "picture in a mirror", _share(balancing(s, 0.0) + balancing(other, 0.0), total * grown**2)
 
 
+def _triads(rng: np.random.Generator) -> Iterator[Residual]:
+    """A group of class III, now and then before or behind another group."""
+    kinds = (TRIAD.number,)
+    other = int(rng.integers(0, 6))
+    m, phi = chain(rng, kinds=kinds if not other else (other, *kinds) if rng.random() < 0.3 else (*kinds, other))
+    m = loaded(rng, m)
+    try:
+        yield from _everything(m, _around(rng, phi), _gravity(rng, m))
+    except CannotBuild:
+        return  # after a turn it is another way of assembly: refused
+
+
 def _share(x: Any, of: Any) -> Any:
     """A magnitude as a share of a scale that may be zero, with it."""
     return np.abs(x) / np.where(of == 0, 1.0, of)
@@ -321,6 +334,7 @@ SCENES: dict[str, Scene] = {
     "right angles": _chain("square"),
     "one line, one pivot": _chain("coincident"),
     "pin by the pivot": _chain("pin by the pivot"),
+    "class III": _triads,
 }
 """Scenes by name, run in turn."""
 

@@ -12,7 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD
+from tmm_sheets.mechanism.groups.hints import Leg
+from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 
 SURE = 0.25
@@ -264,6 +266,56 @@ BUILD = {1: rrr, 2: rrp, 3: rpr, 4: prp, 5: rpp}
 """How a group of each kind is added to a draft."""
 
 
+def triad(d: Draft, links: tuple[str, ...]) -> None:
+    """A triangle on three legs, the first on a moving point, the others on anything; the second now and then a stone in a slot."""
+    triangle, first, second, third = links
+    p, owner = d.moving()
+    theta, sides, angle = d.angle(), (d.length(), d.length()), d.side() * d.between(0.0, 2.5)
+    k = d.at[p] + rect(d.length(), d.angle())
+    u = rect(1, theta)
+    corners = (k, k + sides[0] * u, k + sides[1] * u * rect(1, angle))
+    names = [d.new("K"), d.new("L"), d.new("M")]
+    legs = [Leg(first, names[0], p, length=abs(k - d.at[p]))]
+    normals = [(k - d.at[p], k)]
+    guides: list[str] = []
+    outer = [p]
+    for link, name, at in ((second, names[1], corners[1]), (third, names[2], corners[2])):
+        choice = int(d.rng.integers(3))
+        if choice == 1:
+            guide, through, v, _ = d.guide(at, owner)
+            if d.guides[guide].link == "0":
+                through = at - v * d.length()
+                d.guides[guide] = replace(d.guides[guide], through=through)
+            want(abs(((at - through) * v.conjugate()).imag) < 1e-15 * d.size)  # a moving guide hardly passes there
+            legs.append(Leg(link, name, guide=guide))
+            normals.append((1j * v, at))
+            guides.append(guide)
+            continue
+        if choice == 2 and link == second:
+            turn = d.angle()
+            v = u * rect(1, turn)
+            q = d.pivot(at + d.length() * v)
+            legs.append(Leg(link, name, q, slot=turn))
+            normals.append((1j * v, d.at[q]))
+        else:
+            q = d.moving(besides=owner)[0] if len(d.on) > 1 and d.coin() and d.coin() else d.pivot(at + rect(d.length(), d.angle()))
+            want(abs(d.at[q] - at) > d.size / 4)
+            legs.append(Leg(link, name, q, length=abs(at - d.at[q])))
+            normals.append((at - d.at[q], at))
+        outer.append(q)
+    n = [v / abs(v) for v, _ in normals]
+    m = [((at - k).conjugate() * v).imag / max(sides) for v, (_, at) in zip(n, normals, strict=True)]
+    det = sum(m[a] * (n[b].conjugate() * n[c]).imag for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
+    want(abs(det) > SURE)
+    d.groups.append(TriadGroup(TRIAD, links, tuple(outer), None, (), tuple(guides), legs=tuple(legs), sides=sides, angle=angle,
+                               near=theta, when=d.phi))
+    for name, at in zip(names, corners, strict=True):
+        d.at[name] = at
+    d.on[triangle] = names
+    for leg in legs:
+        d.on[leg.link] = [leg.outer, leg.corner] if leg.form == "RR" else [leg.at]
+
+
 EVERYWHERE = ("guide", "far", "square", "coincident", "offset")
 """What befalls all groups of a mechanism, not only the last."""
 
@@ -309,7 +361,10 @@ def _chain(rng: np.random.Generator, hard: str, kinds: tuple[int, ...]) -> tuple
     for i, kind in enumerate(kinds):
         d.hard = hard if i + 1 == len(kinds) or hard in EVERYWHERE else ""
         n = len(d.on) + 1
-        BUILD[kind](d, (str(n), str(n + 1)))
+        if kind == TRIAD.number:
+            triad(d, tuple(str(n + i) for i in range(4)))
+        else:
+            BUILD[kind](d, (str(n), str(n + 1)))
         if i + 1 < len(kinds):
             for link, a, b in d.lines():
                 if link in d.groups[-1].links:

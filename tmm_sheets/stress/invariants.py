@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, GroupKind
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD, GroupKind
+from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
@@ -182,9 +183,25 @@ def _stone_in_slot(s: State, g: StructuralGroup) -> Iterator[Residual]:
     yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - s.z[g.outer[0]])) / s.reach
 
 
+def _triangle(s: State, g: StructuralGroup) -> Iterator[Residual]:
+    """The sides of the triangle and the three legs, from the points alone."""
+    assert isinstance(g, TriadGroup)
+    first, second, third = (s.z[leg.corner] for leg in g.legs)
+    across = (g.sides[0] ** 2 + g.sides[1] ** 2 - 2 * g.sides[0] * g.sides[1] * np.cos(g.angle)) ** 0.5
+    for side, length in ((second - first, g.sides[0]), (third - first, g.sides[1]), (third - second, across)):
+        yield "link lengths", np.abs(np.abs(side) - length) / s.reach
+    for leg in g.legs:
+        at = s.z[leg.corner]
+        if leg.slot is not None:
+            u = (second - first) / g.sides[0] * np.exp(1j * leg.slot)
+            yield "closure on guides", np.abs(cross(u, s.z[leg.outer] - at)) / s.reach
+        elif not leg.guide:
+            yield "link lengths", np.abs(np.abs(at - s.z[leg.outer]) - leg.length) / s.reach
+
+
 LOOPS: dict[GroupKind, Loop] = {
     RRR: Loop(_two_rods, _two_rods_reach), RRP: Loop(_rod_on_guide, _rod_reach), RPR: Loop(_stone_on_rocker, _stone_reach),
-    PRP: Loop(_on_two_guides), RPP: Loop(_stone_in_slot),
+    PRP: Loop(_on_two_guides), RPP: Loop(_stone_in_slot), TRIAD: Loop(_triangle),
 }
 
 
@@ -192,11 +209,10 @@ def geometry(s: State) -> Iterator[Residual]:
     """Lengths of links, closures on guides, sides of assembly, points fixed on links."""
     for g in s.m.groups:
         yield from LOOPS[g.kind].residuals(s, g)
-        if g.inner:
-            for name in g.guides:
-                p, u = s.guide(name)
-                reach = s.reach + np.abs(s.z[g.inner] - p)
-                yield "closure on guides", np.abs(cross(u, s.z[g.inner] - p)) / reach
+        for at, name in g.kind.guided(g):
+            p, u = s.guide(name)
+            reach = s.reach + np.abs(s.z[at] - p)
+            yield "closure on guides", np.abs(cross(u, s.z[at] - p)) / reach
         for link in g.links:
             yield "link lengths", np.abs(np.abs(s.u[link]) - 1)
     for point in s.m.points:
@@ -222,16 +238,16 @@ def rigidity(s: State) -> Iterator[Residual]:
             yield "velocity closure", np.abs(s.v[p] - s.v[names[0]] - 1j * w * r) / (fastest * far)
             yield "acceleration closure", np.abs(s.a[p] - s.a[names[0]] - (1j * e - w * w) * r) / (sharpest * far)
     for g in s.m.groups:
-        for _, name in g.kind.sliders(g):
-            guide = s.m.guides[name]
-            at, (through, u) = s.z[str(g.inner)], s.guide(name)
+        for link, name in g.kind.sliders(g):
+            guide, point = s.m.guides[name], g.kind.block(g, link)
+            at, (through, u) = s.z[point], s.guide(name)
             carried: Any = 0j if guide.link == s.m.frame else s.velocities.coincident.get(
-                on_link(str(g.inner), guide.link), s.velocities.points[str(guide.through)])
+                on_link(point, guide.link), s.velocities.points[str(guide.through)])
             if guide.link != s.m.frame:
                 start = str(guide.through)
                 base = s.velocities.coincident.get(on_link(start, guide.link), s.velocities.points[start])
                 carried = s.spread(base) + 1j * s.omega[guide.link] * (at - through)
-            yield "velocity closure", np.abs(cross(u, s.v[str(g.inner)] - carried)) / fastest
+            yield "velocity closure", np.abs(cross(u, s.v[point] - carried)) / fastest
 
 
 def assembled(s: State) -> Iterator[Residual]:

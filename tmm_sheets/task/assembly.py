@@ -11,7 +11,9 @@ from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber, Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.groups import KINDS
+from tmm_sheets.mechanism.groups import KINDS, TRIAD
+from tmm_sheets.mechanism.groups.hints import Leg
+from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
@@ -24,6 +26,7 @@ from tmm_sheets.methods.linkage.loads import (
     OutputMotion,
     Table,
     angle_law,
+    steady_law,
     straight_motion,
     stroke_law,
     turning_motion,
@@ -177,6 +180,11 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
     numbers = () if f.bore is None else (of.number(f.bore, "D", "m", "force", i, "bore"),
                                          of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
     diagrams = _diagrams(of, plan, f, tables, PISTON if numbers else None, numbers, "force", i)
+    strokes = f.over == "stroke" and (f.sense is not None or (c is not None and f.point == c.output))
+    if isinstance(f.direction, float) and _steady(f) and not strokes:
+        law, jumps = steady_law(f.value or 0.0)
+        toward = unit(f.direction)
+        return Applied(f.name, f.link, f.point, toward, law, jumps, None, diagrams, _along(of, i, toward))
     if f.over == "angle":
         if not isinstance(f.direction, float) or tables[0] is None:
             raise CannotBuild(tell("force {name}: a diagram over the angle needs a fixed direction").format(name=f.name),
@@ -200,6 +208,12 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
     return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, _along(of, i, toward))
 
 
+def _steady(load: ForceTable | MomentTable) -> bool:
+    """Whether a load is the same all the time, whatever moves."""
+    whole = isinstance(load, MomentTable) or (load.bore is None and (load.from_, load.to) == (0.0, 1.0))
+    return load.value is not None and load.stroke == "both" and whole
+
+
 def _along(of: Givens, i: int, toward: complex) -> GivenPoint:
     """Direction of a force."""
     return GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
@@ -220,6 +234,10 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
     sense = -1 if m.sense == "clockwise" else 1
     tables = m.diagrams()
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
+    if fixed is not None and _steady(m):
+        law, jumps = steady_law(fixed * (m.value or 0.0))
+        return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None, _diagrams(of, plan, m, tables, None, (), "moment", i),
+                       sign=GivenNumber(fixed, f"moment[{i}].direction"))
     if m.over == "angle":
         if fixed is None or tables[0] is None:
             raise CannotBuild(tell("moment {name}: a diagram over the angle needs a fixed direction").format(name=m.name),
@@ -254,6 +272,8 @@ def unit(angle: float) -> complex:
 
 
 def _group(of: Givens, i: int, g: GroupTable) -> StructuralGroup:
+    if g.kind == TRIAD.number:
+        return _triad(of, i, g)
     ends = [p + str(g.inner) for p in g.outer]
     lengths: tuple[float, ...] = ()
     if g.lengths is not None:
@@ -265,3 +285,24 @@ def _group(of: Givens, i: int, g: GroupTable) -> StructuralGroup:
     slot = of.number(pi / 2 if g.slot is None else g.slot, "", "rad", "group", i, "slot")
     return StructuralGroup(KINDS[g.kind], g.links, g.outer, g.inner, lengths, guides, of.number(g.side, "", "", "group", i, "side"),
                            of.length(g.offset, "e", "group", i, "offset"), slot)
+
+
+def _triad(of: Givens, i: int, g: GroupTable) -> TriadGroup:
+    """A group of class III."""
+    assert g.sides is not None
+    assert g.angle is not None
+    assert g.direction is not None
+    legs = []
+    for n, (leg, link) in enumerate(zip(g.leg, g.links[1:], strict=True)):
+        at: tuple[str | int, ...] = ("group", i, "leg", n)
+        length = of.length(leg.length, f"l_{{{leg.outer}{leg.corner}}}", *at, "length") if leg.length is not None else 0.0
+        slot = None if leg.slot is None else of.number(leg.slot, "", "rad", *at, "slot")
+        legs.append(Leg(link, leg.corner, leg.outer or "", leg.guide or "", length, slot))
+    first, second, third = (leg.corner for leg in legs)
+    one, two = (of.length(x, f"l_{{{first}{corner}}}", "group", i, "sides", n)
+                for n, (x, corner) in enumerate(zip(g.sides, (second, third), strict=True)))
+    outer, guides = (tuple(name for leg in legs if (name := getattr(leg, key))) for key in ("outer", "guide"))
+    return TriadGroup(TRIAD, g.links, outer, None, (), guides, legs=tuple(legs), sides=(one, two),
+                      angle=of.number(g.angle, "", "rad", "group", i, "angle"),
+                      near=of.number(g.direction, "", "rad", "group", i, "direction"),
+                      when=of.number(g.at, "", "rad", "group", i, "at"))

@@ -24,11 +24,15 @@ GROUP_KEYS: dict[int, tuple[tuple[str, ...], tuple[str, ...]]] = {
     3: (("outer",), ("offset", "side")),
     4: (("guides", "inner"), ()),
     5: (("outer", "guide", "slot", "inner"), ()),
+    6: (("leg", "sides", "angle", "direction"), ("at",)),
 }
-"""Keys an Assur group must and may have besides kind and links, by kind: RRR, RRP, RPR, PRP, RPP."""
+"""Keys an Assur group must and may have besides kind and links, by kind: RRR, RRP, RPR, PRP, RPP, class III."""
 
-OUTER_POINTS = {1: 2, 2: 1, 3: 2, 4: 0, 5: 1}
+OUTER_POINTS = {1: 2, 2: 1, 3: 2, 4: 0, 5: 1, 6: 0}
 """Number of outer turning pairs, by kind."""
+
+TRIAD = 6
+"""The kind of class III."""
 
 FRAME = "0"
 
@@ -89,6 +93,7 @@ class _Names:
         self.on: dict[str, set[str]] = {FRAME: set(_table(data, "points"))}
         self.aims: dict[str, set[str]] = {}
         self.points = set(self.on[FRAME])
+        self.special: set[str] = set()
         self.waiting = _tables(data, "point")
         self.guides: dict[str, dict[str, Any]] = {}
 
@@ -115,7 +120,7 @@ class _Names:
         if not isinstance(name, str):
             return
         yield from self.spelt(path, name, "point")
-        if name in self.points:
+        if name in self.points | self.special:
             yield path, tell('the point "{name}" is there already').format(name=name), tell("give it another name")
         self.points.add(name)
         for link in links:
@@ -185,6 +190,13 @@ class _Names:
                 ).format(n=count, kind=kind),
                 "",
             )
+        count = 4 if kind == TRIAD else 2
+        if kind and links and len(links) != count:
+            yield ((*path, "links"), tell("expected {n} links for a group of kind {kind}").format(n=count, kind=kind),
+                   tell("the triangle first, then its three legs") if kind == TRIAD else "")
+        if kind == TRIAD:
+            yield from self.triad(path, group, links)
+            return
         for i, name in enumerate(outer):
             yield from self.known((*path, "outer", i), name, self.points, marked('unknown point "{name}"'))
         yield from self.guide_use((*path, "guide"), group.get("guide"))
@@ -196,6 +208,34 @@ class _Names:
         if kind in (1, 2, 4, 5):
             inner_links = links[1:] if kind == 5 else links
             yield from self.define((*path, "inner"), group.get("inner"), *inner_links)
+
+    def triad(self, path: KeyPath, group: dict[str, Any], links: list[str]) -> Iterator[Found]:
+        """A triangle on three legs: its corners are points of it and of rods and sliders."""
+        legs = _tables(group, "leg")
+        if "leg" in group and len(legs) != 3:
+            yield (*path, "leg"), tell("expected three legs"), tell("write [[group.leg]] three times")
+        yield from self.new_links(path, links)
+        triangle, *own = links if len(links) == 4 else ["", "", "", ""]
+        for link in (triangle, *own):
+            self.on.setdefault(link, set())
+        named = f"W{triangle}"
+        if named in self.points:
+            yield (*path, "links"), tell('the point "{name}" is Assur\'s special point of link {link}').format(
+                name=named, link=triangle), tell("give the other point another name")
+        self.special.add(named)
+        for (key, leg), link, nth in zip(legs, own, range(3), strict=False):
+            here = (*path, *key)
+            yield from self.known((*here, "outer"), leg.get("outer"), self.points, marked('unknown point "{name}"'))
+            yield from self.guide_use((*here, "guide"), leg.get("guide"))
+            if "slot" in leg and nth != 1:
+                yield (*here, "slot"), tell("only the second leg may be a stone in a slot"), tell(
+                    "change the order of the legs; a group with two slots is not built")
+            stone = [] if "slot" in leg else [link]
+            yield from self.define((*here, "corner"), leg.get("corner"), triangle, *stone)
+            if isinstance(leg.get("outer"), str):
+                self.on[link].add(leg["outer"])
+            if isinstance(leg.get("guide"), str):
+                self.aims.setdefault(link, set()).add(leg["guide"])
 
     def new_links(self, path: KeyPath, links: list[str]) -> Iterator[Found]:
         for i, link in enumerate(links):

@@ -131,14 +131,42 @@ class GuideTable(Table):
     """with `link`: another of its points; for a guide on a slider also the guide the slider runs on"""
 
 
+class LegTable(Table):
+    """``[[group.leg]]``: a leg of a group of kind 6.
+
+    A rod (``outer``, ``length``), a slider (``guide``) or a stone (``outer``, ``slot``).
+    """
+
+    corner: Name = Field(description=marked("corner of the triangle the leg belongs to"))
+    outer: Name | None = None
+    """point of its outer turning pair"""
+    length: Length | None = None
+    """of a rod, from the outer point to the corner"""
+    guide: Name | None = None
+    """a slider's guide; the corner moves along it"""
+    slot: Angle | None = None
+    """the leg is a stone on the outer point in a slot of the triangle through the corner: the slot's direction against the line
+    from the first corner to the second; for the second leg only
+    """
+
+    @model_validator(mode="after")
+    def _one_form(self) -> Self:
+        given = tuple(k for k in ("outer", "length", "guide", "slot") if getattr(self, k) is not None)
+        if given not in (("outer", "length"), ("guide",), ("outer", "slot")):
+            raise ValueError(tell("expected a leg with outer and length, with guide, or with outer and slot, not {given}").format(
+                given=both(list(given)) or tell("none of these")))
+        return self
+
+
 class GroupTable(Table):
-    """``[[group]]``: an Assur group of two links (class II, order 2), in the order in which they can be drawn.
+    """``[[group]]``: an Assur group of two links (class II, order 2) or four (kind 6, class III), in the order they can be drawn.
 
     Which keys a kind has: :data:`tmm_sheets.task.names.GROUP_KEYS`.
     """
 
-    kind: Literal[1, 2, 3, 4, 5] = Field(description=marked("kind of the group, 1 (RRR) to 5 (RPP)"))
-    links: tuple[Name, Name] = Field(description=marked('the two links, for example ["2", "3"]'))
+    kind: Literal[1, 2, 3, 4, 5, 6] = Field(description=marked("kind of the group, 1 (RRR) to 5 (RPP), or 6 (class III)"))
+    links: tuple[Name, ...] = Field(min_length=2, description=marked('the two links, for example ["2", "3"]'))
+    """of kind 6 four: the triangle and its legs"""
     outer: tuple[Name, ...] = ()
     """points of the outer turning pairs"""
     inner: Name | None = None
@@ -159,6 +187,18 @@ class GroupTable(Table):
     """which of the two ways the group is put together; 1: left of the line from the first outer point to the second, or further
     along the guide
     """
+    leg: tuple[LegTable, ...] = ()
+    """kind 6: the three legs, tables `[[group.leg]]`"""
+    sides: tuple[Length, Length] | None = None
+    """kind 6: from the first corner of the triangle to the second and to the third"""
+    angle: Angle | None = None
+    """kind 6: from the first of these sides to the second, counter-clockwise"""
+    direction: Angle | None = None
+    """kind 6: about the direction from the first corner to the second, at the crank angle `at`; the way of assembly nearest to it
+    is taken
+    """
+    at: Angle = 0.0
+    """kind 6: crank angle at which `direction` is told, against the x axis"""
 
 
 class PointTable(Table):

@@ -7,12 +7,14 @@ the mechanism and ``G`` a group, left open here because a group has a kind.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role
+    from tmm_sheets.mechanism.groups.hints import SpecialPoint
+    from tmm_sheets.mechanism.groups.three_legs import Course
 
 M = TypeVar("M", covariant=True)
 G = TypeVar("G", contravariant=True)
@@ -28,6 +30,10 @@ class PositionPlan(Protocol[M, G]):
     guide_directions: dict[str, Step]
     rays: dict[tuple[str, str], Step]
     feet: dict[str, str]
+    special: dict[str, SpecialPoint]
+    false: dict[str, Plan]
+    angle: Any
+    where: str
 
     @property
     def mechanism(self) -> M:
@@ -39,6 +45,12 @@ class PositionPlan(Protocol[M, G]):
     def crossing(self, group: G) -> tuple[Step, ...]:
         """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
 
+    def place(self, name: str) -> Step:
+        """A point of the mechanism or a special point by its name."""
+
+    def course(self, group: G) -> Course:
+        """Way of assembly of a group of class III round the turn, followed once."""
+
     def known_sine(self, group: G) -> tuple[Step, ...]:
         """The sine between a group's lines, where it is known better than they tell."""
 
@@ -49,6 +61,7 @@ class MotionPlan(Protocol[M, G]):
     plan: Plan
     points: dict[str, Step]
     coincident: dict[str, Step]
+    special: dict[str, Step]
 
     @property
     def positions(self) -> PositionPlan[M, G]:
@@ -66,6 +79,9 @@ class MotionPlan(Protocol[M, G]):
 
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
         """Motion of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
+
+    def similar(self, point: str, q: Step, b: Step, big_q: str, big_b: str, name: str = "") -> Step:
+        """Motion of a point of a link by similarity, from the motions of two of its points; named after it, or otherwise."""
 
     def perpendicular(self, p: str, q: str) -> Step:
         """Direction across the line of two points, drawn once."""
@@ -105,6 +121,8 @@ class ForcePlans(Protocol[M, G]):
     """Loads of the links, N and N m, and the force plans made of them; ``F_jk`` acts on link j from link k."""
 
     loads: dict[str, list[Load]]
+    plan: Plan
+    reactions: dict[str, Step]
 
     @property
     def positions(self) -> PositionPlan[M, G]:
@@ -116,8 +134,8 @@ class ForcePlans(Protocol[M, G]):
     def order(self, loads: list[Load], first: Role) -> list[Load]:
         """Loads in the order they are laid off, of one role first."""
 
-    def moment_sum(self, name: str, about: Step, links: Iterable[str]) -> Step:
-        """Sum of moments of all that acts on some links so far about a point, N m."""
+    def moment_sum(self, name: str, about: Step, links: Iterable[str], more: Iterable[tuple[Step, Any, Any]] = ()) -> Step:
+        """Sum of moments of all that acts on some links so far about a point, N m; ``more`` are further points, forces, couples."""
 
     def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
         """Part of F_jk at a point across its line to the centre of the moments, from their sum."""
@@ -148,6 +166,12 @@ class ForcePlans(Protocol[M, G]):
 
     def sliding(self, j: str, other: str, force: Step, about: Step) -> Step:
         """Couple of a sliding pair's reaction on link ``j``, its force taken at ``about``, and its arm."""
+
+    def guide_couple(self, j: str, other: str, about: Step) -> Step:
+        """Couple of a sliding pair's reaction on link ``j``, its force taken at ``about``."""
+
+    def arm(self, j: str, other: str, couple: Step, force: Step) -> None:
+        """Arm of that reaction."""
 
     def group_polygon(self, g: G, first: Step | None, last: Step | None, u: Step, v: Step, carriers: tuple[str, str],
                       sine: tuple[Step, ...] = ()) -> tuple[Step, Step, ForcePlan]:

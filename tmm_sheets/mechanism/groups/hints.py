@@ -1,4 +1,4 @@
-"""What a kind of group tells of one: how the crank angle knows its crossing, outlines of its links, reactions from outside."""
+"""What a kind of group tells of one: how the crank angle knows its crossing, how its links look, reactions from outside."""
 
 from __future__ import annotations
 
@@ -48,3 +48,40 @@ class OuterReaction:
     link: str
     point: str
     guide: str | None = None
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A leg: its link and the ``corner`` of the triangle it belongs to.
+
+    ``outer`` is its outer hinge, ``length`` m from there to the corner; or ``guide`` the outer guide it slides along; or, with
+    ``outer`` and ``slot``, it is a stone in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of
+    the first corner to the second.
+    """
+
+    link: str
+    corner: str
+    outer: str = ""
+    guide: str = ""
+    length: float = 0.0
+    slot: float | None = None
+
+    @property
+    def form(self) -> str:
+        """Its outer and its inner pair: R turning, P sliding."""
+        return "PR" if self.guide else "RR" if self.slot is None else "RP"
+
+    @property
+    def at(self) -> str:
+        """Point of the triangle where it is held: its normal passes there."""
+        return self.corner if self.slot is None else self.outer
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """Where the normals of the legs of a ``pair`` meet; the ``third`` leg is the other one."""
+
+    name: str
+    step: Step
+    pair: tuple[Leg, Leg]
+    third: Leg

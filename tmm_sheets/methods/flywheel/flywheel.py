@@ -988,7 +988,7 @@ ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m -
 
 
 def _largest(forces: Mapping[str, Floats]) -> float:
-    largest = max((float(np.max(values)) for values in forces.values()), default=0.0)
+    largest = max((float(np.max(values) - min(np.min(values), 0.0)) for values in forces.values()), default=0.0)
     if not largest > 0:
         raise CannotBuild(tell("a flywheel needs a technological force or moment"),
                           tell("add [[force]] or [[moment]] to the project file"))

@@ -270,9 +270,9 @@ class Reduced:
         return bool(self.forces) and all(f.point is None for f in self.forces)
 
     def forces_at(self, phi: Any, side: int = 0) -> dict[str, Any]:
-        """Magnitudes of the technological forces, N, by their signs in lettering markup; of the moments, N m, if there are none."""
+        """Technological forces as graphs show them, N, by their signs in lettering markup; moments, N m, if there are none."""
         shown = [f for f in self.forces if f.point is not None] or self.forces
-        return {f"{f.name[0]}_{{{f.name[1:]}}}": np.asarray(f.magnitude(phi, side)) for f in shown}
+        return {f"{f.name[0]}_{{{f.name[1:]}}}": np.asarray(f.shown(phi, side)) for f in shown}
 
     @property
     def force_steps(self) -> tuple[Step, ...]:

@@ -66,6 +66,7 @@ class Accelerations:
     epsilon: dict[str, Step] = field(default_factory=dict)
     reference: dict[str, tuple[str, str, Step, Step]] = field(default_factory=dict)
     coincident: dict[str, Step] = field(default_factory=dict)
+    special: dict[str, Step] = field(default_factory=dict)
 
     @property
     def pole(self) -> Step:
@@ -110,10 +111,15 @@ class Accelerations:
 
     def normal(self, a: Step, link: str, big_q: str, big_b: str, letters: str = "") -> Step:
         """End of the normal acceleration of ``big_b`` round ``big_q``, laid off from ``a``."""
-        z = self.positions.points
-        n = self.plan.add(_free(self.plan, "n"), NORMAL, a, self.velocities.omega[link], z[big_q], z[big_b])
+        at = self.positions.place
+        n = self.plan.add(_free(self.plan, "n"), NORMAL, a, self.velocities.omega[link], at(big_q), at(big_b))
         self.plan.vector(f"a̅_{{{letters or big_b + big_q}}}^n", a, n)
         return n
+
+    def similar(self, point: str, q: Step, b: Step, big_q: str, big_b: str, name: str = "") -> Step:
+        """Acceleration of a point of a link by similarity, from those of two of its points; named after it, or otherwise."""
+        at = self.positions.place
+        return self.plan.add(self.name(name or point), SIMILAR, q, b, at(big_q), at(big_b), at(point))
 
     def perpendicular(self, p: str, q: str) -> Step:
         """Direction across the line of two points, drawn once."""

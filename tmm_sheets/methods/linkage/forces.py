@@ -138,14 +138,16 @@ class Kinetostatics:
         rank[first] = 0
         return sorted(loads, key=lambda load: rank[load.role])
 
-    def moment_sum(self, name: str, about: Step, links: Iterable[str]) -> Step:
-        """Sum of moments of all recorded forces and couples of some links about a point, N m."""
+    def moment_sum(self, name: str, about: Step, links: Iterable[str], more: Iterable[tuple[Step, Any, Any]] = ()) -> Step:
+        """Sum of moments of all recorded forces and couples of some links about a point, N m; ``more`` act besides."""
         terms: list[Any] = [about]
         for link in links:
             for load in self.loads[link]:
                 terms += [load.at, load.vector, 0.0 if load.couple is None else load.couple]
             for couple in self.link_couples.get(link, ()):
                 terms += [about, 0j, couple]
+        for term in more:
+            terms += term
         return self.plan.add(name, MOMENTS, *terms)
 
     def arm(self, about: Step, at: Step, vector: Step) -> Step:
@@ -191,12 +193,21 @@ class Kinetostatics:
 
     def sliding(self, j: str, other: str, force: Step, about: Step) -> Step:
         """Couple of a sliding pair's reaction on link ``j`` (its force taken at ``about``) and its arm, from moments about it."""
-        name = pair_index(j, other)
-        total = self.moment_sum(f"ΣM{j}", about, [j])
-        couple = self.plan.add(f"M{name}", OPPOSITE_COUPLE, total)
-        self.couples[f"F{name}"] = couple
-        self.arms[f"h{name}"] = self.plan.add(f"h{name}", ARM, couple, force)
+        couple = self.guide_couple(j, other, about)
+        self.arm(j, other, couple, force)
         return couple
+
+    def guide_couple(self, j: str, other: str, about: Step) -> Step:
+        """Couple of a sliding pair's reaction on link ``j``, its force taken at ``about``, from moments about it."""
+        name = pair_index(j, other)
+        couple = self.plan.add(f"M{name}", OPPOSITE_COUPLE, self.moment_sum(f"ΣM{j}", about, [j]))
+        self.couples[f"F{name}"] = couple
+        return couple
+
+    def arm(self, j: str, other: str, couple: Step, force: Step) -> None:
+        """Arm of that reaction."""
+        name = pair_index(j, other)
+        self.arms[f"h{name}"] = self.plan.add(f"h{name}", ARM, couple, force)
 
     def group_polygon(self, g: StructuralGroup, first: Step | None, last: Step | None, u: Step, v: Step,
                           carriers: tuple[str, str], sine: tuple[Step, ...] = ()) -> tuple[Step, Step, ForcePlan]:

@@ -267,6 +267,7 @@ class Applied:
     """A technological force (N, along the unit vector ``toward`` at ``point``) or, without a point, a moment (N m).
 
     ``law(turned, side)`` is its signed value; moments count counter-clockwise. ``jumps`` are the angles where it is not smooth.
+    ``sign`` is that of a constant moment of a fixed direction.
     """
 
     name: str
@@ -278,6 +279,7 @@ class Applied:
     motion: OutputMotion | None = None
     diagrams: tuple[LoadDiagram, ...] = ()
     along: Any = None
+    sign: Any = None
 
     def record(self, plan: Plan, pos: Positions, turned: Any, side: int = 0, mark: str = "") -> Step:
         """The force or moment as a step of a plan, ``turned`` the angles from position 0 as a row or a step.
@@ -294,6 +296,8 @@ class Applied:
         law, name = self.law, f"|{self.name}|{mark}"
         if not isinstance(law, StrokeLaw):
             (d,) = self.diagrams
+            if isinstance(d.curve, Given):
+                return plan.aside(name, STEADY, d.curve, turned, *(() if self.sign is None else (self.sign,)))
             return plan.aside(name, AT_ANGLE, d.curve, turned, d.turns, float(side))
         ahead, signs = law.strokes(value_of(turned), side)
         sense = Given(ahead, f"sense of {self.name}", choice="which way its diagram is passed")
@@ -326,6 +330,16 @@ class Applied:
         return np.abs(self.law(turned, side))
 
 
+    @cached_property
+    def changes_sign(self) -> bool:
+        """True where one diagram of it has ordinates of both signs."""
+        return any(min(d.table[1]) < 0 < max(d.table[1]) for d in self.diagrams)
+
+    def shown(self, turned: Any, side: int = 0) -> Any:
+        """Values as a graph shows them, N or N m: without their sign, unless one diagram has both signs."""
+        return self.law(turned, side) if self.changes_sign else self.magnitude(turned, side)
+
+
 FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"), "force", marked("Force {name} = {value}."),
              unit="N")
 MOMENT = Rule("given moment", lambda value: value, ("number",), "number", marked("Moment {name} = {value} N·m."), unit="N*m")
@@ -338,6 +352,8 @@ def _signed_sum(*terms: Any) -> Any:
     return total
 
 
+STEADY = Rule("the same all the time", lambda value, turned, sign=1.0: sign * value + 0.0 * turned, ("number", "angle"), "number",
+              "{name} = {value}.", exact=True)
 SIGNED_SUM = Rule("values by stroke", _signed_sum, ("number", "number"), "number", "{name} = {value}.", exact=True)
 PISTON = Rule("force of a pressure on a piston", lambda p, bore, ambient: np.pi * bore**2 / 4 * (p - ambient),
               ("number", "length", "number"), "number", "{name} = π·D²/4·(p − p_0).", unit="N", exact=True)
@@ -541,6 +557,14 @@ def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequ
             fractions = (*jumps_of(table), *((0.0,) if motion.endless and table[1][0] != table[1][-1] else ()))
             jumps += [at for fraction in fractions for at in motion.crossings(run, fraction)]
     return law, distinct((float(np.mod(t, motion.period)) for t in jumps), motion.period)
+
+
+def steady_law(value: float) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
+    """Law of what is the same all the time, N or N m: it asks nothing of the motion and has no jumps."""
+    def law(turned: Any, side: int = 0) -> Any:
+        return np.full(np.shape(turned), value)
+
+    return law, ()
 
 
 def angle_law(table: Table, period: float, smooth: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:

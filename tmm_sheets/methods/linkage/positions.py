@@ -6,12 +6,15 @@ Source: manual 000, section 3.1; manual 002, section 1.1.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.mechanism.groups.dead_centres import near_point
+from tmm_sheets.mechanism.groups.hints import SpecialPoint
+from tmm_sheets.mechanism.groups.three_legs import Course, course
+from tmm_sheets.mechanism.groups.triad import TRIAD, TriadGroup
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 from tmm_sheets.words import tr
 
@@ -23,6 +26,8 @@ class Positions:
     ``directions`` are unit vectors of the links, from the first named point of each to its next; ``feet`` name, for rockers
     with an offset, the foot of the perpendicular from the pivot on the slot. ``sines`` are, by the first link of a group next to
     the crank, those of the angle between its lines in the plans of velocities, where they are known better than the lines.
+    ``special`` are Assur's special points of groups of class III by their names, ``false`` the plans of their false positions by
+    the groups' names.
     """
 
     mechanism: Mechanism
@@ -37,6 +42,8 @@ class Positions:
     rays: dict[tuple[str, str], Step] = field(default_factory=dict)
     feet: dict[str, str] = field(default_factory=dict)
     sines: dict[str, Step] = field(default_factory=dict)
+    special: dict[str, SpecialPoint] = field(default_factory=dict)
+    false: dict[str, Plan] = field(default_factory=dict)
 
     @property
     def phi(self) -> Any:
@@ -51,8 +58,20 @@ class Positions:
     def direction(self, p: str, q: str) -> Step:
         """Step of the direction from point ``p`` to ``q``, drawn once."""
         if (p, q) not in self.rays:
-            self.rays[p, q] = self.plan.add(self.plan.free(p + q), rules.RAY, self.points[p], self.points[q])
+            self.rays[p, q] = self.plan.add(self.plan.free(p + q), rules.RAY, self.place(p), self.place(q))
         return self.rays[p, q]
+
+    def place(self, name: str) -> Step:
+        """A point of the mechanism or a special point by its name."""
+        return self.special[name].step if name in self.special else self.points[name]
+
+    def course(self, group: StructuralGroup) -> Course:
+        """Way of assembly of a group of class III round the turn, followed once for a mechanism."""
+        assert isinstance(group, TriadGroup)
+        known = self.mechanism.courses
+        if group.name not in known:
+            known[group.name] = course(lambda phi: TRIAD.before(_before(self.mechanism, group, phi), group), group.when, group.near)
+        return cast("Course", known[group.name])
 
     def crossing(self, group: StructuralGroup) -> tuple[Step, ...]:
         """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
@@ -65,14 +84,24 @@ class Positions:
         return found.lengths
 
 
-def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), where: str = "", purpose: str = "") -> Positions:
+FOLLOWED = "ways of assembly"
+
+
+def _before(mechanism: Mechanism, group: StructuralGroup, phi: Any) -> Positions:
+    """Positions of all that comes before a group, and of its guides."""
+    return position_plan(mechanism, phi, purpose=FOLLOWED, until=group)
+
+
+def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",), where: str = "", purpose: str = "",
+                  until: StructuralGroup | None = None) -> Positions:
     """Record the position plan for crank angles ``phi`` (rad, world frame, counter-clockwise), shape (n,).
 
     They may be numbers, a row or a step. ``where`` stands behind the names of this plan and of those made on it: "@middles" for
     angles between the positions. ``purpose`` is what the plan searches for, when it is neither drawn nor told: it is counted then.
+    ``until`` is the group before which the plan ends; none of them unless told.
     """
     plan = Plan(f"positions{where}", tr("Positions of the mechanism"), "m", labels, search=mechanism.search(purpose))
-    inner = {g.inner for g in mechanism.groups if g.inner}
+    inner = {name for g in mechanism.groups for name in g.kind.carried(g)}
     plan.reserved = frozenset({*mechanism.fixed, mechanism.crank.pin, *inner, *(p.name for p in mechanism.points)})
     pos = Positions(mechanism, plan, phi, where)
     for name, at in mechanism.fixed.items():
@@ -88,6 +117,8 @@ def position_plan(mechanism: Mechanism, phi: Any, labels: tuple[str, ...] = ("",
         for name in group.guides:
             if name not in pos.guide_points:
                 _moving_guide(pos, mechanism.guides[name])
+        if group is until:
+            break
         group.kind.position(pos, group)
         for link in group.links:
             _further_points(pos, link)

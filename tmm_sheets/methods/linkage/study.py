@@ -62,6 +62,7 @@ class Study:
         """The plans that were asked for, in the order of construction."""
         made = vars(self)
         found = [made[name].plan for name in ("positions", "velocities") if name in made]
+        found += made["positions"].false.values() if "positions" in made else ()
         found += [made["uneven"]] if "uneven" in made else []
         found += [made["accelerations"].plan] if "accelerations" in made else []
         if "loads" in made:

@@ -66,6 +66,7 @@ class Velocities:
     omega: dict[str, Step] = field(default_factory=dict)
     reference: dict[str, tuple[str, str, Step, Step]] = field(default_factory=dict)
     coincident: dict[str, Step] = field(default_factory=dict)
+    special: dict[str, Step] = field(default_factory=dict)
 
     @property
     def pole(self) -> Step:
@@ -99,6 +100,11 @@ class Velocities:
         """Velocity of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
         z = self.positions.points
         return self.plan.add(self.name(point), RIGID, start, self.omega[link], z[q], z[b])
+
+    def similar(self, point: str, q: Step, b: Step, big_q: str, big_b: str, name: str = "") -> Step:
+        """Velocity of a point of a link by similarity, from those of two of its points; named after it, or otherwise."""
+        at = self.positions.place
+        return self.plan.add(self.name(name or point), SIMILAR, q, b, at(big_q), at(big_b), at(point))
 
     def perpendicular(self, p: str, q: str) -> Step:
         """Direction across the line of two points, drawn once."""

@@ -243,7 +243,8 @@ def _group(r: Reader, g: Any, nth: int, told: set[str]) -> dict[str, Any]:
 
 
 def _of_group(name: str, links: Iterable[str]) -> bool:
-    return any(name.startswith(f"h{link}") or name.endswith(link) for link in links)
+    index = name[1:]
+    return not set(index.split(",") if "," in index else index).isdisjoint(links)
 
 
 def _shown(equation: Node, name: str, about: str) -> Said:

@@ -24,9 +24,10 @@ def scope(r: Reader) -> Scope:
             {
                 "links": g.name,
                 "kind": str(g.kind.number),
-                "form": g.form,
+                "triad": g.kind.grade == 3,
+                "form": g.form if g.kind.grade == 2 else g.kind.told(g),
                 "nth": str(i),
-                "mobility": _mobility(r, f"W_{{{g.name}}}", 2, 3, 0, f"structure.groups[{i}]"),
+                "mobility": _mobility(r, f"W_{{{g.name}}}", len(g.links), len(g.kind.pairs(m, g)), 0, f"structure.groups[{i}]"),
                 "pairs": _pairs_of(r, g.name),
             }
         )
@@ -54,6 +55,8 @@ def scope(r: Reader) -> Scope:
         "turning_only": turning == p5,
         "second_class": m.grade == 2,
         "grade": str(m.grade),
+        "grade_to": said["grades_to"][m.grade - 1],
+        "third": m.grade == 3,
         "W": Number(str(m.mobility), "structure.W", m.mobility),
         "crank": m.crank.link,
         "count": len(groups),

@@ -1,0 +1,608 @@
+"""Kind 6, a group of class III, order 3: a triangle on three legs.
+
+Each leg is hinged to a corner of the triangle and turns about an outer hinge or slides along an outer guide; the second may be a
+stone that is hinged outside and slides in a slot of the triangle. Positions by the method of false positions (метод ложных
+положений): without its third leg the group moves by itself, the third corner draws its locus, which the circle or the guide of the
+third leg cuts. Velocities and accelerations by Assur's special point (особая точка Ассура), where the normals of two legs meet:
+seen as a point of the triangle its velocity follows from both legs at once. Forces by the moments of the whole group about it.
+
+Source: I. I. Artobolevsky, Теория механизмов и машин, 1988, § 22, 24 and 61; L. V. Assur.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.given import Given
+from tmm_sheets.construction.indices import on_link, pair_index
+from tmm_sheets.construction.plan import Plan, symbol
+from tmm_sheets.construction.step import Helper, Rule, Step, value_of
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups import three_legs
+from tmm_sheets.mechanism.groups.hints import Leg, OuterReaction, Outline, SpecialPoint
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, lacking
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.words import marked, tell, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.mechanism.groups.three_legs import Course
+    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
+
+FALSE = (-3, -2, -1, 1, 2, 3)
+"""False positions, counted from the true one."""
+APART = 0.15
+"""Way of the third corner between false positions, in the least of its leg's and the triangle's lengths."""
+
+
+@dataclass(frozen=True)
+class TriadGroup(StructuralGroup):
+    """A group of class III, order 3; ``links`` are the triangle and its three legs.
+
+    ``sides`` are the distances of the second and third corner from the first, m, ``angle`` that between them, rad. ``near`` is
+    about the direction from the first corner to the second, rad, in the way of assembly that is meant, at the crank angle ``when``.
+    """
+
+    legs: tuple[Leg, ...] = ()
+    sides: tuple[float, float] = (0.0, 0.0)
+    angle: float = 0.0
+    near: float = 0.0
+    when: float = 0.0
+
+    @property
+    def form(self) -> str:
+        """Pairs of its legs."""
+        return "–".join(leg.form for leg in self.legs)
+
+    def false_points(self, plan: Plan) -> list[tuple[Step, ...]]:
+        """Steps of its false positions: the corners, and the slot's direction instead of the second of a stone's."""
+        return [tuple(plan[f"{leg.corner}{sign(n)}"] for leg in self.legs) for n in FALSE]
+
+
+def _third_corner(length: Any, angle: Any) -> Any:
+    return length * (np.cos(angle) + 1j * np.sin(angle))
+
+
+CORNER = Rule("corner of a triangle", _third_corner, ("length", "angle"), "vector", "{name} = {value}.", unit="m", exact=True)
+NEAR_PLACE = Rule("place near by", three_legs.on_course, ("angle",), "point", "{name} = {value}.", unit="m", exact=True)
+NEAR_DIRECTION = Rule("direction near by", three_legs.on_course, ("angle",), "direction", "{name} = {value}.", unit="1", exact=True)
+
+
+def _cut(a: tuple[Any, ...], v: Any) -> tuple[Helper, ...]:
+    """Arc of the third leg across the locus."""
+    does, centre, _, radius, _ = a[12:17]
+    return (Helper("arc", centre, v, radius),) if does == three_legs.CIRCLE else ()
+
+
+LOCUS = Rule(
+    "locus cut", three_legs.corner_on_legs, ("point", "direction"), "point",
+    marked("Where the locus cuts the circle or the guide of the third leg lies point {name}."), _cut,
+    sine=lambda z, k, u, *legs: three_legs.locus_sine(k, u, *legs),
+)
+ON_LOCUS = Rule("direction on the locus", three_legs.direction_on_legs, ("point", "direction"), "direction",
+                marked("Put the triangle there: direction {name}."))
+
+
+def _from_third(third: Any, u: Any, own: Any, corner: Any) -> Any:
+    return third + (corner - own) * u
+
+
+FROM_THIRD = Rule("corner from another", _from_third, ("point", "direction", "number", "number"), "point",
+                  marked("From {0} with the side of the triangle mark point {name} on its circle or guide."),
+                  lambda a, v: (Helper("line", a[0], v),))
+FALSE_CORNER = Rule("false position of the first leg", three_legs.false_place, ("point", "direction"), "point",
+                    marked("Let the first leg take a false position: point {name}."))
+FALSE_SIDE = Rule("side of a false position", three_legs.false_side, ("point", "direction"), "number", "{name} = {value}.",
+                  unit="1", exact=True)
+
+
+def _transferred(first: Any, second: Any, two: Any, three: Any) -> Any:
+    return first + three / two * (second - first)
+
+
+TRANSFER = Rule("triangle on its side", _transferred, ("point", "point", "length", "number"), "point",
+                marked("On {0}{1} put up the triangle: point {name} of the locus."),
+                lambda a, v: (Helper("line", a[0], a[1]), Helper("line", a[0], v), Helper("line", a[1], v)))
+
+
+def _in_slot(first: Any, u: Any, three: Any, slot: Any) -> Any:
+    return first + three * u * np.exp(-1j * slot)
+
+
+IN_SLOT = Rule("triangle by its slot", _in_slot, ("point", "direction", "number", "angle"), "point",
+               marked("From {0} along its slot put up the triangle: point {name} of the locus."),
+               lambda a, v: (Helper("line", a[0], v),))
+
+
+def _slot_direction(first: Any, pivot: Any, two: Any, slot: Any, side: Any) -> Any:
+    e = pivot - first
+    d = np.abs(e)
+    across = (two * np.exp(-1j * slot)).imag
+    # The slot passes the first corner at a distance: the pivot lies so far beside its direction.
+    return e / (side * np.sqrt((d - across) * (d + across)) + 1j * across)
+
+
+SLOT_DIRECTION = Rule("slot through a pivot", _slot_direction, ("point", "point", "length", "angle", "number"), "direction",
+                      marked("Draw the slot through {1}: direction {name}."), lambda a, v: (Helper("line", a[0], a[1]),))
+
+
+def _component(total: Any, about: Any, at: Any, u: Any) -> Any:
+    return -total / ar.moment(about, at, u) * u
+
+
+BY_MOMENTS = Rule("component along a normal from moments", _component, ("number", "point", "point", "direction"), "force",
+                  marked("From the sum of moments about the special point {1} find the component {name} = {value}."),
+                  lambda a, v: rules.arm(a[1], a[2], a[3]), unit="N")
+
+
+def _along_slot(u: Any, *forces: Any) -> Any:
+    total: Any = 0j
+    for f in forces:
+        total = total + f
+    return -(total * np.conj(u)).real * u
+
+
+ALONG_SLOT = Rule("component along a slot", _along_slot, ("direction",), "force",
+                  marked("From the sum of projections on the slot find the component {name} = {value}."), unit="N")
+
+
+def _of(g: StructuralGroup) -> TriadGroup:
+    assert isinstance(g, TriadGroup)
+    return g
+
+
+class TriadKind(GroupKind):
+    """Kind 6: a triangle on three legs."""
+
+    number, form, orders = 6, marked("class III"), ()
+    grade, order = 3, 3
+
+    def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
+        found = []
+        for leg in _of(g).legs:
+            if leg.guide:
+                found.append(sliding(leg.corner + "′", m.guides[leg.guide].link, leg.link))
+            else:
+                found.append(turning(leg.outer, m.owner(leg.outer), leg.link))
+            found.append(turning(leg.corner, leg.link, g.links[0]) if leg.slot is None
+                         else sliding(leg.outer + "′", leg.link, g.links[0]))
+        return found
+
+    def carried(self, g: StructuralGroup) -> dict[str, str]:
+        return {leg.corner: g.links[0] for leg in _of(g).legs}
+
+    def guided(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
+        return tuple((leg.corner, leg.guide) for leg in _of(g).legs if leg.guide)
+
+    # --- positions ------------------------------------------------------------------------------------------------
+
+    def position(self, pos: Positions, g: StructuralGroup) -> None:
+        """Construct the corners, the special point and the false positions.
+
+        Raises
+        ------
+        CannotBuild
+            when no way of assembly is near the direction told, or a turn of the crank leads to another one.
+        """
+        triad, plan = _of(g), pos.plan
+        a, b, c = triad.legs
+        way = pos.course(g)
+        _check(triad, way)
+        angles, k, u = (Given(value, f"{what} of group {g.name}", over="curve",
+                              choice=f"way of assembly whose triangle is nearest to {np.degrees(triad.near):g} deg at crank angle "
+                                     f"{np.degrees(triad.when):g} deg, followed round the turn")
+                        for what, value in (("crank angles", way.angles), ("place", way.k), ("direction", way.u)))
+        near = (plan.aside(f"k {g.name}", NEAR_PLACE, pos.angle, angles, k),
+                plan.aside(f"u {g.name}", NEAR_DIRECTION, pos.angle, angles, u))
+        held = self._held(pos, triad)
+        if plan.search is None:
+            self._false_positions(pos, triad, near, held)
+        third = plan.add(c.corner, LOCUS, *near, *held, say=(
+            tr("The locus of {locus} cuts the guide of slider {leg}: point {{name}}.") if c.guide else
+            tr("The locus of {locus} cuts the circle of leg {leg}: point {{name}}.")).format(locus=c.corner, leg=c.link))
+        along = plan.add(plan.free(a.corner + b.corner), ON_LOCUS, *near, *held)
+        pos.points[c.corner], pos.rays[a.corner, b.corner], pos.directions[g.links[0]] = third, along, along
+        own = held[14]
+        for leg, corner in ((a, held[4]), (b, held[9])):
+            pos.points[leg.corner] = plan.add(leg.corner, FROM_THIRD, third, along, own, corner)
+        for leg in triad.legs:
+            pos.directions[leg.link] = (
+                pos.guide_directions[leg.guide] if leg.guide else pos.direction(leg.outer, leg.corner) if leg.slot is None
+                else along if not leg.slot else plan.add(plan.free(f"dir {leg.link}"), rules.TURNED_BY, along, leg.slot))
+        self._special_point(pos, triad)
+
+    @staticmethod
+    def _held(pos: Positions, g: TriadGroup) -> tuple[Any, ...]:
+        """What holds the triangle, leg by leg, see :data:`three_legs.Legs`."""
+        third = pos.plan.aside(f"c {g.name}", CORNER, g.sides[1], g.angle)
+        found: list[Any] = []
+        for leg, corner in zip(g.legs, (0.0, g.sides[0], third), strict=True):
+            if leg.guide:
+                found += [three_legs.LINE, pos.guide_points[leg.guide], pos.guide_directions[leg.guide], 0.0, corner]
+            elif leg.slot is None:
+                found += [three_legs.CIRCLE, pos.points[leg.outer], 1.0, leg.length, corner]
+            else:
+                found += [three_legs.SLOT, pos.points[leg.outer], 1.0, leg.slot, corner]
+        return tuple(found)
+
+    def before(self, pos: Positions, g: StructuralGroup) -> tuple[Any, ...]:
+        """What holds the triangle, in numbers, on a plan that ends before the group."""
+        return tuple(value_of(x) for x in self._held(pos, _of(g)))
+
+    @staticmethod
+    def _false_positions(pos: Positions, g: TriadGroup, near: tuple[Step, Step], held: tuple[Any, ...]) -> None:
+        """Without the third leg: some places of the first, of the second by compasses, of the third corner by the triangle."""
+        a, b, c = g.legs
+        title = tr("False positions of group {name}").format(name=g.name)
+        plan = pos.false[g.name] = Plan(f"false-positions-{g.name}{pos.where}", title, "m", pos.plan.labels)
+        size = APART * min(x for x in (c.length, g.sides[0], g.sides[1]) if x > 0)
+        two, three = held[9], held[14]
+        for n in FALSE:
+            at = sign(n)
+            first = plan.add(f"{a.corner}{at}", FALSE_CORNER, *near, n * size, *held, say=tr(
+                "Leg {leg} takes a false position: point {{name}}.").format(leg=a.link))
+            side = plan.aside(f"side {first.name}", FALSE_SIDE, *near, n * size, *held)
+            name = f"{b.corner}{at}"
+            if a.form == "RR":
+                plan.add(f"{a.outer}{first.name}", rules.RAY, held[1], first)
+            if b.slot is None:
+                second = (plan.add(name, rules.ARC_LINE, first, two, held[6], held[7], side) if b.guide else
+                          plan.add(name, rules.ARC_ARC, first, two, held[6], held[8], side))
+                if b.form == "RR":
+                    plan.add(f"{b.outer}{name}", rules.RAY, held[6], second)
+                plan.add(f"{c.corner}{at}", TRANSFER, first, second, two, three)
+            else:
+                u = plan.add(name, SLOT_DIRECTION, first, held[6], two, b.slot, side)
+                plan.add(f"{c.corner}{at}", IN_SLOT, first, u, three, b.slot)
+
+    def _special_point(self, pos: Positions, g: TriadGroup) -> None:
+        """Where the normals of two legs meet, of those two that meet best at the angles of the plan."""
+        plan, way = pos.plan, pos.course(g)
+        with np.errstate(invalid="ignore"):
+            n = [three_legs.on_course(value_of(pos.angle), way.angles, row) for row in way.normals]
+            sines = [np.abs(ar.cross(n[i], n[j])) for i, j in PAIRS]
+            least = [float(np.nanmin(s)) if not np.all(np.isnan(s)) else 0.0 for s in sines]
+        i, j = PAIRS[int(np.argmax(least))]
+        first, second = g.legs[i], g.legs[j]
+        third = next(leg for leg in g.legs if leg not in (first, second))
+        name = special_name(g.links[0])
+        step = plan.add(name, rules.LINE_LINE, pos.points[first.at], self._normal(pos, first), pos.points[second.at],
+                        self._normal(pos, second), say=tr(
+                            "The normals of legs {first} and {second} meet at Assur's special point {{name}} of link {link}."
+                        ).format(first=first.link, second=second.link, link=g.links[0]))
+        pos.special[name] = SpecialPoint(name, step, (first, second), third)
+
+    @staticmethod
+    def _normal(pos: Positions, leg: Leg) -> Step:
+        """Direction along which a leg holds the triangle: its own, or across its guide or slot; drawn once."""
+        u = pos.directions[leg.link]
+        if leg.form == "RR":
+            return u
+        name = f"⟂{leg.guide or 'dir ' + leg.link}"
+        return pos.plan[name] if name in pos.plan else pos.plan.add(name, rules.TURN, u)
+
+    # --- velocities and accelerations -------------------------------------------------------------------------------
+
+    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
+        plan, pos, tri = vel.plan, vel.positions, g.links[0]
+        s = pos.special[special_name(tri)]
+        (a, b), c = s.pair, s.third
+        (base_a, t_a), (base_b, t_b), (base_c, t_c) = (self._end(vel, leg) for leg in (a, b, c))
+        w = vel.special[s.name] = plan.add(vel.name(s.name), rules.LINE_LINE, base_a, t_a, base_b, t_b)
+        plan.vector(f"V̅_{s.name}", vel.pole, w)
+        n = vel.perpendicular(s.name, c.at)
+        step = plan.add(self._name(vel, c, tri), rules.LINE_LINE, w, n, base_c, t_c)
+        plan.vector(f"V̅_{self._letters(c, tri)}", vel.pole, step)
+        plan.vector(f"V̅_{{{self._letters(c, tri)}{s.name}}}", w, step)
+        self._others(vel, _of(g), c, step, w, "V̅")
+        v = vel.points
+        vel.turning(tri, a.corner, b.corner, v[a.corner], v[b.corner])
+        for leg in _of(g).legs:
+            if leg.guide:
+                vel.turns_with(leg.link, pos.mechanism.guides[leg.guide].link)
+                vel.coincident[on_link(leg.corner, leg.link)] = v[leg.corner]
+            elif leg.slot is None:
+                vel.turning(leg.link, leg.outer, leg.corner, v[leg.outer], v[leg.corner])
+            else:
+                vel.turns_with(leg.link, tri)
+
+    def _end(self, vel: Velocities, leg: Leg) -> tuple[Step, Step]:
+        """Where the line of the velocities along a leg's normal begins on the plan, and its direction."""
+        pos = vel.positions
+        if leg.guide:
+            return vel.guide(leg.guide, leg.corner)[0], pos.guide_directions[leg.guide]
+        if leg.slot is not None:
+            return vel.points[leg.outer], pos.directions[leg.link]
+        return vel.points[leg.outer], vel.perpendicular(leg.outer, leg.corner)
+
+    @staticmethod
+    def _name(plan: Velocities | Accelerations, leg: Leg, tri: str) -> str:
+        return plan.name(leg.corner if leg.slot is None else on_link(leg.outer, tri))
+
+    @staticmethod
+    def _letters(leg: Leg, tri: str) -> str:
+        return leg.corner if leg.slot is None else f"{{{on_link(leg.outer, tri)}}}"
+
+    def _others(self, plan: Velocities | Accelerations, g: TriadGroup, c: Leg, step: Step, w: Step, letter: str) -> None:
+        """The other points of the triangle by similarity, from the special point and the third leg's."""
+        tri = g.links[0]
+        start = plan.positions.special[special_name(tri)].name
+        if c.slot is not None:
+            plan.coincident[on_link(c.outer, tri)] = step
+        else:
+            plan.points[c.corner] = step
+        for leg in g.legs:
+            if leg.corner not in plan.points:
+                end = plan.points[leg.corner] = plan.similar(leg.corner, w, step, start, c.at)
+                plan.plan.vector(f"{letter}_{leg.corner}", plan.pole, end)
+            if leg.slot is not None and on_link(leg.outer, tri) not in plan.coincident:
+                plan.coincident[on_link(leg.outer, tri)] = plan.similar(leg.outer, w, step, start, c.at, on_link(leg.outer, tri))
+
+    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
+        plan, pos, tri = acc.plan, acc.positions, g.links[0]
+        s = pos.special[special_name(tri)]
+        (a, b), c = s.pair, s.third
+        ends = []
+        for leg in (a, b):
+            base, t = self._known(acc, leg, tri)
+            ends += [acc.normal(base, tri, leg.at, s.name), t]
+        w = acc.special[s.name] = plan.add(acc.name(s.name), rules.LINE_LINE, *ends)
+        plan.vector(f"a̅_{s.name}", acc.pole, w)
+        n = acc.normal(w, tri, s.name, c.at, f"{self._letters(c, tri)}{s.name}")
+        base, t = self._known(acc, c, tri)
+        step = plan.add(self._name(acc, c, tri), rules.LINE_LINE, n, acc.perpendicular(s.name, c.at), base, t)
+        plan.vector(f"a̅_{self._letters(c, tri)}", acc.pole, step)
+        plan.vector(f"a̅_{{{self._letters(c, tri)}{s.name}}}^τ", n, step)
+        self._others(acc, _of(g), c, step, w, "a̅")
+        z = acc.points
+        acc.turning(tri, a.corner, b.corner, z[a.corner], z[b.corner])
+        for leg in _of(g).legs:
+            if leg.guide:
+                acc.turns_with(leg.link, pos.mechanism.guides[leg.guide].link)
+                acc.coincident[on_link(leg.corner, leg.link)] = z[leg.corner]
+            elif leg.slot is None:
+                acc.turning(leg.link, leg.outer, leg.corner, z[leg.outer], z[leg.corner])
+            else:
+                acc.turns_with(leg.link, tri)
+
+    @staticmethod
+    def _known(acc: Accelerations, leg: Leg, tri: str) -> tuple[Step, Step]:
+        """End of what is known of the acceleration where a leg holds the triangle, and the direction of the rest."""
+        pos, vel = acc.positions, acc.velocities
+        if leg.guide:
+            base, v_base, link = acc.guide(leg.guide, leg.corner)
+            return (acc.coriolis(base, link, v_base, vel.points[leg.corner], on_link(leg.corner, link)),
+                    pos.guide_directions[leg.guide])
+        if leg.slot is not None:
+            here = on_link(leg.outer, tri)
+            return (acc.coriolis(acc.points[leg.outer], tri, vel.points[leg.outer], vel.coincident[here], f"{here}{leg.outer}"),
+                    pos.directions[leg.link])
+        return (acc.normal(acc.points[leg.outer], leg.link, leg.outer, leg.corner), acc.perpendicular(leg.outer, leg.corner))
+
+    # --- forces -------------------------------------------------------------------------------------------------------
+
+    def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
+        """Kind 6: tangential parts from moments of each leg, a normal one from those of the group about the special point."""
+        pos, m, triad, tri = forces.positions, forces.positions.mechanism, _of(g), g.links[0]
+        s = pos.special[special_name(tri)]
+        c = s.third
+        owner = {leg: m.guides[leg.guide].link if leg.guide else m.owner(leg.outer) for leg in triad.legs}
+        part: dict[Leg, Step] = {}
+        couple: dict[Leg, Step] = {}
+        more: list[tuple[Step, Any, Any]] = []
+        for leg in triad.legs:
+            if leg.guide:
+                couple[leg] = forces.guide_couple(leg.link, owner[leg], pos.points[leg.corner])
+                more.append((pos.points[leg.corner], 0j, couple[leg]))
+                continue
+            if leg.slot is None:
+                total = forces.moment_sum(f"ΣM{leg.link}", pos.points[leg.corner], [leg.link])
+                part[leg] = forces.tangential(leg.link, owner[leg], total, leg.corner, leg.outer)
+            else:
+                own = [load.vector for load in forces.loads[leg.link]]
+                part[leg] = forces.plan.add(f"F{pair_index(leg.link, owner[leg])}τ", ALONG_SLOT, pos.directions[leg.link], *own)
+            more.append((pos.points[leg.outer], part[leg], 0.0))
+        total = forces.moment_sum(f"ΣM{s.name}", s.step, g.links, more)
+        normal = forces.plan.add(f"F{pair_index(c.link, owner[c])}n", BY_MOMENTS, total, s.step, pos.points[c.at],
+                                 self._normal(pos, c))
+        whole = self._polygon(forces, triad, s, owner, part, normal)
+        for leg in triad.legs:
+            if leg.guide:
+                forces.arm(leg.link, owner[leg], couple[leg], whole[leg])
+                forces.react(leg.link, owner[leg], pos.points[leg.corner], whole[leg], couple[leg])
+                continue
+            if leg.slot is not None:
+                forces.sliding(leg.link, tri, forces.reactions[f"F{pair_index(leg.link, tri)}"], pos.points[leg.outer])
+            forces.react(leg.link, owner[leg], pos.points[leg.outer], whole[leg])
+
+    def _polygon(self, forces: Kinetostatics, g: TriadGroup, s: SpecialPoint, owner: dict[Leg, str], part: dict[Leg, Step],
+                 normal: Step) -> dict[Leg, Step]:
+        """Plan of the whole group: first leg, triangle, third leg, second leg; inner reactions by a line more each."""
+        pos, tri = forces.positions, g.links[0]
+        (a, b), c = s.pair, s.third
+        fp = forces.plan_of(g.name, g.links)
+        plan = fp.plan
+        tail = plan.add("2", rules.GIVEN, 0j)
+        sides: list[tuple[str, Step, Step]] = []
+        start = tail
+
+        def lay(sign: str, vector: Step) -> Step:
+            nonlocal tail
+            head = plan.add(str(len(sides) + 3), rules.SHIFT, tail, vector)
+            sides.append((sign, tail, head))
+            tail = head
+            return head
+
+        def loads(link: str) -> Step:
+            for load in forces.order(forces.loads[link], "weight"):
+                lay(load.symbol, load.vector)
+            return tail
+
+        def sign(leg: Leg, upper: str = "") -> str:
+            return f"F̅_{{{pair_index(leg.link, owner[leg])}}}{upper}"
+
+        after_a = lay(sign(a, "^τ"), part[a]) if a in part else tail
+        leg_a = loads(a.link)
+        triangle = loads(tri)
+        before_c = tail
+        if c in part:
+            lay(sign(c, "^τ"), part[c])
+        after_c = lay(sign(c, "^n" if c in part else ""), normal)
+        leg_c = loads(c.link)
+        before_b = loads(b.link)
+        last = lay(sign(b, "^τ"), part[b]) if b in part else tail
+        closing = plan.add("1", rules.LINE_LINE, start, self._normal(pos, a), last, self._normal(pos, b))
+        fp.side(sign(a, "^n" if a in part else ""), closing, start, unknown=True)
+        for name, p, q in sides:
+            fp.side(name, p, q)
+        fp.side(sign(b, "^n" if b in part else ""), last, closing, unknown=True)
+        found = {}
+        for leg, p, q in ((a, closing, after_a), (c, before_c, after_c), (b, before_b, closing)):
+            name = f"F{pair_index(leg.link, owner[leg])}"
+            found[leg] = forces.reaction(leg.link, owner[leg], fp.between(name, p, q))
+            if leg in part:
+                plan.vector(symbol(name), p, q)
+        # What closes the polygon of each leg alone: the same drawing, one line more.
+        for leg, p, q in ((a, leg_a, closing), (c, leg_c, triangle), (b, closing, leg_c)):
+            name = f"F{pair_index(leg.link, tri)}"
+            inner = forces.reaction(leg.link, tri, fp.between(name, p, q))
+            plan.vector(symbol(name), p, q)
+            forces.opposite(tri, leg.link, inner)
+        return found
+
+    # --- limits -------------------------------------------------------------------------------------------------------
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        triad = _of(g)
+        leg = triad.legs[2]
+
+        def say(lack: float) -> str:
+            said = (tell("the locus of {corner} does not come to the guide {guide} of slider {leg}: {lack} are missing")
+                    if leg.guide else tell("the locus of {corner} does not come to the circle of leg {leg}: {lack} are missing"))
+            return said.format(corner=leg.corner, guide=leg.guide, leg=leg.link, lack=lacking(lack))
+
+        return [AssemblyLimit(m.crank.length, partial(self._margin, triad), say, partial(_hint, triad))]
+
+    def _margin(self, g: TriadGroup, pos: Positions) -> Any:
+        """Positive where the triangle stands on its legs; elsewhere what the third leg lacks, m."""
+        held, way = self.before(pos, g), pos.course(g)
+        z = pos.points[g.legs[2].corner].value
+        found = np.where(np.isnan(z), np.nan, pos.mechanism.crank.length) + 0.0 * np.abs(sum(np.abs(x) for x in held[1::5]))
+        reached = np.flatnonzero(~np.isnan(way.k))
+        size = np.size(found)
+        phi = np.broadcast_to(value_of(pos.angle), (size,))
+        for i in np.flatnonzero(np.isnan(z)):
+            legs = tuple(x[i] if np.ndim(x) else x for x in held)
+            if np.isnan(np.array(legs, dtype=complex)).any():
+                continue
+            lack = np.nan
+            if len(reached):
+                near = reached[np.argmin(np.abs(np.angle(np.exp(1j * (way.angles[reached] - phi[i])))))]
+                lack = three_legs.gap(complex(way.k[near]), complex(way.u[near]), legs)[0]
+            if np.isnan(lack):
+                lack = three_legs.nearest(legs)[0]
+            found[i] = -max(abs(lack), 1e-12) if np.isfinite(lack) else -three_legs.extent(legs)
+        return found
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        triad = _of(g)
+        held = tuple(value_of(x) for x in self._held(pos, triad))
+        k, u = pos.points[triad.legs[0].corner].value, pos.directions[g.links[0]].value
+        _, normals, points = three_legs.conditions(k, u, held)
+        own = max(triad.sides)
+        shortest = min(x for x in (*triad.sides, *(leg.length for leg in triad.legs)) if x > 0)
+        return size / shortest * own / np.abs(three_legs.determinant(k, normals, points))
+
+    # --- looks --------------------------------------------------------------------------------------------------------
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        triad = _of(g)
+        arms = tuple((leg.corner, leg.outer) for leg in triad.legs if leg.slot is not None)
+        found = [Outline(g.links[0], tuple(leg.corner for leg in triad.legs), arms=arms)]
+        for leg in triad.legs:
+            if leg.form == "RR":
+                found.append(Outline(leg.link, (leg.outer, leg.corner)))
+            else:
+                found.append(Outline(leg.link, block=leg.at, along=pos.directions[leg.link], slotted=bool(leg.guide)))
+        return found
+
+    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
+        return [OuterReaction(leg.link, leg.corner, leg.guide) if leg.guide else OuterReaction(leg.link, leg.outer)
+                for leg in _of(g).legs]
+
+    def about(self, g: StructuralGroup) -> str:
+        return special_name(g.links[0])
+
+    def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
+        return tuple((leg.link, leg.guide) for leg in _of(g).legs if leg.guide)
+
+
+    def told(self, g: StructuralGroup) -> str:
+        return "–".join(tr(FORMS[leg.form]) for leg in _of(g).legs)
+
+    def joints(self, g: StructuralGroup) -> tuple[str, ...]:
+        return (*(leg.corner for leg in _of(g).legs), *g.outer)
+
+    def block(self, g: StructuralGroup, link: str) -> str:
+        return next(leg.at for leg in _of(g).legs if leg.link == link)
+
+
+def sign(n: int) -> str:
+    """Number of a false position behind a name."""
+    return f"({n:+d})"
+
+
+FORMS = {"RR": marked("RR"), "PR": marked("PR"), "RP": marked("RP")}
+"""Pairs of a leg, outer and inner."""
+PAIRS = ((0, 1), (0, 2), (1, 2))
+
+
+def special_name(triangle: str) -> str:
+    """Name of the special point of a triangle."""
+    return f"W{triangle}"
+
+
+SURELY = np.radians(45.0)
+"""Beyond it the told direction belongs to no way of assembly."""
+
+
+def _ways(g: TriadGroup, way: Course) -> dict[str, Any]:
+    """Ways of assembly for a message."""
+    return {"group": "-".join(g.links), "side": g.legs[0].corner + g.legs[1].corner, "angle": np.degrees(g.when),
+            "told": np.degrees(g.near), "ways": ", ".join(f"{np.degrees(np.angle(u)) % 360:.1f}" for _, u in way.found)}
+
+
+def _check(g: TriadGroup, way: Course) -> None:
+    """Refuse a direction near which the group has no way of assembly, and one that is another after a turn of the crank.
+
+    Raises
+    ------
+    CannotBuild
+        with the ways of assembly at the crank angle where the direction is told.
+    """
+    if way.taken < 0:
+        return  # the limits tell by how much
+    if abs(np.angle(way.found[way.taken][1] * np.exp(-1j * g.near))) > SURELY:
+        message = tell("group {group}: no way of assembly at crank angle {angle:g} deg has {side} near {told:g} deg")
+        raise CannotBuild(message.format(**_ways(g, way)), tell("take one of {ways} deg").format(**_ways(g, way)))
+    if not way.back:
+        message = tell("group {group}: after a turn of the crank it stands in another way of assembly")
+        hint = tell("make the crank shorter; ways of assembly at crank angle {angle:g} deg have {side} at {ways} deg")
+        raise CannotBuild(message.format(**_ways(g, way)), hint.format(**_ways(g, way)))
+
+
+def _hint(g: TriadGroup, pos: Positions) -> str:
+    way = pos.course(g)
+    if not way.found:
+        return tell("no way of assembly at crank angle {angle:g} deg: lengthen a leg or bring the pivots nearer").format(
+            angle=np.degrees(g.when))
+    return tell("make the crank shorter, or the legs longer; ways of assembly at crank angle {angle:g} deg have {side} at "
+                "{ways} deg").format(**_ways(g, way))
+
+
+TRIAD = TriadKind()
