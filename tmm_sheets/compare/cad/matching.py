@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.cad import cad_extras, cad_lettering, cad_looks, cad_symbols, misplaced
+from tmm_sheets.compare.cad import cad_arrows, cad_extras, cad_lettering, cad_looks, cad_symbols, misplaced
 from tmm_sheets.compare.cad.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
@@ -54,7 +54,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     misplaced.curves(state, rest)
     misplaced.incomplete(state)
     cad_symbols.filled(state)
-    cad_symbols.arrows(state)
+    cad_arrows.arrows(state)
     cad_symbols.heads_of_dimensions(state)
     _leading_elsewhere(state)
     say(tell("looking for what is extra"))
