@@ -527,6 +527,13 @@ def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
             click.echo(plotting.send(job, path, printer))
 
 
+def _check_pages(pages: tuple[Path, ...]) -> None:
+    """Refuse reports of another kind than can be written."""
+    for path in pages:
+        if path.suffix.lower() not in (".html", ".pdf"):
+            raise click.UsageError(tell("--report {file}: expected a name that ends in .html or .pdf").format(file=path))
+
+
 @commands.command()
 @PROJECT
 @CORRECTED
@@ -542,17 +549,21 @@ def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
 @option("--reading", type=click.FloatRange(0.01, 5), default=0.5, show_default=True, metavar="MM",
               help="Error of a length read off a ruler.")
 @option("--json", "target", metavar="FILE", help="Also write the outcome as JSON, to standard output for -.")
+@option("--report", "pages", type=click.Path(path_type=Path), multiple=True, metavar="FILE",
+              help="Also write the report with pictures: .html (one self-contained page) or .pdf; may be given twice.")
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
 def compare(
     project: str, corrected: bool, template: bool, measured: Path | None, sheet: int | None, image: Path | None,
-    views: Path | None, dxf: Path | None, pencil: float, reading: float, target: str | None, output: Path | None,
+    views: Path | None, dxf: Path | None, pencil: float, reading: float, target: str | None, pages: tuple[Path, ...],
+    output: Path | None,
 ) -> None:
     """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
     if sum((template, measured is not None, image is not None, dxf is not None)) != 1:
         raise click.UsageError(tell("give one of --template, --measured FILE, --image FILE and --dxf FILE"))
     if sheet is None and image is not None:
         raise click.UsageError(tell("--image needs --sheet N: which sheet it shows"))
+    _check_pages(pages)
     from tmm_sheets import files
     from tmm_sheets.progress import Progress
 
@@ -581,6 +592,7 @@ def compare(
     made = {folder / name: data for name, data in report.files.items()}
     if target is not None and target != "-":
         made[Path(target)] = (report.as_json() + "\n").encode()
+    made |= {path: report.page(path.suffix.lower(), opened.variant.project.name) for path in pages}
     files.write_all(made)
     for note in report.notes:
         click.echo(f"{opened.variant.project.name}: {note}", err=True)

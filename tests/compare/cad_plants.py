@@ -247,7 +247,7 @@ def compared(data: bytes, sheet, found):
         ink = cad_file.read(path)
     laid = lay([KnownSheet(1, sheet, tuple(found))], ink)
     space = laid.space.placed(laid.placing)
-    places = layout.find(found, space.lines, space.writings)
+    places = layout.find(found, space)
     return matching.match(found, space, places.moves, 0.25)
 
 

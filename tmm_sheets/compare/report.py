@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from tmm_sheets.words import marked, tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.compare.story import Story
 
 Verdict = Literal["green", "amber", "red"]
 """Within the tolerance of a pencil; within twice that; beyond."""
@@ -35,12 +38,22 @@ class Report:
     tree : the same for JSON, None where there is no number
     files : what to write beside it (overlays), by file name
     notes : what was mended or deserves a warning, one line each
+    story : the same to be read on paper or in a browser, None where there is only the text
     """
 
     text: str
     tree: Mapping[str, Any]
     files: Mapping[str, bytes] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    story: Story | None = None
+
+    def page(self, suffix: str, title: str) -> bytes:
+        """The report as a page, ``suffix`` ".html" or ".pdf"; ``title`` stands over one that has only a text."""
+        from tmm_sheets.compare import story_html, story_pdf
+        from tmm_sheets.compare.story import Story
+
+        told = self.story or Story(title, tuple(self.text.splitlines()))
+        return story_pdf.pdf(told) if suffix == ".pdf" else story_html.html(told)
 
     def as_json(self) -> str:
         """The outcome as JSON."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import view_places
-from tmm_sheets.compare.cad import cad_file, cad_overlay, cad_report, layout
+from tmm_sheets.compare.cad import cad_file, cad_overlay, cad_report, cad_story, layout
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
@@ -49,7 +49,8 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     exact = [p for f in outcome.findings for p in drawn(f.element)]
     files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, marked, looks)
     name = project.variant.project.name
-    return Report(cad_report.text(name, path, found, pencil), cad_report.tree(name, path, found, pencil), files, found.notes)
+    said = "\n".join([*cad_story.lines(found, gone), cad_report.text(name, path, found, pencil)])
+    return Report(said, cad_report.tree(name, path, found, pencil), files, found.notes, cad_story.story(name, path, found, pencil))
 
 
 def examine(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
@@ -84,7 +85,7 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     given = view_places.read(views, views_of(laid.known.sheet)) if views is not None else ()
     space = laid.space.placed(laid.placing)
     say(tell("placing the views"))
-    places = layout.find(laid.known.elements, space.lines, space.writings, [(p, laid.placing) for p in given], say)
+    places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say, laid.views)
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
     if not _of_this_sheet(outcome):
         _refuse(project, laid, outcome, ink, sheet, path)

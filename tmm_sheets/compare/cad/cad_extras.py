@@ -94,7 +94,8 @@ def _free_zones(state: Comparison) -> list[Any]:
     zones = [_polygon(z) for z in state.zones]
     for e in state.elements:
         if e.kind == "circle" and e.radius <= HINGE:
-            zones.append(shapely.Point(e.centre.real, e.centre.imag).buffer(e.radius + 0.2))
+            size = max(state.moved[e.view].scale, 1.0) if e.view in state.moved else 1.0  # it may have grown with the view
+            zones.append(shapely.Point(e.centre.real, e.centre.imag).buffer(size * e.radius + 0.2))
         zones += [_polygon(h).buffer(0.35) for h in e.fills if len(h) > 2]
     for a in state.space.areas:
         if np.ptp(a.points.real) + np.ptp(a.points.imag) < 20:

@@ -23,6 +23,7 @@ import numpy as np
 from tmm_sheets.compare.cad.cad_ink import Area, CadInk, DrawingSpace, DrawnStroke, Entity, Writing
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes
 from tmm_sheets.compare.cad.overlaps import Interval
+from tmm_sheets.compare.numbering import numbered
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
@@ -647,8 +648,11 @@ def overlay(exact: Sequence[Points], drawn: Sequence[Points], found: Sequence[tu
             if number:
                 at = z[len(z) // 2] if len(z) > 2 else z.mean()
                 dxf.add_text(number, (at.real + 1.5, at.imag + 1.5), height=3.5, layer="LOOKS", color=COLOURS["LOOKS"])
-        for centre, radius, number in found:
+        for centre, radius, _ in found:
             dxf.add_circle((centre.real, centre.imag), radius, layer="FOUND", color=COLOURS["FOUND"])
-            corner = (centre.real + 0.72 * radius, centre.imag + 0.72 * radius)
-            dxf.add_text(number, corner, height=3.5, layer="FOUND", color=COLOURS["FOUND"])
+        for one in numbered(found, 3.5):
+            if one.leader is not None:
+                a, b = one.leader
+                dxf.add_line((a.real, a.imag), (b.real, b.imag), layer="FOUND", color=COLOURS["FOUND"])
+            dxf.add_text(one.text, (one.at.real, one.at.imag), height=3.5, layer="FOUND", color=COLOURS["FOUND"])
     return text.getvalue().encode("ascii")

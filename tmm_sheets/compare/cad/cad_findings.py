@@ -30,7 +30,9 @@ class CadFinding(Finding):
     shift, turn, size : shift (right, up), mm, turn, degrees counter-clockwise, and excess of length or radius, mm, where these can
         be told apart
     missing : whether it is not there at all
+    absent : whether all of its kind are left out of the view, which is told of the view
     entities : numbers of the entities of the drawing it is made of
+    says : what a text says instead of what it should
     """
 
     reach: float
@@ -39,6 +41,8 @@ class CadFinding(Finding):
     size: float | None = None
     missing: bool = False
     entities: tuple[int, ...] = ()
+    absent: bool = False
+    says: str | None = None
 
 
 @dataclass(frozen=True)
@@ -87,10 +91,23 @@ class LookFinding:
 
 
 @dataclass(frozen=True)
+class AbsentKind:
+    """That a view leaves out so many elements of a kind (of :data:`~tmm_sheets.compare.cad.cad_absent.KINDS`)."""
+
+    view: ElementView
+    kind: str
+    count: int
+
+
+@dataclass(frozen=True)
 class CadOutcome:
-    """Findings of every element in its order, extra ink, longest first, wrong line types and widths with ``notes`` on them."""
+    """Findings of every element in its order, extra ink, longest first, wrong line types and widths with ``notes`` on them.
+
+    ``absent`` is what plain drawings leave out, view by view.
+    """
 
     findings: tuple[CadFinding, ...]
     extras: tuple[ExtraStroke, ...]
     looks: tuple[LookFinding, ...] = ()
     notes: tuple[str, ...] = ()
+    absent: tuple[AbsentKind, ...] = ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -32,7 +33,7 @@ def lettering(state: Comparison) -> None:
             state.found[n] = state.finding(n, 0.0, "", shift=shift, entities=entities)
         else:
             said = tell('reads "{found}" instead of "{wanted}"').format(found=answer.says, wanted=state.elements[n].text)
-            state.found[n] = state.finding(n, 4 * state.tolerance, said, entities=entities)
+            state.found[n] = replace(state.finding(n, 4 * state.tolerance, said, entities=entities), says=answer.says)
         _bars(state, n)
         state.lettered.append(grown(wanted[k].points, 0.8))
     _strokes_of_letters(state, [n for k, n in enumerate(numbers) if k not in got])

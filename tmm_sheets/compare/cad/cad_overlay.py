@@ -10,9 +10,12 @@ import numpy as np
 from tmm_sheets.backends import pdf
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Writing
+from tmm_sheets.compare.numbering import numbered
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Drawing, Mark, Points, Polyline
 
+HIGH = 3.5
+"""Height of the numbers, mm."""
 GREEN, GREY, RED, ORANGE = (0.0, 0.6, 0.2), (0.45, 0.45, 0.45), (0.85, 0.0, 0.0), (0.95, 0.55, 0.0)
 """Colours of the exact sheet, the drawing, findings, lines of a wrong type or width."""
 
@@ -61,9 +64,12 @@ def _wrong_looks(looks: Sequence[tuple[Sequence[Points], str]]) -> list[Mark]:
 
 def _circled(found: Sequence[tuple[complex, float, str]]) -> list[Mark]:
     canvas = Canvas()
-    for centre, radius, number in found:
+    for centre, radius, _ in found:
         canvas.circle(centre, radius, "axis")
-        canvas.text(centre + 0.75 * radius * (1 + 1j), number, 3.5)
+    for one in numbered(found, HIGH):
+        if one.leader is not None:
+            canvas.line(*one.leader, "axis")
+        canvas.text(one.at, one.text, HIGH, "left")
     return canvas.marks
 
 

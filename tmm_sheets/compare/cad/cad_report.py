@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
+from tmm_sheets.compare.cad import cad_absent
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.laying import Laid
@@ -35,6 +36,7 @@ class Examined:
     places : where its views are
     outcome : what was found
     notes : what was done to the drawing and what deserves a warning, one line each
+    built : plans that were built on a wrong step, with what that was
     """
 
     laid: Laid
@@ -42,6 +44,17 @@ class Examined:
     places: Layout
     outcome: CadOutcome
     notes: tuple[str, ...]
+    built: Mapping[ElementView, Built] = field(default_factory=dict)
+
+
+class Built(Protocol):
+    """What was done wrong in a plan, in words."""
+
+    def said(self) -> str:
+        """The mistake."""
+
+    def explained(self) -> str:
+        """How much of the plan it explains."""
 
 
 def gone(outcome: CadOutcome) -> set[ElementView]:
@@ -49,7 +62,8 @@ def gone(outcome: CadOutcome) -> set[ElementView]:
     by_view: dict[ElementView, list[CadFinding]] = {}
     for f in outcome.findings:
         by_view.setdefault(f.element.view, []).append(f)
-    return {v for v, found in by_view.items() if len(found) > 5 and sum(f.missing for f in found) > 0.6 * len(found)
+    return {v for v, found in by_view.items() if (len(found) > 5 or all(f.missing for f in found))
+            and sum(f.missing for f in found) > 0.6 * len(found)
             and sum(f.verdict == "green" for f in found) < VIEW_GONE * len(found)}
 
 
@@ -68,17 +82,26 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
                   "{project}, sheet {sheet}: {file} ({space}), {n} elements, tolerance {tolerance} mm", len(outcome.findings))
     out = [said.format(project=name, sheet=laid.known.n, file=path.name, space=laid.space.name, n=len(outcome.findings),
                        tolerance=told(f"{pencil:g}")), ""]
-    rows = _deviations(found, lost)
-    if rows:
-        out += [*table(_said("no.", "view", "element", "deviation", "verdict", "in the drawing"), rows), ""]
+    first, *others = tables(found, lost)
+    if first[2]:
+        out += [*table(*first[1:]), ""]
     out += [_missing(v, sum(f.element.view == v for f in outcome.findings)) for v in sorted(lost, key=lambda v: v.n)]
-    for title, head, rows in (
-        (tell("extra, on no element of the sheet:"), ("no.", "what", "about, mm", "verdict", "in the drawing"), _extras(outcome)),
-        (tell("of another type or width of line:"), ("no.", "view", "lines", "what", "verdict", "in the drawing"), _looks(found)),
-    ):
+    out += _left_out(outcome, lost)
+    for title, head, rows in others:
         if rows:
-            out += [title, *table(_said(*head), rows), ""]
-    return "\n".join([*out, _summary(outcome, lost)])
+            out += [f"{title}:", *table(head, rows), ""]
+    return "\n".join([*out, summary(outcome, lost)])
+
+
+def tables(found: Examined, lost: set[ElementView]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
+    """Title, head and rows: of what deviates, what is extra, and what has another type or width of line."""
+    return [
+        (tell("deviations"), _said("no.", "view", "element", "deviation", "verdict", "in the drawing"), _deviations(found, lost)),
+        (tell("extra, on no element of the sheet"), _said("no.", "what", "about, mm", "verdict", "in the drawing"),
+         _extras(found.outcome)),
+        (tell("of another type or width of line"), _said("no.", "view", "lines", "what", "verdict", "in the drawing"),
+         _looks(found)),
+    ]
 
 
 _HEADS = (
@@ -97,7 +120,18 @@ def _missing(view: ElementView, size: int) -> str:
     return said.format(view=view.name, n=size)
 
 
-def _summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
+def _left_out(outcome: CadOutcome, lost: set[ElementView]) -> list[str]:
+    """A line for every view that leaves out construction lines or other kinds of elements."""
+    by_view: dict[ElementView, list[str]] = {}
+    for x in outcome.absent:
+        if x.view not in lost:
+            by_view.setdefault(x.view, []).append(cad_absent.said(x.kind, x.count))
+    said = tell('not drawn, and not judged, in view "{view}": {what}')
+    return [said.format(view=v.name, what=", ".join(what)) for v, what in by_view.items()]
+
+
+def summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
+    """How many elements got each verdict."""
     there = [f for f in outcome.findings if f.element.view not in lost]
     colours = Counter(f.verdict for f in there)
     most = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
@@ -182,6 +216,7 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
         "looks": [{"number": k, "view": look.view.name if look.view is not None else None, "lines": look.lines, "what": look.what,
                    "verdict": look.verdict, "elements": list(look.elements),
                    "entities": [entity(laid.space.entities[i]) for i in look.entities]} for k, look in enumerate(outcome.looks, 1)],
+        "not_drawn": [{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent],
         "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
                     "extra": len(outcome.extras), "looks": len(outcome.looks),
                     "missing_views": [v.name for v in sorted(gone(outcome), key=lambda v: v.n)]},

@@ -1,8 +1,7 @@
-"""Filled dots, arrow heads and hatchings: whether they are there, and arrows point the right way."""
+"""Filled dots and hatchings: whether they are there; what dimensions may have at their ends."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -10,12 +9,9 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_comparison import SIZE_OF_SYMBOL, Comparison
-from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.overlaps import overlaps
 from tmm_sheets.compare.findings import shifted
-from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.numbers import told
 from tmm_sheets.words import tell
 
 
@@ -38,16 +34,6 @@ def filled(state: Comparison) -> None:
             state.found[n] = state.finding(n, 2 * state.tolerance, what, missing=True)
 
 
-def arrows(state: Comparison) -> None:
-    """Check that arrows have their heads, at the right ends."""
-    heads = [(n, h) for n, e in enumerate(state.elements) if e.arrow for h in state.elements[n].fills]
-    ours = np.array([complex(h.mean()) for _, h in heads], dtype=complex)
-    for n, head in heads:
-        finding = state.found.get(n)
-        if finding is not None and not finding.missing and finding.verdict is not None:
-            _check_head(state, n, head, finding, ours)
-
-
 def heads_of_dimensions(state: Comparison) -> None:
     """Claim the arrow heads of dimensions that are not compared, where these would stand: they are no extra ink."""
     for n, e in enumerate(state.elements):
@@ -56,73 +42,6 @@ def heads_of_dimensions(state: Comparison) -> None:
             for head in e.fills:
                 off = np.abs(state.areas - complex(head.mean()))
                 state.used_areas.update(np.flatnonzero(off < 2.0).tolist())
-
-
-def _check_head(state: Comparison, n: int, head: Points, finding: CadFinding, ours: Points) -> None:
-    """Check one head; ``ours`` are the middles of all heads there should be."""
-    tip = _tip(state, n, head, finding)
-    # A line that is too long or too short has its head elsewhere.
-    reach = 1.5 + (0.6 * abs(finding.size or 0.0) if finding.verdict != "green" else 0.0)
-    back = complex(head.mean() - head[0])
-    off = _head_at(state, tip, back / abs(back), reach, ours[np.abs(ours - complex(head.mean())) > 0.3])
-    if off is None:
-        if len(state.areas) and not _open_head(state, tip):
-            _without_head(state, n, tip, ours)
-    elif finding.verdict == "green" and off > state.tolerance:
-        # In hand drawings the line goes on under the head: only the head tells where it ends.
-        state.found[n] = replace(finding, deviation=off, verdict=verdict(off, state.tolerance),
-                                 what=tell("the tip is {by} mm off").format(by=told(f"{off:.2f}")), at=tip, reach=5.0)
-
-
-def _tip(state: Comparison, n: int, head: Points, finding: CadFinding) -> complex:
-    """Where the tip of an arrow should be: where a line is found elsewhere, its head is too."""
-    tip = complex(head[0])
-    if finding.shift is None or finding.verdict == "green" or state.elements[n].kind != "line":
-        return tip
-    turned = (tip - state.elements[n].middle) * (np.exp(1j * np.radians(finding.turn or 0.0)) - 1)
-    return complex(tip + (finding.shift + turned))
-
-
-def _without_head(state: Comparison, n: int, tip: complex, ours: Points) -> None:
-    """Tell that an arrow has no head at its tip; ``ours`` are the middles of all heads there should be."""
-    e, finding = state.elements[n], state.found[n]
-    z = e.points
-    tail = complex(z[0] if abs(z[0] - tip) > abs(z[-1] - tip) else z[-1])
-    u = (tip - tail) / max(abs(tip - tail), 1e-9)
-    t = (state.areas - tail) * np.conj(u)
-    at_tail = np.flatnonzero((t.real > -0.5) & (t.real < 7.0) & (np.abs(t.imag) < 0.8))
-    strange = [int(k) for k in at_tail if np.abs(ours - state.areas[k]).min() > 0.7]
-    if strange and e.kind == "line" and len(state.elements[n].fills) == 1:
-        state.used_areas.update(strange)
-        what, deviation = tell("points the other way"), e.length
-    else:
-        what, deviation = tell("no arrow head"), 2 * state.tolerance
-    deviation = max(deviation, finding.deviation)
-    said = ", ".join(x for x in (finding.what, what) if x)
-    state.found[n] = replace(finding, verdict=verdict(deviation, state.tolerance), deviation=deviation, what=said)
-
-
-def _head_at(state: Comparison, tip: complex, back: complex, reach: float, of_others: Points) -> float | None:
-    """How far from a tip the head is that lies behind it: an area that is not the head of another arrow; None without one."""
-    best: float | None = None
-    for k in np.flatnonzero(np.abs(state.areas - tip) < 6.0 + reach):
-        z = state.space.areas[k].points
-        corner = complex(z[np.abs(z - tip).argmin()])
-        way = (complex(state.areas[k]) - corner) * back.conjugate()
-        if abs(corner - tip) >= reach or way.real <= 1.5 * abs(way.imag):
-            continue
-        if len(of_others) and np.abs(of_others - state.areas[k]).min() < 0.3:
-            continue
-        state.used_areas.add(int(k))
-        best = min(abs(corner - tip), reach if best is None else best)
-    return best
-
-
-def _open_head(state: Comparison, tip: complex) -> bool:
-    """Whether two short lines meet at a tip."""
-    ends = (np.abs(state.theirs.a - tip) < 0.6) | (np.abs(state.theirs.b - tip) < 0.6)
-    whole = np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner]
-    return int((ends & (whole < 16.0) & (state.theirs.length < 8.0) & (state.theirs.length > 1.0)).sum()) >= 2
 
 
 def hatching(state: Comparison) -> None:

@@ -2,44 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tmm_sheets.compare.cad import layout
+from tmm_sheets.compare.cad import layout, view_search
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_text import meant
 from tmm_sheets.compare.cad.line_fit import HIT, RATIOS, KnownLines, candidates, lines, refine, search, snapped
-from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.cad.view_search import FoundView
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
-from tmm_sheets.compare.placing import Placing
+from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.drawing.marks import Points
 
 SIDES = (816.0, 841.0, 584.0, 594.0)
 """Lengths of the sides of the frame and of the paper, mm."""
 SURE = 0.5
 """Share of our lines found above which a placing is beyond doubt."""
+OWN = 0.4
+"""Share of a drawing's ink that views must explain which stand in a layout of its own."""
 PART = 100.0
 """Width plus height of the smallest part of a sheet that is looked for, mm."""
 
 
 @dataclass(frozen=True)
 class Laid:
-    """A drawing laid over a known sheet: ``space`` by ``placing``, with ``share`` of the sheet's lines found in it."""
+    """A drawing laid over a known sheet: ``space`` by ``placing``, with ``share`` of the sheet's lines found in it.
+
+    In a drawing with a layout of its own the placing tells scale and turn only, ``views`` where each view is after it.
+    """
 
     known: KnownSheet
     space: DrawingSpace
     placing: Placing
     share: float
+    views: Mapping[ElementView, FoundView] = field(default_factory=dict)
 
 
 def lay(known: Sequence[KnownSheet], ink: CadInk) -> Laid:
-    """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines, even mirrored or of one view only."""
+    """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines or views, even mirrored or of one view."""
     # With a frame the rest may have another layout: then the lettering tells the sheet.
     tried = _by_frame(known, ink)
     if not tried:
         tried += _by_lines(known, ink, mirrored=False)
+        if _best(tried).share < SURE and (own := _own_layout(known, ink)) is not None:
+            return own
         if _best(tried).share < SURE:
             tried += _by_lines(known, ink, mirrored=True)
         if _best(tried).share < SURE:
@@ -106,6 +116,51 @@ def _by_parts(known: Iterable[KnownSheet], ink: CadInk) -> Iterator[Laid]:
                 trial = search(z, ours, [1.0], tries=4)
                 if trial.share >= SURE:
                     yield Laid(sheet, space, trial.placing.inverse().after(scale), trial.share)
+
+
+def _own_layout(known: Sequence[KnownSheet], ink: CadInk) -> Laid | None:
+    """The drawing by its views, wherever they stand: those of the sheet that most of its ink belongs to; None if little does."""
+    best: Laid | None = None
+    for space in ink.spaces:
+        turn = Placing((ink.unit or 1.0) * 1j ** -_quarter(space))
+        laid = space.placed(turn)
+        for sheet in known:
+            views = list(dict.fromkeys(e.view for e in sheet.elements if e.view.n))
+            found = view_search.find(sheet.elements, views, laid.strokes, laid.lines, laid.writings, {})
+            share = _explained(sheet, laid, found)
+            if share >= OWN and (best is None or share > best.share):
+                best = Laid(sheet, space, turn, share, found)
+    return best if best is None else _to_size(best)
+
+
+def _quarter(space: DrawingSpace) -> int:
+    """By how many quarter turns the lettering is turned, counter-clockwise."""
+    turns = Counter(round(w.angle / (np.pi / 2)) % 4 for w in space.writings)
+    return turns.most_common(1)[0][0] if turns else 0
+
+
+def _explained(sheet: KnownSheet, space: DrawingSpace, found: Mapping[ElementView, FoundView]) -> float:
+    """Share of the drawing's ink, without the frame, that is that of the views."""
+    ours = [moved(e, found[e.view].placing) for e in sheet.elements if e.view in found and e.kind not in ("text", "fill")]
+    theirs = space.lines
+    edge = theirs.length > 0.4 * max(SIDES)
+    z = theirs.only(~edge).points(2.0) if not edge.all() else theirs.points(2.0)
+    return lines([p for e in ours for p in (e.pieces or (e.points,))]).share(z, 2.0) if ours else 0.0
+
+
+def _to_size(laid: Laid) -> Laid:
+    """The same at the size at which its letters are as high as ours: symbols are as large in every scale of a view."""
+    high: dict[str, float] = {}
+    for e in laid.known.elements:
+        if e.kind == "text" and e.view in laid.views:
+            high.setdefault(meant(e.text), e.height)
+    ratios = [w.height * laid.placing.scale / high[meant(w.text)] for w in laid.space.writings if meant(w.text) in high]
+    if not ratios:
+        return laid
+    times = min(RATIOS, key=lambda r: abs(np.log(float(np.median(ratios)) / r)))
+    views = {v: replace(one, placing=Placing(one.placing.turn / times, one.placing.shift / times))
+             for v, one in laid.views.items()}
+    return replace(laid, placing=Placing(laid.placing.turn / times), views=views)
 
 
 def _best(tried: Sequence[Laid]) -> Laid:

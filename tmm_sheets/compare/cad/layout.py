@@ -4,35 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
-from tmm_sheets.compare.cad.cad_ink import Writing
+from tmm_sheets.compare.cad import view_search
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.cad_text import meant
-from tmm_sheets.compare.cad.line_fit import KnownLines, lines, refine, search
+from tmm_sheets.compare.cad.line_fit import lines, refine, search
+from tmm_sheets.compare.cad.view_search import FoundView
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.view_places import ViewPlace
-from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal, told
-from tmm_sheets.words import tell
+from tmm_sheets.words import tell, tell_n
 
 MOST = 800
 """Most points of a view that are compared."""
-MOST_STEP = 6.0
-"""About the greatest distance between them, mm."""
 NEAR = 0.3
 """Distance from ink within which a point of ours counts as found, mm."""
 WRONG = 0.3
 """Least share of a view that must be found at a place from a file, else the place is wrong."""
 ENOUGH = 30
 """Least points of a view that can be placed by its lines alone."""
-SCALES = tuple(sorted({a / b * 10.0**k for a in HANDY for b in HANDY for k in (-1, 0, 1) if 0.15 < a / b * 10.0**k < 7},
-                      key=lambda r: abs(np.log(r))))
-"""Ratios of scale factors: how much larger or smaller a student may have drawn a view, the nearest to 1 first."""
-
-
 @dataclass(frozen=True)
 class Layout:
     """Where the views are.
@@ -54,8 +49,8 @@ def ink(elements: Sequence[Element]) -> Points:
     return lines([e.points for e in elements if e.kind not in ("text", "hatch", "fill")]).points(1.0)
 
 
-def find(elements: Sequence[Element], theirs: KnownLines, writings: Sequence[Writing] = (),
-         given: Sequence[tuple[ViewPlace, Placing]] = (), say: Callable[[str], None] = lambda _: None) -> Layout:
+def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple[ViewPlace, Placing]] = (),
+         say: Callable[[str], None] = lambda _: None, found: Mapping[ElementView, FoundView] = MappingProxyType({})) -> Layout:
     """Place every view of a sheet.
 
     A view may be in its place, a little aside, where its texts are in the drawing, or anywhere in ink the other views leave.
@@ -63,41 +58,46 @@ def find(elements: Sequence[Element], theirs: KnownLines, writings: Sequence[Wri
     Parameters
     ----------
     elements : those of the sheet
-    theirs, writings : lines and texts of the drawing, laid on the sheet as a whole, mm
+    space : the drawing, laid on the sheet as a whole, mm
     given : places from a file, each with the placing of the whole drawing; they are refined, not sought
     say : told what is being done
+    found : views of a layout of its own that are known already; then none is expected in its place on our sheet
 
     Raises
     ------
     BadInput
         If a place gives a scale factor for a view that has none of its own on the sheet.
     """
-    return _ViewFinder(elements, theirs, writings, say).layout(given)
+    return _ViewFinder(elements, space, say).layout(given, found)
 
 
 class _ViewFinder:
     """The views of a sheet, and the places found for them so far."""
 
-    def __init__(self, elements: Sequence[Element], theirs: KnownLines, writings: Sequence[Writing],
-                 say: Callable[[str], None]) -> None:
-        self.theirs, self.say = theirs, say
+    def __init__(self, elements: Sequence[Element], space: DrawingSpace, say: Callable[[str], None]) -> None:
+        self.elements, self.space, self.theirs, self.say = elements, space, space.lines, say
         self.views = list(dict.fromkeys(e.view for e in elements))
         every = {v: ink([e for e in elements if e.view == v]) for v in self.views}
         self.points = {v: z[:: max(len(z) // MOST, 1)] for v, z in every.items()}
         self.texts = {v: [(meant(e.text), complex(e.points.mean())) for e in elements if e.view == v and e.kind == "text"]
                       for v in self.views}
         self.words: dict[str, list[complex]] = {}
-        for w in writings:
+        for w in space.writings:
             self.words.setdefault(meant(w.text), []).append(w.at)
         self.moves: dict[ElementView, Placing] = {}
         self.share: dict[ElementView, float] = {}
         self.notes: list[str] = []
 
-    def layout(self, given: Sequence[tuple[ViewPlace, Placing]]) -> Layout:
+    def layout(self, given: Sequence[tuple[ViewPlace, Placing]], found: Mapping[ElementView, FoundView]) -> Layout:
         """Place the views from the file, then the others near their places or their texts, last those that are nowhere near."""
         for place, whole in given:
             self._place_given(place, whole)
+        for v, one in found.items():
+            if v not in self.moves:
+                self.moves[v], self.share[v] = one.placing, one.share
         self._search([v for v in self.views if v not in self.moves and not self._place_near(v)])
+        if found:
+            self.notes.append(_own_layout(self.views, self.moves))
         return Layout(self.moves, self.share, tuple(self.notes))
 
     def _place_given(self, place: ViewPlace, whole: Placing) -> None:
@@ -133,9 +133,13 @@ class _ViewFinder:
         still = abs(complex(best(v.box.centre)) - v.box.centre) < 0.1 and abs(best.scale - 1) < 1e-3
         if not sure or still or self._score(v, best) < self._score(v, Placing()) + 0.12:
             return False
+        self._take(v, best, inked)
+        return True
+
+    def _take(self, v: ElementView, best: Placing, inked: float) -> None:
+        """Take a place that is not the view's own."""
         self.moves[v], self.share[v] = best, inked
         self.notes.append(tell('"{view}" stands {place}; compared there').format(view=v.name, place=_where(v, best)))
-        return True
 
     def _inked(self, v: ElementView, move: Placing) -> float:
         """Share of a view's points that have ink."""
@@ -173,37 +177,35 @@ class _ViewFinder:
         free = self.theirs
         for v, s in self.share.items():
             if s >= 0.6:
-                free = _unused(free, self.moves.get(v, Placing())(self.points[v]))
-        for v in sorted(lost, key=lambda v: -len(self.points[v])):
+                free = view_search.unused(free, self.moves.get(v, Placing())(self.points[v]))
+        self.say(tell("looking for views that stand elsewhere"))
+        at_home = {v: self.moves.get(v, Placing()) for v, s in self.share.items() if s >= 0.6}
+        for v, one in view_search.find(self.elements, lost, self.space.strokes, free, self.space.writings, at_home).items():
+            if self._score(v, one.placing) > self._score(v, Placing()):
+                self._take(v, one.placing, one.share)
+                free = view_search.unused(free, one.placing(self.points[v]))
+        # A table has no shape to be known by, and keeps its size.
+        tables = [v for v in lost if v not in self.moves and v.mu is None]
+        for v in sorted(tables, key=lambda v: -len(self.points[v])):
             if len(free.a) < 4:
                 return
             self.say(tell('looking for view "{view}"').format(view=v.name))
-            found = search(self.points[v], free, [1 / r for r in SCALES], (0,), enough=0.95, tries=6)
-            back = found.placing.inverse()
-            scale = min(SCALES, key=lambda r: abs(back.scale / r - 1))
-            middle = complex(self.points[v].mean())
-            start = Placing(complex(scale), complex(back(middle)) - scale * middle).inverse()
+            start = search(self.points[v], free, [1.0], (0,), enough=0.95, tries=6).placing
             nudged = refine(self.points[v], free, start, (3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing
             if self._words_at(v, nudged.inverse()) and self._accept(v, [nudged.inverse()]):
-                free = _unused(free, self.moves[v](self.points[v]))
+                free = view_search.unused(free, self.moves[v](self.points[v]))
 
     def _words_at(self, v: ElementView, move: Placing) -> bool:
         """Whether words of a view are there, as far as both sides have any."""
         return not (self.words and self.texts[v]) or self._read(v, move) >= 0.2
 
 
-def _unused(theirs: KnownLines, known: Points) -> KnownLines:
-    """Their lines without those on which the points of a placed view are."""
-    import shapely
-
-    if not len(theirs.a) or not len(known):
-        return theirs
-    _, j = theirs.tree.query(shapely.points(known.real, known.imag), predicate="dwithin", distance=NEAR)
-    keep = np.ones(len(theirs.a), bool)
-    hits = np.bincount(j, minlength=len(keep))
-    keep[hits * MOST_STEP >= 0.5 * theirs.length] = False
-    keep[hits == 0] = True
-    return theirs.only(keep)
+def _own_layout(views: Sequence[ElementView], moves: Mapping[ElementView, Placing]) -> str:
+    """How many views of a layout of its own were found, in words."""
+    shown = [v for v in views if v.n]
+    said = tell_n("the layout is the student's own: of {n} view {found} found by shape, scale and title",
+                  "the layout is the student's own: of {n} views {found} found by shape, scale and title", len(shown))
+    return said.format(n=len(shown), found=sum(v in moves for v in shown))
 
 
 def _where(view: ElementView, move: Placing) -> str:

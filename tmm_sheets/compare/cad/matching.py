@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.cad import cad_extras, cad_lettering, cad_looks, cad_symbols, misplaced
+from tmm_sheets.compare.cad import cad_absent, cad_arrows, cad_extras, cad_lettering, cad_looks, cad_symbols, misplaced
 from tmm_sheets.compare.cad.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
@@ -43,6 +43,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     state = Comparison(elements, space, moves, tolerance)
     say(tell("comparing lines"))
     _not_compared(state)
+    cad_absent.lines_left_out(state)
     _right(state)
     say(tell("comparing lettering"))
     cad_lettering.lettering(state)
@@ -54,8 +55,9 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     misplaced.curves(state, rest)
     misplaced.incomplete(state)
     cad_symbols.filled(state)
-    cad_symbols.arrows(state)
+    cad_arrows.arrows(state)
     cad_symbols.heads_of_dimensions(state)
+    cad_absent.others_left_out(state)
     _leading_elsewhere(state)
     say(tell("looking for what is extra"))
     extras = cad_extras.extra(state)
@@ -64,7 +66,8 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
             state.found[n] = state.finding(n, 0.0, "")
     say(tell("comparing line types and widths"))
     looks, notes = cad_looks.looks(state)
-    return CadOutcome(tuple(state.found[n] for n in range(len(state.elements))), extras, looks, notes)
+    found = tuple(state.found[n] for n in range(len(state.elements)))
+    return CadOutcome(found, extras, looks, notes, cad_absent.remarks(found))
 
 
 def _not_compared(state: Comparison) -> None:

@@ -1,0 +1,106 @@
+"""The report on a comparison with a CAD drawing as it is read: view by view what is wrong, with a picture, worst first."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tmm_sheets.compare.cad import cad_absent, cad_report
+from tmm_sheets.compare.cad.cad_findings import CadFinding
+from tmm_sheets.compare.elements import ElementView, drawn
+from tmm_sheets.compare.findings import called, worst
+from tmm_sheets.compare.story import Mistake, Picture, Story, Table, clipped
+from tmm_sheets.numbers import told
+from tmm_sheets.words import tell, tell_n
+
+SHOWN = 10
+"""Most findings of a view that are told in words beside its picture; the table has all."""
+
+
+def story(name: str, path: Path, found: cad_report.Examined, pencil: float) -> Story:
+    """The report on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
+    outcome, lost = found.outcome, cad_report.gone(found.outcome)
+    title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=found.laid.known.n, file=path.name)
+    tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}"))
+    about = (tolerance, cad_report.summary(outcome, lost), *found.notes)
+    tables = [Table(said[:1].upper() + said[1:], head, tuple(rows)) for said, head, rows in cad_report.tables(found, lost) if rows]
+    return Story(title, about, tuple(mistakes(found, lost)), tuple(tables), tuple(_unjudged(found, lost)))
+
+
+def mistakes(found: cad_report.Examined, lost: set[ElementView]) -> list[Mistake]:
+    """What is wrong, view by view: those built on a wrong step first, then those with the most red."""
+    of_view: dict[ElementView, list[CadFinding]] = {}
+    for f in worst(found.outcome.findings):
+        if f.element.view not in lost:
+            of_view.setdefault(f.element.view, []).append(f)
+    order = sorted(of_view, key=lambda v: (v not in found.built, -sum(f.verdict == "red" for f in of_view[v]), v.n))
+    return [_mistake(found, v, of_view[v]) for v in order]
+
+
+def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding]) -> Mistake:
+    """What is wrong in a view, its picture beside it."""
+    red = sum(f.verdict == "red" for f in bad)
+    built = found.built.get(view)
+    what = built.said() if built is not None else _counted(bad)
+    details = [tell("no. {number}, {element}: {what}").format(number=f.element.number, element=called(f.element), what=f.what)
+               for f in bad[:SHOWN]]
+    if len(bad) > SHOWN:
+        details.append(tell("and {n} more, in the table").format(n=len(bad) - SHOWN))
+    if built is not None:
+        details = [built.explained(), *details]
+    return Mistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad))
+
+
+def _counted(bad: Sequence[CadFinding]) -> str:
+    lines = sum(f.element.kind != "text" for f in bad)
+    said = [tell_n("{n} line is wrong", "{n} lines are wrong", lines).format(n=lines)] if lines else []
+    texts = len(bad) - lines
+    said += [tell_n("{n} text is wrong", "{n} texts are wrong", texts).format(n=texts)] if texts else []
+    return ", ".join(said)
+
+
+def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding]) -> Picture | None:
+    """The view: ours where the drawing has it, theirs, what is wrong in it."""
+    ours = tuple(p for f in found.outcome.findings if f.element.view == view and not f.absent for p in drawn(f.element))
+    entities = {k for f in bad for k in f.entities}
+    wrong = [s.points for s in found.space.strokes if s.entity in entities]
+    wrong += [p for f in bad if f.missing for p in drawn(f.element)]
+    lines = [f for f in bad if f.element.kind != "text"]
+    if not lines:
+        return None
+    size = max(float(np.ptp(z.real) + np.ptp(z.imag)) for z in ours) if ours else 100.0
+    places = tuple((f.at, min(f.reach, max(0.04 * size, 1.5)), str(f.element.number)) for f in lines)
+    picture = Picture(ours, (), tuple(wrong), places)
+    box = picture.box
+    theirs = clipped([s.points for s in found.space.strokes], box)
+    return Picture(ours, theirs, clipped(wrong, box), places)
+
+
+def _unjudged(found: cad_report.Examined, lost: set[ElementView]) -> list[str]:
+    """What could not be judged, and why."""
+    out = [tell('view "{view}": it was not found in the drawing').format(view=v.name) for v in sorted(lost, key=lambda v: v.n)]
+    by_view: dict[str, list[str]] = {}
+    for x in found.outcome.absent:
+        if x.view not in lost:
+            by_view.setdefault(x.view.name, []).append(cad_absent.said(x.kind, x.count))
+    out += [tell('view "{view}": not drawn: {what}').format(view=name, what=", ".join(what)) for name, what in by_view.items()]
+    skipped = Counter(f.what for f in found.outcome.findings if f.verdict is None and not f.absent and f.element.view not in lost)
+    out += [tell("{n} times: {what}").format(n=n, what=what) for what, n in skipped.items()]
+    extra = len(found.outcome.extras)
+    if extra:
+        said = tell_n("{n} line or text that belongs to nothing on the sheet is in the table, but not judged as a mistake",
+                      "{n} lines or texts that belong to nothing on the sheet are in the table, but not judged as mistakes", extra)
+        out.append(said.format(n=extra))
+    return out
+
+
+def lines(found: cad_report.Examined, lost: set[ElementView]) -> list[str]:
+    """The mistakes for the terminal: a line each, those with a known cause first."""
+    out = []
+    for m in mistakes(found, lost):
+        out.append(f"{m.where}: {m.what}")
+    return [tell("What is wrong") + ":", *(f"  {k}. {line}" for k, line in enumerate(out, 1)), ""] if out else []
+

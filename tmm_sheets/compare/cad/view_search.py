@@ -1,0 +1,300 @@
+"""Where the views of a sheet are in a drawing with a layout of its own, each at a scale of its own.
+
+A view is not turned, so that every line of ours and every line of theirs of the same direction tell a scale and a shift, as every
+curve and a curve of theirs of the same proportions do. The places many lines of a view agree on are looked at: how much of it has
+ink there that no other view has taken, which of its letters stand there, what title is near. The surest view is placed first.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from heapq import heapify, heappop, heappush
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.box import Box
+from tmm_sheets.compare.cad.cad_ink import DrawnStroke, Writing, normal
+from tmm_sheets.compare.cad.cad_text import meant
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines, refine
+from tmm_sheets.compare.cad.overlaps import runs
+from tmm_sheets.compare.elements import Element, ElementView, sampled
+from tmm_sheets.compare.placing import HINGE, Placing
+from tmm_sheets.construction.scale import HANDY
+from tmm_sheets.drawing.marks import Points, Role
+
+AUXILIARY: frozenset[Role] = frozenset({"construction", "dimension", "hatch", "table", "frame", "symbol"})
+"""Roles of what a plain drawing may lack, or has in a size of its own."""
+SHAPES: frozenset[Role] = frozenset({"vector", "link", "curve"})
+"""A view without any of these is a table or a text: it has no shape to be known by."""
+SHORTEST = 4.0
+"""Least length of a line that votes, mm of our sheet."""
+WIDEST = 12.0
+"""How many times larger or smaller than ours a view may be."""
+ASKEW = 0.008
+"""Greatest angle between lines of the same direction, rad."""
+ALIKE = 0.02
+"""Greatest relative difference of the proportions of two curves that may be one."""
+NEAR = 0.3
+"""Distance from ink within which a point of ours counts as found, mm."""
+MANY_LINES = 4
+"""From so many lines on a view can be known without others."""
+TRIED = 10
+"""How many places of a view are looked at."""
+MOST = 500
+"""Most points of a view that are compared."""
+SCALES = tuple(sorted({a / b * 10.0**k for a in HANDY for b in HANDY for k in (-1, 0, 1) if 0.1 < a / b * 10.0**k < 10}))
+"""Ratios of scale factors: how much larger or smaller than ours a student may have drawn a view."""
+
+
+def main_lines(elements: Sequence[Element]) -> list[Element]:
+    """What nobody omits of a view: its lines without those of the construction, dimensions, symbols; all if that leaves none."""
+    ink = [e for e in elements if e.kind not in ("text", "hatch", "fill")]
+    large = [e for e in ink if e.role not in AUXILIARY and not (e.kind == "circle" and e.radius <= HINGE)]
+    return large or ink
+
+
+@dataclass(frozen=True)
+class FoundView:
+    """Where a view is: its placing in the drawing and the share of its main lines that has ink there."""
+
+    placing: Placing
+    share: float
+
+
+@dataclass(frozen=True)
+class _Shapes:
+    """Lines and curves by what tells a scale and a shift: middle, extent (complex, its direction that of a line) and weight."""
+
+    middle: Points
+    extent: Points
+    straight: npt.NDArray[np.bool_]
+    weight: npt.NDArray[np.float64]
+
+
+@dataclass(order=True)
+class _Try:
+    """A place of a view, the best first; ``taken`` is the number of views that were placed when it was judged."""
+
+    less: float
+    taken: int
+    view: int
+    placing: Placing = field(compare=False)
+    share: float = field(compare=False)
+
+
+def find(elements: Sequence[Element], views: Sequence[ElementView], strokes: Sequence[DrawnStroke], theirs: KnownLines,
+         writings: Sequence[Writing], known: Mapping[ElementView, Placing]) -> dict[ElementView, FoundView]:
+    """Seek views anywhere in a drawing.
+
+    Parameters
+    ----------
+    elements : those of the sheet
+    views : those to seek
+    strokes, theirs : lines of the drawing that no other view has, and their straight pieces, mm
+    writings : its texts
+    known : where other views of the sheet are
+    """
+    return _Search(elements, views, strokes, theirs, writings, known).found()
+
+
+class _Search:
+    def __init__(self, elements: Sequence[Element], views: Sequence[ElementView], strokes: Sequence[DrawnStroke],
+                 theirs: KnownLines, writings: Sequence[Writing], known: Mapping[ElementView, Placing]) -> None:
+        of = {v: [e for e in elements if e.view == v] for v in views}
+        self.views = [v for v in views if any(e.role in SHAPES for e in of[v])]
+        self.main = {v: main_lines(of[v]) for v in self.views}
+        every = {v: lines([e.points for e in self.main[v]]).points(1.0) for v in self.views}
+        self.points = {v: z[:: max(len(z) // MOST, 1)] for v, z in every.items()}
+        self.texts = {v: [(meant(e.text), e.middle) for e in of[v] if e.kind == "text" and e.step] for v in self.views}
+        self.words: dict[str, list[complex]] = {}
+        for w in writings:
+            self.words.setdefault(meant(w.text), []).append(w.at)
+        self.titles = [(_tokens(w.text), w.at) for w in writings if len(normal(w.text)) > 4]
+        self.shapes = _of_drawing(strokes)
+        self.free = theirs
+        self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
+
+    def found(self) -> dict[ElementView, FoundView]:
+        """The views that are sure; those of few lines wait until others of their scale factor tell its scale."""
+        out: dict[ElementView, FoundView] = {}
+        for least, at_known in ((MANY_LINES, False), (1, True), (1, False)):
+            lost = [(k, v) for k, v in enumerate(self.views) if v not in out]
+            scales = {v: self.scales.get(v.mu) for _, v in lost}
+            self._place(out, [one for k, v in lost if not at_known or scales[v] is not None
+                              for one in self._tries(k, v, scales[v] if at_known else None, least, len(out))], least)
+        return out
+
+    def _place(self, out: dict[ElementView, FoundView], heap: list[_Try], least: int) -> None:
+        """Place views, the surest first: it keeps its ink from the others."""
+        heapify(heap)
+        while heap:
+            best = heappop(heap)
+            v = self.views[best.view]
+            if v in out:
+                continue
+            if best.taken < len(out):  # others have taken ink since
+                again = self._judged(best.view, v, best.placing, least, len(out))
+                if again is not None:
+                    heappush(heap, again)
+                continue
+            out[v] = FoundView(best.placing, best.share)
+            if v.mu is not None:
+                self.scales.setdefault(v.mu, best.placing.scale)
+            self.free = unused(self.free, best.placing(self.points[v]))
+
+    def _tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int) -> Iterator[_Try]:
+        """The places a view may be at, at a scale if that is known."""
+        seen: list[Placing] = []
+        middle = complex(self.points[v].mean())
+        for placing in _voted(_of_sheet(self.main[v]), self.shapes, middle, scale):
+            fitted = _fitted(self.points[v], self.free, placing, scale)
+            if fitted is None or any(abs(fitted(middle) - p(middle)) < 1 and abs(fitted.scale / p.scale - 1) < 0.02 for p in seen):
+                continue
+            seen.append(fitted)
+            one = self._judged(k, v, fitted, least, taken)
+            if one is not None:
+                yield one
+            if len(seen) >= TRIED:
+                return
+
+    def _judged(self, k: int, v: ElementView, placing: Placing, least: int, taken: int) -> _Try | None:
+        """A place with how sure it is; None where it may be chance."""
+        points = placing(self.points[v])
+        share = self.free.share(points, NEAR)
+        met = [e for e in self.main[v] if e.length > SHORTEST and self.free.share(placing(_some(e.points)), NEAR) > 0.8]
+        lines_met = len({(round(e.middle.real), round(e.middle.imag)) for e in met})
+        bends = any(e.kind in ("curve", "arc") for e in met)
+        read, titled = self._read(v, placing), self._titled(v, placing)
+        known_scale = self.scales.get(v.mu)
+        same = known_scale is not None and abs(placing.scale / known_scale - 1) < 0.01
+        handy = min(abs(placing.scale / r - 1) for r in SCALES) < 0.004
+        witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy
+        if least > 1 and not bends and lines_met < least:
+            return None
+        enough = lines_met >= 2 or bends or (lines_met == 1 and read + titled > (0.3 if same else 0.5))
+        if not enough or share < 0.35 or share + witness < 0.75:
+            return None
+        size = max(float(np.abs(points - points[0]).max()), 1.0)
+        sure = (share + witness) * (1 + 0.15 * np.log1p(lines_met) + 0.1 * np.log10(size))
+        return _Try(-float(sure), taken, k, placing, share)
+
+    def _read(self, v: ElementView, placing: Placing) -> float:
+        """Share of a view's letters that stand near their places."""
+        texts = self.texts[v]
+        near = sum(any(abs(at - complex(placing(z))) < 8.0 + 4.0 * abs(placing.scale - 1) for at in self.words.get(word, ()))
+                   for word, z in texts)
+        return near / len(texts) if texts else 0.0
+
+    def _titled(self, v: ElementView, placing: Placing) -> float:
+        """How much the most similar title near a place has in common with the view's own, 0 .. 1."""
+        box = Box.around(placing(self.points[v]))
+        own = _tokens(v.name)
+        return max((_common(own, said) for said, at in self.titles if box.contains(at, 45.0)), default=0.0)
+
+
+def _some(points: Points) -> Points:
+    """Points along a line, enough to tell whether there is ink."""
+    return sampled(points, max(float(np.abs(np.diff(points)).sum()) / 24, 0.3))[0]
+
+
+def _tokens(text: str) -> frozenset[str]:
+    """Words of a title by their beginnings, numbers whole."""
+    return frozenset(w if w.isdigit() else w[:5] for w in re.findall(r"\d+|[^\W\d_]{3,}", text.casefold()))
+
+
+def _common(own: frozenset[str], said: frozenset[str]) -> float:
+    """Likeness of two titles: words in common; other numbers make them unlike."""
+    numbers, theirs = ({w for w in words if w.isdigit()} for words in (own, said))
+    if not own or (numbers and theirs and not numbers & theirs):
+        return 0.0
+    return len(own & said) / len(own | said)
+
+
+def _of_sheet(elements: Sequence[Element]) -> _Shapes:
+    return _shapes([e.points for e in elements if e.length > SHORTEST])
+
+
+def _of_drawing(strokes: Sequence[DrawnStroke]) -> _Shapes:
+    """Shapes of their lines, and of what collinear pieces make together."""
+    every = [s.points for s in strokes if len(s.points) > 1]
+    straight = lines([z for z in every if len(z) == 2])
+    whole = [np.array([r.a, r.b]) for r in runs(straight, 0.1) if len(r.parts) > 1] if len(straight.a) else []
+    return _shapes([*every, *whole])
+
+
+def _shapes(found: Sequence[Points]) -> _Shapes:
+    middle, extent, straight, weight = [], [], [], []
+    for z in found:
+        u = z[np.abs(z - z[0]).argmax()] - z[0]
+        if not u:
+            continue
+        level = (z - z[0]) / (u / abs(u))
+        line = float(np.ptp(level.imag)) < 0.02 * abs(u)
+        box = Box.around(z)
+        middle.append(z[0] + u / 2 if line else box.centre)
+        extent.append(u if line else complex(box.width, box.height))
+        straight.append(line)
+        weight.append(min(abs(u), 60.0))
+    return _Shapes(np.array(middle, dtype=complex), np.array(extent, dtype=complex), np.array(straight, dtype=bool),
+                   np.array(weight))
+
+
+def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None) -> Iterator[Placing]:
+    """Placings, at a scale if that is known, by how many of our lines agree on them, the best first; ``about`` is the middle."""
+    if not len(ours.middle) or not len(theirs.middle):
+        return
+    ratio = np.abs(theirs.extent)[None, :] / np.abs(ours.extent)[:, None]
+    fits = (ours.straight[:, None] == theirs.straight[None, :]) & (ratio > 1 / WIDEST) & (ratio < WIDEST)
+    if known is not None:
+        fits &= np.abs(ratio / known - 1) < ALIKE
+    turn = theirs.extent[None, :] * np.conj(ours.extent)[:, None]
+    sine = np.abs(turn.imag) / np.maximum(np.abs(turn), 1e-12)
+    fits &= np.where(ours.straight[:, None], sine < ASKEW, (sine < ALIKE) & (turn.real > 0))
+    i, j = np.nonzero(fits)
+    if not len(i):
+        return
+    scale = ratio[i, j]
+    at = theirs.middle[j] - scale * (ours.middle[i] - about)
+    votes: dict[tuple[int, int, int, int], set[int]] = {}
+    best: dict[tuple[int, int, int, int], list[int]] = {}
+    for half in (0.0, 0.5):
+        keys = np.floor(np.column_stack((np.log(scale) / 0.03, at.real / 4, at.imag / 4)) + half).astype(np.int64)
+        for n, key in enumerate(map(tuple, keys.tolist())):
+            cell = (int(half > 0), *key)
+            votes.setdefault(cell, set()).add(int(i[n]))
+            best.setdefault(cell, []).append(n)
+    order = sorted(votes, key=lambda cell: -float(ours.weight[list(votes[cell])].sum()))
+    for cell in order[: 4 * TRIED]:
+        rows = np.array(best[cell])
+        # The longest line tells the scale best.
+        n = int(rows[ours.weight[i[rows]].argmax()])
+        yield Placing(complex(scale[n]), complex(at[n]) - scale[n] * about)
+
+
+def _fitted(ours: Points, theirs: KnownLines, start: Placing, known: float | None) -> Placing | None:
+    """A placing refined on the lines, without turn; at the known scale, or a handy one where it is nearly that."""
+    nudged = refine(ours, theirs, start.inverse(), (2.0, 1.0, 0.5), True, 1).placing.inverse()
+    if not 0.9 < nudged.scale / start.scale < 1.1 or abs(nudged.degrees) > 3:
+        nudged = start
+    middle = complex(ours.mean())
+    scale = known or min(SCALES, key=lambda r: abs(nudged.scale / r - 1))
+    if known is None and abs(nudged.scale / scale - 1) > 0.01:
+        scale = nudged.scale
+    level = Placing(complex(scale), complex(nudged(middle)) - scale * middle)
+    found = refine(ours, theirs, level.inverse(), (1.5, 0.8, 0.4, 0.25), False, 1)
+    return found.placing.inverse() if found.share > 0.2 else None
+
+
+def unused(theirs: KnownLines, known: Points, step: float = 6.0) -> KnownLines:
+    """Their lines without those on which the points of a placed view, about ``step`` mm apart at most, are."""
+    import shapely
+
+    if not len(theirs.a) or not len(known):
+        return theirs
+    _, j = theirs.tree.query(shapely.points(known.real, known.imag), predicate="dwithin", distance=NEAR)
+    hits = np.bincount(j, minlength=len(theirs.a))
+    keep = (hits * step < 0.5 * theirs.length) | (hits == 0)
+    return theirs.only(keep)

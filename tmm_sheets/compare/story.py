@@ -1,0 +1,66 @@
+"""What a comparison tells who reads it on paper or in a browser, before it is set: mistakes, tables, what was not judged."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.compare.report import Verdict
+from tmm_sheets.drawing.marks import Points
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A part of a sheet, mm, y up: our lines, theirs, those that are wrong, and places with their numbers."""
+
+    ours: tuple[Points, ...]
+    theirs: tuple[Points, ...]
+    wrong: tuple[Points, ...] = ()
+    places: tuple[tuple[complex, float, str], ...] = ()
+
+    @property
+    def box(self) -> Box:
+        """What it shows."""
+        some = [*self.ours, *self.wrong, *(np.array([at + r * (1 + 1j), at - r * (1 + 1j)]) for at, r, _ in self.places)]
+        some = some or list(self.theirs)
+        return Box.around(np.concatenate(some), 6.0) if some else Box(0.0, 0.0, 100.0, 60.0)
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """Something done wrong: in which view, what, in how many words it needs, how bad, and what it looks like."""
+
+    where: str
+    what: str
+    verdict: Verdict
+    details: tuple[str, ...] = ()
+    picture: Picture | None = None
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table with a heading; columns are as wide as their texts need."""
+
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Story:
+    """A report to be read: what it is of, how it ended, and its three parts."""
+
+    title: str
+    about: tuple[str, ...]
+    mistakes: tuple[Mistake, ...] = ()
+    tables: tuple[Table, ...] = ()
+    unjudged: tuple[str, ...] = field(default_factory=tuple)
+
+
+def clipped(lines: Sequence[Points], box: Box) -> tuple[Points, ...]:
+    """The lines that have something in a box, whole."""
+    return tuple(z for z in lines if len(z) and z.real.max() >= box.x0 and z.real.min() <= box.x1
+                 and z.imag.max() >= box.y0 and z.imag.min() <= box.y1)
