@@ -17,6 +17,7 @@ from tmm_sheets.compare.diagnosis.replay import (
     Change,
     Done,
     argument,
+    laid_off,
     laid_off_backwards,
     of_position,
     opposite,
@@ -25,12 +26,15 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Rule, Step, value_at
 from tmm_sheets.methods.linkage import accelerations, forces, loads, velocities, zhukovsky
+from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell
 
 Kind = Literal["coriolis", "normal", "sense", "parallel", "intersection", "inertia", "force", "moment", "mirror", "crank",
                "neighbour", "scale"]
 """Kinds of mistakes, the more usual ones first."""
 
+LINKAGE = ("positions", "velocities", "accelerations", "loads", "moments", "lever")
+"""Plans whose steps are tried, besides the force polygons."""
 WORDS: Mapping[str, str] = {
     "coriolis": marked("the Coriolis acceleration, the vector to {step}, is laid off the other way"),
     "normal": marked("the normal acceleration, the vector to {step}, is laid off outwards instead of towards the centre"),
@@ -51,6 +55,10 @@ WORDS: Mapping[str, str] = {
     "moment": marked("in the equation of moments {step} the moment of {other} has the wrong sign"),
     "across": marked("the plan is mirrored, left and right exchanged"),
     "upside down": marked("the plan is mirrored, top and bottom exchanged"),
+    "plan scale": marked("all lengths of this plan are {other} times the exact ones: another scale factor?"),
+    "computed scale": marked("what is computed from this plan is {other} times as large: another scale factor was taken"),
+    "vector scale": marked("the vector to {step} is laid off {other} times as long: another scale factor"),
+    "row": marked("that is the number of {other}: written into the wrong row?"),
     "position": marked("for {step} the number of position {other} is taken"),
     "number": marked("for {step} the number of {other} is taken"),
 }
@@ -62,6 +70,7 @@ class Hypothesis:
     """One mistake: its kind, the key of its words, the step it was made in, the changes to replay.
 
     ``at`` is the number of the position, None where it was made at every one; ``other`` what stands in the words besides.
+    ``on_paper`` is the plan whose lengths are right all the same: only what was made of them is not.
     """
 
     kind: Kind
@@ -70,6 +79,7 @@ class Hypothesis:
     changes: tuple[Change, ...]
     at: int | None = None
     other: str = ""
+    on_paper: str = ""
 
     def said(self) -> str:
         """The mistake as it is told to the reader."""
@@ -79,9 +89,9 @@ class Hypothesis:
 def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = ()) -> Iterator[Hypothesis]:
     """Mistakes that can be made in some steps of the linkage at position number ``k``, and at every position.
 
-    ``labels`` are those of the positions of these plans; steps with other positions (of the diagrams) are left alone.
+    ``labels`` are those of the positions of these plans; steps of other plans, or with other positions, are left alone.
     """
-    some = [s for s in steps if np.size(s.value) in (1, len(labels) or 1)]
+    some = [s for s in steps if (s.plan in LINKAGE or s.plan.startswith("force-")) and np.shape(s.value) in ((), (len(labels),))]
     for step in some:
         yield from _of_step(step, k)
         yield from _neighbours(step, k, labels)
@@ -101,6 +111,8 @@ BACKWARDS: Mapping[Rule, tuple[Kind, str]] = {
     accelerations.TANGENTIAL: ("sense", "tangential"),
 }
 """Vectors laid off from a point of their plan."""
+FACTORS = (0.1, 0.2, 0.5, 2.0, 5.0, 10.0)
+"""What scale factors differ by that are taken for each other."""
 OTHER_SIGN: Mapping[Rule, tuple[Kind, str]] = {
     velocities.ANGULAR_VELOCITY: ("sense", "turning"), accelerations.ANGULAR_ACCELERATION: ("sense", "turning"),
     velocities.CRANK_VELOCITY: ("sense", "crank velocity"),
@@ -119,6 +131,9 @@ def _of_step(step: Step, k: int) -> Iterator[Hypothesis]:
     if rule in BACKWARDS:
         kind, words = BACKWARDS[rule]
         yield Hypothesis(kind, words, step, (Change(step, laid_off_backwards, k),), k)
+    if (rule in BACKWARDS or rule is rules.SHIFT) and isinstance(step.args[1], Step):
+        yield from (Hypothesis("scale", "vector scale", step, (Change(step, laid_off(times), k),), k, told(f"{times:g}"))
+                    for times in FACTORS)
     if rule in OTHER_SIGN:
         kind, words = OTHER_SIGN[rule]
         yield Hypothesis(kind, words, step, (Change(step, opposite, k),), k)
@@ -204,6 +219,18 @@ def _mirrored(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
         changes += tuple(Change(s, _sense_from(s, here, mirror), k) for s in steps if s.rule in TURNING)
         if last is not None:
             yield Hypothesis("mirror", words, last, changes, k)
+
+
+def computed_with(steps: Sequence[Step], times: float, said: str) -> Hypothesis:
+    """Numbers taken from a plan with another scale factor than it is drawn with: ``times`` as large, all its lengths right."""
+    here = {id(s) for s in steps}
+    moved = [s for s in steps if s.rule.gives in ("point", "vector")]
+
+    def scaled(step: Step) -> Done:
+        return lambda again, values: times * again(*_back(step, values, here, lambda z: z / times))
+
+    changes = tuple(Change(s, scaled(s)) for s in moved)
+    return Hypothesis("scale", "computed scale", moved[-1], changes, other=said, on_paper=moved[-1].plan)
 
 
 def _as_mirrored(step: Step, here: set[int], mirror: Callable[[Any], Any]) -> Done:

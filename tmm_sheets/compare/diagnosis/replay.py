@@ -87,9 +87,13 @@ def opposite(again: Again, values: Sequence[Any]) -> Any:
     return -again(*values)
 
 
-def laid_off_backwards(again: Again, values: Sequence[Any]) -> Any:
-    """A vector laid off the other way from the point it begins at."""
-    return 2 * values[0] - again(*values)
+def laid_off(times: float) -> Done:
+    """A vector laid off so many times as long from the point it begins at."""
+    return lambda again, values: values[0] + times * (again(*values) - values[0])
+
+
+laid_off_backwards = laid_off(-1.0)
+"""A vector laid off the other way."""
 
 
 def argument(i: int, other: Callable[[Any], Any]) -> Done:
