@@ -43,6 +43,8 @@ EQUAL = 0.98
 """Share of the best discrete explanation with which another cannot be told from it."""
 LEFT = 2.0
 """Tolerances that a discrete mistake may leave of the number it is looked for."""
+SPOILT = 3.0
+"""Tolerances by which a discrete mistake would spoil a number that it cannot have been made before when that is in order."""
 APART = 0.05
 """Share by which a scale factor is another one."""
 TOLD = 3
@@ -162,6 +164,9 @@ class Sheet:
         left, tolerance = self.left[known], self.tolerance[known]
         after = (left - shares[known]) / np.hypot(tolerance, doubt[known])
         score = float(np.sum(_loss(left / tolerance)) - np.sum(_loss(after)))
+        # However much it explains besides: what is in order was not spoilt.
+        if np.any((np.abs(left) <= tolerance) & (np.abs(after) > SPOILT)):
+            score = 0.0
         return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score)
 
     def _shares(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
