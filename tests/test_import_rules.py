@@ -43,6 +43,7 @@ RULES = {
     "output": ("backends catalogue drawing explain project sheets", "task"),
     "note": ("backends construction drawing project record results sheets", "task"),
     "compare": ("drawing sheets", "project"),
+    "compare.diagnosis": ("construction methods.linkage", ""),
     "compare.measured": (f"compare construction sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
