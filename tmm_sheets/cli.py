@@ -584,7 +584,13 @@ def compare(
         elif image is not None:
             from tmm_sheets.compare.photo import image as by_eye
 
-            report = by_eye.compare(opened, int(sheet or 1), image, views, pencil, say)
+            try:
+                report = by_eye.compare(opened, int(sheet or 1), image, views, pencil, say)
+            except CannotBuild as e:
+                files.write_all({folder / name: data for name, data in e.files.items()})
+                for name in e.files:
+                    click.echo(folder / name, err=True)
+                raise
         else:
             from tmm_sheets.compare.cad import cad_drawing
 

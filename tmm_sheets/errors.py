@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from tmm_sheets.words import marked, tell
 
@@ -50,12 +51,14 @@ class Problem:
 class CannotBuild(Exception):
     """The input is understood, but what it describes cannot be built; exit status 1.
 
-    The text says in the user's words what fails, at which positions, and by how much; ``hint`` says what to try.
+    The text says in the user's words what fails, at which positions, and by how much; ``hint`` says what to try; ``files`` show
+    how far it went, by their names.
     """
 
-    def __init__(self, message: str, hint: str = "") -> None:
+    def __init__(self, message: str, hint: str = "", *, files: Mapping[str, bytes] = MappingProxyType({})) -> None:
         super().__init__(message)
         self.hint = hint
+        self.files = files
 
     def __str__(self) -> str:
         message = str(self.args[0])

@@ -20,7 +20,7 @@ from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.photo import tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.photograph import read
-from tmm_sheets.compare.photo.rectification import MATCH, rectify
+from tmm_sheets.compare.photo.rectification import rectify
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -32,8 +32,8 @@ def by_image(project, n, path):
     picture = read(path)
     found = rectify(picture, known, path)
     said = [("note", note) for note in (*picture.notes, *found.notes)]
-    if found.match < MATCH:
-        return [*said, ("refused", f"match {found.match:.2f}")], 0
+    if not found.check.acceptable:
+        return [*said, ("refused", f"fit {found.check}")], 0
     traces, extra = tracing.trace(known, found.ink)
     findings = [judge(t, 0.25, found.uncertainty) for t in traces]
     for f in findings:

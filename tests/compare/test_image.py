@@ -185,6 +185,6 @@ def test_bad_files(tmp_path):
 def test_blurred_picture_is_refused(monkeypatch):
     found = frame()
     monkeypatch.setattr(frame_search, "find", lambda *_: found)
-    assert frame_fit.fit_frame(grey(), found.corners, found.sides).smear < rectification.SOFT
+    assert frame_fit.fit_frame(grey(), frame_fit.initial_map(found.corners, found.sides, grey().shape)).smear < rectification.SOFT
     with pytest.raises(CannotBuild, match="blurred: edges of lines are smeared over"):
         rectification.rectify(Picture(cv2.GaussianBlur(grey(), (0, 0), 2.6)), known(), Path("photo.jpg"))

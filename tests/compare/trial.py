@@ -25,7 +25,7 @@ from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.photo import image, tracing
 from tmm_sheets.compare.photo.judging import LOOSE_STYLES, judge
 from tmm_sheets.compare.photo.photograph import read
-from tmm_sheets.compare.photo.rectification import MATCH, rectify
+from tmm_sheets.compare.photo.rectification import rectify
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -216,8 +216,8 @@ def main():
             tally.sheets += 1
             try:
                 found = rectify(read(path), known, path)
-                if found.match < MATCH:
-                    raise CannotBuild(f"match {found.match:.2f}")
+                if not found.check.acceptable:
+                    raise CannotBuild(f"fit {found.check}")
             except CannotBuild as e:
                 tally.refused.append(f"{label}: {e.args[0]}")
                 continue

@@ -61,32 +61,52 @@ def initial_map(corners: Points, sides: Sequence[Points], shape: tuple[int, ...]
     return fit_map(m, Seen(q, p, np.where(upright, 1.0 + 0j, 1j), np.ones(len(q))))[0]
 
 
-def fit_frame(grey: Grey, corners: Points, around: Sequence[Points]) -> FrameFit:
-    """Fit homography, lens and bending of the sides to the frame.
+def fit_frame(grey: Grey, m: Map) -> FrameFit:
+    """Fit homography, lens and bending of the sides to the frame, which is some 2 mm from where ``m`` has it.
 
     Raises
     ------
     CannotBuild
-        When a side has no line.
+        When more than one side has no line.
     """
-    m = initial_map(corners, around, grey.shape)
-    p, n, side = _side_points()
-    step = 0.1
     for width in (2.5, 1.5, 2.0):
-        offsets = np.arange(-width, width + step / 2, step)
-        at = m.to_picture(p[:, None] + n[:, None] * offsets)
-        profile = _local_ink(grey, at)
-        centre = offsets[follow(profile.reshape(4, STATIONS, -1), 3)].ravel()
-        o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
-        use = strength > 0.4 * np.median(strength)
-        if min(np.bincount(side[use], minlength=4)) < STATIONS / 4:
-            raise CannotBuild(tell("the frame cannot be followed along all its sides"), hint=tell(WANTED))
-        seen = Seen(m.to_picture(p + n * o), p, n, use.astype(float))
+        seen, profile, o = _seek(grey, m, width)
         m, scatter = fit_map(m, seen)
-        smear = _smear(profile[use], offsets, o[use])
+        use = seen.weight > 0
+        smear = _smear(profile[use], _offsets(width), o[use])
         if not smear < 2:  # mm: there is no line at all
-            raise CannotBuild(tell("the frame cannot be followed along all its sides"), hint=tell(WANTED))
+            raise CannotBuild(tell("the frame cannot be followed along three of its sides"), hint=tell(WANTED))
     return FrameFit(m, seen, scatter, smear)
+
+
+def sides_near(grey: Grey, m: Map, width: float) -> Seen:
+    """Points of the frame's sides, which are at most ``width`` mm from where ``m`` has them.
+
+    Raises
+    ------
+    CannotBuild
+        When more than one side has no line.
+    """
+    return _seek(grey, m, width)[0]
+
+
+def _offsets(width: float) -> Floats:
+    return np.arange(-width, width + 0.05, 0.1)
+
+
+def _seek(grey: Grey, m: Map, width: float) -> tuple[Seen, Floats, Floats]:
+    """Points of the frame near where a map has it, the profiles across it, and how far off it was seen, mm."""
+    p, n, side = _side_points()
+    offsets = _offsets(width)
+    profile = _local_ink(grey, m.to_picture(p[:, None] + n[:, None] * offsets))
+    centre = offsets[follow(profile.reshape(4, STATIONS, -1), 3)].ravel()
+    o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
+    use = strength > 0.4 * np.median(strength)
+    hidden = np.flatnonzero(np.bincount(side[use], minlength=4) < STATIONS / 4)
+    if len(hidden) > 1:
+        raise CannotBuild(tell("the frame cannot be followed along three of its sides"), hint=tell(WANTED))
+    use &= ~np.isin(side, hidden)
+    return Seen(m.to_picture(p + n * o), p, n, use.astype(float)), profile, o
 
 
 def _smear(profile: Any, offsets: Floats, at: Floats) -> float:

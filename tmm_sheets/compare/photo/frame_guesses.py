@@ -42,7 +42,7 @@ def _figures_of_lines(ink: Any) -> Iterator[tuple[Points, Floats]]:
     """Corners and bends of the largest connected figures of straight lines, of strong ones, then of weaker ones."""
     import cv2
 
-    straight = _straight_lines(ink)
+    straight = straight_lines(ink)
     for level in (14, 9):
         strokes = cv2.dilate((straight > level).astype(np.uint8), np.ones((3, 3), np.uint8))
         _, labels, stats, _ = cv2.connectedComponentsWithStats(strokes, connectivity=8)
@@ -73,7 +73,7 @@ def _bright_region(grey: Any) -> list[tuple[Points, Floats]]:
     return [] if corners is None else [(corners, _bends((labels == i).astype(np.uint8), corners))]
 
 
-def _straight_lines(ink: Any, length: int = 61) -> Any:
+def straight_lines(ink: Any, length: int = 61) -> Any:
     """Ink that continues for ``length`` pixels within 25 degrees of a row or a column, less that of its surroundings.
 
     The grain of paper or desk averages out. For each slope the picture is sheared so that lines of that slope lie along rows.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import chain
 from math import pi
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from tmm_sheets.compare.photo.frame_fit import STATIONS, WANTED, initial_map
 from tmm_sheets.compare.photo.frame_guesses import frame_guesses
+from tmm_sheets.compare.photo.frame_quads import frame_quads
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, bend, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.photograph import Grey
 from tmm_sheets.compare.photo.profiles import ProfileLines, darkness, sample
@@ -31,6 +33,8 @@ BARE = 0.5  # share of ink below which a side is astray
 SHORTEST = 50  # pixels, of a side
 PALE = 45.0  # darkness below which nothing is a line
 SHARP = marked("hold the camera still and wait for it to focus, in more light; or scan the sheet")
+LIKELY = 0.7  # score by the drawing's lines beyond which a frame put together from lines is followed by no other guess
+SAME = 6.0  # pixels within which two frames are one
 OFFSETS = np.arange(-5.2, 5.3, 0.4)  # mm across the lines of the title block
 NEAR = 1.2  # mm within which a line of the title block may be
 
@@ -81,14 +85,76 @@ def find(grey: Grey, block: ProfileLines) -> FoundFrame:
     if best.mirrored:
         raise CannotBuild(tell("the picture is mirrored: the title block is on the wrong side"),
                           hint=tell("take it from the front; switch off mirroring in the camera or the scanner"))  # fmt: skip
-    along = best.corners[1] - best.corners[0]
+    return _at_full_size(best, shrink)
+
+
+def others(grey: Grey, lines: ProfileLines) -> list[FoundFrame]:
+    """Further frames the picture may show, ranked by the lines of the drawing, the likeliest first.
+
+    Slower than :func:`find`, for pictures in which what it found is doubtful.
+
+    Parameters
+    ----------
+    grey
+        The picture.
+    lines
+        Where lines are on the sheet.
+    """
+    import cv2
+
+    shrink = min(SMALL / max(grey.shape), 1.0)
+    small = cv2.resize(grey, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
+    ink = darkness(small, 8)
+    level = _level(ink)
+    found: list[FoundFrame] = []
+    for guess in chain(frame_quads(ink, lines, level), frame_guesses(small, ink)):
+        if guess.positions != (0,) and any(f.score > LIKELY for f in found):
+            break
+        sides, corners = follow_sides(ink, guess)
+        if not np.isfinite(corners).all() or min(abs(a - b) for a, b in chords(corners)) < SHORTEST:
+            continue
+        for mirrored, placed, around in _orientations(guess.positions, sides, corners):
+            if mirrored:
+                continue
+            try:
+                score = _drawing_score(ink, initial_map(placed, around, ink.shape), lines, level)
+            except np.linalg.LinAlgError:
+                continue
+            same = next((k for k, f in enumerate(found) if np.abs(f.corners - placed).max() < SAME), None)
+            if same is None:
+                found.append(FoundFrame(placed, around, False, score))
+            elif score > found[same].score:
+                found[same] = FoundFrame(placed, around, False, score)
+    return [_at_full_size(f, shrink) for f in sorted(found, key=lambda f: -f.score)]
+
+
+def _at_full_size(found: FoundFrame, shrink: float) -> FoundFrame:
+    along = found.corners[1] - found.corners[0]
     turned = round(float(np.angle(along)) / (pi / 2)) % 4
-    return replace(best, corners=best.corners / shrink, sides=tuple(s / shrink for s in best.sides), turned=turned)
+    return replace(found, corners=found.corners / shrink, sides=tuple(s / shrink for s in found.sides), turned=turned)
+
+
+def _level(ink: Any) -> float:
+    """Darkness of a line in a picture of which most is bare."""
+    middle = float(np.median(ink))
+    return max(5 * 1.4826 * float(np.median(np.abs(ink.astype(np.int16) - int(middle)))) + middle, 20.0)
+
+
+def _drawing_score(ink: Any, m: Map, lines: ProfileLines, level: float) -> float:
+    """Share of the drawing's lines in place at the best common shift of each part of the sheet, see :func:`_block_score`."""
+    dark = sample(ink, m.to_picture(lines.points[:, None] + lines.normals[:, None] * OFFSETS)) > level
+    upright = np.abs(lines.normals.real) > np.sqrt(0.5)
+    flip = np.where(upright, lines.normals.real, lines.normals.imag) < 0
+    dark[flip] = dark[flip, ::-1]
+    i, j = (lines.points.real - FRAME.x0) // (FRAME.width / 4), (lines.points.imag - FRAME.y0) // (FRAME.height / 3)
+    part = 2 * (4 * j + i).astype(int) + upright
+    shares = [float(_share_of_best_shift(dark[part == k])) for k in np.unique(part) if (part == k).sum() >= 10]
+    return float(np.mean(shares)) if shares else 0.0
 
 
 def _best(grey: Any, ink: Any, block: ProfileLines) -> FoundFrame | None:
     """The best of all guesses, or the first that is sure."""
-    level = max(5 * 1.4826 * float(np.median(np.abs(ink.astype(np.int16) - int(np.median(ink))))) + float(np.median(ink)), 20.0)
+    level = _level(ink)
     best: FoundFrame | None = None
     for guess in frame_guesses(grey, ink):
         before, best = best, _better(best, ink, guess, block, level)

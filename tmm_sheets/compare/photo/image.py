@@ -15,10 +15,12 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.photo import placed_views, rectification, tracing
+from tmm_sheets.compare.photo.fit_check import MATCH, SIDE, SIDES
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.photograph import Picture, read
-from tmm_sheets.compare.photo.rectification import LONGEST, MATCH, Rectified, rectify
+from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
+from tmm_sheets.compare.photo.refusal import refusal
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import CannotBuild
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
 PLACED = 0.25
 """Error of a place after rectification by the lines of placed views, mm."""
 HIGHEST = 4  # degree of the relief that views placed by hand can determine
+UNLIKE = 0.35
+"""Share of its lines in place below which a sheet is another drawing rather than badly fitted."""
 CERTAIN = 0.12
 """By how much more of its lines another sheet must match for a picture to be called a picture of it."""
 
@@ -82,8 +86,10 @@ def compare(
         found = _corrected(picture, found, placed.elements)
         placed = placed_views.place(known, places, found.map, found.ink)
         known, notes = placed.elements, (*notes, *placed.notes)
-    elif found.match < MATCH:
-        _wrong_sheet(project, n, found, path, say)
+    elif not found.check.acceptable:
+        if found.match < MATCH:
+            _other_sheet(project, n, found, path, say)
+        raise refusal(picture.grey, found, known, path, n)
     say(tell("measuring the elements"))
     traces, extra = tracing.trace(known, found.ink)
     extra = [x for x in extra if placed is None or placed.strange(x)]
@@ -100,13 +106,13 @@ def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> 
     return replace(found, ink=ink, map=better, level=noise_level(ink), match=match, uncertainty=hypot(PLACED, found.scatter))
 
 
-def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Callable[[str], None]) -> None:
-    """Refuse a picture that does not match, naming the sheet it shows if that is another one of the project.
+def _other_sheet(project: Project, n: int, found: Rectified, path: Path, say: Callable[[str], None]) -> None:
+    """Refuse a picture that does not match when it shows another sheet of the project, or when its frame fits and its lines do not.
 
     Raises
     ------
     CannotBuild
-        Always.
+        When either is so.
     """
     best, share = n, found.match
     for k in range(1, len(project.variant.sheets) + 1):
@@ -124,6 +130,8 @@ def _wrong_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
                     "they belong, {share} % of sheet {best}'s are")
         raise CannotBuild(said.format(file=path, n=n, best=best, project=project_name, matched=matched, share=round(100 * share)),
                           hint=tell("try --sheet {n}").format(n=best))
+    if int((found.check.sides >= SIDE).sum()) < SIDES or found.match > UNLIKE:
+        return
     said = tell("{file} does not show a sheet of {project} as it is drawn here: only {matched} % of the lines of sheet {n} are "
                 "where "
                 "they belong")

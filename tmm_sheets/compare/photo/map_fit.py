@@ -21,6 +21,12 @@ FOOT = 400.0
 STEPS = 12
 SIDE = 3.0
 """Points of the frame count little beyond this distance, mm; they are seldom wrong."""
+LEAST_SIDE = 0.25
+"""Least share of a side's points that determine how it bends."""
+ASTRAY = 1.0
+"""Distance, mm, and twice that from which on lines count little, beyond which what was taken for a side is none."""
+TAME = 0.02
+"""Weight of the prior for an unbent side where its points are hidden, relative to that of all points."""
 RIDGE = 0.01
 """Damping of a wave over the whole sheet, relative to its effect on all points."""
 
@@ -61,22 +67,26 @@ def fit_map(m: Map, sides: Seen, other: Seen | None = None, degree: int = 0, loo
     m = _fit_base(m, seen, degree, None if loose is None else np.where(of_sides, SIDE, loose))
     r = np.real(np.conj(sides.normals) * (m.to_base(sides.picture) - sides.sheet - m.risen(sides.sheet)))
     p, use = sides.sheet, sides.weight > 0
+    if loose is not None:  # lines inside know better than what was taken for a side
+        use = use & (np.abs(r) < ASTRAY + 2 * loose)
     polynomials, scatter = np.zeros_like(m.sides), []
     for k, (mine, along) in enumerate((
         (p.imag == FRAME.y0, p.real), (p.real == FRAME.x1, p.imag), (p.imag == FRAME.y1, p.real), (p.real == FRAME.x0, p.imag),
     )):  # fmt: skip
         t = (along[mine] - FRAME.x0) / FRAME.width if k % 2 == 0 else (along[mine] - FRAME.y0) / FRAME.height
-        polynomials[k], sigma = _fit_side(t, r[mine], use[mine], m.sides.shape[1] - 1)
-        scatter.append(sigma)
-    return replace(m, sides=polynomials), float(max(scatter))
+        if use[mine].sum() > LEAST_SIDE * mine.sum():
+            polynomials[k], sigma = _fit_side(t, r[mine], use[mine], m.sides.shape[1] - 1)
+            scatter.append(sigma)
+    return replace(m, sides=polynomials), float(max(scatter, default=np.inf))
 
 
 def _fit_side(t: Floats, r: Floats, use: Any, degree: int) -> tuple[Floats, float]:
     """Chebyshev coefficients of the residuals ``r`` along a side (t from 0 to 1), and their robust scatter, mm."""
     base = np.polynomial.chebyshev.chebvander(2 * t - 1, degree)
-    w = use.astype(float)
+    w, rank = use.astype(float), np.arange(degree + 1) / degree
+    tame = TAME * np.sqrt(len(t)) * np.diag(rank)
     for _ in range(8):
-        c = np.linalg.lstsq(base * w[:, None], r * w, rcond=None)[0]
+        c = np.linalg.lstsq(np.vstack((base * w[:, None], tame)), np.append(r * w, 0 * rank), rcond=None)[0]
         d = r - base @ c
         sigma = max(1.4826 * float(np.median(np.abs(d[use]))), 0.03)
         w = use / (1 + (d / (2 * sigma)) ** 2)

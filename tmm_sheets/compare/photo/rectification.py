@@ -10,15 +10,18 @@ parameters a wrong one moves them by hundredths of a millimetre (Geman-McClure w
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import hypot
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo import frame_fit, frame_search
+from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search
+from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
+from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
@@ -35,8 +38,6 @@ BLURRED, SOFT = 0.36, 0.31
 """Standard deviation of the blur, mm, above which a picture is refused, or draws a warning; 0.2 to 0.3 is fair."""
 LONGEST = 2500.0
 """Longer lines, mm, do not correct the map: they are curves back and forth."""
-MATCH = 0.5
-"""Least share of a sheet's lines that must be where they belong."""
 RECTIFIED = 0.15
 """Error of a place after rectification, mm, not exceeded at 95 % of the places of simulated photographs."""
 TURNED = {
@@ -48,6 +49,16 @@ TURNED = {
 COARSE = 4.0  # pixels per mm, enough for the correction
 COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2), (0.7, RELIEF + 1, 0.2))
 """Reach to either side of a line, mm; degree of the relief (above the highest: waves); distance that counts as far off, mm."""
+BY_LINES = ((3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 2, 1.0), (2.5, 2, 1.0))
+"""The same for the lines alone, from a map that is right in part of the sheet."""
+WHOLE = 0.98
+"""Share of a side's points in place below which the side is followed once more, near where the lines inside have it."""
+ABOUT = 1.5
+"""How near that is, mm."""
+HOPELESS = 0.3
+"""Share of lines in place below which a fit is right nowhere."""
+TRIED, UNLIKELY = 3, 0.4
+"""How many other frames are tried, and the score below which none is."""
 NODE = 6.0  # mm between the nodes at which the map is evaluated; an even number of pixels at every scale
 
 
@@ -67,6 +78,7 @@ class Rectified:
     scale : pixels of the picture per mm of the sheet
     notes : what is worth telling, a line each
     soft : whether the picture is not sharp
+    check : what is to be said of the fit
     """
 
     ink: Any
@@ -78,7 +90,8 @@ class Rectified:
     uncertainty: float
     scale: float
     notes: tuple[str, ...]
-    soft: bool = False
+    soft: bool
+    check: FitCheck
 
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:
@@ -110,23 +123,108 @@ def rectify(
     CannotBuild
         When there is no frame, or the picture is too blurred or too small.
     """
+    lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.role == "frame")])
+    attempts = _Attempts(picture.grey, lines, by_lines)
     say(tell("looking for the frame"))
+    refused: CannotBuild | None = None
     try:
         found = frame_search.find(picture.grey, frame_lines(known))
-        m, sides, scatter, smear = frame_fit.fit_frame(picture.grey, found.corners, found.sides)
+        say(tell("correcting by the drawing's lines"))
+        attempts.begin(found)
     except CannotBuild as e:
-        raise CannotBuild(f"{path}: {e.args[0]}", hint=e.hint) from None
-    scale = float(np.abs(np.diff(found.corners)).min() / FRAME.height)
-    notes = _remarks(path, scale, smear, found.turned)
-    say(tell("correcting by the drawing's lines"))
-    lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.role == "frame")])
-    ink = straighten(picture.grey, m, COARSE)
-    better, _, match = refine(m, sides, ink, lines, line_level(ink), COARSE, RELIEF if by_lines else 2)
-    if match >= MATCH:
-        m = better
-    ink = straighten(picture.grey, m)
+        refused = e
+    if by_lines and not attempts.sound:
+        say(tell("looking for the frame elsewhere"))
+        attempts.elsewhere(as_lines([e for e in known if e.length < LONGEST], most=1500))
+    best = attempts.best
+    if best is None:
+        assert refused is not None
+        raise CannotBuild(f"{path}: {refused.args[0]}", hint=refused.hint) from None
+    scale = float(np.abs(np.diff(best.found.corners)).min() / FRAME.height)
+    notes = _remarks(path, scale, best.frame.smear, best.found.turned)
+    ink = straighten(picture.grey, best.map)
+    scatter = best.frame.scatter
     uncertainty = hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter)
-    return Rectified(ink, m, sides, noise_level(ink), match, scatter, uncertainty, scale, notes, smear > SOFT)
+    return Rectified(ink, best.map, best.frame.sides, noise_level(ink), best.check.match, scatter, uncertainty, scale, notes,
+                     best.frame.smear > SOFT, best.check)
+
+
+class _Attempt(NamedTuple):
+    """A frame found, what was fitted to it, and what is to be said of the fit."""
+
+    found: FoundFrame
+    frame: frame_fit.FrameFit
+    map: Map
+    check: FitCheck
+
+    @property
+    def worth(self) -> float:
+        """What makes one attempt better than another."""
+        return self.check.match + 0.2 * float(self.check.sides.mean()) - len(self.check.astray) / max(self.check.judged, 1)
+
+
+class _Attempts:
+    """Fits of a sheet to a picture, until one is sound."""
+
+    def __init__(self, grey: Any, lines: ProfileLines, by_lines: bool) -> None:
+        self.grey, self.lines, self.by_lines = grey, lines, by_lines
+        self.best: _Attempt | None = None
+
+    @property
+    def sound(self) -> bool:
+        return self.best is not None and self.best.check.sound
+
+    def begin(self, found: FoundFrame) -> None:
+        """Fit the sheet to a frame; once more from what its lines alone say when that is doubtful.
+
+        Raises
+        ------
+        CannotBuild
+            When the frame has no sides.
+        """
+        start = frame_fit.initial_map(found.corners, found.sides, self.grey.shape)
+        attempt = self._fit(found, frame_fit.fit_frame(self.grey, start))
+        self._keep(attempt)
+        if self.by_lines and not attempt.check.sound and attempt.check.match > HOPELESS:
+            again = self._without_frame(attempt)
+            with suppress(CannotBuild, np.linalg.LinAlgError):
+                self._keep(self._fit(found, frame_fit.fit_frame(self.grey, again)))
+
+    def elsewhere(self, lines: ProfileLines) -> None:
+        """Try other frames, the likeliest by the drawing's ``lines`` first."""
+        for found in frame_search.others(self.grey, lines)[:TRIED]:
+            if found.score < UNLIKELY:
+                break
+            with suppress(CannotBuild, np.linalg.LinAlgError):
+                self.begin(found)
+            if self.sound:
+                break
+
+    def _keep(self, attempt: _Attempt) -> None:
+        if self.best is None or (attempt.check.sound, attempt.worth) > (self.best.check.sound, self.best.worth):
+            self.best = attempt
+
+    def _fit(self, found: FoundFrame, frame: frame_fit.FrameFit) -> _Attempt:
+        straight = frame.map
+        ink = straighten(self.grey, straight, COARSE)
+        level, highest = line_level(ink), RELIEF if self.by_lines else 2
+        m, sides = straight, frame.sides
+        for _ in range(2):
+            better, _, match = refine(straight, sides, ink, self.lines, level, COARSE, highest)
+            if match >= MATCH:
+                m = better
+            check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
+            if match < MATCH or check.sides.min() > WHOLE:
+                break
+            # Part of a side was followed along something else: now it is known where the frame must be.
+            sides = frame_fit.sides_near(self.grey, m, ABOUT)
+        return _Attempt(found, frame._replace(sides=sides), m, check)
+
+    def _without_frame(self, attempt: _Attempt) -> Map:
+        """The map by the lines of the drawing alone, from a fit that is right in part of the sheet."""
+        sides = attempt.frame.sides._replace(weight=np.zeros_like(attempt.frame.sides.weight))
+        ink = straighten(self.grey, attempt.map, COARSE)
+        return refine(attempt.map, sides, ink, self.lines, line_level(ink), COARSE, RELIEF, BY_LINES)[0]
 
 
 def _remarks(path: Path, scale: float, smear: float, turned: int) -> tuple[str, ...]:
@@ -181,6 +279,7 @@ def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
 
 def refine(
     m: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float = SCALE, highest: int = RELIEF,
+    steps: Sequence[tuple[float, int, float]] = COARSE_TO_FINE,
 ) -> tuple[Map, float, float]:
     """Correct a map by lines seen in the picture that it straightened.
 
@@ -196,6 +295,8 @@ def refine(
         Darkness of a line.
     highest
         Degree of the relief; waves follow only with the full :data:`RELIEF`.
+    steps
+        See :data:`COARSE_TO_FINE`.
 
     Returns
     -------
@@ -205,7 +306,7 @@ def refine(
     weight = 1 / np.sqrt(np.maximum(np.bincount(lines.line), 8) / 8.0)[lines.line]
     sides = sides._replace(weight=0.5 * sides.weight)
     better, hit, scatter = m, 0.0, 1.0
-    for reach, degree, loose in COARSE_TO_FINE:
+    for reach, degree, loose in steps:
         at = m.to_sheet(better.to_picture(lines.points))
         o, use, hit = inked(ink, lines, reach, level, at - lines.points, scale)
         if not use.any():

@@ -1,0 +1,160 @@
+"""Judging the fit of a map before the drawing is judged by it.
+
+A drawing made badly has single lines in wrong places; a map fitted badly has whole regions of them. So the sheet is cut into
+cells, and in each the level and the upright lines are asked apart whether most are where they belong (a map that took a line for
+its neighbour is right along it). A region without ink where lines belong is hidden rather than astray.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.compare.photo.map_fit import Seen, fit_map
+from tmm_sheets.compare.photo.profiles import ProfileLines, peaks, profiles
+from tmm_sheets.compare.photo.sheet_map import FRAME, Floats, Map
+from tmm_sheets.drawing.marks import Points
+
+CELLS = (8, 6)
+"""Cells along the sheet's width and height, some 100 mm each."""
+LEAST_POINTS, LEAST_LINES = 15, 3
+"""Least points, of so many lines, by which a cell can be judged."""
+ASTRAY = 0.35
+"""Share of a cell's points in place below which it is astray."""
+BARE = 0.3
+"""Share of a cell's points with any ink near below which it is hidden."""
+LOCAL = 0.07
+"""Largest share of cells astray that may be the student's doing: a view in a wrong place."""
+HALVES = 1.5
+"""Largest distance, mm, between where maps fitted to either half of the sheet have the line between them."""
+MATCH = 0.5
+"""Least share of a sheet's lines that must be where they belong."""
+IN_PLACE, NEAR = 0.5, 3.0
+"""mm from its place within which a line is in place, or has ink near."""
+CLOSE = 0.9
+"""Share of lines in place from which on paper that is not smooth is believed."""
+WHOLE = 0.9
+"""Least share of a side's points that has a line in a fit that is beyond doubt."""
+SIDE, ALONGSIDE = 0.6, 0.5
+"""Least share of a side's points that must have a line for the side to count as seen, as a whole and beside a cell."""
+SIDES = 3
+"""Least number of sides that must be seen."""
+OFFSETS = np.arange(-NEAR, NEAR + 0.05, 0.1)
+
+
+@dataclass(frozen=True)
+class FitCheck:
+    """What is to be said of a fit.
+
+    Attributes
+    ----------
+    match : share of the lines' points that have ink where the map has them
+    astray : middles of the cells whose lines are elsewhere, mm
+    lost : of those, the ones at a side of the frame that is not seen there either
+    judged : how many cells could be judged
+    halves : how far maps of either half disagree, mm
+    sides : share of each side of the frame that has a line where the map has it, bottom first
+    """
+
+    match: float
+    astray: Points
+    lost: Points
+    judged: int
+    halves: float
+    sides: Floats
+
+    @property
+    def acceptable(self) -> bool:
+        """Whether the drawing may be judged by the map, if there is no better one."""
+        return (self.match >= MATCH and len(self.astray) <= LOCAL * self.judged and not len(self.lost)
+                and int((self.sides >= SIDE).sum()) >= SIDES)
+
+    @property
+    def sound(self) -> bool:
+        """Whether no better map need be sought."""
+        smooth = self.halves <= HALVES or self.match >= CLOSE
+        return self.acceptable and not len(self.astray) and float(self.sides.min()) >= WHOLE and smooth
+
+
+def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float) -> FitCheck:
+    """Judge a map.
+
+    Parameters
+    ----------
+    m
+        The map.
+    straight, ink, scale
+        The picture of ``scale`` pixels per mm that another map straightened, and that map.
+    sides
+        Points of the frame, as :func:`~tmm_sheets.compare.photo.frame_fit.fit_frame` has them.
+    lines
+        Where lines are on the sheet.
+    level
+        Darkness of a line.
+    """
+    at = straight.to_sheet(m.to_picture(lines.points))
+    across = profiles(ink, lines, OFFSETS, at - lines.points, scale)
+    o, strength = peaks(across, OFFSETS, 0.0, 0.8, 0.4)
+    good = (strength > level) & (np.abs(o) < IN_PLACE)
+    seen = Seen(straight.to_picture(at + lines.normals * o), lines.points, lines.normals, good.astype(float))
+    met = _on_sides(m, straight, sides, ink, level, scale)
+    astray, judged = _astray(lines, good, across.max(1) > level)
+    lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
+    shares = np.array([part.mean() for part in np.split(met, 4)])
+    return FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), shares)
+
+
+def _on_sides(m: Map, straight: Map, sides: Seen, ink: Any, level: float, scale: float) -> Any:
+    """Which points of the frame have a line where the map has them."""
+    at = straight.to_sheet(m.to_picture(sides.sheet))
+    lines = ProfileLines(sides.sheet, sides.normals, np.zeros(len(at), np.int64))
+    o, strength = peaks(profiles(ink, lines, OFFSETS, at - sides.sheet, scale), OFFSETS, 0.0, 0.8, 0.4)
+    return (strength > level) & (np.abs(o) < IN_PLACE)
+
+
+def _astray(lines: ProfileLines, good: Any, some: Any) -> tuple[Points, int]:
+    """Middles of the cells whose lines are elsewhere, and how many cells could be judged."""
+    columns, rows = CELLS
+    i = np.clip(((lines.points.real - FRAME.x0) / FRAME.width * columns).astype(int), 0, columns - 1)
+    j = np.clip(((lines.points.imag - FRAME.y0) / FRAME.height * rows).astype(int), 0, rows - 1)
+    cell = j * columns + i
+    upright = np.abs(lines.normals.real) > np.sqrt(0.5)
+    out, judged = set(), 0
+    for way in (upright, ~upright):
+        for k in range(columns * rows):
+            here = way & (cell == k)
+            if here.sum() < LEAST_POINTS or len(np.unique(lines.line[here])) < LEAST_LINES:
+                continue
+            if some[here].mean() < BARE:
+                continue
+            judged += 1
+            if good[here].mean() < ASTRAY:
+                out.add(k)
+    k_ = np.array(sorted(out), np.int64)
+    x, y = (k_ % columns + 0.5) * FRAME.width / columns, (k_ // columns + 0.5) * FRAME.height / rows
+    return np.asarray(complex(FRAME.x0, FRAME.y0) + x + 1j * y), judged
+
+
+def _side_seen(z: complex, p: Points, met: Any) -> bool:
+    """Whether the frame is seen beside a cell about ``z``; cells that are not at the frame have nothing to be seen."""
+    reach = complex(FRAME.width / CELLS[0], FRAME.height / CELLS[1])
+    d = p - z
+    beside = (np.abs(d.real) < 0.75 * reach.real) & (np.abs(d.imag) < 0.75 * reach.imag)
+    return not beside.any() or float(met[beside].mean()) >= ALONGSIDE
+
+
+def _between_halves(m: Map, sides: Seen, seen: Seen) -> float:
+    """How far nearly flat maps fitted to the left and to the right half disagree along the line between them, mm.
+
+    A map can only bend as paper does; one that is bent to suit a wrong side of the frame is not continued by the other half.
+    """
+    seam = np.full(9, FRAME.centre.real) + 1j * (FRAME.y0 + np.linspace(0.1, 0.9, 9) * FRAME.height)
+    places = []
+    for left in (True, False):
+        one, other = (s._replace(weight=s.weight * ((s.sheet.real < FRAME.centre.real) == left)) for s in (sides, seen))
+        if (other.weight > 0).sum() < 8 * LEAST_POINTS:
+            return 0.0
+        places.append(m.to_sheet(fit_map(m, one, other, 2, 0.4)[0].to_picture(seam)))
+    return float(np.abs(places[0] - places[1]).max())
