@@ -1,0 +1,275 @@
+"""What `compare` says about a picture against the truth.
+
+Three things are read from the program: its exit status and message, its JSON, and its overlay as PDF, in which the photograph
+lies as it was rectified, the whole A1 sheet. Where a point of the sheet was taken to be is found by looking for a piece of the
+picture, rectified by the truth, in that photograph. So a fit is judged without asking the program how good it thinks it is.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tests.foreign import drawing
+from tests.foreign.drawing import SIZE, Floats, Mark
+
+DENSITY = 3.0
+"""Pixels a millimetre at which pictures are laid over each other."""
+WINDOW, REACH, GRID = 26.0, 7.0, 20.0
+"""Side of a piece that is looked for, how far it is looked for, and how far apart pieces are, mm."""
+WRONG = 2.0
+"""A fit is wrong when it is off by more than this somewhere, mm."""
+VISIBLE = 1.5
+"""Mistakes from this size on should be found, mm."""
+
+
+@dataclass
+class Outcome:
+    """What became of one picture: `state` is judged, refused, wrong fit or broken; errors in mm."""
+
+    name: str
+    difficulty: str
+    project: str
+    sheet: int
+    state: str
+    seconds: float
+    reason: str = ""
+    median: float | None = None
+    most: float | None = None
+    worst: float | None = None
+    worst_at: tuple[float, float] | None = None
+    sound: int = 0
+    false_red: int = 0
+    accused: list[str] = field(default_factory=list)
+    mistakes: list[dict[str, Any]] = field(default_factory=list)
+    matched: float | None = None
+
+
+def _run(picture: Path, truth: dict[str, Any], folder: Path) -> tuple[int, str, float]:
+    """The program's command; exit status, last words, seconds."""
+    start = time.monotonic()
+    words = [
+        sys.executable,
+        "-m",
+        "tmm_sheets",
+        "compare",
+        truth["project"],
+        "--sheet",
+        str(truth["sheet"]),
+        "--image",
+        str(picture),
+        "--json",
+        str(folder / "report.json"),
+        "-o",
+        str(folder),
+    ]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, timeout=900, env={**os.environ, "LANGUAGE": "en"})
+    except subprocess.TimeoutExpired:
+        return -1, "took longer than 900 s", time.monotonic() - start
+    return done.returncode, " ".join(done.stderr.split())[:300], time.monotonic() - start
+
+
+def _rectified(picture: Path, truth: dict[str, Any]) -> NDArray[np.uint8]:
+    """The picture as the truth rectifies it, grey, DENSITY pixels a millimetre."""
+    image = cv2.imread(str(picture), cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION)
+    places = np.array(truth["map"]["pixels"], np.float32)
+    step = truth["map"]["step"]
+    x = (np.arange(round(SIZE[0] * DENSITY)) + 0.5) / DENSITY / step
+    y = (SIZE[1] - (np.arange(round(SIZE[1] * DENSITY)) + 0.5) / DENSITY) / step
+    j, i = y.astype(int).clip(0, places.shape[0] - 2), x.astype(int).clip(0, places.shape[1] - 2)
+    b, a = (y - j)[:, None, None], (x - i)[None, :, None]
+    rows = places[j] * (1 - b) + places[j + 1] * b
+    where = (rows[:, i] * (1 - a) + rows[:, i + 1] * a).astype(np.float32)
+    if image is None:
+        raise FileNotFoundError(picture)
+    flat = cv2.remap(image, where[..., 0], where[..., 1], cv2.INTER_AREA, borderMode=cv2.BORDER_CONSTANT, borderValue=255)
+    return np.asarray(flat, np.uint8)
+
+
+def _believed(folder: Path, sheet: int) -> NDArray[np.uint8] | None:
+    """The photograph as the program rectified it, out of its PDF overlay."""
+    import pypdfium2
+
+    file = folder / f"compare_sheet_{sheet}.pdf"
+    if not file.exists():
+        return None
+    document = pypdfium2.PdfDocument(file)
+    try:
+        page = document[0]
+        for thing in page.get_objects():
+            if isinstance(thing, pypdfium2.PdfImage):
+                image = np.asarray(thing.get_bitmap().to_pil().convert("RGB"))
+                size = (round(SIZE[0] * DENSITY), round(SIZE[1] * DENSITY))
+                return np.asarray(cv2.resize(image.min(axis=2), size, interpolation=cv2.INTER_AREA), np.uint8)
+    finally:
+        document.close()
+    return None
+
+
+def _ink(grey: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """Darker than its surroundings, whatever the light: about 0 on paper, 1 on a strong line."""
+    values = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), 0.7)
+    around = cv2.blur(cv2.dilate(values, np.ones((15, 15), np.uint8)), (15, 15))
+    return np.asarray(np.clip((around - values) / 60, 0, 1), np.float32)
+
+
+def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8]) -> tuple[Floats, Floats, float]:
+    """Where the program looks for pieces of the sheet.
+
+    Returns places (n, 2) mm, how far from there the program has what belongs there (n, 2) mm, and the share of pieces found again.
+    """
+    ours, theirs = _ink(true), _ink(believed)
+    half, reach = int(WINDOW * DENSITY / 2), int(REACH * DENSITY)
+    places, apart, tried = [], [], 0
+    for y in np.arange(WINDOW / 2 + REACH, SIZE[1] - WINDOW / 2 - REACH, GRID):
+        for x in np.arange(WINDOW / 2 + REACH, SIZE[0] - WINDOW / 2 - REACH, GRID):
+            column, row = int(x * DENSITY), int((SIZE[1] - y) * DENSITY)
+            piece = ours[row - half : row + half, column - half : column + half]
+            if not _tells(piece):
+                continue
+            tried += 1
+            field_ = theirs[row - half - reach : row + half + reach, column - half - reach : column + half + reach]
+            score = np.asarray(cv2.matchTemplate(field_, piece, cv2.TM_CCOEFF_NORMED), np.float32)
+            _, best, _, at = cv2.minMaxLoc(score)
+            if best > 0.6:
+                places.append((x, y))
+                apart.append([(_peak(score, at, 1) - reach) / DENSITY, -(_peak(score, at, 0) - reach) / DENSITY])
+    return np.array(places).reshape(-1, 2), np.array(apart).reshape(-1, 2), len(places) / max(tried, 1)
+
+
+def _tells(piece: NDArray[np.float32]) -> bool:
+    """Whether a piece has enough lines, and in more than one direction, to say where it lies."""
+    if piece.mean() < 0.01:
+        return False
+    dx, dy = cv2.Sobel(piece, cv2.CV_32F, 1, 0), cv2.Sobel(piece, cv2.CV_32F, 0, 1)
+    spread = np.linalg.eigvalsh(np.array([[(dx * dx).sum(), (dx * dy).sum()], [(dx * dy).sum(), (dy * dy).sum()]]))
+    return bool(spread[0] > 0.15 * spread[1] and spread[0] > 40)
+
+
+def _peak(score: NDArray[np.float32], at: Any, axis: int) -> float:
+    """Subpixel place of the peak along x (axis 1) or y (axis 0)."""
+    i = at[0] if axis == 1 else at[1]
+    line = score[at[1], :] if axis == 1 else score[:, at[0]]
+    if not 0 < i < len(line) - 1:
+        return float(i)
+    left, middle, right = float(line[i - 1]), float(line[i]), float(line[i + 1])
+    bottom = left - 2 * middle + right
+    return float(i) + (0.5 * (left - right) / bottom if bottom < 0 else 0.0)
+
+
+Key = tuple[str, str, str, str]
+
+
+def _key(entry: dict[str, Any]) -> Key:
+    """What the record and the report call an element by: view, step, position, name."""
+    return entry["view"], entry["step"], entry["position"], entry["name"]
+
+
+def _near(marks: list[Mark], lines: list[list[list[float]]]) -> set[Key]:
+    """Keys of the marks of which a third or more lies within 2 mm of wrong lines: what is said of them does not count."""
+    if not lines:
+        return set()
+    fine = np.vstack([_sampled(np.array(line)) for line in lines])
+    excused = set()
+    for mark in marks:
+        if mark.kind == "text":
+            continue
+        samples = _sampled(mark.path())
+        if len(samples) > 400:
+            samples = samples[:: len(samples) // 400 + 1]
+        distance = np.hypot(samples[:, None, 0] - fine[None, :, 0], samples[:, None, 1] - fine[None, :, 1]).min(axis=1)
+        if (distance < 2).mean() > 0.33:
+            excused.add((mark.view, *mark.key))
+    return excused
+
+
+def _sampled(path: Floats) -> Floats:
+    along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
+    where = np.linspace(0, along[-1], max(2, int(along[-1] / 2) + 1))
+    return np.stack([np.interp(where, along, path[:, i]) for i in (0, 1)], axis=1)
+
+
+def _pointed_at(mistake: dict[str, Any], extra: list[dict[str, float]]) -> bool:
+    """Whether the report shows ink that belongs to nothing where the wrong line is."""
+    samples = np.vstack([_sampled(np.array(line)) for line in mistake["lines"]])
+    for spot in extra:
+        away = np.abs(samples - (spot["x"], spot["y"])) - (spot["width"] / 2 + 1, spot["height"] / 2 + 1)
+        if (away.max(axis=1) < 0).any():
+            return True
+    return False
+
+
+def _said(outcome: Outcome, report: dict[str, Any], truth: dict[str, Any], marks: list[Mark]) -> None:
+    """False reds among the sound elements; which mistakes were found: red, amber, or shown as ink that belongs to nothing."""
+    elements = report["elements"]
+    verdicts: dict[Key, list[str]] = {}
+    for element in elements:
+        verdicts.setdefault(_key(element), []).append(element["verdict"])
+    wrong_keys: set[Key] = set()
+    for mistake in truth["mistakes"]:
+        keys = {_key(mark) for mark in mistake["wrong"]}
+        said = [verdict for key in keys for verdict in verdicts.get(key, [])]
+        found = next((verdict for verdict in ("red", "amber") if verdict in said), "green" if said else "not judged")
+        if found != "red" and _pointed_at(mistake, report["extra"]):
+            found = "ink"
+        outcome.mistakes.append({"kind": mistake["kind"], "size": mistake["size"], "place": mistake["place"], "said": found})
+        wrong_keys |= keys
+    wrong_keys |= _near(marks, [line for mistake in truth["mistakes"] for line in mistake["lines"]])
+    for element in elements:
+        if element["step"] and _key(element) in wrong_keys:
+            continue
+        outcome.sound += 1
+        if element["verdict"] == "red":
+            outcome.false_red += 1
+            outcome.accused.append(f"{element['view']}: {element['name'] or element['kind']}, {element['said']}")
+
+
+def judge(picture: Path, drawings: Path, keep: Path | None = None) -> Outcome:
+    """Run `compare` on a picture and hold what it says against the truth that lies beside it."""
+    truth = json.loads(picture.with_suffix(".json").read_text(encoding="utf-8"))
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) if keep is None else keep / picture.stem
+        folder.mkdir(parents=True, exist_ok=True)
+        status, words, seconds = _run(picture, truth, folder)
+        state = {0: "judged", 1: "refused"}.get(status, "broken")
+        outcome = Outcome(
+            picture.stem, truth["difficulty"], truth["project"], truth["sheet"], state, round(seconds, 1), words if status else ""
+        )
+        if status == 0:
+            _measure(outcome, picture, truth, folder)
+            report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+            outcome.matched = report.get("matched")
+            _said(outcome, report, truth, drawing.read(truth["project"], truth["sheet"], drawings))
+    return outcome
+
+
+def _measure(outcome: Outcome, picture: Path, truth: dict[str, Any], folder: Path) -> None:
+    """Errors of the fit; it is wrong where a piece lies more than WRONG off, or where most pieces are not within reach at all."""
+    believed = _believed(folder, truth["sheet"])
+    if believed is None:
+        outcome.state, outcome.reason = "broken", "there is no overlay with the photograph"
+        return
+    places, apart, share = offsets(believed, _rectified(picture, truth))
+    if len(places) < 10 or share < 0.5:
+        outcome.state, outcome.reason = "wrong fit", f"only {share:.0%} of the pieces within {REACH:g} mm of their places"
+        return
+    error = np.hypot(*apart.T)
+    worst = int(error.argmax())
+    outcome.median, outcome.most, outcome.worst = (
+        round(float(value), 3) for value in (np.median(error), np.percentile(error, 95), error[worst])
+    )
+    outcome.worst_at = (round(float(places[worst, 0])), round(float(places[worst, 1])))
+    if outcome.worst > WRONG:
+        outcome.state, outcome.reason = "wrong fit", f"{outcome.worst:.1f} mm off at {outcome.worst_at}"

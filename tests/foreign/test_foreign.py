@@ -1,0 +1,26 @@
+"""One small picture is taken and judged: the trial itself still runs, and its judge sees an error of the fit that is put in."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.foreign import judge, scene
+
+
+def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
+    cv2 = pytest.importorskip("cv2")
+    picture, truth = scene.take(scene.scene(0, 1, ("tiles",)), tmp_path, most=3.0)
+    file = scene.save(picture, truth, tmp_path / "pictures")
+    true = judge._rectified(file, truth)
+    places, apart, share = judge.offsets(true, true)
+    assert len(places) > 60
+    assert share == 1
+    assert np.abs(apart).max() < 0.02
+    shifted = cv2.warpAffine(true, np.array([[1, 0, 1.5 * judge.DENSITY], [0, 1, 0]]), true.shape[::-1], borderValue=255)
+    _, apart, share = judge.offsets(shifted, true)
+    assert share > 0.9
+    assert np.abs(np.median(apart, axis=0) - (1.5, 0)).max() < 0.05
+    outcome = judge.judge(file, tmp_path)
+    assert outcome.state in ("judged", "refused")
+    assert outcome.state == "refused" or (outcome.worst is not None and outcome.worst < judge.WRONG)
