@@ -86,7 +86,7 @@ def _terms(project: Project, total: Step) -> Iterator[Term]:
     least = forces.moment_size(k)
     for at, vector, couple in zip(total.args[1::3], total.args[2::3], total.args[3::3], strict=True):
         if isinstance(vector, Step):
-            arm = forces.arm(total.args[0], at, vector)
+            arm = forces.arm_about(total.args[0], at, vector)
             force, length = abs(complex(vector.at(k))), float(arm.at(k))
             sign = letters.get(id(vector), symbol(vector.name)).replace(BAR, "")
             if not is_zero(force * length, least):

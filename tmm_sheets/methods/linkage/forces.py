@@ -150,7 +150,7 @@ class Kinetostatics:
             terms += term
         return self.plan.add(name, MOMENTS, *terms)
 
-    def arm(self, about: Step, at: Step, vector: Step) -> Step:
+    def arm_about(self, about: Step, at: Step, vector: Step) -> Step:
         """Signed arm of a force about a point as it is read off a scheme, m; whoever asks first."""
         return self.plan.aside(f"h({about.name}, {vector.name})", FORCE_ARM, about, at, vector)
 
