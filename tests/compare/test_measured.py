@@ -118,7 +118,7 @@ def test_a_wrong_scale_factor(shaper, some):
             filled.lines[i] = replace(line, value=1.25 * line.value)
     begun = starts(judged(shaper, filled))
     assert len(begun) == 1
-    assert float(re.search(r"([\d.]+) times", begun[0].scale)[1]) == pytest.approx(1.25, abs=0.02)
+    assert float(re.search(r"([\d.]+) times", begun[0].wrong[0].said())[1]) == pytest.approx(1.25, abs=0.02)
     filled.factors["velocities"] = 0.016
     of = judged(shaper, filled)
     assert not [j for j in of if j.entry.plan == "velocities" and j.verdict == "red"]

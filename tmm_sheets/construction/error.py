@@ -222,20 +222,26 @@ class Errors:
         """
         moved = np.array(source.value)
         moved[(k,) if moved.ndim else ()] += shift if moved.dtype.kind == "c" else shift.real
-        values: dict[int, Any] = {id(source): moved}
-        self._note_lengths(source)
+        return self.redrawn({source: lambda values: moved})
+
+    def redrawn(self, done: Mapping[Step, Callable[[list[Any]], Any]]) -> Callable[[Step], Any]:
+        """The construction with some steps done otherwise: ``done`` makes their values from those of their :meth:`arguments`.
+
+        What follows is done again from there, by its own rules; gives any step's value then.
+        """
+        values: dict[int, Any] = {}
 
         def value(step: Step) -> Any:
             for s in step.ancestors(values) if id(step) not in values else ():
                 self._note_lengths(s)
                 args = self.arguments(s)
                 # What is exact stays as it was computed: a mistake goes on through what is drawn.
-                if s.rule.exact or all(not isinstance(a, Step) or values[id(a)] is a.value for a in args):
+                if s not in done and (s.rule.exact or all(not isinstance(a, Step) or values[id(a)] is a.value for a in args)):
                     values[id(s)] = s.value
-                else:
-                    with np.errstate(all="ignore"):
-                        now = [values[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
-                        values[id(s)] = _replayed(s, now, self._snapped(s, args))
+                    continue
+                now = [values[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
+                with np.errstate(all="ignore"):
+                    values[id(s)] = done[s](now) if s in done else self.replayed(s, now)
             return values[id(step)]
 
         return value

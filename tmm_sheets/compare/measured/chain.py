@@ -2,22 +2,22 @@
 
 The numbers are taken in the order of drawing. What an earlier mistake does to a later number is told by drawing again with it: if
 what remains of a deviation is within tolerance, the number follows from that mistake and is not accused on its own. Otherwise a
-new chain starts: of all steps the number goes back to, that one was drawn wrong whose displacement explains most of what is left,
-with the numbers that are in order as witnesses. A number whose deviation explains nothing else was read or computed wrong.
+new chain starts, with what explains most of what is left (:mod:`~tmm_sheets.compare.measured.explaining`): something done
+otherwise, or a step drawn off. A number whose deviation explains nothing else was read or computed wrong.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from math import atan, degrees, hypot, isfinite, radians, tan
 from statistics import NormalDist
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
+from tmm_sheets.compare.measured.explaining import CURVED, Explanation, Sheet
+from tmm_sheets.compare.measured.judged import Judged, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
@@ -27,30 +27,14 @@ from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded, told
 from tmm_sheets.words import tell, tell_n
 
-CURVED = 0.05
-"""Share of what a mistake explains that may be off: its displacement is not known better."""
 SCALED = 4
 """Lengths of a plan from which a wrong scale factor is recognised."""
 SIMILAR_SCALES = 0.15
 """Difference of two scale factors, as a share, below which all lengths must tell of it."""
 ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
-USUAL = 10.0
-"""How far a misplaced point usually lies off, mm."""
 MOST = 10
 """Mistakes that are looked for; where there are more, another mechanism was drawn."""
-HUBER = 2.0
-"""Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
-ALONE = 0.9
-"""Share of the number it is looked for that a mistake has to explain, besides most of another one."""
-DRAWN = ("point", "vector", "length", "ordinate")
-"""What is off by millimetres; numbers and forces are off by a share of themselves."""
-NEAR = 0.01
-"""Displacement for derivatives where a mistake has led to, as a share of the usual one."""
-TRIED = 4
-"""Steps that are tried by drawing again, of those that explain most by the Jacobian."""
-NEARLY = 0.9
-"""Share of the best explanation with which another is as good."""
 SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
 LONG = 10.0
@@ -77,7 +61,8 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
         own = OwnNumbers(judged, errors)
         left = _wrong_scales([j for j in judged if id(j) not in computed])
         _against_own(own, {id(j) for j in left})
-        _chains(left, errors, own, computed)
+        labels = next((plan.labels for plan, _ in found.plans if plan.name == "positions"), ())
+        _chains(Sheet(left, errors, labels), own, computed)
     for j in judged:
         if id(j) in computed and j.verdict != "green":
             origin = _origin(j, computed)
@@ -121,7 +106,7 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     if not isfinite(tolerance) or (e.kind == "length" and exact > LONG and tolerance > exact):
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
-    deviation = angle_apart(measured, exact) if e.kind == "angle" else measured - exact
+    deviation = angle_apart(measured, exact, e.signed) if e.kind == "angle" else measured - exact
     judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size, reading=own)
     judged.remark = _remark(judged, measured, tolerance)
     return judged
@@ -239,8 +224,8 @@ def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list
     if times <= 0 or abs(times - 1) < 0.01 or len(explained) < needed:
         return []
     first = off[0]
-    said = tell("all lengths of this plan are {times} times the exact ones: another scale factor?")
-    first.starts, first.scale = True, said.format(times=told(f"{times:.3g}"))
+    first.starts = True
+    first.wrong = (Hypothesis("scale", "plan scale", first.entry.terms[-1][0], (), other=told(f"{times:.3g}")),)
     for j in explained:
         if j is not first and j.verdict != "green":
             j.follows = first
@@ -258,108 +243,9 @@ def _has_reason(off: list[Judged], judged: list[Judged]) -> bool:
 # --- chains -------------------------------------------------------------------------------------------------------------------
 
 
-class _Sheet:
-    """All judged numbers together: what is left of their deviations, and which steps each depends on."""
-
-    def __init__(self, judged: list[Judged], errors: Errors) -> None:
-        self.judged = judged
-        self.errors = errors
-        self.left = np.array([j.deviation for j in judged])
-        self.tolerance = np.array([j.tolerance for j in judged])
-        self.steps: dict[Place, Step] = {}
-        self.heads: set[Place] = set()
-        gradients: dict[Place, dict[int, complex]] = {}
-        for i, j in enumerate(judged):
-            if j.entry.head is not None:
-                self.heads.add(_place(j.entry.head, j.at))
-            for step, k, g in j.rows:
-                if g and isfinite(abs(g)):
-                    place = _place(step, k)
-                    self.steps[place] = step
-                    gradients.setdefault(place, {})[i] = g
-        self.by_place = {place: (np.array(list(of)), np.array([[g.real, g.imag] for g in of.values()]))
-                         for place, of in gradients.items()}
-        self.places = [[_place(step, k) for step, k, g in j.rows if g and isfinite(abs(g))] for j in judged]
-
-    def mistake(self, place: Place, exact: bool = False) -> Mistake:
-        """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
-
-        Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
-        construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do. A
-        point that nearly rests moves its speed alike to both sides: the search begins also with what its own plan alone tells.
-        """
-        found = self._descended(place, np.zeros(2), exact)
-        lines, gradient = self.by_place[place]
-        here = np.array([self.judged[i].entry.plan == self.steps[place].plan for i in lines])
-        if not exact or here.all() or not here.any():
-            return found
-        rows, aims = (gradient / self.tolerance[lines, None])[here], (self.left[lines] / self.tolerance[lines])[here]
-        usual = self._usual(place)
-        begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
-        return max(found, self._descended(place, begin, exact), key=lambda m: m.score)
-
-    def _usual(self, place: Place) -> npt.NDArray[np.float64]:
-        """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
-        of = self.steps[place]
-        mu = self.errors.scale(of) if of.rule.gives in DRAWN else 0.0
-        return np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
-
-    def _descended(self, place: Place, x: npt.NDArray[np.float64], exact: bool) -> Mistake:
-        """The best displacement that the search finds when it begins with ``x``."""
-        lines, gradient = self.by_place[place]
-        of, mu, usual = self.steps[place], self.errors.scale(self.steps[place]), self._usual(place)
-        rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
-        best = Mistake(place, of, x, np.eye(2), 0.0, mu)
-        for _ in range(6 if exact else 9):
-            if exact and x.any():
-                shares = self.shares(place, x) / self.tolerance[lines]
-                near = np.linalg.inv(usual) * NEAR
-                beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
-                rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
-                rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
-            else:
-                shares = rows @ x
-            if not (np.all(np.isfinite(shares)) and np.all(np.isfinite(rows))):
-                break
-            score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
-            if score > best.score:
-                best = Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
-            weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
-            step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
-                                       np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
-            if np.abs(rows @ step).max() < 0.01:
-                break
-            x = x + step
-        return best
-
-    def can_be_wrong(self, place: Place) -> bool:
-        """False for what follows from the project file alone and was not written down: nobody has seen it wrong."""
-        error = self.errors.error(self.steps[place])
-        return place in self.heads or bool(error[min(place[1], len(error) - 1)] > 0)
-
-    def helps(self, mistake: Mistake, i: int) -> bool:
-        """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
-        if np.hypot(*mistake.moved) < 2 * self.errors.pencil * mistake.mu:
-            return False  # that is the pencil
-        shares = self.shares(mistake.place, mistake.moved)
-        return any(j != i and self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])
-                   for j, share in zip(self.by_place[mistake.place][0], shares, strict=True))
-
-    def shares(self, place: Place, x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
-        value = self.errors.displaced(self.steps[place], place[1], complex(*x))
-        return np.array([self.judged[i].changed(value) for i in self.by_place[place][0]])
-
-
-def _loss(r: Any) -> Any:
-    """Huber's loss of what is beyond the tolerance: square, and straight for what is far off."""
-    size = np.maximum(np.abs(r) - 1, 0)
-    return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
-
-
-def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers, computed: Mapping[int, list[Judged]]) -> None:
+def _chains(sheet: Sheet, own: OwnNumbers, computed: Mapping[int, list[Judged]]) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
-    sheet = _Sheet(judged, errors)
+    judged = sheet.judged
     open_ = np.array([j.verdict == "red" for j in judged])
     beyond, tried = _beyond_chance(len(judged)), 0
     while open_.any():
@@ -371,28 +257,55 @@ def _chains(judged: list[Judged], errors: Errors, own: OwnNumbers, computed: Map
             continue
         start.starts = True
         tried += 1
-        mistake = _best(sheet, int(first)) if tried <= MOST else None
-        if mistake is None:
-            continue
-        lines, gradient = sheet.by_place[mistake.place]
-        shares = sheet.shares(mistake.place, mistake.moved)
-        uncertain = np.sqrt(np.einsum("ni,ij,nj->n", gradient, mistake.uncertain, gradient))
-        start.mistake = mistake
-        for i, share, doubt in zip(lines, shares, uncertain, strict=True):
-            j, before = judged[i], sheet.left[i]
-            if (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
-                continue  # the mistake did not reach it, or with it nothing could be drawn
-            sheet.left[i] -= share
-            # What is left need not be better than other numbers: amber is accused of nothing.
-            allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt), CURVED * float(share))
-            explained = abs(sheet.left[i]) <= allowed
-            if explained and abs(share) > SHARE * j.tolerance and not j.starts and abs(sheet.left[i]) < abs(before):
+        found = sheet.explanation(int(first)) if tried <= MOST else None
+        if found is None:
+            _wrong_row(start, judged)
+        else:
+            start.mistake, start.wrong = found.mistake, found.wrong
+            sheet.accept(found)
+            for i in _follow(sheet, start, found, beyond):
                 open_[i] = False
-                if j.follows is None:
-                    j.follows = start
     for j in judged:
         if j.verdict == "red" and not j.starts and j.follows is None:
             j.follows = _own_reason(own, j, computed)
+
+
+def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
+    """A number that explains nothing else may be that of a neighbouring row: of the same plan, or of the next position."""
+    e, i = start.entry, judged.index(start)
+    if not e.terms:
+        return
+    beside = [judged[n] for n in (i - 1, i + 1) if 0 <= n < len(judged) and judged[n].entry.plan == e.plan]
+    alike = [j for j in judged if (j.entry.title, j.entry.quantity) == (e.title, e.quantity)]
+    at = alike.index(start)
+    beside += [alike[n] for n in (at - 1, at + 1) if 0 <= n < len(alike)]
+    for j in beside:
+        near = max(start.line.half_digit + j.line.half_digit, start.reading / 2)
+        if j.entry.unit == e.unit and abs(start.line.value - j.exact) <= j.tolerance and (
+                j.verdict == "red" or abs(start.line.value - j.line.value) <= near):
+            place = f"({j.entry.label}) " if j.entry.label else ""
+            start.wrong = (Hypothesis("neighbour", "row", e.terms[-1][0], (), other=f"{place}{j.entry.quantity}"),)
+            return
+
+
+def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> Iterator[int]:
+    """Take from all numbers what a mistake makes of them; those that are in order then follow from the number it starts with."""
+    for i, (j, share, doubt) in enumerate(zip(sheet.judged, found.shares, found.doubt, strict=True)):
+        before = sheet.left[i]
+        if not share or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
+            continue  # the mistake did not reach it, or with it nothing could be drawn
+        sheet.left[i] = j.apart(before - share)
+        # What is left need not be better than other numbers: amber is accused of nothing.
+        allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt))
+        explained = abs(sheet.left[i]) <= allowed and abs(share) > SHARE * j.tolerance and abs(sheet.left[i]) < abs(before)
+        if explained and found.wrong and j.off_own and j is not start:
+            # Not from his own numbers by the rule, but by what he did instead.
+            j.off_own = j.starts = False
+            j.remark = ""
+        if explained and not j.starts:
+            yield i
+            if j.follows is None:
+                j.follows = start
 
 
 def _beyond_chance(count: int) -> float:
@@ -442,22 +355,6 @@ def _contradicts(j: Judged, made: OwnValue, beyond: float) -> bool:
     if any(m.verdict == "red" and np.iscomplexobj(step.value) for m, _ in made.reasons for step, _, _ in m.entry.terms):
         return False
     return j.verdict == "red" or all(m.verdict == "green" for m, _ in made.reasons)
-
-
-def _best(sheet: _Sheet, i: int) -> Mistake | None:
-    """The mistake behind a red number; None when it explains nothing else: a slip in reading or computing this one."""
-    candidates = sorted((sheet.mistake(place) for place in sheet.places[i] if sheet.can_be_wrong(place)), key=lambda m: -m.score)
-    candidates = [sheet.mistake(m.place, exact=True) for m in candidates[:TRIED]]
-    alone = float(_loss(sheet.left[i] / sheet.tolerance[i]))
-    own = sheet.judged[i].entry.head
-    good = [m for m in candidates if m.score > alone * ALONE and sheet.helps(m, i)]
-    if not good:
-        return None
-    best = max(m.score for m in good)
-    near = [m for m in good if m.score >= NEARLY * best]
-    head = None if own is None else _place(own, sheet.judged[i].at)
-    # Of steps that explain equally well the one that was measured here, else one that was measured at all.
-    return max(near, key=lambda m: (m.place == head, m.place in sheet.heads, m.score))
 
 
 def _place(step: Step, k: int) -> Place:

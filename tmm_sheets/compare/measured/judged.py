@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import degrees
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.measured.measurable import Measurable
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
+from tmm_sheets.compare.measured.measurable import Measurable, angle_apart
 from tmm_sheets.compare.measured.measured_file import MeasuredLine
 from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.construction.step import Step, value_at
@@ -35,6 +37,7 @@ class Judged:
     """A measured number with its judgement, in its own unit.
 
     ``follows`` is the number in which its chain of errors starts, itself not included; ``starts`` is True for such a number.
+    ``wrong`` are the discrete mistakes that explain it, the first of them the one that is told, ``mistake`` a displaced step.
     ``tolerance`` is infinite where the construction has none to give, ``reading`` the part of it that reading and computing have.
     """
 
@@ -45,8 +48,8 @@ class Judged:
     rows: list[tuple[Step, int, complex]]
     follows: Judged | None = None
     starts: bool = False
-    scale: str = ""
     mistake: Mistake | None = None
+    wrong: tuple[Hypothesis, ...] = ()
     remark: str = ""
     inconsistent: bool = False
     off_own: bool = False
@@ -72,6 +75,10 @@ class Judged:
         """Deviation in per cent of the exact value; None where that is zero."""
         return 100 * self.deviation / abs(self.exact) if abs(self.exact) > 1e-9 else None
 
+    def apart(self, x: float) -> float:
+        """A difference of two of such numbers: of angles the short way round."""
+        return angle_apart(x, 0.0, self.entry.signed) if self.entry.kind == "angle" else x
+
     @property
     def at(self) -> int:
         """Number of the position among those of the plans."""
@@ -92,6 +99,11 @@ class Judged:
         elif e.is_size:
             (step, k, _), = e.terms
             change = abs(complex(value_at(step, k)) + moved(step, k)) - e.value
+        elif e.kind == "angle" and np.iscomplexobj(e.terms[-1][0].value):
+            foot, tip = (0j, *(complex(value_at(step, k)) for step, k, _ in e.terms))[-2:]
+            from_foot, to_tip = (0j, *(moved(step, k) for step, k, _ in e.terms))[-2:]
+            with np.errstate(all="ignore"):
+                change = self.apart(degrees(np.angle((tip + to_tip - foot - from_foot) / (tip - foot))))
         else:
             change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
             if len(e.terms) == 1 and not e.signed and e.kind != "angle":

@@ -75,7 +75,7 @@ class Measurable:
     head
         the step that a length is drawn or measured for: where an error would lie.
     signed
-        False where a magnitude is asked for.
+        False where a magnitude is asked for; of an angle, where a line is meant that points neither way.
     slope
         of an angle on a diagram: keys of the scale factors of its abscissa and ordinate, which its tangent depends on.
     squares
@@ -219,9 +219,10 @@ def magnitude(entry: Measurable) -> Measurable:
     return replace(entry, signed=False, value=-entry.value, terms=tuple((s, k, -g) for s, k, g in entry.terms))
 
 
-def angle_apart(a: float, b: float) -> float:
-    """Difference of two angles in degrees, the short way round; a line drawn the other way is the same line."""
-    return (a - b + 90.0) % 180.0 - 90.0
+def angle_apart(a: float, b: float, sense: bool = False) -> float:
+    """Difference of two angles in degrees, the short way round; a line drawn the other way is the same one without ``sense``."""
+    half = 180.0 if sense else 90.0
+    return (a - b + half) % (2 * half) - half
 
 
 def scalar(found: Measurables, title: str, name: str, value: Any, unit: str, terms: Iterable[Term] = (), *, scale: str = "",

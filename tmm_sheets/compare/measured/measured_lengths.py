@@ -164,13 +164,19 @@ def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
 
 
 def _what(j: Judged) -> str:
-    if j.scale:
-        return j.scale
+    if j.wrong:
+        return tell("; or: ").join(h.said() for h in j.wrong)
     said = tell("{measured} instead of {exact}, {times} times the tolerance") if j.tolerance > EXACT else tell(
         "{measured} instead of {exact}")
     times = told(f"{abs(j.deviation) / j.tolerance:.3g}")
     text = said.format(measured=_with_unit(j), exact=_exact(j), times=times)
     return "; ".join(part for part in (text, _where(j), j.remark) if part)
+
+
+def _step(j: Judged) -> str | None:
+    """Name of the step that was done wrong."""
+    step = j.wrong[0].step if j.wrong else j.mistake.step if j.mistake is not None else None
+    return None if step is None else step.name
 
 
 def _sentence(mistake: Mistake) -> str:
@@ -207,7 +213,8 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
         "scales": dict(filled.factors),
         "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
                     "following": len(judged) - len(own), "empty": filled.empty},
-        "starts": [{"id": j.entry.id, "why": _what(j), "step": None if j.mistake is None else j.mistake.step.name,
+        "starts": [{"id": j.entry.id, "why": _what(j), "step": _step(j), "kind": j.wrong[0].kind if j.wrong else None,
+                    "or": [h.said() for h in j.wrong[1:]],
                     "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}
                    for j in sorted(judged, key=lambda j: j.order) if j.starts],
         "numbers": [{

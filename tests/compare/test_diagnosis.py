@@ -1,0 +1,56 @@
+"""Plans drawn again with a mistake: against vector equations solved here, and told by the numbers of who made it."""
+
+import numpy as np
+import pytest
+
+from tests.compare.students import opened
+from tmm_sheets.compare.diagnosis.hypotheses import hypotheses
+from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
+
+
+@pytest.fixture(scope="module")
+def shaper():
+    return opened("lugansk/shaper")
+
+
+def of(found, plan_name, kind, k=2):
+    """Values of a plan's steps at position ``k`` with the only mistake of a kind, and without."""
+    plans = {plan.name: plan for plan, _ in found.plans}
+    plan = plans[plan_name]
+    one, = (h for h in hypotheses(plan, k, plan.labels) if h.kind == kind)
+    value = replay(found.errors({}, 0.25, 0.5), one.changes)
+    return {s.name: np.asarray(value(s)) for s in plan}, plans
+
+
+def test_coriolis_the_other_way(shaper):
+    """a_B3 = a_B - a_k + a_r = a_n + a_t: two unknowns along and across the rocker, solved as a linear system."""
+    drawn, plans = of(shaper, "accelerations", "coriolis")
+    exact = {s.name: np.asarray(s.value) for s in plans["accelerations"]}
+    velocities = {s.name: np.asarray(s.value) for s in plans["velocities"]}
+    positions = {s.name: s.value for s in plans["positions"]}
+    k = 2
+    along = (positions["B"][k] - positions["C"]) / abs(positions["B"][k] - positions["C"])
+    coriolis = 2j * velocities["ω3"][k] * (velocities["b3"][k] - velocities["b"][k])
+    start, end = exact["b"][k] - coriolis, exact["n"][k]
+    u, v = along, 1j * along
+    r, _ = np.linalg.solve([[u.real, -v.real], [u.imag, -v.imag]], [(end - start).real, (end - start).imag])
+    assert drawn["k"][k] == pytest.approx(start, rel=1e-12)
+    assert drawn["b3"][k] == pytest.approx(start + r * u, rel=1e-9)
+    assert drawn["d"][k] == pytest.approx((start + r * u) * 0.566 / abs(positions["B"][k] - positions["C"]), rel=1e-9)
+    assert drawn["b3"][3] == exact["b3"][3]
+
+
+def test_two_changes_in_one_replay(shaper):
+    """A point off by 3 mm and Coriolis the other way: both, whichever is named first."""
+    plans = {plan.name: plan for plan, _ in shaper.plans}
+    acc, errors = plans["accelerations"], shaper.errors({}, 0.25, 0.5)
+    one, = (h for h in hypotheses(acc, 2, acc.labels) if h.kind == "coriolis")
+    off = Change(acc["n"], displaced(0.15j), 2)
+    both = [replay(errors, some)(acc["b3"]) for some in ((*one.changes, off), (off, *one.changes))]
+    alone = replay(errors, one.changes)(acc["b3"])
+    u = plans["positions"]["CB"].value
+    assert np.array_equal(*both)
+    # The line from k along the rocker stays, that across it from n goes with n: b3 moves along the rocker.
+    moved = both[0] - alone
+    assert moved[2] == pytest.approx((0.15j * np.conj(u[2])).real * u[2], rel=1e-9)
+    assert not moved[[0, 1, 3, 4]].any()

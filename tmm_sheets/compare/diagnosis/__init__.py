@@ -1,0 +1,1 @@
+"""What was done wrong: discrete hypotheses, each replayed through the record and held against what was measured."""

@@ -1,0 +1,251 @@
+"""What a student may have done otherwise: the mistakes that are made with recorded rules, each as changes that can be replayed.
+
+A mistake is read off the rule of a step, never off its name: where a vector is laid off it may be laid off backwards, where a line
+crosses another it may be drawn parallel for perpendicular, where there are two intersections the other one may be taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from inspect import signature
+from typing import Any, Literal
+
+import numpy as np
+
+from tmm_sheets.compare.diagnosis.replay import (
+    Change,
+    Done,
+    argument,
+    laid_off,
+    laid_off_backwards,
+    of_position,
+    opposite,
+)
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.protocol import letter_of
+from tmm_sheets.construction.step import Rule, Step, value_at
+from tmm_sheets.methods.linkage import accelerations, forces, loads, velocities, zhukovsky
+from tmm_sheets.numbers import told
+from tmm_sheets.words import marked, tell
+
+Kind = Literal["coriolis", "normal", "sense", "parallel", "intersection", "inertia", "force", "moment", "mirror", "crank",
+               "neighbour", "scale"]
+"""Kinds of mistakes, the more usual ones first."""
+
+LINKAGE = ("positions", "velocities", "accelerations", "loads", "moments", "lever")
+"""Plans whose steps are tried, besides the force polygons."""
+WORDS: Mapping[str, str] = {
+    "coriolis": marked("the Coriolis acceleration, the vector to {step}, is laid off the other way"),
+    "normal": marked("the normal acceleration, the vector to {step}, is laid off outwards instead of towards the centre"),
+    "tangential": marked("the tangential acceleration, the vector to {step}, is laid off against ε"),
+    "turning": marked("the sense of {step} is the other one"),
+    "crank velocity": marked("the velocity of the crank pin, the vector to {step}, is laid off against the rotation"),
+    "crank": marked("the crank turns the other way: point {step} is on the other side at every position"),
+    "parallel": marked("for point {step} a line is drawn parallel to {other} instead of perpendicular"),
+    "perpendicular": marked("for point {step} a line is drawn perpendicular to {other} instead of parallel"),
+    "intersection": marked("point {step} is the other intersection"),
+    "assembly": marked("point {step} is the other intersection at every position: the other assembly"),
+    "inertia": marked("the force of inertia {step} is taken along the acceleration instead of against it"),
+    "inertia moment": marked("the moment of the inertia forces {step} is taken along ε instead of against it"),
+    "force": marked("the force {step} is taken in the other sense"),
+    "laid off": marked("in the force polygon {other} is laid off the other way, as the side to {step}"),
+    "reaction": marked("{step} is taken in the sense of {other}, not opposite to it"),
+    "component": marked("the component {step} is taken in the other sense"),
+    "moment": marked("in the equation of moments {step} the moment of {other} has the wrong sign"),
+    "across": marked("the plan is mirrored, left and right exchanged"),
+    "upside down": marked("the plan is mirrored, top and bottom exchanged"),
+    "plan scale": marked("all lengths of this plan are {other} times the exact ones: another scale factor?"),
+    "computed scale": marked("what is computed from this plan is {other} times as large: another scale factor was taken"),
+    "vector scale": marked("the vector to {step} is laid off {other} times as long: another scale factor"),
+    "row": marked("that is the number of {other}: written into the wrong row?"),
+    "position": marked("for {step} the number of position {other} is taken"),
+    "number": marked("for {step} the number of {other} is taken"),
+}
+"""How they are told; ``step`` is where the mistake was made, ``other`` what it was mistaken for or done with."""
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One mistake: its kind, the key of its words, the step it was made in, the changes to replay.
+
+    ``at`` is the number of the position, None where it was made at every one; ``other`` what stands in the words besides.
+    ``on_paper`` is the plan whose lengths are right all the same: only what was made of them is not.
+    """
+
+    kind: Kind
+    words: str
+    step: Step
+    changes: tuple[Change, ...]
+    at: int | None = None
+    other: str = ""
+    on_paper: str = ""
+
+    def said(self) -> str:
+        """The mistake as it is told to the reader."""
+        return tell(WORDS[self.words]).format(step=letter_of(self.step), other=self.other)
+
+
+def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = ()) -> Iterator[Hypothesis]:
+    """Mistakes that can be made in some steps of the linkage at position number ``k``, and at every position.
+
+    ``labels`` are those of the positions of these plans; steps of other plans, or with other positions, are left alone.
+    """
+    some = [s for s in steps if (s.plan in LINKAGE or s.plan.startswith("force-")) and np.shape(s.value) in ((), (len(labels),))]
+    for step in some:
+        yield from _of_step(step, k)
+        yield from _neighbours(step, k, labels)
+    by_plan: dict[str, list[Step]] = {}
+    for step in some:
+        by_plan.setdefault(step.plan, []).append(step)
+    for name, of_plan in by_plan.items():
+        yield from _among(of_plan, k)
+        if name in MIRRORED:
+            yield from _mirrored(of_plan, k)
+
+
+# --- one step --------------------------------------------------------------------------------------------------------------
+
+BACKWARDS: Mapping[Rule, tuple[Kind, str]] = {
+    accelerations.CORIOLIS: ("coriolis", "coriolis"), accelerations.NORMAL: ("normal", "normal"),
+    accelerations.TANGENTIAL: ("sense", "tangential"),
+}
+"""Vectors laid off from a point of their plan."""
+FACTORS = (0.1, 0.2, 0.5, 2.0, 5.0, 10.0)
+"""What scale factors differ by that are taken for each other."""
+OTHER_SIGN: Mapping[Rule, tuple[Kind, str]] = {
+    velocities.ANGULAR_VELOCITY: ("sense", "turning"), accelerations.ANGULAR_ACCELERATION: ("sense", "turning"),
+    velocities.CRANK_VELOCITY: ("sense", "crank velocity"),
+    forces.INERTIA: ("inertia", "inertia"), forces.COUPLE: ("inertia", "inertia moment"),
+    forces.WEIGHT: ("force", "force"), forces.GIVEN_FORCE: ("force", "force"), loads.FORCE: ("force", "force"),
+    forces.TANGENTIAL: ("force", "component"),
+}
+REACTIONS = (forces.OPPOSITE,)
+MIRRORED = ("velocities", "accelerations")
+"""Plans with a pole, about which they may be mirrored."""
+
+
+def _of_step(step: Step, k: int) -> Iterator[Hypothesis]:
+    """Mistakes that the rule of one step can be done with."""
+    rule = step.rule
+    if rule in BACKWARDS:
+        kind, words = BACKWARDS[rule]
+        yield Hypothesis(kind, words, step, (Change(step, laid_off_backwards, k),), k)
+    if (rule in BACKWARDS or rule is rules.SHIFT) and isinstance(step.args[1], Step):
+        yield from (Hypothesis("scale", "vector scale", step, (Change(step, laid_off(times), k),), k, told(f"{times:g}"))
+                    for times in FACTORS)
+    if rule in OTHER_SIGN:
+        kind, words = OTHER_SIGN[rule]
+        yield Hypothesis(kind, words, step, (Change(step, opposite, k),), k)
+    if rule is rules.SHIFT and isinstance(step.args[1], Step):
+        yield Hypothesis("force", "laid off", step, (Change(step, laid_off_backwards, k),), k, letter_of(step.args[1]))
+    if rule in REACTIONS:
+        yield Hypothesis("force", "reaction", step, (Change(step, opposite, k),), k, letter_of(step.args[0]))
+    if rule is rules.LINE_LINE:
+        yield from (_turned(step, i, k) for i in (1, 3) if isinstance(step.args[i], Step))
+    if rule is rules.LAY_OFF and np.ndim(step.value):
+        first = float(value_at(step.args[2], 0))
+        yield Hypothesis("crank", "crank", step, (Change(step, argument(2, lambda phi: 2 * first - phi)),))
+    names = list(signature(rule.compute).parameters)
+    if "side" in names:
+        other = argument(names.index("side"), lambda side: -side)
+        yield Hypothesis("intersection", "intersection", step, (Change(step, other, k),), k)
+        if np.ndim(step.value):
+            yield Hypothesis("intersection", "assembly", step, (Change(step, other),))
+    yield from _moments(step, k)
+
+
+def _turned(step: Step, i: int, k: int) -> Hypothesis:
+    """A line drawn parallel for perpendicular, or the other way round."""
+    line: Step = step.args[i]
+    change = Change(step, argument(i, lambda u: 1j * u), k)
+    if line.rule is rules.TURN:
+        return Hypothesis("parallel", "parallel", step, (change,), k, letter_of(line.args[0]))
+    return Hypothesis("parallel", "perpendicular", step, (change,), k, letter_of(line))
+
+
+def _moments(step: Step, k: int) -> Iterator[Hypothesis]:
+    """One term of an equation of moments with the wrong sign: a force or a couple."""
+    if step.rule is forces.MOMENTS:
+        terms = [i for i in range(1, len(step.args)) if i % 3 != 1]
+    elif step.rule is zhukovsky.BALANCE:
+        terms = list(range(4, len(step.args), 2))
+    else:
+        return
+    for i in terms:
+        term = step.args[i]
+        if isinstance(term, Step) and complex(value_at(term, k)):
+            change = Change(step, argument(i, lambda x: -x), k)
+            yield Hypothesis("moment", "moment", step, (change,), k, letter_of(term))
+
+
+# --- a number of a neighbour -----------------------------------------------------------------------------------------------
+
+TURNING = (velocities.ANGULAR_VELOCITY, accelerations.ANGULAR_ACCELERATION)
+COMPUTED = (*TURNING, forces.INERTIA, forces.COUPLE, loads.FORCE, loads.MOMENT)
+
+
+def _neighbours(step: Step, k: int, labels: Sequence[str]) -> Iterator[Hypothesis]:
+    """A computed number taken from the column of a neighbouring position."""
+    if step.rule in COMPUTED and np.ndim(step.value) and np.size(step.value) == len(labels):
+        for at in {(k - 1) % len(labels), (k + 1) % len(labels)} - {k}:
+            yield Hypothesis("neighbour", "position", step, (Change(step, of_position(at), k),), k, labels[at])
+
+
+def _among(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
+    """The angular velocity or acceleration of another link taken."""
+    for rule in TURNING:
+        of_rule = [s for s in steps if s.rule is rule]
+        for step in of_rule:
+            for other in of_rule:
+                if other is not step:
+                    yield Hypothesis("neighbour", "number", step, (Change(step, _taken(other), k),), k, letter_of(other))
+
+
+def _taken(other: Step) -> Done:
+    return lambda again, values: other.value
+
+
+# --- a whole plan ----------------------------------------------------------------------------------------------------------
+
+
+def _mirrored(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
+    """A plan drawn as its own mirror image about its pole: all lengths are right in it, what is taken from it is not."""
+    here = {id(s) for s in steps}
+    moved = [s for s in steps if s.rule.gives in ("point", "vector")]
+    last = moved[-1] if moved else None
+    for words, mirror in (("across", lambda z: -np.conj(z)), ("upside down", np.conj)):
+        changes = tuple(Change(s, _as_mirrored(s, here, mirror), k) for s in moved)
+        changes += tuple(Change(s, _sense_from(s, here, mirror), k) for s in steps if s.rule in TURNING)
+        if last is not None:
+            yield Hypothesis("mirror", words, last, changes, k)
+
+
+def computed_with(steps: Sequence[Step], times: float, said: str) -> Hypothesis:
+    """Numbers taken from a plan with another scale factor than it is drawn with: ``times`` as large, all its lengths right."""
+    here = {id(s) for s in steps}
+    moved = [s for s in steps if s.rule.gives in ("point", "vector")]
+
+    def scaled(step: Step) -> Done:
+        return lambda again, values: times * again(*_back(step, values, here, lambda z: z / times))
+
+    changes = tuple(Change(s, scaled(s)) for s in moved)
+    return Hypothesis("scale", "computed scale", moved[-1], changes, other=said, on_paper=moved[-1].plan)
+
+
+def _as_mirrored(step: Step, here: set[int], mirror: Callable[[Any], Any]) -> Done:
+    """Done from the mirror images of the plan's own points and mirrored then."""
+    return lambda again, values: mirror(again(*_back(step, values, here, mirror)))
+
+
+def _sense_from(step: Step, here: set[int], mirror: Callable[[Any], Any]) -> Done:
+    """A number whose size comes from lengths, which are right, and whose sense from how they lie."""
+    return lambda again, values: np.copysign(again(*_back(step, values, here, mirror)), again(*values))
+
+
+def _back(step: Step, values: Sequence[Any], here: set[int], mirror: Callable[[Any], Any]) -> list[Any]:
+    """Values of the arguments with the plan's own points as they would lie unmirrored."""
+    own = [isinstance(a, Step) and id(a) in here and a.rule.gives in ("point", "vector") for a in step.args]
+    return [mirror(v) if mine else v for v, mine in zip(values, own, strict=False)]
+
+

@@ -1,0 +1,284 @@
+"""What explains a number that is not in order: something done otherwise, or a step drawn off, with all numbers as witnesses.
+
+Discrete mistakes come first: each is drawn again (:mod:`~tmm_sheets.compare.diagnosis`), and of those that leave little of the
+number's deviation the one that explains most of all numbers wins. A displaced point is told only where its displacement, of which
+nothing is known beforehand, explains more than any of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, computed_with, hypotheses
+from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
+from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
+from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.step import Step, ordered, value_at
+from tmm_sheets.numbers import told
+
+Floats = npt.NDArray[np.float64]
+CURVED = 0.05
+"""Share of what a mistake explains that may be off: its displacement is not known better."""
+USUAL = 10.0
+"""How far a misplaced point usually lies off, mm."""
+HUBER = 2.0
+"""Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
+ALONE = 0.9
+"""Share of the number it is looked for that a mistake has to explain, besides most of another one."""
+DRAWN = ("point", "vector", "length", "ordinate")
+"""What is off by millimetres; numbers and forces are off by a share of themselves."""
+NEAR = 0.01
+"""Displacement for derivatives where a mistake has led to, as a share of the usual one."""
+TRIED = 4
+"""Steps that are tried by drawing again, of those that explain most by the Jacobian."""
+NEARLY = 0.9
+"""Share of the best explanation with which another is as good."""
+EQUAL = 0.98
+"""Share of the best discrete explanation with which another cannot be told from it."""
+LEFT = 2.0
+"""Tolerances that a discrete mistake may leave of the number it is looked for."""
+SPOILT = 3.0
+"""Tolerances by which a discrete mistake would spoil a number that it cannot have been made before when that is in order."""
+APART = 0.05
+"""Share by which a scale factor is another one."""
+TOLD = 3
+"""Mistakes that are told of those that cannot be told apart."""
+
+
+_KINDS = get_args(Kind)
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What was done wrong and what it makes of the numbers.
+
+    Attributes
+    ----------
+    changes : to be replayed
+    shares, doubt : what it makes of each number, and how well that is known; in the unit of the number
+    score : how much of all deviations it explains
+    wrong : discrete mistakes that are equally good, the first of them is told
+    mistake : a displaced step where it is none of these
+    """
+
+    changes: tuple[Change, ...]
+    shares: Floats
+    doubt: Floats
+    score: float
+    wrong: tuple[Hypothesis, ...] = ()
+    mistake: Mistake | None = None
+
+
+class Sheet:
+    """All judged numbers together: what is left of their deviations, and which steps each depends on.
+
+    ``labels`` are those of the positions of the linkage.
+    """
+
+    def __init__(self, judged: list[Judged], errors: Errors, labels: Sequence[str]) -> None:
+        self.judged = judged
+        self.errors = errors
+        self.labels = labels
+        self.left = np.array([j.deviation for j in judged])
+        self.tolerance = np.array([j.tolerance for j in judged])
+        self.changes: list[Change] = []
+        self.predicted = np.zeros(len(judged))
+        self.steps: dict[Place, Step] = {}
+        self.heads: set[Place] = set()
+        gradients: dict[Place, dict[int, complex]] = {}
+        for i, j in enumerate(judged):
+            if j.entry.head is not None:
+                self.heads.add(_place(j.entry.head, j.at))
+            for step, k, g in j.rows:
+                if g and isfinite(abs(g)):
+                    place = _place(step, k)
+                    self.steps[place] = step
+                    gradients.setdefault(place, {})[i] = g
+        self.by_place = {place: (np.array(list(of)), np.array([[g.real, g.imag] for g in of.values()]))
+                         for place, of in gradients.items()}
+        self.places = [[_place(step, k) for step, k, g in j.rows if g and isfinite(abs(g))] for j in judged]
+
+    def explanation(self, i: int) -> Explanation | None:
+        """What explains a number best; None when nothing does: a slip in reading or computing this one."""
+        done, off = self._otherwise(i), self._displaced(i)
+        if done is None or (off is not None and off.score * NEARLY > done.score):
+            return off
+        return done
+
+    def accept(self, found: Explanation) -> None:
+        """Go on with what is left when a mistake is known."""
+        self.changes += found.changes
+        self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
+
+    # --- something done otherwise -----------------------------------------------------------------------------------------
+    def _otherwise(self, i: int) -> Explanation | None:
+        """The discrete mistake that explains a number, with those that cannot be told from it."""
+        alone = float(_loss(self.left[i] / self.tolerance[i]))
+        found = [(h, self._drawn(h)) for h in self._hypotheses(i) if self._leaves_little(i, h)]
+        best = max((e.score for _, e in found), default=0.0)
+        if best <= ALONE * alone:
+            return None
+        # Of equally good ones the more usual first.
+        equal = [(h, e) for h, e in found if e.score >= EQUAL * best]
+        first = equal[0][1]
+        return Explanation(first.changes, first.shares, first.doubt, first.score, tuple(h for h, _ in equal[:TOLD]))
+
+    def _hypotheses(self, i: int) -> list[Hypothesis]:
+        """Mistakes that may have been made before a number, the more usual kinds first."""
+        j = self.judged[i]
+        if not self.labels:
+            return []
+        before = list(ordered((step for step, _, _ in j.entry.terms),
+                              lambda step: [a for a in self.errors.arguments(step) if isinstance(a, Step)]))
+        k = self.labels.index(j.entry.label) if j.entry.label in self.labels else 0
+        found = [*hypotheses(before, k, self.labels), *self._computed_with(i, before)]
+        return sorted(found, key=lambda h: _KINDS.index(h.kind))
+
+    def _computed_with(self, i: int, before: Sequence[Step]) -> Iterator[Hypothesis]:
+        """That a result, and all others of its plan, was computed with another scale factor."""
+        j = self.judged[i]
+        of_plan = [s for s in before if s.plan == j.entry.scale]
+        if j.entry.kind == "result" and j.entry.reading and j.exact and of_plan:
+            times = float(j.line.value / j.exact)
+            if times > 0 and abs(times - 1) > APART:
+                yield computed_with(of_plan, times, told(f"{times:.3g}"))
+
+    def _leaves_little(self, i: int, h: Hypothesis) -> bool:
+        """Whether a number is nearly what it would be with a mistake, and would not be so without."""
+        share = self._shares(h, [i])[0]
+        left, allowed = self.left[i] - share, np.hypot(self.tolerance[i], CURVED * share)
+        return bool(isfinite(share) and abs(share) > self.tolerance[i] and abs(left) <= LEFT * allowed)
+
+    def _drawn(self, h: Hypothesis) -> Explanation:
+        """The construction with a mistake, held against all numbers."""
+        shares = self._shares(h, range(len(self.judged)))
+        doubt = CURVED * np.abs(shares)
+        # With what cannot be drawn any more nothing is explained.
+        known = np.isfinite(shares) & np.isfinite(self.tolerance)
+        left, tolerance = self.left[known], self.tolerance[known]
+        after = (left - shares[known]) / np.hypot(tolerance, doubt[known])
+        score = float(np.sum(_loss(left / tolerance)) - np.sum(_loss(after)))
+        # However much it explains besides: what is in order was not spoilt.
+        if np.any((np.abs(left) <= tolerance) & (np.abs(after) > SPOILT)):
+            score = 0.0
+        return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score)
+
+    def _shares(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
+        """What a discrete mistake makes of some numbers."""
+        value = self._with(h.changes)
+        return np.array([0.0 if j.entry.kind != "result" and j.entry.plan == h.on_paper else j.changed(value) - self.predicted[i]
+                         for i, j in ((i, self.judged[i]) for i in lines)])
+
+    def _with(self, changes: Sequence[Change]) -> Any:
+        """The construction with the mistakes found so far and further ones."""
+        return replay(self.errors, [*self.changes, *changes])
+
+    # --- a step drawn off -------------------------------------------------------------------------------------------------
+    def _displaced(self, i: int) -> Explanation | None:
+        """The displaced step behind a red number; None when it explains nothing else."""
+        candidates = sorted((self.mistake(place) for place in self.places[i] if self.can_be_wrong(place)), key=lambda m: -m.score)
+        candidates = [self.mistake(m.place, exact=True) for m in candidates[:TRIED]]
+        alone = float(_loss(self.left[i] / self.tolerance[i]))
+        own = self.judged[i].entry.head
+        good = [m for m in candidates if m.score > alone * ALONE and self.helps(m, i)]
+        if not good:
+            return None
+        best = max(m.score for m in good)
+        near = [m for m in good if m.score >= NEARLY * best]
+        head = None if own is None else _place(own, self.judged[i].at)
+        # Of steps that explain equally well the one that was measured here, else one that was measured at all.
+        m = max(near, key=lambda m: (m.place == head, m.place in self.heads, m.score))
+        lines, gradient = self.by_place[m.place]
+        shares, doubt = np.zeros((2, len(self.judged)))
+        shares[lines] = self.shares(m.place, m.moved)
+        doubt[lines] = np.hypot(np.sqrt(np.einsum("ni,ij,nj->n", gradient, m.uncertain, gradient)), CURVED * np.abs(shares[lines]))
+        return Explanation((self._change(m.place, m.moved),), shares, doubt, m.score, mistake=m)
+
+    def mistake(self, place: Place, exact: bool = False) -> Mistake:
+        """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
+
+        Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
+        construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do. A
+        point that nearly rests moves its speed alike to both sides: the search begins also with what its own plan alone tells.
+        """
+        found = self._descended(place, np.zeros(2), exact)
+        lines, gradient = self.by_place[place]
+        here = np.array([self.judged[i].entry.plan == self.steps[place].plan for i in lines])
+        if not exact or here.all() or not here.any():
+            return found
+        rows, aims = (gradient / self.tolerance[lines, None])[here], (self.left[lines] / self.tolerance[lines])[here]
+        usual = self._usual(place)
+        begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
+        return max(found, self._descended(place, begin, exact), key=lambda m: m.score)
+
+    def _usual(self, place: Place) -> npt.NDArray[np.float64]:
+        """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
+        of = self.steps[place]
+        mu = self.errors.scale(of) if of.rule.gives in DRAWN else 0.0
+        return np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
+
+    def _descended(self, place: Place, x: npt.NDArray[np.float64], exact: bool) -> Mistake:
+        """The best displacement that the search finds when it begins with ``x``."""
+        lines, gradient = self.by_place[place]
+        of, mu, usual = self.steps[place], self.errors.scale(self.steps[place]), self._usual(place)
+        rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
+        best = Mistake(place, of, x, np.eye(2), 0.0, mu)
+        for _ in range(6 if exact else 9):
+            if exact and x.any():
+                shares = self.shares(place, x) / self.tolerance[lines]
+                near = np.linalg.inv(usual) * NEAR
+                beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
+                rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
+                rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
+            else:
+                shares = rows @ x
+            if not (np.all(np.isfinite(shares)) and np.all(np.isfinite(rows))):
+                break
+            score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
+            if score > best.score:
+                best = Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
+            weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
+            step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
+                                       np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
+            if np.abs(rows @ step).max() < 0.01:
+                break
+            x = x + step
+        return best
+
+    def can_be_wrong(self, place: Place) -> bool:
+        """False for what follows from the project file alone and was not written down: nobody has seen it wrong."""
+        error = self.errors.error(self.steps[place])
+        return place in self.heads or bool(error[min(place[1], len(error) - 1)] > 0)
+
+    def helps(self, mistake: Mistake, i: int) -> bool:
+        """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
+        if np.hypot(*mistake.moved) < 2 * self.errors.pencil * mistake.mu:
+            return False  # that is the pencil
+        shares = self.shares(mistake.place, mistake.moved)
+        return any(j != i and self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])
+                   for j, share in zip(self.by_place[mistake.place][0], shares, strict=True))
+
+    def shares(self, place: Place, x: Floats) -> Floats:
+        """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
+        value, lines = self._with((self._change(place, x),)), self.by_place[place][0]
+        return np.asarray([self.judged[i].changed(value) for i in lines] - self.predicted[lines])
+
+    def _change(self, place: Place, x: Floats) -> Change:
+        step = self.steps[place]
+        return Change(step, displaced(complex(*x)), place[1] if np.ndim(step.value) else None)
+
+
+def _loss(r: Any) -> Any:
+    """Huber's loss of what is beyond the tolerance: square, and straight for what is far off."""
+    size = np.maximum(np.abs(r) - 1, 0)
+    return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
+
+
+def _place(step: Step, k: int) -> Place:
+    return id(step), k if np.size(step.value) > 1 else 0
