@@ -43,6 +43,8 @@ RULES = {
     "output": ("backends catalogue drawing explain project sheets", "task"),
     "note": ("backends construction drawing project record results sheets", "task"),
     "compare": ("drawing sheets", "project"),
+    "compare.story_pdf": ("backends compare drawing", ""),
+    "compare.report_pages": ("compare", ""),
     "compare.diagnosis": ("construction methods.linkage", ""),
     "compare.measured": (f"compare construction sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
@@ -57,7 +59,8 @@ RULES = {
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""
 
 LIBRARIES = {
-    "ezdxf": "backends.dxf backends.dxf_frame bench.plain compare.cad.cad_file", "reportlab": "backends.pdf bench.plain",
+    "ezdxf": "backends.dxf backends.dxf_frame bench.plain compare.cad.cad_file",
+    "reportlab": "backends.pdf bench.plain compare.story_pdf",
     "matplotlib": "backends.png bench.plots", "pydantic": "task.values task.schema task.messages task.variant",
     "pydantic_core": "task.messages", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods bench compare",

@@ -598,7 +598,10 @@ def compare(
     made = {folder / name: data for name, data in report.files.items()}
     if target is not None and target != "-":
         made[Path(target)] = (report.as_json() + "\n").encode()
-    made |= {path: report.page(path.suffix.lower(), opened.variant.project.name) for path in pages}
+    if pages:
+        from tmm_sheets.compare.report_pages import page
+
+        made |= {path: page(report, path.suffix.lower(), opened.variant.project.name) for path in pages}
     files.write_all(made)
     for note in report.notes:
         click.echo(f"{opened.variant.project.name}: {note}", err=True)

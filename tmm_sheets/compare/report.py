@@ -47,14 +47,6 @@ class Report:
     notes: tuple[str, ...] = ()
     story: Story | None = None
 
-    def page(self, suffix: str, title: str) -> bytes:
-        """The report as a page, ``suffix`` ".html" or ".pdf"; ``title`` stands over one that has only a text."""
-        from tmm_sheets.compare import story_html, story_pdf
-        from tmm_sheets.compare.story import Story
-
-        told = self.story or Story(title, tuple(self.text.splitlines()))
-        return story_pdf.pdf(told) if suffix == ".pdf" else story_html.html(told)
-
     def as_json(self) -> str:
         """The outcome as JSON."""
         return json.dumps(self.tree, ensure_ascii=False, indent=1, allow_nan=False)

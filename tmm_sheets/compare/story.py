@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
 
 
@@ -31,11 +30,11 @@ class Picture:
 
 @dataclass(frozen=True)
 class Mistake:
-    """Something done wrong: in which view, what, in how many words it needs, how bad, and what it looks like."""
+    """Something done wrong: in which view, what, in how many words it needs, how bad ("red", "amber"), and what it looks like."""
 
     where: str
     what: str
-    verdict: Verdict
+    verdict: str
     details: tuple[str, ...] = ()
     picture: Picture | None = None
 
