@@ -14,7 +14,7 @@ from tmm_sheets.construction.scale import times
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
 
-PROJECTS = ("lugansk/engine", "press", "lugansk/cam_flat", "sixbar/4:2", "sixbar/9:4", "transport/crusher@12-СДМ-1908")
+PROJECTS = ("lugansk/engine", "lugansk/cam_flat", "sixbar/9:4", "transport/crusher@12-СДМ-1908")
 CYRILLIC = re.compile("[\u0400-\u04ff]+")
 RUSSIAN_ONLY = re.compile("[ыэъё]", re.IGNORECASE)
 NUMBER = re.compile(r"\d+(?:[.,]\d+)?")

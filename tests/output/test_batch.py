@@ -406,8 +406,7 @@ def whole(folder):
 
 @needs_proc
 @pytest.mark.usefixtures("heard")
-@pytest.mark.parametrize("to_all", [False, True], ids=["parent", "group"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(("number", "to_all"), [(signal.SIGINT, True), (signal.SIGTERM, False), (signal.SIGHUP, True)])
 def test_a_signal_ends_a_batch_in_order(number, to_all, tmp_path):
     running, workers = begun(tmp_path)
     (os.killpg if to_all else os.kill)(running.pid, number)
