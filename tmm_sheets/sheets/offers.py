@@ -40,7 +40,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
         room = import_module(f"tmm_sheets.sheets.{module}")
         sizes: Callable[..., Sequence[tuple[float, float]]] = getattr(room, f"{function}_sizes")
         try:
-            wanted = sizes(project, view.options)
+            wanted = sizes(project, canvas, view.options)
         except CannotBuild:
             continue  # what it shows cannot be had; the views that need it have said so
         box = _place(canvas, wanted, inside, closed) if wanted else None
