@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 NEAR = 2.0
 """Corners closer than this, mm, are shown enlarged."""
+MOST = 6
+"""So many vectors can be told apart in a detail."""
 ONE = 0.02
 """Corners closer than this are one, mm."""
 TIMES = (5, 10, 20, 25, 40, 50, 100)
@@ -73,7 +75,7 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         canvas.circle(window.centre, half, "thin")
         _enlarged(canvas, it, window.centre, half, times)
         radius = it.reach + 1.5
-        canvas.begin(Box.around(np.array([it.centre - radius * (1 + 1j), it.centre + radius * (1 + 1j)])), "", "details.corner")
+        canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
         canvas.circle(it.centre, radius, "thin")
         canvas.label(it.centre + radius * complex(np.exp(0.25j * np.pi)), name, 1 + 1j, 5.0, 1.5)
 
@@ -117,7 +119,10 @@ def _corners(project: Project, canvas: Canvas) -> Iterator[Corner]:
         there = dict.fromkeys(name for _, a, b in drawn for name in (a, b))
         groups = _together({name: points[name] for name in there}, drawn)
         if groups:
-            yield Corner(plan, frame, tuple(drawn), points, max(groups, key=len))
+            it = Corner(plan, frame, tuple(drawn), points, max(groups, key=len))
+            through = sum(chord(it.centre, 2 * it.reach, points[a], points[b]) is not None for _, a, b in drawn)
+            if through <= MOST:
+                yield it
 
 
 def _together(points: dict[str, complex], drawn: list[tuple[str, str, str]]) -> list[tuple[str, ...]]:
