@@ -64,6 +64,19 @@ def segment_inside(box: Box, a: complex, b: complex) -> tuple[complex, complex] 
 
 
 
+def chord(centre: complex, radius: float, a: complex, b: complex) -> tuple[complex, complex] | None:
+    """Part of a straight line inside a circle, None when there is none."""
+    if a == b:
+        return None
+    u = (b - a) / abs(b - a)
+    foot = ((centre - a) * u.conjugate()).real
+    inside = radius**2 - abs(a + foot * u - centre) ** 2
+    if inside <= 0:
+        return None
+    t0, t1 = max(foot - sqrt(inside), 0.0), min(foot + sqrt(inside), abs(b - a))
+    return (a + t0 * u, a + t1 * u) if t0 < t1 else None
+
+
 def polyline_inside(box: Box, points: Points) -> list[Points]:
     """Stretches of a polyline inside the box."""
     stretches: list[list[complex]] = []

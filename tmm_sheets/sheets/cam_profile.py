@@ -248,7 +248,7 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
     return rows
 
 
-def radii_sizes(project: Any, options: dict[str, Any]) -> list[tuple[float, float]]:
+def radii_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table of radii can do with, mm."""
     rows = len(_radii(project.cam))
     return [(width, 11.0 + row * rows) for width, row in ((96.0, 7.0), (84.0, 6.4), (76.0, 5.6), (70.0, 4.6))]

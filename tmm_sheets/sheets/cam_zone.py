@@ -90,7 +90,7 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
         stage.line("O", o - 4j, at(complex(axis.real, 0.0)), "centre", "axis")
     stage.dot("O", 0.9, "main")
     canvas.label(o, "O", -1j + z.right, 5.0, 1.5)
-    canvas.label(b, "B", -z.right + 0j, 3.5, 1.0)
+    canvas.label(b, "B", complex(-z.right, -1.0) if rays else -z.right + 0j, 3.5, 1.0)
     canvas.label(c, "C", -z.right - 1j, 3.5, 0.8)
     radius = 0.5 * scale.mm(z.s0)
     canvas.angle_mark(v, pi / 2, pi / 2 + z.alpha, radius, f"[{letter_of}]")

@@ -106,9 +106,9 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Opt
     canvas.table(complex(box.x0, left.y1), widths, rows, row, height, header=2 if beside else 1)
 
 
-def motion_table_sizes(project: Project, options: graphs.Options) -> list[tuple[float, float]]:
+def motion_table_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> list[tuple[float, float]]:
     """Places that the table can do with, mm: rows of 7 mm to 4.6 mm, columns of 26 mm to 16 mm."""
-    if not project.diagrams:
+    if not _columns(project, options):
         return []
     rows, columns = len(_rows_of(project)) + 1, 3 * len(project.diagrams)
     sizes = ((26.0, 7.0), (22.0, 7.0), (20.0, 5.6), (16.0, 4.6))

@@ -48,7 +48,7 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         y = drawn.y0
 
 
-def values_sizes(project: Project, options: dict[str, Any]) -> list[tuple[float, float]]:
+def values_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the tables can do with, mm."""
     tables = [_points(project), _links(project), *(loads for loads in [_loads(project)] if len(loads) > 1)]
     rows = sum(map(len, tables))

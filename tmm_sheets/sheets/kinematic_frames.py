@@ -211,6 +211,19 @@ def _ratio(real: float, room: float) -> float:
     return real / room if room > 0 else inf
 
 
+def other_stroke(project: Project) -> int:
+    """The position about as far in the other stroke as the analysed one is in its own; half a turn later without strokes."""
+    cycle, k = project.cycle, project.force_index
+    turned = np.array([cycle.turned[i] for i, _ in cycle.drawn])
+    there = cycle.turned[k] + np.pi
+    if cycle.strokes is not None:
+        ends = cycle.strokes.begin, cycle.strokes.end
+        begin, end = ends if cycle.strokes.working(cycle.turned[k], 1) else ends[::-1]
+        own = np.mod(end - begin, 2 * np.pi)
+        there = end + np.mod(cycle.turned[k] - begin, 2 * np.pi) / own * (2 * np.pi - own)
+    return cycle.drawn[int(np.argmax(np.cos(turned - there)))][0]
+
+
 def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
     """Frame of the acceleration plan at the analysed position."""
     real = plan_extent(project.study.accelerations.plan, project.force_index)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.indices import on_link
-from tmm_sheets.construction.scale import times
+from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
@@ -453,6 +453,29 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
     canvas.title(box, tr("Acceleration polygon (position {label})").format(label=project.cycle.labels[k]), str(frame.scale))
     flat_crossings.warn(project, canvas, box, acc.plan)
     tiny = _draw_plan(stage(canvas, acc.plan, k, frame), "π", symbols_at=True)
+    if tiny:
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny)))
+
+
+def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the second acceleration plan can do with, mm."""
+    real = kinematic_frames.plan_extent(project.study.accelerations.plan, kinematic_frames.other_stroke(project))
+    left, below, right, above = kinematic_frames.ACCELERATIONS
+    longest = max(real.width, real.height)
+    if not longest > 0:
+        return []
+    return [(max(size * real.width / longest + left + right + 12.0, 76.0), size * real.height / longest + below + above + 10.0)
+            for size in (120.0, 100.0, 80.0)]
+
+
+def second_accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Acceleration plan of a position of the other stroke, with a scale factor of its own."""
+    acc, k = project.study.accelerations, kinematic_frames.other_stroke(project)
+    real = kinematic_frames.plan_extent(acc.plan, k)
+    inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0)
+    scale = Scale("μ_a", handy(max(real.width / inside.width, real.height / inside.height)), tr("(m/s²)/mm"))
+    canvas.title(box, tr("Acceleration polygon (position {label})").format(label=project.cycle.labels[k]), str(scale))
+    tiny = _draw_plan(stage(canvas, acc.plan, k, Frame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny)))
 

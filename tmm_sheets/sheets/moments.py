@@ -32,7 +32,7 @@ class Term(NamedTuple):
     values: tuple[float, ...]
 
 
-def equations_sizes(project: Project, options: dict[str, Any]) -> list[tuple[float, float]]:
+def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the equations can do with, mm."""
     lines = list(_lines(project))
     if not lines:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 CELL = 2.0
 """Side of the cells in which room is looked for, mm."""
+TITLE = 3.0
+"""Depth of the middle of a title under its upper edge, mm."""
 REACH = 2.0
 """How far a label may stand off beyond its gap, mm."""
 APART = (12.0, 9.0, 6.0)
@@ -40,7 +42,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
         room = import_module(f"tmm_sheets.sheets.{module}")
         sizes: Callable[..., Sequence[tuple[float, float]]] = getattr(room, f"{function}_sizes")
         try:
-            wanted = sizes(project, view.options)
+            wanted = sizes(project, canvas, view.options)
         except CannotBuild:
             continue  # what it shows cannot be had; the views that need it have said so
         box = _place(canvas, wanted, inside, closed) if wanted else None
@@ -73,9 +75,10 @@ def _taken(canvas: Canvas, inside: Box, closed: Sequence[Box]) -> NDArray[np.int
     """Cells of the sheet with ink, or between the ink of one part of a view: within its picture nothing else may stand."""
     shape = tuple(int(length / CELL) for length in (inside.width, inside.height))
     taken = np.zeros(shape, np.int64)
-    for marks, labels in _parts(canvas):
+    for marks, labels, titled in _parts(canvas):
         own = np.zeros(shape, bool)
-        for z in (*(dense(mark, CELL) for mark in marks), *map(_about, labels)):
+        points = [*(dense(mark, CELL) for mark in marks), *map(_about, labels)]
+        for z in (*points, _over(points) if titled and points else np.empty(0)):
             i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
             there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
             own[i[there], j[there]] = True
@@ -87,12 +90,18 @@ def _taken(canvas: Canvas, inside: Box, closed: Sequence[Box]) -> NDArray[np.int
     return taken
 
 
-def _parts(canvas: Canvas) -> Iterator[tuple[list[Mark], list[Label]]]:
-    """Marks of each part of a view, and the labels that it has asked for."""
+def _parts(canvas: Canvas) -> Iterator[tuple[list[Mark], list[Label], bool]]:
+    """Marks of each part of a view, the labels that it has asked for, and whether it has a title."""
     ends = [*(part.first for part in canvas.parts), len(canvas.marks)]
     for k, (first, end) in enumerate(pairwise(ends)):
         if canvas.parts[k].draw != "title block":
-            yield canvas.marks[first:end], [label for label in canvas.labels if label.part == k]
+            yield canvas.marks[first:end], [label for label in canvas.labels if label.part == k], bool(canvas.parts[k].title)
+
+
+def _over(points: Sequence[Points]) -> Points:
+    """Points along the title of a part, as wide as the part is: between a title and its picture nothing else may stand."""
+    z = np.concatenate(points)
+    return np.array([complex(x, z.imag.max() - TITLE) for x in (z.real.min(), z.real.max())])
 
 
 def _about(label: Label) -> Points:

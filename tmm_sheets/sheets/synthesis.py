@@ -43,7 +43,7 @@ def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.lines(complex(right.x0, inside.y1 - 0.7 * step), lines, step, height)
 
 
-def sizes_sizes(project: Project, options: dict[str, Any]) -> list[tuple[float, float]]:
+def sizes_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the figure beside its formulas can do with, mm; none for a project whose lengths are given."""
     if project.variant.synthesis is None:
         return []

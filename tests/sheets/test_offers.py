@@ -1,0 +1,78 @@
+"""Views for the room that is left: where they stand, and that what they say is true."""
+
+import re
+
+import numpy as np
+import pytest
+
+from tmm_sheets.box import Box
+from tmm_sheets.catalogue import read
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import moments, offers
+from tmm_sheets.sheets.sheet import composed
+
+FIELD = Box(20.0, 5.0, 836.0, 589.0)
+
+
+def canvas_with(*lines):
+    canvas = Canvas()
+    canvas.begin(FIELD, "", "view")
+    for a, b in lines:
+        canvas.line(a, b, "main")
+    return canvas
+
+
+@pytest.mark.parametrize(("lines", "found"), [
+    ([], True),
+    ([(30 + 300j, 826 + 300j)], True),  # 285 mm over and under a line
+    ([(30 + 10j, 30 + 580j), (826 + 10j, 826 + 580j)], False),  # between the ink of one view nothing may stand
+    ([(30 + 10j, 826 + 580j)], True),  # beside a diagonal
+], ids=["nothing", "line", "inside", "diagonal"])  # fmt: skip
+def test_a_place_is_clear_of_all_ink_and_outside_pictures(lines, found):
+    box = offers._place(canvas_with(*lines), [(200.0, 120.0)], FIELD, [])
+    assert (box is not None) is found
+    if box is not None:
+        assert FIELD.x0 <= box.x0 < box.x1 <= FIELD.x1
+        assert FIELD.y0 <= box.y0 < box.y1 <= FIELD.y1
+        for a, b in lines:
+            z = a + np.linspace(0, 1, 2000) * (b - a)
+            assert not ((z.real > box.x0 - 5) & (z.real < box.x1 + 5) & (z.imag > box.y0 - 5) & (z.imag < box.y1 + 5)).any()
+
+
+def test_the_next_smaller_size_is_taken_and_none_that_does_not_fit():
+    left = canvas_with((20 + 5j, 700 + 5j), (20 + 589j, 700 + 589j), (20 + 5j, 20 + 589j), (700 + 5j, 700 + 589j))
+    box = offers._place(left, [(200.0, 120.0), (100.0, 60.0)], FIELD, [])
+    assert (box.width, box.height) == (100.0, 60.0)
+    assert offers._place(left, [(200.0, 120.0)], FIELD, []) is None
+    assert offers._place(left, [(100.0, 60.0)], FIELD, [Box(690.0, 0.0, 836.0, 594.0)]) is None
+
+
+@pytest.mark.parametrize("name", ["press", "lugansk/engine", "sixbar/3:2"])
+def test_equations_of_moments_hold_in_the_numbers_written(name):
+    """Each line with numbers is worked out as a pupil would: the sum over the arm is the force printed, to their digits."""
+    p = Project(read(name))
+    checked = 0
+    for line in moments._lines(p):
+        found = re.search(r"\|(.*)\|(?:/([\d,]+))? = ([\d,]+)", line)
+        if found is None:
+            continue
+        total, arm, value = found.groups()
+        value, arm = float(value.replace(",", ".")), float((arm or "1").replace(",", "."))
+        terms = [part.replace(" ", "") for part in re.split(r"(?=[+−])", total) if part.strip()]
+        signs = [-1 if t[0] == "−" else 1 for t in terms]
+        factors = [[float(x.replace(",", ".")) for x in t.strip("+−").split("·")] for t in terms]
+        numbers = [sign * np.prod(each) for sign, each in zip(signs, factors, strict=True)]
+        # Four digits of every factor: half a unit of the last of each.
+        assert abs(abs(sum(numbers)) / arm - value) < 1e-3 * max(map(abs, numbers)) / arm + 1e-9, line
+        checked += 1
+    assert checked >= 2
+
+
+def test_what_is_offered_is_drawn_where_there_is_room():
+    sheet = composed(Project(read("press")), 2)
+    drawn = [part.draw for part in sheet.parts]
+    assert "diagrams.motion_table" in drawn
+    assert "moments.equations" in drawn
+    assert sheet.leaving == ()
+    assert sheet.crowded == ()

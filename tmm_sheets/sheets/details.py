@@ -1,0 +1,135 @@
+"""Enlarged details (выносные элементы, GOST 2.305) of the corners of vector polygons that cannot be read at their scale factor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.step import Step
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clipping import chord
+from tmm_sheets.drawing.marks import PlacedFrame
+from tmm_sheets.sheets import linkage
+from tmm_sheets.sheets.frame import together
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+NEAR = 2.0
+"""Corners closer than this, mm, are shown enlarged."""
+MOST = 6
+"""So many vectors can be told apart in a detail."""
+ONE = 0.02
+"""Corners closer than this are one, mm."""
+TIMES = (5, 10, 20, 25, 40, 50, 100)
+"""Enlargements (GOST 2.302)."""
+FILLED = 0.6
+"""Part of the window that the corners take at most."""
+NAMES = ("I", "II", "III", "IV")
+
+
+class Corner(NamedTuple):
+    """Corners of a polygon close together: its vectors with their signs, letters by point, where they are on the sheet, mm."""
+
+    plan: Plan
+    frame: PlacedFrame
+    vectors: tuple[tuple[str, str, str], ...]
+    points: dict[str, complex]
+    names: tuple[str, ...]
+
+    @property
+    def centre(self) -> complex:
+        """Middle of the corners, mm of the sheet."""
+        z = np.array([self.points[name] for name in self.names])
+        return complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
+
+    @property
+    def reach(self) -> float:
+        """Farthest corner from there, mm."""
+        return max(abs(self.points[name] - self.centre) for name in self.names)
+
+
+def corner_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that an enlarged detail can do with, mm; none where every corner can be read."""
+    found = list(_corners(project, canvas))
+    nth = int(options.get("nth", 1))
+    return [(62.0, 76.0), (52.0, 66.0), (44.0, 58.0)] if nth <= len(found) else []
+
+
+def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The ``nth`` corner of all plans enlarged, and its circle on the plan."""
+    nth = int(options.get("nth", 1))
+    it, name = list(_corners(project, canvas))[nth - 1], NAMES[nth - 1]
+    window = Box(box.x0, box.y0, box.x1, box.y1 - 16.0)
+    half = min(window.width, window.height) / 2
+    times = max((t for t in TIMES if t * it.reach <= FILLED * half), default=TIMES[0])
+    scale: Scale = canvas.scales[it.plan.name]
+    factor = Scale(scale.symbol, float(f"{scale.mu / times:.6g}"), scale.unit)
+    canvas.title(box, f"{name} ({times}:1)", str(factor))
+    with canvas.as_role("symbol"):
+        canvas.circle(window.centre, half, "thin")
+        _enlarged(canvas, it, window.centre, half, times)
+        radius = it.reach + 1.5
+        canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
+        canvas.circle(it.centre, radius, "thin")
+        canvas.label(it.centre + radius * complex(np.exp(0.25j * np.pi)), name, 1 + 1j, 5.0, 1.5)
+
+
+def _enlarged(canvas: Canvas, it: Corner, middle: complex, half: float, times: float) -> None:
+    """Vectors and letters of a corner inside a circle of a radius, mm."""
+    at = {name: middle + times * (z - it.centre) for name, z in it.points.items()}
+    for sign, tail, head in it.vectors:
+        seen = chord(middle, half, at[tail], at[head])
+        if seen is None or abs(seen[1] - seen[0]) < 1.0:
+            continue
+        a, b = seen
+        if abs(b - at[head]) < 1e-9 and abs(b - a) > 3.0:
+            canvas.arrow(a, b, "vector")
+        else:
+            canvas.line(a, b, "vector")
+        canvas.label((a + b) / 2, sign, 1j * (b - a), 3.5, 1.0)
+    for same in together([at[name] for name in it.names], 0.8):
+        here = at[it.names[same[0]]]
+        canvas.dot(here, 0.6)
+        canvas.label(here, ", ".join(_letters(it.plan, it.names[i]) for i in same), here - middle, 3.5, 1.0)
+
+
+def _letters(plan: Plan, name: str) -> str:
+    return name if name.isdigit() else linkage.indexed(plan[name].symbol or name)
+
+
+def _corners(project: Project, canvas: Canvas) -> Iterator[Corner]:
+    """Corners that cannot be read, plan by plan as they stand on the sheet; of one plan the one with most points."""
+    k, study = project.force_index, project.study
+    polygons = {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()}
+    acc = study.accelerations.plan
+    polygons[acc.name] = acc, [(seg.symbol, seg.tail, seg.head) for seg in acc.segments]
+    for frame in canvas.frames:
+        if frame.plan not in polygons:
+            continue
+        plan, vectors = polygons.pop(frame.plan)
+        steps: dict[str, Step] = {step.name: step for _, tail, head in vectors for step in (tail, head)}
+        points = {name: complex(frame(complex(step.at(k)))) for name, step in steps.items()}
+        drawn = [(s, a.name, b.name) for s, a, b in vectors if abs(points[a.name] - points[b.name]) > ONE]
+        there = dict.fromkeys(name for _, a, b in drawn for name in (a, b))
+        groups = _together({name: points[name] for name in there}, drawn)
+        if groups:
+            it = Corner(plan, frame, tuple(drawn), points, max(groups, key=len))
+            through = sum(chord(it.centre, 2 * it.reach, points[a], points[b]) is not None for _, a, b in drawn)
+            if through <= MOST:
+                yield it
+
+
+def _together(points: dict[str, complex], drawn: list[tuple[str, str, str]]) -> list[tuple[str, ...]]:
+    """Points less than ``NEAR`` apart of which some are joined by a vector: what cannot be told apart on the sheet."""
+    found = []
+    for same in together(list(points.values()), NEAR):
+        names = tuple(list(points)[i] for i in same)
+        if any(tail in names and head in names for _, tail, head in drawn):
+            found.append(names)
+    return found
