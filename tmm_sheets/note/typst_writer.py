@@ -24,7 +24,7 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.phrases import plain_text
+from tmm_sheets.note.heights import PAGE, height
 from tmm_sheets.resources import template
 from tmm_sheets.words import marked, tell
 
@@ -145,7 +145,7 @@ class _Writer:
     def _table(self, b: Table) -> str:
         columns = max(map(len, b.rows))
         rows = ", ".join("(" + ", ".join(f"[{text(c)}]" for c in row) + ",)" for row in b.rows)
-        return f"#grid-table({string(b.number)}, {string(b.title)}, {columns}, ({rows},))"
+        return f"#grid-table({string(b.number)}, {string(b.title)}, {columns}, ({rows},), {'true' if b.worded else 'false'})"
 
     def _figure(self, b: Figure) -> str:
         turned = "true" if b.turned else "false"
@@ -161,21 +161,6 @@ class _Writer:
 
     def _newpage(self, b: NewPage) -> str:
         return "#pagebreak(weak: true)"
-
-
-PAGE = 250.0
-"""Height of the text on a page, mm."""
-
-
-def height(b: Block) -> float:
-    """About how high a block is, mm."""
-    if isinstance(b, Paragraph):
-        return 5.5 * (1 + len(plain_text(b.text)) / 88)
-    if isinstance(b, Table):
-        return 15.0 + 6.0 * len(b.rows)
-    if isinstance(b, Figure):
-        return (b.width if b.turned else b.height) + 10.0
-    return 5.0 * len(b.rows) if isinstance(b, Where) else 10.0
 
 
 def text(parts: Text) -> str:
