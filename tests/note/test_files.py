@@ -128,3 +128,20 @@ def test_a_figure_that_does_not_fit_goes_to_the_next_page_of_the_word_file():
     assert list(floated([head, low, text])) == [head, low, text]
     assert list(floated([head, text, high, low, short, text])) == [head, text, short, high, low, text]
     assert list(floated([head, text, high, short, head, text])) == [head, text, short, high, head, text]
+
+
+@pytest.mark.parametrize(("right", "wrong", "told"), [
+    ('"STIX Two Text"', '"Nosuch"', "unknown font family: nosuch"),
+    ("#let middle(b) =", "#let middle(b =", "unclosed delimiter"),
+])  # fmt: skip
+def test_a_wrong_preamble_is_told(note, tmp_path, monkeypatch, right, wrong, told):
+    pytest.importorskip("typst")
+    from tmm_sheets.errors import BadInput
+    from tmm_sheets.note import typst_writer
+
+    real = typst_writer.template
+    changed = tmp_path / "preamble.typ"
+    changed.write_text(real("note/preamble.typ").read_text(encoding="utf-8").replace(right, wrong), encoding="utf-8")
+    monkeypatch.setattr(typst_writer, "template", lambda name: changed if name == "note/preamble.typ" else real(name))
+    with pytest.raises(BadInput, match=rf"preamble\.typ: {told}"):
+        typst_writer.render(note)
