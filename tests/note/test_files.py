@@ -117,3 +117,31 @@ def test_a_wrong_template_is_told_with_its_line(monkeypatch):
 def test_the_command_waits_for_neither_package():
     code = "import sys, tmm_sheets.cli; sys.exit(any(m in sys.modules for m in ('typst', 'docx', 'numpy')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_figure_that_does_not_fit_goes_to_the_next_page_of_the_word_file():
+    from tmm_sheets.note.document import Figure, Heading, Paragraph
+    from tmm_sheets.note.heights import floated
+
+    head, text, short = Heading(1, "1", ""), Paragraph(("x" * 5000,)), Paragraph(("x" * 100,))
+    low, high = Figure("1", "", "", b"", 100, 20), Figure("2", "", "", b"", 100, 120)
+    assert list(floated([head, low, text])) == [head, low, text]
+    assert list(floated([head, text, high, low, short, text])) == [head, text, short, high, low, text]
+    assert list(floated([head, text, high, short, head, text])) == [head, text, short, high, head, text]
+
+
+@pytest.mark.parametrize(("right", "wrong", "told"), [
+    ('"STIX Two Text"', '"Nosuch"', "unknown font family: nosuch"),
+    ("#let middle(b) =", "#let middle(b =", "unclosed delimiter"),
+])  # fmt: skip
+def test_a_wrong_preamble_is_told(note, tmp_path, monkeypatch, right, wrong, told):
+    pytest.importorskip("typst")
+    from tmm_sheets.errors import BadInput
+    from tmm_sheets.note import typst_writer
+
+    real = typst_writer.template
+    changed = tmp_path / "preamble.typ"
+    changed.write_text(real("note/preamble.typ").read_text(encoding="utf-8").replace(right, wrong), encoding="utf-8")
+    monkeypatch.setattr(typst_writer, "template", lambda name: changed if name == "note/preamble.typ" else real(name))
+    with pytest.raises(BadInput, match=rf"preamble\.typ: {told}"):
+        typst_writer.render(note)

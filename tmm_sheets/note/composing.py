@@ -111,6 +111,8 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
         except CannotBuild as e:
             reader.problems.append(str(e))
             continue
+        if found is None:
+            continue
         scopes[name] = found
         body += writer.blocks(name, _with(found, base))
     summary = dict(base.fields)

@@ -98,15 +98,22 @@ class Where:
     rows: tuple[Explained, ...]
 
 
+WORD = 12
+"""Letters in a cell of a table from which on it holds words."""
+
+
 @dataclass(frozen=True)
 class Table:
-    """A table under its number and title; the first row is its head. ``wide`` ones are set smaller."""
+    """A table under its number and title; the first row is its head."""
 
     number: str
     title: str
     rows: tuple[tuple[Text, ...], ...]
-    left: bool = False
-    """columns that hold words are set from the left."""
+
+    @property
+    def worded(self) -> bool:
+        """Whether the first column holds words, not numbers or letters: it is set from the left."""
+        return any(isinstance(x, str) and len(x) > WORD for row in self.rows[1:] for x in row[0][:1])
 
 
 @dataclass(frozen=True)

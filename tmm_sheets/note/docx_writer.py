@@ -28,6 +28,7 @@ from tmm_sheets.note.document import (
     Where,
 )
 from tmm_sheets.note.formula import Node
+from tmm_sheets.note.heights import floated
 from tmm_sheets.note.typst_writer import rasters
 
 DPI = 220
@@ -84,7 +85,7 @@ class _Writer:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
         from docx.oxml.ns import qn
 
-        for name, size in (("Normal", 11.5), ("Heading 1", 14), ("Heading 2", 13), ("Caption", 11.5), ("TOC Heading", 15)):
+        for name, size in (("Normal", 11), ("Heading 1", 14), ("Heading 2", 13), ("Caption", 11), ("TOC Heading", 15)):
             if name not in [s.name for s in self.made.styles]:
                 continue
             style: Any = self.made.styles[name]
@@ -104,14 +105,14 @@ class _Writer:
             style.font.color.rgb = RGBColor(0, 0, 0)
         normal: Any = self.made.styles["Normal"]
         normal.paragraph_format.space_after = self.pt(0)
-        normal.paragraph_format.line_spacing = 0.92
+        normal.paragraph_format.line_spacing = 0.88
         first: Any = self.made.styles["Heading 1"]
         first.paragraph_format.page_break_before = True
         first.paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
-        first.paragraph_format.space_after = self.pt(14)
+        first.paragraph_format.space_after = self.pt(10)
         second: Any = self.made.styles["Heading 2"]
         second.paragraph_format.first_line_indent = self.mm(10)
-        second.paragraph_format.space_before, second.paragraph_format.space_after = self.pt(16), self.pt(8)
+        second.paragraph_format.space_before, second.paragraph_format.space_after = self.pt(11), self.pt(5)
         for style in (first, second):
             style.paragraph_format.keep_with_next = True
 
@@ -136,7 +137,7 @@ class _Writer:
                 self._section(WD_SECTION.NEW_PAGE, "2a", first=True)
             else:
                 self.block(b)
-        for b in note.body:
+        for b in floated(note.body):
             self.block(b)
         return self.made
 
@@ -349,10 +350,10 @@ class _Writer:
         table.autofit = False
         for column, width in zip(table.columns, widths_of(b), strict=True):
             column.width = self.mm(width)
-        for row, cells in zip(table.rows, b.rows, strict=True):
-            for cell, text in zip(row.cells, cells, strict=True):
+        for i, (row, cells) in enumerate(zip(table.rows, b.rows, strict=True)):
+            for j, (cell, text) in enumerate(zip(row.cells, cells, strict=True)):
                 q = cell.paragraphs[0]
-                q.alignment = WD_ALIGN_PARAGRAPH.CENTER
+                q.alignment = WD_ALIGN_PARAGRAPH.LEFT if b.worded and i and not j else WD_ALIGN_PARAGRAPH.CENTER
                 self._text(q, text)
                 for run in q.runs:
                     run.font.size = self.pt(size)

@@ -431,6 +431,7 @@ def plural(n: int, forms: list[str], language: str) -> str:
     return forms[1] if n % 10 in (2, 3, 4) and n % 100 not in (12, 13, 14) else forms[2]
 
 
+@cache
 def meaning_of(markup: str, language: str, section: str = "") -> str:
     """What a letter means, by the tables ``letters-<section>`` and ``letters`` of words.toml.
 
@@ -465,6 +466,7 @@ def _meaning(markup: str, table: Mapping[str, str]) -> str:
     return found
 
 
+@cache
 def bare(markup: str) -> str:
     """Letters without markup."""
     return re.sub(r"[\\_{}^ ]", "", markup)

@@ -15,7 +15,7 @@ from tmm_sheets.note.document import Figure, Sheet
 if TYPE_CHECKING:
     from tmm_sheets.sheets.sheet import Composed
 
-WIDTH, HEIGHT = 184.0, 205.0
+WIDTH, HEIGHT = 182.0, 205.0
 """Place for a figure with its caption on a page, mm: within the frame, a little wider than the text."""
 LONG = 225.0
 """Height for one that is turned or fills a page."""

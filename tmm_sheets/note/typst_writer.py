@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from tmm_sheets.errors import CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.note.alphabets import TYPST, spelt, string
 from tmm_sheets.note.document import (
     Block,
@@ -24,9 +24,9 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.phrases import plain_text
+from tmm_sheets.note.heights import PAGE, height
 from tmm_sheets.resources import template
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import both, marked, tell
 
 MISSING = (marked("the note as PDF needs the package typst"), marked("install the extra: pip install 'tmm-sheets[note]'"))
 
@@ -38,6 +38,8 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
     ------
     CannotBuild
         when the package typst is missing.
+    BadInput
+        when the preamble, which a department may change, cannot be set or names a font that is not there.
     """
     try:
         import typst
@@ -45,15 +47,23 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
         raise CannotBuild(*map(tell, MISSING)) from None
     import json
 
+    preamble = template("note/preamble.typ")
     with TemporaryDirectory(prefix="tmm-note-") as folder:
         root = Path(folder)
         for name, data in pictures(note.blocks()).items():
             (root / name).write_bytes(data)
-        (root / "preamble.typ").write_bytes(template("note/preamble.typ").read_bytes())
+        (root / "preamble.typ").write_bytes(preamble.read_bytes())
         (root / "note.typ").write_text(source(note), encoding="utf-8")
         fonts = [str(template("note/fonts")), str(template("fonts"))]
         compiler = typst.Compiler(str(root / "note.typ"), root=str(root), font_paths=fonts, ignore_system_fonts=True)
-        made = compiler.compile(format="pdf", timestamp=0, pdf_tags=False)
+        try:
+            made, warnings = compiler.compile_with_warnings(format="pdf", timestamp=0, pdf_tags=False)
+        except typst.TypstError as e:
+            raise BadInput(Problem(str(e), str(preamble))) from None
+        for warning in warnings:
+            if "font" in warning.message:
+                raise BadInput(Problem(warning.message, str(preamble)), hint=tell("fonts are read from {folders}").format(
+                    folders=both(fonts)))
         found = json.loads(compiler.query("<places>", field="value", one=True))
     assert isinstance(made, bytes)
     return made, found
@@ -145,7 +155,7 @@ class _Writer:
     def _table(self, b: Table) -> str:
         columns = max(map(len, b.rows))
         rows = ", ".join("(" + ", ".join(f"[{text(c)}]" for c in row) + ",)" for row in b.rows)
-        return f"#grid-table({string(b.number)}, {string(b.title)}, {columns}, ({rows},))"
+        return f"#grid-table({string(b.number)}, {string(b.title)}, {columns}, ({rows},), {'true' if b.worded else 'false'})"
 
     def _figure(self, b: Figure) -> str:
         turned = "true" if b.turned else "false"
@@ -161,21 +171,6 @@ class _Writer:
 
     def _newpage(self, b: NewPage) -> str:
         return "#pagebreak(weak: true)"
-
-
-PAGE = 250.0
-"""Height of the text on a page, mm."""
-
-
-def height(b: Block) -> float:
-    """About how high a block is, mm."""
-    if isinstance(b, Paragraph):
-        return 5.5 * (1 + len(plain_text(b.text)) / 88)
-    if isinstance(b, Table):
-        return 15.0 + 6.0 * len(b.rows)
-    if isinstance(b, Figure):
-        return (b.width if b.turned else b.height) + 10.0
-    return 5.0 * len(b.rows) if isinstance(b, Where) else 10.0
 
 
 def text(parts: Text) -> str:

@@ -23,8 +23,6 @@ def scope(r: Reader) -> Scope:
     table: Any = r.project.variant.cam
     found = Scope(
         {
-            "translating": table.follower.startswith("translating"),
-            "rocker": "rocker" in table.follower or "oscillating" in table.follower,
             "plate": "flat" in table.follower or "plate" in table.follower,
             "law": words(r.language)["cam"]["laws"].get(str(table.law), ""),
             "roller": "r_roller" in results,
@@ -48,11 +46,6 @@ def scope(r: Reader) -> Scope:
             said = r.formula(step)
             if said is not None:
                 found.formulas[f"{name.removeprefix('cam-')}/{step.name}"] = said
-            value = step.value
-            if isinstance(value, float | int | np.floating) and not isinstance(value, bool):
-                unit = r.unit_of(step)
-                key = f"{name.removeprefix('cam-')}-{step.name}"
-                found.fields[key] = r.angle(float(value), r.id(step)) if unit == "rad" else r.of(step)
     sizes: dict[str, float] = {}
     for name in ("r0", "e", "l0", "r_roller", "rho_min"):
         told = results.get(name)

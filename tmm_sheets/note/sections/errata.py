@@ -12,7 +12,7 @@ from tmm_sheets.note import phrases
 from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
-from tmm_sheets.note.reader import Reader
+from tmm_sheets.note.reader import Reader, marked
 from tmm_sheets.numbers import written
 from tmm_sheets.resources import template, variants
 from tmm_sheets.words import decimal_sign, tr
@@ -53,14 +53,17 @@ def scope(r: Reader) -> Scope:
         unit = r.unit(m.unit)
         numbers = (Number(written(str(x)), f"misprint[{i}]", float(x)) for x in (m.printed, m.suggested))
         rows.append(((Symbol(letters(letters_of(m.symbol))), f", {unit}" if unit else ""), *((n,) for n in numbers),
-                     (_written(r, tr(m.reason)),)))  # fmt: skip
+                     tuple(marked(_written(tr(m.reason)), f"misprint[{i}]", "", r.language))))  # fmt: skip
     found.tables["misprints"] = (tuple((h,) for h in said["suspected"]), *rows)
     return found
 
 
-def _written(r: Reader, reason: str) -> str:
+def _written(reason: str) -> str:
     """A reason with the signs and the decimal sign of the paper."""
-    return re.sub(r"(?<=\d)\.(?=\d)", decimal_sign(), reason).replace("*", "·").replace(">=", "≥").replace("^2", "²")
+    text = re.sub(r"(?<=\d)\.(?=\d)", decimal_sign(), reason)
+    for typed, sign in (("*", "·"), (">=", "≥"), ("^2", "²"), (" - ", " − ")):
+        text = text.replace(typed, sign)
+    return text
 
 
 def _cell(r: Reader, text: str) -> Text:

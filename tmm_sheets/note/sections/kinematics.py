@@ -33,7 +33,6 @@ def scope(r: Reader) -> Scope:
         "count": len(cycle.drawn),
         "positions": len(cycle.labels),
         "crank": study.mechanism.crank.link,
-        "turns": cycle.period > 2 * pi + 1e-9,
         "uneven": study.running is not None,
         "position_steps": r.sentences(study.positions.plan),
         "velocity_steps": r.sentences(v.plan, _plain),
@@ -41,7 +40,6 @@ def scope(r: Reader) -> Scope:
         "dead": cycle.plan is not None,
         "own_scale": "positions" in r.project.variant.scales,
         "slides": any(p.motion == "translation" and study.mechanism.frame not in p.links for p in study.mechanism.pairs),
-        "first_label": cycle.labels[0],
     }
     if cycle.plan is not None:
         fields["dead_steps"] = r.sentences(cycle.plan, _plain)
@@ -54,20 +52,18 @@ def scope(r: Reader) -> Scope:
     _first_formulas(r, found)
     for plan, key in ((v.plan, "velocity"), (a.plan, "acceleration")):
         found.fields[f"{key}_equations"] = [{"equation": Said(e), "known": known} for e, known in _equations(r, plan)]
-        found.tables[f"{key}_vectors"] = _vectors(r, plan)
         found.formulas |= {f"{key}-{name}": said for name, said in _lengths(r, plan)}
         found.fields[f"{key}_angular"] = list(_angular(r, plan, v.omega if key == "velocity" else a.epsilon))
         found.fields[f"{key}_several"] = len(found.fields[f"{key}_equations"]) > 1
     found.fields |= _greatest_acceleration(r, a.plan)
+    found.tables["velocity_vectors"] = _vectors(r, v.plan)
     found.tables["lengths"] = _drawn_lengths(r)
     found.tables["velocities"] = _over_positions(r, v.plan, v.omega, "velocity")
     found.tables["accelerations"] = _over_positions(r, a.plan, a.epsilon, "acceleration")
-    found.tables["strokes"] = ()
     for name, picture in (
         ("positions", "kinematics.position_plans"),
         ("velocity", f"velocity plan {r.label}"),
         ("acceleration", "kinematics.acceleration_plan"),
-        ("velocities", "velocity plans"),
     ):
         figure = r.pictures.figure(picture)
         if figure is None and name == "velocity":

@@ -36,14 +36,7 @@ def scope(r: Reader) -> Scope:
     pairs: list[tuple[Text, ...]] = [tuple((h,) for h in said["pairs_head"])]
     pairs += [((Symbol(letters(_primed(p.name))),), (", ".join(p.links),), (said[p.motion],), ("5",)) for p in m.pairs]
     turning = sum(p.motion == "rotation" for p in m.pairs)
-    figures = {
-        name: f
-        for name, f in (
-            ("scheme", r.pictures.figure(f"position plan {r.label}", own=True)),
-            ("structure", r.pictures.figure("kinematics.structure")),
-        )
-        if f is not None
-    }
+    figure = r.pictures.figure("kinematics.structure")
     fields = {
         "groups": groups,
         "n": Number(str(n), "structure.links", n),
@@ -66,7 +59,7 @@ def scope(r: Reader) -> Scope:
         fields,
         {"mobility": mobility, "first": _mobility(r, f"W_{{{m.crank.link}}}", 1, 1, 1, "structure.first")},
         {"links": tuple(links), "pairs": tuple(pairs)},
-        figures,
+        {"structure": figure} if figure is not None else {},
     )
 
 

@@ -15,9 +15,11 @@ NEAR = 1.0
 """Difference from what is asked, per cent, that a drawing does not show."""
 
 
-def scope(r: Reader) -> Scope:
-    """Formulas of the synthesis, the table of lengths, what the dead positions give."""
+def scope(r: Reader) -> Scope | None:
+    """Formulas of the synthesis, the table of lengths, what the dead positions give; None where all is given and nothing stops."""
     variant = r.project.variant
+    if variant.synthesis is None and r.project.cycle.strokes is None:
+        return None
     found = Scope({"found": variant.synthesis is not None})
     items: list[dict[str, Any]] = []
     if variant.synthesis is not None:
