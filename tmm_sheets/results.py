@@ -254,7 +254,7 @@ def _study_of(project: Project, phi: tuple[float, ...] | None, positions: int | 
     if phi is not None:
         turned: Any = cycle.sense * (np.asarray(phi, dtype=float) - cycle.start)
     elif positions is not None:
-        turned = cycle.period / positions * np.arange(positions)
+        turned = (cycle.period / max(positions - 1, 1) if cycle.swings else cycle.period / positions) * np.arange(positions)
     else:
         return project.study, [project.force_index]
     labels = tuple(str(i) for i in range(len(turned)))
