@@ -142,9 +142,12 @@ def check(project: str, corrected: bool) -> None:
     opened = _open(project, corrected)
     opened.check()
     if opened.variant.crank is not None:
+        from tmm_sheets import summary
         from tmm_sheets.sheets import composition, flat_crossings
 
         for line in (*composition.left_out(opened, range(1, len(opened.sheets) + 1)), *flat_crossings.lines(opened)):
+            click.echo(f"{opened.variant.project.name}: {line}", err=True)
+        for line in summary.swing(opened):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
     if opened.variant.flywheel is not None and opened.flywheel.remark:
         click.echo(f"{opened.variant.project.name}: {opened.flywheel.remark}", err=True)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.reduced import Reduced
     from tmm_sheets.methods.gears.gear_pair import GearPair
     from tmm_sheets.methods.gears.reducer import Reducer
+    from tmm_sheets.methods.linkage.checks import SwingLimits
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.forces import GearForce
     from tmm_sheets.methods.linkage.loads import Loads
@@ -127,9 +128,11 @@ class Project:
         CannotBuild
             when there is no [cycle], or the mechanism has none of this form.
         """
-        from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
+        from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle, swing_cycle
 
         c = self._section("cycle")
+        if c.end is not None:
+            return swing_cycle(self.mechanism, c.start, c.end, c.positions, zero=c.zero, extra=c.extra)
         if c.start == "dead":
             k = c.coefficient if c.division == "nominal" else None
             return dead_cycle(self.mechanism, c.output, c.working_sense, c.working, c.idle, k)
@@ -227,6 +230,9 @@ class Project:
             )
         from tmm_sheets.methods.flywheel.chosen import flywheel
 
+        if self.cycle.swings:
+            raise CannotBuild(tell("a crank that only swings has no flywheel: no cycle in which its energy comes back"),
+                              tell("leave [flywheel] and its sheet out"))
         return flywheel(self.reduced, self._section("flywheel"))
 
     @cached_property
@@ -297,6 +303,13 @@ class Project:
                 refused[part] = e
         if refused:
             raise together(refused, "built", others=False)
+
+    @cached_property
+    def swing_limits(self) -> SwingLimits | None:
+        """How far a crank that only swings could go; None for one that turns round."""
+        from tmm_sheets.methods.linkage.checks import swing_limits
+
+        return swing_limits(self.mechanism, self.cycle) if self.cycle.swings else None
 
     def check_assembly(self) -> None:
         """Assemble the mechanism all round the turn."""

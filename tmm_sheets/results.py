@@ -254,7 +254,7 @@ def _study_of(project: Project, phi: tuple[float, ...] | None, positions: int | 
     if phi is not None:
         turned: Any = cycle.sense * (np.asarray(phi, dtype=float) - cycle.start)
     elif positions is not None:
-        turned = cycle.period / positions * np.arange(positions)
+        turned = (cycle.period / max(positions - 1, 1) if cycle.swings else cycle.period / positions) * np.arange(positions)
     else:
         return project.study, [project.force_index]
     labels = tuple(str(i) for i in range(len(turned)))
@@ -304,14 +304,16 @@ def _positions(project: Project, study: Study, chosen: list[int]) -> dict[str, A
 
 def _velocities(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     v, frame = study.velocities, study.mechanism.frame
+    sliding = study.sliding.velocities
     return {"points": _all(study, v.points), "omega": _all(study, {k: step for k, step in v.omega.items() if k != frame}),
-            **_special(study, v.special)}
+            **({"sliding": _all(study, sliding)} if sliding else {}), **_special(study, v.special)}
 
 
 def _accelerations(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     a, frame = study.accelerations, study.mechanism.frame
+    coriolis = study.sliding.coriolis
     return {"points": _all(study, a.points), "epsilon": _all(study, {k: step for k, step in a.epsilon.items() if k != frame}),
-            **_special(study, a.special)}
+            **({"coriolis": _all(study, coriolis)} if coriolis else {}), **_special(study, a.special)}
 
 
 def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
@@ -325,6 +327,7 @@ def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]
         "label": list(labels),
         "reactions": {name: told(step) for name, step in f.reactions.items()},
         "couples": {name: told(step) for name, step in f.couples.items()},
+        **({"couple_points": f.couple_points} if f.couples else {}),
         "arms": {name: told(step, "abs") for name, step in f.arms.items()},
         "balancing": {
             "kind": "moment" if study.driver is None else "force",

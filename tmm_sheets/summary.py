@@ -13,6 +13,7 @@ from tmm_sheets.words import of_file, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
+    from tmm_sheets.project import Project
     from tmm_sheets.task.toml_lines import KeyPath
     from tmm_sheets.task.variant import Variant
 
@@ -37,6 +38,19 @@ def text(variant: Variant) -> str:
         m = mechanism_of(variant)
         lines += [*_structure(m), *(_ways(variant, g) for g in m.groups if g.kind.grade == 3)]
     return "\n".join(lines)
+
+
+def swing(project: Project) -> Iterator[str]:
+    """How far a crank that only swings could go each way, and what ends it there."""
+    limits = project.swing_limits if project.variant.cycle is not None else None
+    if limits is None:
+        return
+    for angle, group, why in zip(limits.angles, limits.groups, limits.reasons, strict=True):
+        if angle is None:
+            yield tell("nothing ends the swing of the crank: it could turn round")
+            return
+        yield tell("the crank can swing to {angle:.2f} deg; 1 deg beyond it group {group} does not assemble: {why}").format(
+            angle=angle, group=group, why=why)
 
 
 def _inputs(variant: Variant) -> Iterator[tuple[str, str, str]]:

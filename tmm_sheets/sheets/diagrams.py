@@ -275,13 +275,14 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
 
 
 def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: DiagramQuantity, curves: list[Any]) -> None:
-    """Numbers of the positions at the axis, on the side where the first graph is not; the end is position 0 again."""
+    """Numbers of the positions at the axis, on the side where the first graph is not; the end of a turn is position 0."""
     labels = project.cycle.labels
     pitch = length / len(labels)
     height = 3.5 if pitch >= letter("00", 3.5).width + 2.0 else 2.5
     ink = np.concatenate(curves)
     first = q.curves[0]
-    for xi, label, y in zip([*x, length], [*labels, labels[0]], [*first.at, first.at[0]], strict=True):
+    closing = 0 if project.cycle.swings else 1
+    for xi, label, y in zip([*x, *[length] * closing], [*labels, *labels[:closing]], [*first.at, *first.at[:closing]], strict=True):
         at = o + xi
         canvas.line(at - 0.8j, at + 0.8j, "axis")
         width = letter(label, height).width

@@ -40,6 +40,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     frame = kinematic_frames.positions(project, canvas, box, options)
     canvas.title(box, tr("Positions of the mechanism"), str(frame.scale))
     flat_crossings.warn(project, canvas, box, pos.plan, (i for i, _ in cycle.drawn))
+    _swing(project, canvas, box)
     canvas.scales["dead-positions"] = frame.scale
     every = stage(canvas, pos.plan, None, frame)
     play(every, [pos.mechanism.crank.pin], "thin", only="circle")
@@ -69,9 +70,19 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         _force_graph(project, every, Box(box.x0, y, box.x1, y + graph), below)
 
 
+def _swing(project: Project, canvas: Canvas, box: Box) -> None:
+    """How far a crank that only swings could go, and the groups that end it."""
+    limits = project.swing_limits
+    if limits is None or None in limits.angles:
+        return
+    low, high = (number(round(float(angle or 0.0), 2)) for angle in limits.angles)
+    canvas.note(box, tr("The crank could swing from {low}° (limit of group {first}) to {high}° (limit of group {last})").format(
+        low=low, high=high, first=limits.groups[0], last=limits.groups[1]))
+
+
 def _paths(project: Project, s: Stage, room: Box) -> None:
     """Paths of the hinges and of the centres of mass, thin, through many positions."""
-    turned = np.linspace(0, 2 * pi, 181)
+    turned = project.cycle.ring
     pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
     m = pos.mechanism
     for name in [p.name for p in m.points] + list(_free_points(m)):

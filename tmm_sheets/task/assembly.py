@@ -150,7 +150,8 @@ def _diagrams(of: Givens, plan: Plan, load: ForceTable | MomentTable, tables: Se
     import numpy as np
 
     angle, cycle = load.over == "angle", of.variant.cycle
-    turns = of.number(1.0 if cycle is None else cycle.turns, "", "", "cycle", "turns")
+    # What a crank that swings goes through does not repeat itself.
+    turns = of.number(1.0 if cycle is None else cycle.turns if cycle.end is None else 0.0, "", "", "cycle", "turns")
     found = []
     for n, (given, acting) in enumerate(zip(load.diagrams(), tables, strict=True)):
         if given is None or acting is None:
@@ -189,8 +190,10 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
         if not isinstance(f.direction, float) or tables[0] is None:
             raise CannotBuild(tell("force {name}: a diagram over the angle needs a fixed direction").format(name=f.name),
                               tell('for example direction = "-90 deg"'))
-        law, jumps = angle_law(tables[0], cycle.period, f.curve == "smooth")
+        law, jumps = angle_law(tables[0], None if cycle.swings else cycle.period, f.curve == "smooth")
         return Applied(f.name, f.link, f.point, unit(f.direction), law, jumps, None, diagrams, _along(of, i, unit(f.direction)))
+    if cycle.swings:
+        raise CannotBuild(*_no_strokes(f.name))
     if named is None:
         raise CannotBuild(
             tell("force {name}: which way are its working strokes?").format(name=f.name), tell('add for example sense = "+x"')
@@ -206,6 +209,12 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
     always = against is None and f.tables is not None
     law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", always)
     return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, _along(of, i, toward))
+
+
+def _no_strokes(name: str) -> tuple[str, str]:
+    """What to say of a load that follows strokes where there are none."""
+    return (tell("{name}: the crank only swings, there are no strokes").format(name=name),
+            tell('give a constant of fixed direction, or a table with over = "angle"'))
 
 
 def _steady(load: ForceTable | MomentTable) -> bool:
@@ -243,10 +252,12 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
             raise CannotBuild(tell("moment {name}: a diagram over the angle needs a fixed direction").format(name=m.name),
                               tell('for example direction = "clockwise"'))
         table = (tables[0][0], [fixed * y for y in tables[0][1]])
-        law, jumps = angle_law(table, cycle.period, m.curve == "smooth")
+        law, jumps = angle_law(table, None if cycle.swings else cycle.period, m.curve == "smooth")
         signed = (GivenNumber(fixed, f"moment[{i}].direction"),)
         return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None,
                        _diagrams(of, plan, m, (table,), OPPOSED, signed, "moment", i))
+    if cycle.swings:
+        raise CannotBuild(*_no_strokes(m.name))
     motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
     against = {"against motion": -1.0, "along motion": 1.0}.get(m.direction)
     laws, signs = _by_run(motion, m.stroke, tables, against)

@@ -243,6 +243,8 @@ class CycleTable(Table):
         description=marked('"dead" or the crank angle of position 0, for example "90 deg"')
     )
     """`"dead"`: where the working stroke of `output` begins"""
+    end: Angle | None = None
+    """crank angle of the last position, of a crank that only swings: from `start` to it in its sense, in so many `positions`"""
     output: Name | None = None
     """the point whose strokes count"""
     working_sense: Literal["+x", "-x", "+y", "-y"] | None = None
@@ -281,6 +283,17 @@ class CycleTable(Table):
             raise ValueError(tell('start = "dead" needs {absent} as well').format(absent=", ".join(absent)))
         if self.division == "nominal" and self.coefficient is None:
             raise ValueError(tell('division = "nominal" needs the coefficient K, for example coefficient = 1.5'))
+        return self
+
+    @model_validator(mode="after")
+    def _swings(self) -> Self:
+        if self.end is None:
+            return self
+        if self.start == "dead":
+            raise ValueError(tell("a crank that swings to an end needs a crank angle as start"))
+        if self.turns != 1 or self.output is not None or self.working_sense is not None:
+            raise ValueError(tell(
+                "a crank that only swings has no strokes and no second turn: leave output, working_sense and turns out"))
         return self
 
     @model_validator(mode="after")

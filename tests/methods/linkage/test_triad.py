@@ -11,9 +11,13 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
-from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.groups import three_legs
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.mechanism.groups import TRIAD, three_legs
+from tmm_sheets.mechanism.groups.hints import Leg
+from tmm_sheets.mechanism.groups.triad import TriadGroup
+from tmm_sheets.mechanism.model import Crank
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.positions import position_plan
@@ -274,3 +278,37 @@ def test_a_turn_may_end_in_another_way_of_assembly():
     m.courses[m.groups[0].name] = found
     with pytest.raises(CannotBuild, match="after a turn of the crank it stands in another way of assembly"):
         position_plan(m, np.array([0.0]))
+
+
+def test_two_ways_in_one_direction_are_refused():
+    """Two rockers of a parallelogram: the body may stand over them or hang below, level both times."""
+    legs = (Leg("2", "C", "B", length=0.30), Leg("4", "D", "E", length=0.28), Leg("5", "F", "G", length=0.28))
+    g = TriadGroup(TRIAD, ("3", "2", "4", "5"), ("B", "E", "G"), legs=legs, sides=(0.2, 0.6), angle=0.0)
+    m = mechanism(g, fixed={"E": 0.45 - 0.42j, "G": 0.85 - 0.42j}, crank=Crank("1", "A", "B", 0.06, 10.0, 1))
+    with pytest.raises(CannotBuild, match="two ways of assembly have CD in the same direction at crank angle 0 deg"):
+        position_plan(m, np.array([0.0]))
+
+
+SCREEN = Path(__file__).parents[3] / "variants" / "screen.toml"
+
+
+@pytest.mark.parametrize(("old", "new", "said"), [
+    ('links = ["3", "2", "4", "5"]', 'links = ["3", "2"]', "expected 4 links for a group of kind 6"),
+    ('length = "0.42 m"', 'slot = "10 deg"\nlength = "0.42 m"',
+     "expected a leg with outer and length, with guide, or with outer and slot"),
+    ('length = "0.45 m"\n\n[[group.leg]]                   # rocker 4', 'slot = "0 deg"\n\n[[group.leg]]',
+     "only the second leg may be a stone in a slot"),
+    ('direction = "-25 deg"', "", 'a group of kind 6 needs "direction"'),
+    ('corner = "F"', 'corner = "D"', 'the point "D" is there already'),
+    ('name = "S3"', 'name = "W3"', 'the point "W3" is there already'),
+    ('outer = "E"', 'outer = "Q"', 'unknown point "Q"'),
+    ('kind = 6', 'kind = 1', "expected 2 links for a group of kind 1"),
+])
+def test_what_a_file_may_say_wrong(tmp_path, old, new, said):
+    text = SCREEN.read_text(encoding="utf-8")
+    assert old in text
+    path = tmp_path / "screen.toml"
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(BadInput) as failed:
+        variant.read(path)
+    assert said in str(failed.value)

@@ -187,7 +187,7 @@ class TriadKind(GroupKind):
         Raises
         ------
         CannotBuild
-            when no way of assembly is near the direction told, or a turn of the crank leads to another one.
+            when no way of assembly is near the direction told, or two of them, or a turn of the crank leads to another one.
         """
         triad, plan = _of(g), pos.plan
         a, b, c = triad.legs
@@ -571,6 +571,10 @@ SURELY = np.radians(45.0)
 """Beyond it the told direction belongs to no way of assembly."""
 
 
+ALIKE = np.radians(0.01)
+"""Within it two ways of assembly cannot be told apart by the direction."""
+
+
 def _ways(g: TriadGroup, way: Course) -> dict[str, Any]:
     """Ways of assembly for a message."""
     return {"group": "-".join(g.links), "side": g.legs[0].corner + g.legs[1].corner, "angle": np.degrees(g.when),
@@ -590,6 +594,10 @@ def _check(g: TriadGroup, way: Course) -> None:
     if abs(np.angle(way.found[way.taken][1] * np.exp(-1j * g.near))) > SURELY:
         message = tell("group {group}: no way of assembly at crank angle {angle:g} deg has {side} near {told:g} deg")
         raise CannotBuild(message.format(**_ways(g, way)), tell("take one of {ways} deg").format(**_ways(g, way)))
+    others = [abs(np.angle(u / way.found[way.taken][1])) for n, (_, u) in enumerate(way.found) if n != way.taken]
+    if min(others, default=np.pi) < ALIKE:
+        message = tell("group {group}: two ways of assembly have {side} in the same direction at crank angle {angle:g} deg")
+        raise CannotBuild(message.format(**_ways(g, way)), tell("tell the direction at another crank angle, with at = \"30 deg\""))
     if not way.back:
         message = tell("group {group}: after a turn of the crank it stands in another way of assembly")
         hint = tell("make the crank shorter; ways of assembly at crank angle {angle:g} deg have {side} at {ways} deg")

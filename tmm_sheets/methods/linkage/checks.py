@@ -5,6 +5,7 @@ The conditions of assembly are those of the kinds of groups.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,33 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
         raise CannotBuild(tell("{point} cannot be constructed at positions {labels}").format(point=name, labels=", ".join(labels)))
 
 
+@dataclass(frozen=True)
+class End:
+    """End of a swing: crank angle, degrees, None for none; number of the limit that ends it; what it lacks 1 degree beyond, m."""
+
+    angle: float | None
+    limit: int
+    lack: float = np.nan
+
+
+@dataclass(frozen=True)
+class SwingLimits:
+    """How far a crank that swings could go: its crank angles, degrees, the groups that end it there, and why."""
+
+    angles: tuple[float | None, float | None]
+    groups: tuple[str, str]
+    reasons: tuple[str, str]
+
+
+def swing_limits(mechanism: Mechanism, cycle: Cycle) -> SwingLimits:
+    """Limits of the swing of a crank, backwards from its first position and on from its last."""
+    limits = [(g, limit) for g in mechanism.groups for limit in g.kind.limits(mechanism, g)]
+    ends = _Search(mechanism, cycle, [limit for _, limit in limits]).swing()
+    groups = tuple("" if end.limit < 0 else "-".join(limits[end.limit][0].links) for end in ends)
+    reasons = tuple("" if end.limit < 0 or np.isnan(end.lack) else limits[end.limit][1].say(end.lack) for end in ends)
+    return SwingLimits((ends[0].angle, ends[1].angle), (groups[0], groups[1]), (reasons[0], reasons[1]))
+
+
 class _Search:
     """Margins of all limits over the turn, one column per angle."""
 
@@ -65,6 +93,8 @@ class _Search:
         order = np.argsort(np.concatenate((np.mod(turned, 2 * np.pi), extra)), kind="stable")
         self.turned = np.concatenate((np.mod(turned, 2 * np.pi), extra))[order]
         self.margins = np.concatenate((margins, found), axis=1)[:, order]
+        # Of a crank that swings only its swing counts; how far it could go is told from the whole turn.
+        self.asked = self.turned <= cycle.period + TOUCH if cycle.swings else np.full(self.turned.shape, True)
 
     def _margins(self, turned: Floats) -> tuple[Positions, Floats]:
         pos = position_plan(self.mechanism, self.cycle.world(turned), purpose=ASSEMBLY)
@@ -93,16 +123,16 @@ class _Search:
     def failure(self, i: int, group: StructuralGroup) -> str:
         """What to say about limit ``i``, of a group; nothing when it holds wherever the groups before it assemble."""
         limit, margin = self.limits[i], self.margins[i]
-        fails = margin < 0
+        fails = (margin < 0) & self.asked
         if not fails.any():
             return ""
         labels = [label for label, m in zip(self.cycle.labels, self.numbered[i], strict=True) if m < 0]
         reachable = self._assembles(self.margins, i)
-        worst = int(np.nanargmin(margin))
+        worst = int(np.nanargmin(np.where(self.asked, margin, np.nan)))
         said = {"group": "-".join(group.links), "why": limit.say(float(-margin[worst]))}
-        if limit.measured and not fails.all():
+        if limit.measured and not fails[self.asked].all():
             said["why"] = tell("{why} at worst ({place})").format(why=said["why"], place=self._place(worst, i))
-        if fails.all():
+        if fails[self.asked].all():
             text = tell("group {group} does not assemble at any position: {why}").format(**said)
         elif labels:
             text = tell_n("group {group} does not assemble at position {places}: {why}",
@@ -116,6 +146,27 @@ class _Search:
         if limit.measured and reachable.any():
             text = tell("{message}; reachable crank angles: {ranges}").format(message=text, ranges=self._ranges(reachable, i))
         return text
+
+    def swing(self) -> tuple[End, End]:
+        """Where the crank's swing could end at the most, backwards and on, and the limits that end it."""
+        every = len(self.limits) - 1
+        holds = self._assembles(self.margins, every)
+        if holds.all():
+            return End(None, -1), End(None, -1)
+        found = []
+        for step in (-1, 1):
+            at = int(np.flatnonzero(self.asked)[0 if step < 0 else -1])
+            while holds[(at + step) % len(holds)]:
+                at = (at + step) % len(holds)
+            beyond = np.array([(at + step) % len(holds)])
+            edge = float(self._edges(np.array([at]), beyond, every, holds, 40)[0])
+            past = self._margins(np.array([edge + step * np.radians(1.0)]))[1][:, 0]
+            ends = int(np.flatnonzero(~(past >= 0))[0]) if (~(past >= 0)).any() else -1
+            # Counted on from the swing itself: it may begin beyond a whole turn's zero.
+            way = edge - 2 * np.pi if step < 0 and edge > self.cycle.period else edge
+            angle = float(np.degrees(self.cycle.world(way)))
+            found.append(End(angle, ends, float(-past[ends]) if ends >= 0 else np.nan))
+        return found[0], found[1]
 
     @staticmethod
     def _assembles(margins: Floats, i: int) -> Any:
@@ -157,12 +208,12 @@ class _Search:
             return said.format(ranges=", ".join(texts[:3]), n=more)
         return tell("{ranges} deg").format(ranges=", ".join(texts))
 
-    def _edges(self, inside: Any, outside: Any, i: int, mask: Any) -> Floats:
-        """Angles at the ends of ranges, halved until they are sharp to 0.001 degrees."""
+    def _edges(self, inside: Any, outside: Any, i: int, mask: Any, halvings: int = 10) -> Floats:
+        """Angles at the ends of ranges, halved until they are sharp to 0.001 degrees, or more often."""
         a: Floats = self.turned[inside]
         b: Floats = a + np.mod(self.turned[outside] - a + np.pi, 2 * np.pi) - np.pi
         failing = bool((self.margins[i][mask] < 0).all())
-        for _ in range(10):
+        for _ in range(halvings):
             middle = (a + b) / 2
             _, m = self._margins(middle)
             holds = m[i] < 0 if failing else self._assembles(m, i)

@@ -51,7 +51,8 @@ class Strokes:
 class Cycle:
     """Numbered positions: angles ``turned`` from position 0 in the sense of rotation, world angles ``phi``, rad, shape (n,).
 
-    ``plan`` constructs the dead positions, ``numbering`` has the crank angles as steps.
+    ``plan`` constructs the dead positions, ``numbering`` has the crank angles as steps. ``swings`` is True for a crank that does
+    not turn round: ``period`` is then the angle of its swing, from the first position to the last.
     """
 
     labels: tuple[str, ...]
@@ -62,6 +63,7 @@ class Cycle:
     strokes: Strokes | None
     plan: Plan | None
     numbering: Plan | None = None
+    swings: bool = False
 
     @property
     def plans(self) -> dict[str, Plan]:
@@ -79,6 +81,11 @@ class Cycle:
         if turned is self.turned and self.numbering is not None:
             return self.numbering["φ_п"]
         return Given(turned, "angles turned", "φ", "rad")
+
+    @property
+    def ring(self) -> Floats:
+        """Angles turned at which paths are drawn, rad: all round the turn, or over the swing."""
+        return np.linspace(0, self.period if self.swings else 2 * np.pi, 181)
 
     @property
     def phi(self) -> Floats:

@@ -91,6 +91,11 @@ class Kinetostatics:
         """Weights, inertia forces and applied forces of all links, without reactions."""
         return [load for loads in self.loads.values() for load in loads if load.role != "reaction"]
 
+    @property
+    def couple_points(self) -> dict[str, str]:
+        """Points that the couples of sliding pairs' reactions refer to: the force is taken there."""
+        return {name: couple.args[0].args[0].name for name, couple in self.couples.items()}
+
     def tangential_part(self, link: str, at: str) -> Step | None:
         """Part of the reaction on a link in a hinge that a moment equation gave, N; None where the reaction is not split."""
         return next((part.vector for part in self.from_moments if (part.link, part.at) == (link, at)), None)

@@ -430,7 +430,7 @@ def ordinate(curve: Any, at: Any, ahead: Any) -> Any:
 @primitive("ordinate of a periodic diagram")
 def periodic_ordinate(curve: Any, at: Any, turns: Any, side: Any) -> Any:
     """Ordinates of a diagram that repeats itself after some turns, at angles turned; at a jump before it (-1) or behind it."""
-    return read(curve, at, int(side), 2 * np.pi * turns)
+    return read(curve, at, int(side), 2 * np.pi * turns or None)
 
 
 DIAGRAM = Rule("load diagram", diagram, ("number",) * 4, "curve", marked("Through the given points draw the load diagram {name}."),
@@ -567,6 +567,8 @@ def steady_law(value: float) -> tuple[Callable[[Any, int], Any], tuple[float, ..
     return law, ()
 
 
-def angle_law(table: Table, period: float, smooth: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
-    """Periodic law, N or N m, over the angle turned from position 0, and the angles of its points, rad."""
+def angle_law(table: Table, period: float | None, smooth: bool = False) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
+    """Law, N or N m, over the angle turned from position 0, and the angles of its points, rad; without a period not periodic."""
+    if period is None:
+        return curve_of(table, smooth), tuple(dict.fromkeys(map(float, table[0])))
     return curve_of(table, smooth, period), distinct((float(np.mod(t, period)) for t in table[0]), period)

@@ -34,6 +34,10 @@ WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + se
 EQUAL = Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra,
              ("number", "number", "angle"), "angle",
              marked("Divide the turn of the crank into {0} equal parts; angle turned {name} = {value}."), unit="rad", exact=True)
+EQUAL_SWING = Rule("equal parts of a swing", lambda swing, parts, number, extra: swing / parts * number + extra,
+                   ("angle", "number", "number", "angle"), "angle",
+                   marked("Divide the swing of the crank {0} into {1} equal parts; angle turned {name} = {value}."), unit="rad",
+                   exact=True)
 STROKE_OF_K = Rule("crank angle of the working stroke", lambda k: np.pi * (1 + (k - 1) / (k + 1)), ("number",), "angle",
                    marked("Angle of the working stroke {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}."), unit="rad",
                    source="000, 3.1", exact=True)
@@ -126,6 +130,39 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
         begin = 0.0 if min(begin, 2 * np.pi - begin) < 1e-12 else begin
         strokes = _strokes(m, output, dead, begin)
     return Cycle(tuple(order), turned.value, start, m.crank.sense, 2 * np.pi * turns, strokes, plan, numbering)
+
+
+def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero: str = "0",
+                extra: Mapping[str, float] | None = None) -> Cycle:
+    """Equal parts of the swing of a crank from one crank angle to another, in its sense; both ends are positions.
+
+    Raises
+    ------
+    CannotBuild
+        when a further position has the label of another one or lies outside of the swing.
+    """
+    swing = _turned(start, end, m.crank.sense)
+    if not swing > 1e-9:
+        raise CannotBuild(tell("the crank swings from one angle to the same"),
+                          tell("give another end, or leave end out for a whole turn"))
+    named = {zero if i == 0 else str(i): (swing / positions * i, float(i), 0.0) for i in range(positions + 1)}
+    for label, angle in (extra or {}).items():
+        if label in named:
+            raise CannotBuild(tell("there is a position {label} already").format(label=label),
+                              tell("give the further position another name"))
+        if not 0 <= angle <= swing:
+            raise CannotBuild(tell("position {label} lies outside of the swing of {swing:.4g} deg").format(
+                label=label, swing=np.degrees(swing)))
+        named[label] = (angle, 0.0, angle)
+    order = sorted(named, key=lambda label: named[label][0])
+    numbering = Plan("cycle", tr("Numbering of the positions"), "rad", tuple(order))
+    width = numbering.aside("φ_к", TURNED, GivenNumber(start, "cycle.start", "φ_0", "rad"),
+                            GivenNumber(end, "cycle.end", "", "rad"), m.crank.sense, symbol=tr("φ_s"))
+    rows = [Given(np.array([named[label][k] for label in order], dtype=np.float64), name, "", unit)
+            for k, name, unit in ((1, "numbers of the positions", ""), (2, "cycle.extra", "rad"))]
+    turned = numbering.add("φ_п", EQUAL_SWING, width, GivenNumber(positions, "cycle.positions"), *rows, symbol=tr("φ_t"))
+    numbering.add("φ", WORLD, GivenNumber(start, "cycle.start", "φ_0", "rad"), m.crank.sense, turned)
+    return Cycle(tuple(order), turned.value, start, m.crank.sense, swing, None, None, numbering, swings=True)
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics, external_loads, kinetostatics
 from tmm_sheets.methods.linkage.loads import Applied
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
+from tmm_sheets.methods.linkage.sliding import Sliding
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
 from tmm_sheets.words import marked, tr
@@ -63,6 +64,7 @@ class Study:
         made = vars(self)
         found = [made[name].plan for name in ("positions", "velocities") if name in made]
         found += made["positions"].false.values() if "positions" in made else ()
+        found += [made["sliding"].plan] if "sliding" in made and made["sliding"].plan.steps else []
         found += [made["uneven"]] if "uneven" in made else []
         found += [made["accelerations"].plan] if "accelerations" in made else []
         if "loads" in made:
@@ -88,6 +90,11 @@ class Study:
     def velocities(self) -> Velocities:
         """Velocity plans."""
         return velocity_plan(self.positions)
+
+    @cached_property
+    def sliding(self) -> Sliding:
+        """Velocities of sliding and the Coriolis accelerations they bring."""
+        return Sliding(self.velocities)
 
     @cached_property
     def accelerations(self) -> Accelerations:
