@@ -79,6 +79,20 @@ def fit_frame(grey: Grey, m: Map) -> FrameFit:
     return FrameFit(m, seen, scatter, smear)
 
 
+def frame_about(grey: Grey, m: Map, width: float) -> FrameFit:
+    """The frame about a map that the lines inside have made, which is left as it is.
+
+    Raises
+    ------
+    CannotBuild
+        When more than one side has no line.
+    """
+    seen, profile, o = _seek(grey, m, width)
+    use = seen.weight > 0
+    scatter = max(1.4826 * float(np.median(np.abs(o[use] - np.median(o[use])))), 0.03)
+    return FrameFit(m, seen, scatter, _smear(profile[use], _offsets(width), o[use]))
+
+
 def sides_near(grey: Grey, m: Map, width: float) -> Seen:
     """Points of the frame's sides, which are at most ``width`` mm from where ``m`` has them.
 

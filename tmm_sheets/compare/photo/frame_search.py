@@ -16,8 +16,8 @@ import numpy as np
 
 from tmm_sheets.compare.photo.frame_fit import STATIONS, WANTED, initial_map
 from tmm_sheets.compare.photo.frame_guesses import frame_guesses
-from tmm_sheets.compare.photo.frame_quads import frame_quads
-from tmm_sheets.compare.photo.frame_sides import FrameGuess, bend, follow_sides, inked, side_moved_to_ink
+from tmm_sheets.compare.photo.frame_quads import frame_quads, long_lines, three_sided
+from tmm_sheets.compare.photo.frame_sides import PLACES, FrameGuess, bend, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.photograph import Grey
 from tmm_sheets.compare.photo.profiles import ProfileLines, darkness, sample
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, Floats, Map, chords, homography, projected
@@ -50,6 +50,7 @@ class FoundFrame:
     mirrored : whether it is seen in a mirror
     score : from 0 to 1, see :data:`FOUND`
     turned : quarter turns of the picture
+    whole : whether all four sides were followed; otherwise three of them tell the fourth
     """
 
     corners: Points
@@ -57,6 +58,7 @@ class FoundFrame:
     mirrored: bool
     score: float
     turned: int = 0
+    whole: bool = True
 
 
 def find(grey: Grey, block: ProfileLines) -> FoundFrame:
@@ -107,10 +109,12 @@ def others(grey: Grey, lines: ProfileLines) -> list[FoundFrame]:
     ink = darkness(small, 8)
     level = _level(ink)
     found: list[FoundFrame] = []
-    for guess in chain(frame_quads(ink, lines, level), frame_guesses(small, ink)):
+    long = long_lines(ink)
+    for guess in chain(frame_quads(ink, lines, level, long), three_sided(ink, lines, level, long), frame_guesses(small, ink)):
         if guess.positions != (0,) and any(f.score > LIKELY for f in found):
             break
-        sides, corners = follow_sides(ink, guess)
+        whole = guess.reach > 0
+        sides, corners = follow_sides(ink, guess) if whole else _straight_sides(guess.corners)
         if not np.isfinite(corners).all() or min(abs(a - b) for a, b in chords(corners)) < SHORTEST:
             continue
         for mirrored, placed, around in _orientations(guess.positions, sides, corners):
@@ -122,10 +126,16 @@ def others(grey: Grey, lines: ProfileLines) -> list[FoundFrame]:
                 continue
             same = next((k for k, f in enumerate(found) if np.abs(f.corners - placed).max() < SAME), None)
             if same is None:
-                found.append(FoundFrame(placed, around, False, score))
+                found.append(FoundFrame(placed, around, False, score, whole=whole))
             elif score > found[same].score:
-                found[same] = FoundFrame(placed, around, False, score)
+                found[same] = FoundFrame(placed, around, False, score, whole=whole)
     return [_at_full_size(f, shrink) for f in sorted(found, key=lambda f: -f.score)]
+
+
+def _straight_sides(corners: Points) -> tuple[Points, Points]:
+    """Points along the sides of a quadrilateral, and its corners."""
+    b = np.roll(corners, -1)
+    return corners[:, None] + (b - corners)[:, None] * PLACES, corners
 
 
 def _at_full_size(found: FoundFrame, shrink: float) -> FoundFrame:

@@ -91,7 +91,7 @@ def compare(
             _other_sheet(project, n, found, path, say)
         raise refusal(picture.grey, found, known, path, n)
     say(tell("measuring the elements"))
-    traces, extra = tracing.trace(known, found.ink)
+    traces, extra = tracing.trace(known, found.ink, found.hidden)
     extra = [x for x in extra if placed is None or placed.strange(x)]
     return image_report(project.variant.project.name, n, path, found, traces, extra, pencil, notes)
 

@@ -46,6 +46,11 @@ class _Judged:
         return sum(f.unknown for f in self.findings)
 
     @cached_property
+    def hidden(self) -> int:
+        """How many elements do not show in the picture."""
+        return sum(f.trace.status == "hidden" for f in self.findings)
+
+    @cached_property
     def hidden_ends(self) -> int:
         return sum(f.hidden_ends for f in self.findings)
 
@@ -88,7 +93,10 @@ def image_report(
 
 def _hidden(judged: _Judged) -> str:
     """What could not be measured, and what is too much."""
+    hidden = tell_n("{n} element is hidden in the picture or lies outside it",
+                    "{n} elements are hidden in the picture or lie outside it", judged.hidden)
     return "; ".join((
+        *([hidden.format(n=judged.hidden)] if judged.hidden else []),
         tell_n("{n} element is too near to others to be measured", "{n} elements are too near to others to be measured",
                judged.dense).format(n=judged.dense),
         tell_n("{n} end of main lines and vectors lies under others and is judged only as far as it shows",
@@ -122,10 +130,11 @@ def _table(judged: _Judged) -> list[str]:
 
 def _tree(judged: _Judged) -> dict[str, Any]:
     """What JSON tells of the elements and of extra ink."""
-    told = ("measured", "shared", "missing", "dense", "absent lettering")
+    told = ("measured", "shared", "missing", "dense", "absent lettering", "hidden")
     measured = sum(f.trace.status == "measured" for f in judged.findings)
     return {
-        "count": {**judged.count, "dense": judged.dense, "hidden_ends": judged.hidden_ends, "measured": measured},
+        "count": {**judged.count, "dense": judged.dense, "hidden": judged.hidden, "hidden_ends": judged.hidden_ends,
+                  "measured": measured},
         "elements": [_row(f) for f in judged.findings if f.trace.status in told],
         "extra": [{"x": round(x.middle.real, 1), "y": round(x.middle.imag, 1), "width": round(float(x.width), 1),
                    "height": round(float(x.height), 1)} for x in judged.extra],

@@ -87,6 +87,8 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Ph
     if t.status == "shared" and t.deviation <= tolerance:
         said = tell("within a pencil's reach, with others in one stroke")
         return PhotoFinding(e, "green", t.deviation, said, middle, t, tolerance)
+    if t.status == "hidden":
+        return PhotoFinding(e, "green", 0.0, tell("hidden in the picture"), middle, t, tolerance)
     word = tell("not measurable: too near to others") if t.status in ("dense", "shared") else tell("there")
     return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
 

@@ -22,6 +22,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
+from tmm_sheets.compare.photo.hidden import Mask, hidden_places
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
@@ -55,6 +56,7 @@ WHOLE = 0.98
 """Share of a side's points in place below which the side is followed once more, near where the lines inside have it."""
 ABOUT = 1.5
 """How near that is, mm."""
+NO_SIDES = Seen(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, complex), np.zeros(0))
 HOPELESS = 0.3
 """Share of lines in place below which a fit is right nowhere."""
 TRIED, UNLIKELY = 3, 0.4
@@ -79,6 +81,7 @@ class Rectified:
     notes : what is worth telling, a line each
     soft : whether the picture is not sharp
     check : what is to be said of the fit
+    hidden : where the sheet does not show, see ``hidden.hidden_places``
     """
 
     ink: Any
@@ -92,6 +95,7 @@ class Rectified:
     notes: tuple[str, ...]
     soft: bool
     check: FitCheck
+    hidden: Mask
 
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:
@@ -145,8 +149,11 @@ def rectify(
     ink = straighten(picture.grey, best.map)
     scatter = best.frame.scatter
     uncertainty = hypot(RECTIFIED if by_lines else 2 * RECTIFIED, scatter)
-    return Rectified(ink, best.map, best.frame.sides, noise_level(ink), best.check.match, scatter, uncertainty, scale, notes,
-                     best.frame.smear > SOFT, best.check)
+    frame = best.frame.sides
+    hidden = hidden_places(picture.grey, best.map, ink, lines, ProfileLines(frame.sheet, frame.normals, lines.line[:0]),
+                           line_level(ink))
+    return Rectified(ink, best.map, frame, noise_level(ink), best.check.match, scatter, uncertainty, scale, notes,
+                     best.frame.smear > SOFT, best.check, hidden)
 
 
 class _Attempt(NamedTuple):
@@ -183,12 +190,14 @@ class _Attempts:
             When the frame has no sides.
         """
         start = frame_fit.initial_map(found.corners, found.sides, self.grey.shape)
+        if not found.whole:
+            self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(start), ABOUT)))
+            return
         attempt = self._fit(found, frame_fit.fit_frame(self.grey, start))
         self._keep(attempt)
         if self.by_lines and not attempt.check.sound and attempt.check.match > HOPELESS:
-            again = self._without_frame(attempt)
             with suppress(CannotBuild, np.linalg.LinAlgError):
-                self._keep(self._fit(found, frame_fit.fit_frame(self.grey, again)))
+                self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
 
     def elsewhere(self, lines: ProfileLines) -> None:
         """Try other frames, the likeliest by the drawing's ``lines`` first."""
@@ -220,11 +229,10 @@ class _Attempts:
             sides = frame_fit.sides_near(self.grey, m, ABOUT)
         return _Attempt(found, frame._replace(sides=sides), m, check)
 
-    def _without_frame(self, attempt: _Attempt) -> Map:
-        """The map by the lines of the drawing alone, from a fit that is right in part of the sheet."""
-        sides = attempt.frame.sides._replace(weight=np.zeros_like(attempt.frame.sides.weight))
-        ink = straighten(self.grey, attempt.map, COARSE)
-        return refine(attempt.map, sides, ink, self.lines, line_level(ink), COARSE, RELIEF, BY_LINES)[0]
+    def _without_frame(self, m: Map) -> Map:
+        """The map by the lines of the drawing alone, from one that is right in part of the sheet."""
+        ink = straighten(self.grey, m, COARSE)
+        return refine(m, NO_SIDES, ink, self.lines, line_level(ink), COARSE, RELIEF, BY_LINES)[0]
 
 
 def _remarks(path: Path, scale: float, smear: float, turned: int) -> tuple[str, ...]:

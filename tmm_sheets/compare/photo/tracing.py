@@ -11,7 +11,9 @@ determined: a straight line has no shift along itself and no growth; its length 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +21,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.displacement import displaced
 from tmm_sheets.compare.photo.extra_ink import extra_ink
+from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.line_ends import with_ends
@@ -28,10 +31,11 @@ from tmm_sheets.compare.photo.stations import measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.photo.wiping import fill, wipe_found, wipe_small
 
+OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 WRITTEN = 0.02  # share of its place with ink from which on lettering counts as there
 
 
-def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[ExtraInk]]:
+def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[Trace], list[ExtraInk]]:
     """Measure elements in a rectified picture, and find the ink that belongs to none.
 
     Parameters
@@ -40,32 +44,49 @@ def trace(elements: Sequence[Element], ink: Any) -> tuple[list[Trace], list[Extr
         All that is on the sheet.
     ink
         Darkness, see :func:`~tmm_sheets.compare.photo.rectification.straighten`.
+    hidden
+        Where the sheet does not show, see :func:`~tmm_sheets.compare.photo.hidden.hidden_places`.
 
     Returns
     -------
     A trace of each element in their order, and extra ink, the longest first.
     """
+    import cv2
+
     level, pale = ink_levels(ink)
     owners = Owners(*ink.shape)
     for e in elements:
         owners.add(e, e.points)
-    small = [e for e in elements if not measurable(e)]
-    found, absent = _in_their_places([e for e in elements if measurable(e)], ink, owners, pale)
+    if hidden is None:
+        hidden = np.zeros((1, 1), bool)
+    out_of_sight = {e.number: Trace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
+    shown = [e for e in elements if e.number not in out_of_sight]
+    small = [e for e in shown if not measurable(e)]
+    found, absent = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale)
     wiped = np.zeros_like(ink)
     for e in small:
         wipe_small(wiped, e)
     for t in found:
         wipe_found(wiped, t)
     left = ink.copy()
+    if hidden.any():
+        left[cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0] = 0
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     ended = with_ends(open_lines, ink, owners, _places_of_lettering(elements, ink), pale)
-    out = {t.element.number: t for t in (*found, *ended)} | _presence(small, ink, level)
+    ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
+    out = {t.element.number: t for t in (*found, *ended)} | _presence(small, ink, level) | out_of_sight
     for e in elements:  # a hand may have written here
         if e.kind == "text":
             fill(left, grown(e.points, 0.8 * e.height + 1.0), 0)
     return [out[e.number] for e in elements], extra_ink(left, level)
+
+
+def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
+    """The ends of a line, unknown where they are hidden."""
+    begin, end = (math.nan if at(z, hidden) else by for z, by in zip(t.element.points[[0, -1]], t.ends, strict=True))
+    return begin, end
 
 
 def _in_their_places(lines: Sequence[Element], ink: Any, owners: Owners, level: float) -> tuple[list[Trace], list[Element]]:

@@ -1,0 +1,140 @@
+"""Which parts of a photographed sheet are hidden: outside the picture, under a thumb or a dog-ear, behind the edge of something.
+
+A place is hidden when its ground is not the paper's or the lines that belong there are not there, and that goes on to the frame:
+what hides a sheet reaches into it from outside. A shadow is no such thing (the lines are there), nor is a line that was left out.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.elements import Element, sampled
+from tmm_sheets.compare.photo.profiles import ProfileLines, peaks, profiles
+from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map
+
+Mask = npt.NDArray[np.bool_]
+
+WIDEST = 15
+"""mm; lines and lettering are narrower than this."""
+FOREIGN = 0.16
+"""Change of the ground's brightness against that of the paper nearby, as a share, from which on it may be something else."""
+SMOOTH = 121
+"""mm over which the paper's brightness is taken."""
+CELL = 10
+"""mm; side of the cells in which lines are counted."""
+BARE, LEAST = 0.75, 5
+"""Least share of the points of lines about a cell that must be bare for it to be hidden, and least number of them."""
+SEEN = 0.5
+"""Share of points of lines in place from which on a darker or lighter ground hides nothing."""
+MARGIN = 5
+"""mm by which hidden places are widened: edges cast shadows."""
+OFFSETS = np.arange(-1.5, 1.55, 0.1)
+
+
+def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: ProfileLines, level: float) -> Mask:
+    """Where the sheet is hidden, a pixel for each square millimetre, the upper row first.
+
+    Parameters
+    ----------
+    grey, m
+        The picture and its map.
+    ink, level
+        The rectified sheet and the darkness of a line.
+    lines, sides
+        Points of the drawing's lines and of the frame.
+    """
+    import cv2
+
+    shape = (round(PAPER.height), round(PAPER.width))
+    p, n = np.concatenate((lines.points, sides.points)), np.concatenate((lines.normals, sides.normals))
+    all_lines = ProfileLines(p, n, np.zeros(len(p), np.int64))
+    o, strength = peaks(profiles(ink, all_lines, OFFSETS), OFFSETS, 0.0, 1.0, 0.4)
+    there = (strength > level) & (np.abs(o) < 0.7)
+    row = np.clip((PAPER.y1 - all_lines.points.imag).astype(int), 0, shape[0] - 1)
+    column = np.clip(all_lines.points.real.astype(int), 0, shape[1] - 1)
+    ground, outside = _ground(grey, m, shape)
+    foreign = _foreign(ground, ~outside)
+    absent = _absent(row, column, there, shape)
+    out = outside.copy()
+    both = (foreign | absent) & ~outside
+    count, labels = cv2.connectedComponents(both.astype(np.uint8), connectivity=8)
+    label = labels[row, column]
+    total = np.bincount(label, minlength=count)
+    seen = np.bincount(label, there, minlength=count)
+    rim = np.zeros(shape, bool)
+    top, bottom = round(PAPER.y1 - FRAME.y1), round(PAPER.y1 - FRAME.y0)
+    left, right = round(FRAME.x0), round(FRAME.x1)
+    rim[top - 2 : bottom + 3, left - 2 : right + 3] = True
+    rim[top + 3 : bottom - 2, left + 3 : right - 2] = False
+    at_rim = np.unique(labels[rim])
+    for k in at_rim[at_rim > 0].tolist():
+        # The margin outside the frame is often in the shade of its own edge: only what reaches inside matters.
+        if total[k] >= LEAST and seen[k] < SEEN * total[k]:
+            out |= labels == k
+    return cv2.dilate(out.astype(np.uint8), np.ones((2 * MARGIN + 1, 2 * MARGIN + 1), np.uint8)) > 0 if out.any() else out
+
+
+def share_hidden(e: Element, hidden: Mask) -> float:
+    """Share of an element that is hidden."""
+    p = e.points if e.kind == "text" or len(e.points) < 2 else sampled(e.points, 1.0)[0]
+    if e.kind == "text":
+        p = np.append(p, p.mean())
+    return float(at(p, hidden).mean())
+
+
+def at(p: Any, hidden: Mask) -> Any:
+    """Whether points of the sheet, mm, are hidden."""
+    rows, columns = hidden.shape
+    i = np.clip((PAPER.y1 - np.imag(p)).astype(int), 0, rows - 1)
+    return hidden[i, np.clip(np.real(p).astype(int), 0, columns - 1)]
+
+
+def _ground(grey: Any, m: Map, shape: tuple[int, int]) -> tuple[Any, Mask]:
+    """Brightness of what lies under the lines, and what is outside the picture."""
+    import cv2
+
+    x, y = np.meshgrid(np.arange(shape[1]) + 0.5, PAPER.y1 - np.arange(shape[0]) - 0.5)
+    step = 8
+    q = m.to_picture(x[::step, ::step] + 1j * y[::step, ::step])
+    u, v = (cv2.resize(part.astype(np.float32), (q.shape[1] * step, q.shape[0] * step), interpolation=cv2.INTER_LINEAR)
+            [: shape[0], : shape[1]] for part in (q.real, q.imag))  # fmt: skip
+    scale = abs(complex(q[len(q) // 2, -1] - q[len(q) // 2, 0])) / (x[0, ::step][-1] - x[0, 0])
+    f = float(min(1.0 / max(scale, 1e-6), 1.0))
+    small = cv2.resize(grey, None, fx=f, fy=f, interpolation=cv2.INTER_AREA)
+    seen = cv2.remap(small, u * f, v * f, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    outside = (u < 0) | (v < 0) | (u > grey.shape[1] - 1) | (v > grey.shape[0] - 1)
+    return cv2.morphologyEx(cv2.medianBlur(seen, 3), cv2.MORPH_CLOSE, np.ones((WIDEST, WIDEST), np.uint8)), outside
+
+
+def _foreign(ground: Any, valid: Mask) -> Mask:
+    """Where the ground is not as bright as the paper about it, twice: the second time without what was foreign."""
+    light = np.maximum(ground.astype(np.float64), 1)
+    use = valid.astype(np.float64)
+    out = np.zeros_like(valid)
+    y, x = np.mgrid[-1 : 1 : light.shape[0] * 1j, -1 : 1 : light.shape[1] * 1j]
+    base = np.stack([x**i * y**j for i in range(5) for j in range(5 - i)], -1)[::6, ::6].reshape(-1, 15)
+    whole = np.stack([x**i * y**j for i in range(5) for j in range(5 - i)], -1)
+    log, w = np.log(light), use[::6, ::6].ravel()
+    some = log[::6, ::6].ravel()
+    c: Floats = np.zeros(15)
+    for _ in range(8):
+        c = np.linalg.lstsq(base * w[:, None], some * w, rcond=None)[0]
+        w = use[::6, ::6].ravel() / (1 + ((some - base @ c) / 0.08) ** 2)
+    out = np.abs(log - whole @ c) > FOREIGN
+    return np.asarray(out & valid)
+
+
+def _absent(row: Any, column: Any, there: Any, shape: tuple[int, int]) -> Mask:
+    """Where lines are not, though several belong there."""
+    import cv2
+
+    rows, columns = -(-shape[0] // CELL), -(-shape[1] // CELL)
+    cell = row // CELL * columns + column // CELL
+    total, seen = (np.bincount(cell, some, minlength=rows * columns).reshape(rows, columns).astype(np.float32)
+                   for some in (np.ones(len(cell)), there))  # fmt: skip
+    about, met = (9 * cv2.blur(part, (3, 3), borderType=cv2.BORDER_CONSTANT) for part in (total, seen))
+    bare = (about >= LEAST) & (met <= (1 - BARE) * about)
+    return np.asarray(np.kron(bare, np.ones((CELL, CELL), bool))[: shape[0], : shape[1]])
