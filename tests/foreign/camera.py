@@ -77,7 +77,7 @@ class Camera:
 
 
 def expose(scene: Picture, random: np.random.Generator, *, grain: float, blur: float) -> NDArray[np.uint8]:
-    """What the sensor makes of a scene (linear RGB, paper about 0.7), BGR: blur of the lens, shot noise before demosaicing, tone."""
+    """What the sensor makes of a scene (linear RGB, paper about 0.7), BGR: blur of the lens, noise before demosaicing, tone."""
     soft = np.asarray(cv2.GaussianBlur(scene, (0, 0), blur), np.float32)
     mosaic = soft[..., 1].copy()
     mosaic[0::2, 0::2] = soft[0::2, 0::2, 0]
@@ -85,7 +85,7 @@ def expose(scene: Picture, random: np.random.Generator, *, grain: float, blur: f
     mosaic += random.standard_normal(mosaic.shape, dtype=np.float32) * np.sqrt(np.maximum(mosaic, 0) * grain**2 + (grain / 6) ** 2)
     raw = (np.clip(mosaic, 0, 1) * 65535).astype(np.uint16)
     colour = cv2.cvtColor(raw, cv2.COLOR_BayerBG2BGR).astype(np.float32) / 65535
-    toned: Picture = np.clip(colour, 0, 1) ** np.float32(1 / 2.2)
+    toned = np.asarray(np.clip(colour, 0, 1) ** (1 / 2.2), np.float32)
     if grain > 0.02:  # telephones smooth what is noisy
         toned = np.asarray(cv2.bilateralFilter(toned, 5, 0.08, 2), np.float32)
     sharp = toned + 0.5 * (toned - cv2.GaussianBlur(toned, (0, 0), 1.2))
