@@ -170,7 +170,7 @@ def _peak(score: NDArray[np.float32], at: Any, axis: int) -> float:
 
 
 def _is(element: dict[str, Any], mark: Mark) -> bool:
-    """Whether an element of the report is this mark of the record; the report tells no places, and names of its own where the record has none."""
+    """Whether an element of the report is this mark of the record."""
     if (element["step"], element["position"]) != (mark.step, mark.position) or not mark.step:
         return False
     if mark.kind == "text":
