@@ -13,16 +13,15 @@ Picture = NDArray[np.float32]
 
 
 class Camera:
-    """Looks at the middle of the sheet from `tilt` degrees aside; `fill` is the share of the picture that the sheet takes."""
+    """Looks at the middle of the sheet from `tilt` rad aside, turned by `roll` rad; `fill` is the share of the picture that the sheet takes."""
 
-    def __init__(self, random: np.random.Generator, megapixels: float, tilt: float, fill: float) -> None:
+    def __init__(self, random: np.random.Generator, megapixels: float, tilt: float, fill: float, roll: float) -> None:
         self.width = int(np.sqrt(megapixels * 1e6 * 4 / 3)) // 2 * 2
         self.height = int(self.width * 3 / 4) // 2 * 2
         self.focus = self.width * float(random.uniform(0.68, 0.85))
-        azimuth, roll = random.uniform(0, 2 * np.pi), np.radians(random.normal(0, 2.5))
+        azimuth = random.uniform(0, 2 * np.pi)
         self.bend = (float(random.uniform(-0.035, 0.03)), float(random.uniform(-0.01, 0.01)))
-        t = np.radians(tilt)
-        self.back = np.array([np.sin(t) * np.cos(azimuth), np.sin(t) * np.sin(azimuth), np.cos(t)])
+        self.back = np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
         right = np.cross([0.0, 1.0, 0.0], self.back)
         right /= np.linalg.norm(right)
         up = np.cross(self.back, right)
@@ -97,7 +96,7 @@ def document(picture: NDArray[np.uint8], corners: Floats, random: np.random.Gene
 
     Returns the picture and the homography that led to it.
     """
-    found = (corners + random.normal(0, 0.004 * picture.shape[1], corners.shape)).astype(np.float32)
+    found = (corners + random.normal(0, 0.0015 * picture.shape[1], corners.shape)).astype(np.float32)
     width = int(np.hypot(*(corners[1] - corners[0])))
     height = int(width * SIZE[1] / SIZE[0])
     target = np.array([(0, height), (width, height), (width, 0), (0, 0)], np.float32)
