@@ -13,7 +13,7 @@ Picture = NDArray[np.float32]
 
 
 class Camera:
-    """Looks at the middle of the sheet from `tilt` rad aside, turned by `roll` rad; `fill` is the share of the picture that the sheet takes."""
+    """Looks at the sheet from `tilt` rad aside, turned by `roll` rad; `fill` is the share of the picture that the sheet takes."""
 
     def __init__(self, random: np.random.Generator, megapixels: float, tilt: float, fill: float, roll: float) -> None:
         self.width = int(np.sqrt(megapixels * 1e6 * 4 / 3)) // 2 * 2
