@@ -91,12 +91,14 @@ def expose(scene: Picture, random: np.random.Generator, *, grain: float, blur: f
     return np.asarray((np.clip(sharp, 0, 1) * 255).round(), np.uint8)
 
 
-def document(picture: NDArray[np.uint8], corners: Floats, random: np.random.Generator) -> tuple[NDArray[np.uint8], Floats]:
+def document(
+    picture: NDArray[np.uint8], corners: Floats, random: np.random.Generator, miss: float
+) -> tuple[NDArray[np.uint8], Floats]:
     """Document mode: cut out by the paper's corners, as well as the telephone finds them, and made black and white.
 
-    Returns the picture and the homography that led to it.
+    It misses them by `miss` of the picture's width, and may cut off some of the frame. Returns the picture and the homography that led to it.
     """
-    found = (corners + random.normal(0, 0.0015 * picture.shape[1], corners.shape)).astype(np.float32)
+    found = (corners + random.normal(0, miss * picture.shape[1], corners.shape)).astype(np.float32)
     width = int(np.hypot(*(corners[1] - corners[0])))
     height = int(width * SIZE[1] / SIZE[0])
     target = np.array([(0, height), (width, height), (width, 0), (0, 0)], np.float32)

@@ -44,6 +44,7 @@ DIFFICULTIES = (
     "small",
     "document",
     "mixed",
+    "cropped",
 )
 STEP = 10.0
 """Step of the truth's map, mm."""
@@ -213,9 +214,9 @@ def take(what: Scene, folder: Path, most: float = 12.0) -> tuple[NDArray[np.uint
     u, v = np.meshgrid(np.arange(0, SIZE[0] + STEP, STEP), np.arange(0, SIZE[1] + STEP, STEP))
     grid = np.stack((u, v), axis=-1)
     pixels = camera.project(paper.place(grid))
-    if "document" in traits:
+    if traits & {"document", "cropped"}:
         corners = camera.project(paper.place(np.array([(0, 0), (SIZE[0], 0), SIZE, (0, SIZE[1])], float)))
-        file, turn = document(file, corners, random)
+        file, turn = document(file, corners, random, 0.004 if "cropped" in traits else 0.0015)
         lifted = np.concatenate((pixels, np.ones((*pixels.shape[:2], 1))), axis=-1) @ turn.T
         pixels = lifted[..., :2] / lifted[..., 2:]
     quarter = int(random.integers(1, 4)) if traits & {"turned", "exif"} else 0
