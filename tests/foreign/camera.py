@@ -96,7 +96,7 @@ def document(
 ) -> tuple[NDArray[np.uint8], Floats]:
     """Document mode: cut out by the paper's corners, as well as the telephone finds them, and made black and white.
 
-    It misses them by `miss` of the picture's width, and may cut off some of the frame. Returns the picture and the homography that led to it.
+    It misses them by `miss` of the width, and may cut off some of the frame. Returns the picture and the homography that led to it.
     """
     found = (corners + random.normal(0, miss * picture.shape[1], corners.shape)).astype(np.float32)
     width = int(np.hypot(*(corners[1] - corners[0])))

@@ -177,7 +177,8 @@ def _is(element: dict[str, Any], mark: Mark) -> bool:
         return bool(element["kind"] == "text" and element["name"] in (mark.string, mark.name))
     names = ("", mark.name, f"{mark.name}({mark.position})") if mark.name else (element["name"],)
     kinds = {"fill": ("line",), "circle": ("circle", "arc"), "polyline": ("curve", "line")}.get(mark.kind, (mark.kind,))
-    return element["view"] == mark.view and element["name"] in names and element["kind"] in kinds
+    # a view without a title is called by its module in the record, by a name in the report
+    return (element["view"] == mark.view or "." in mark.view) and element["name"] in names and element["kind"] in kinds
 
 
 def _near(marks: list[Mark], lines: list[list[list[float]]]) -> list[Mark]:
