@@ -2,7 +2,8 @@
 
     python -m tests.foreign --pictures 400 --seed 1 --jobs 2 -o DIR [--only wood,folds] [--keep] [--first I --count N] [--most 12]
 
-Outcomes are kept in DIR/outcomes.jsonl, line by line: a trial that was broken off goes on where it stopped. `--take` only takes the pictures, `--judge FILE ...` only judges some that were kept.
+Outcomes are kept in DIR/outcomes.jsonl, line by line: a trial that was broken off goes on where it stopped.
+`--take` only takes the pictures, `--judge FILE ...` only judges some that were kept.
 """
 
 from __future__ import annotations
@@ -58,11 +59,12 @@ def _line(name: str, rows: list[Row]) -> str:
     visible = [mistake for row in judged for mistake in _seen(row)]
     missed = sum(mistake["said"] in ("green", "not judged") for mistake in visible)
     share = f"{100 * accused / sound:.2f}" if sound else "-"
+    median = _cell((row["median"] for row in judged), ".3f", statistics.median)
+    most, worst = (_cell((row[key] for row in judged), ".2f", max) for key in ("most", "worst"))
+    seconds = _cell((row["seconds"] for row in rows), ".1f", statistics.median)
     return (
-        f"{name:<12}{len(rows):>5}{states['refused']:>9}{states['wrong fit']:>7}{states['broken']:>8}"
-        f"{_cell((row['median'] for row in judged), '9.3f', statistics.median):>9}{_cell((row['most'] for row in judged), '8.2f', max):>8}"
-        f"{_cell((row['worst'] for row in judged), '8.2f', max):>8}{share:>9}{missed:>6} of {len(visible):<4}"
-        f"{_cell((row['seconds'] for row in rows), '6.1f', statistics.median):>7}"
+        f"{name:<12}{len(rows):>5}{states['refused']:>9}{states['wrong fit']:>7}{states['broken']:>8}{median:>9}{most:>8}{worst:>8}"
+        f"{share:>9}{missed:>6} of {len(visible):<4}{seconds:>7}"
     )
 
 
@@ -90,7 +92,7 @@ def table(rows: list[Row]) -> str:
     for state in ("wrong fit", "broken", "refused"):
         lines += ["", state] if any(row["state"] == state for row in rows) else []
         lines += [
-            f"  {row['name']} ({row['project']} {row['sheet']}), matched {row['matched']}, {row['false_red']} false reds: {row['reason']}"
+            f"  {row['name']} ({row['project']} {row['sheet']}), matched {row['matched']}, red {row['false_red']}: {row['reason']}"
             for row in rows
             if row["state"] == state
         ]

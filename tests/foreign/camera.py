@@ -13,16 +13,15 @@ Picture = NDArray[np.float32]
 
 
 class Camera:
-    """Looks at the middle of the sheet from `tilt` degrees aside; `fill` is the share of the picture that the sheet takes."""
+    """Looks at the sheet from `tilt` rad aside, turned by `roll` rad; `fill` is the share of the picture that the sheet takes."""
 
-    def __init__(self, random: np.random.Generator, megapixels: float, tilt: float, fill: float) -> None:
+    def __init__(self, random: np.random.Generator, megapixels: float, tilt: float, fill: float, roll: float) -> None:
         self.width = int(np.sqrt(megapixels * 1e6 * 4 / 3)) // 2 * 2
         self.height = int(self.width * 3 / 4) // 2 * 2
         self.focus = self.width * float(random.uniform(0.68, 0.85))
-        azimuth, roll = random.uniform(0, 2 * np.pi), np.radians(random.normal(0, 2.5))
+        azimuth = random.uniform(0, 2 * np.pi)
         self.bend = (float(random.uniform(-0.035, 0.03)), float(random.uniform(-0.01, 0.01)))
-        t = np.radians(tilt)
-        self.back = np.array([np.sin(t) * np.cos(azimuth), np.sin(t) * np.sin(azimuth), np.cos(t)])
+        self.back = np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
         right = np.cross([0.0, 1.0, 0.0], self.back)
         right /= np.linalg.norm(right)
         up = np.cross(self.back, right)
@@ -77,7 +76,7 @@ class Camera:
 
 
 def expose(scene: Picture, random: np.random.Generator, *, grain: float, blur: float) -> NDArray[np.uint8]:
-    """What the sensor makes of a scene (linear RGB, paper about 0.7), BGR: blur of the lens, shot noise before demosaicing, tone."""
+    """What the sensor makes of a scene (linear RGB, paper about 0.7), BGR: blur of the lens, noise before demosaicing, tone."""
     soft = np.asarray(cv2.GaussianBlur(scene, (0, 0), blur), np.float32)
     mosaic = soft[..., 1].copy()
     mosaic[0::2, 0::2] = soft[0::2, 0::2, 0]
@@ -85,19 +84,21 @@ def expose(scene: Picture, random: np.random.Generator, *, grain: float, blur: f
     mosaic += random.standard_normal(mosaic.shape, dtype=np.float32) * np.sqrt(np.maximum(mosaic, 0) * grain**2 + (grain / 6) ** 2)
     raw = (np.clip(mosaic, 0, 1) * 65535).astype(np.uint16)
     colour = cv2.cvtColor(raw, cv2.COLOR_BayerBG2BGR).astype(np.float32) / 65535
-    toned: Picture = np.clip(colour, 0, 1) ** np.float32(1 / 2.2)
+    toned = np.asarray(np.clip(colour, 0, 1) ** (1 / 2.2), np.float32)
     if grain > 0.02:  # telephones smooth what is noisy
         toned = np.asarray(cv2.bilateralFilter(toned, 5, 0.08, 2), np.float32)
     sharp = toned + 0.5 * (toned - cv2.GaussianBlur(toned, (0, 0), 1.2))
     return np.asarray((np.clip(sharp, 0, 1) * 255).round(), np.uint8)
 
 
-def document(picture: NDArray[np.uint8], corners: Floats, random: np.random.Generator) -> tuple[NDArray[np.uint8], Floats]:
+def document(
+    picture: NDArray[np.uint8], corners: Floats, random: np.random.Generator, miss: float
+) -> tuple[NDArray[np.uint8], Floats]:
     """Document mode: cut out by the paper's corners, as well as the telephone finds them, and made black and white.
 
-    Returns the picture and the homography that led to it.
+    It misses them by `miss` of the width, and may cut off some of the frame. Returns the picture and the homography that led to it.
     """
-    found = (corners + random.normal(0, 0.004 * picture.shape[1], corners.shape)).astype(np.float32)
+    found = (corners + random.normal(0, miss * picture.shape[1], corners.shape)).astype(np.float32)
     width = int(np.hypot(*(corners[1] - corners[0])))
     height = int(width * SIZE[1] / SIZE[0])
     target = np.array([(0, height), (width, height), (width, 0), (0, 0)], np.float32)

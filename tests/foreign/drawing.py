@@ -63,7 +63,7 @@ class Mark:
         if self.kind in ("circle", "arc"):
             first, last = self.span
             angle = np.linspace(first, last, max(8, int(abs(last - first) * self.radius / 1.5)))
-            return self.points[0] + self.radius * np.stack((np.cos(angle), np.sin(angle)), axis=1)
+            return np.asarray(self.points[0] + self.radius * np.stack((np.cos(angle), np.sin(angle)), axis=1))
         if self.closed:
             return np.vstack((self.points, self.points[:1]))
         return self.points
@@ -113,10 +113,10 @@ def _mark(entry: dict[str, Any]) -> Mark:
 
 def _lettering(file: Path) -> list[Floats]:
     """Strokes of all letters of a DXF file written with --text strokes."""
-    import ezdxf
-    from ezdxf.entities import LWPolyline
+    from ezdxf.entities.lwpolyline import LWPolyline
+    from ezdxf.filemanagement import readfile
 
-    found = ezdxf.readfile(file).modelspace().query('LWPOLYLINE[layer=="TEXT"]')
+    found = readfile(file).modelspace().query('LWPOLYLINE[layer=="TEXT"]')
     return [np.array(entity.get_points("xy"), np.float64) for entity in found if isinstance(entity, LWPolyline)]
 
 
@@ -150,11 +150,11 @@ def _run(*words: str) -> None:
 
 
 def read(project: str, sheet: int, folder: Path) -> list[Mark]:
-    """The marks of a sheet; the sheets of a project are built into `folder` when first asked for."""
-    place = folder / project.replace("/", "-").replace(":", "-")
+    """The marks of a sheet, which is built into `folder` when first asked for."""
+    place = folder / f"{project.replace('/', '-').replace(':', '-')}-{sheet}"
     if not (place / "record.json").exists():
-        _run("build", project, "--format", "dxf", "--text", "strokes", "-o", str(place))
-        _run("record", project, "--json", str(place / "record.tmp"))
+        _run("build", project, "--sheet", str(sheet), "--format", "dxf", "--text", "strokes", "-o", str(place))
+        _run("record", project, "--sheet", str(sheet), "--json", str(place / "record.tmp"))
         (place / "record.tmp").rename(place / "record.json")
     record = json.loads((place / "record.json").read_text(encoding="utf-8"))
     entries = next(entry for entry in record["sheets"] if entry["sheet"] == sheet)["marks"]

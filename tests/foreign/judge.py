@@ -169,29 +169,30 @@ def _peak(score: NDArray[np.float32], at: Any, axis: int) -> float:
     return float(i) + (0.5 * (left - right) / bottom if bottom < 0 else 0.0)
 
 
-Key = tuple[str, str, str, str]
+def _is(element: dict[str, Any], mark: Mark) -> bool:
+    """Whether an element of the report is this mark of the record."""
+    if (element["step"], element["position"]) != (mark.step, mark.position) or not mark.step:
+        return False
+    if mark.kind == "text":
+        return bool(element["kind"] == "text" and element["name"] in (mark.string, mark.name))
+    names = ("", mark.name, f"{mark.name}({mark.position})") if mark.name else (element["name"],)
+    kinds = {"fill": ("line",), "circle": ("circle", "arc"), "polyline": ("curve", "line")}.get(mark.kind, (mark.kind,))
+    # a view without a title is called by its module in the record, by a name in the report
+    return (element["view"] == mark.view or "." in mark.view) and element["name"] in names and element["kind"] in kinds
 
 
-def _key(entry: dict[str, Any]) -> Key:
-    """What the record and the report call an element by: view, step, position, name."""
-    return entry["view"], entry["step"], entry["position"], entry["name"]
-
-
-def _near(marks: list[Mark], lines: list[list[list[float]]]) -> set[Key]:
-    """Keys of the marks of which a third or more lies within 2 mm of wrong lines: what is said of them does not count."""
+def _near(marks: list[Mark], lines: list[list[list[float]]]) -> list[Mark]:
+    """Marks of which a third or more lies within 2 mm of wrong lines: what is said of them does not count."""
     if not lines:
-        return set()
+        return []
     fine = np.vstack([_sampled(np.array(line)) for line in lines])
-    excused = set()
+    excused = []
     for mark in marks:
-        if mark.kind == "text":
-            continue
-        samples = _sampled(mark.path())
-        if len(samples) > 400:
-            samples = samples[:: len(samples) // 400 + 1]
+        samples = np.vstack([_sampled(path) for path in mark.paths()]) if mark.paths() else fine + 1e3
+        samples = samples[:: len(samples) // 400 + 1]
         distance = np.hypot(samples[:, None, 0] - fine[None, :, 0], samples[:, None, 1] - fine[None, :, 1]).min(axis=1)
         if (distance < 2).mean() > 0.33:
-            excused.add((mark.view, *mark.key))
+            excused.append(mark)
     return excused
 
 
@@ -214,21 +215,19 @@ def _pointed_at(mistake: dict[str, Any], extra: list[dict[str, float]]) -> bool:
 def _said(outcome: Outcome, report: dict[str, Any], truth: dict[str, Any], marks: list[Mark]) -> None:
     """False reds among the sound elements; which mistakes were found: red, amber, or shown as ink that belongs to nothing."""
     elements = report["elements"]
-    verdicts: dict[Key, list[str]] = {}
-    for element in elements:
-        verdicts.setdefault(_key(element), []).append(element["verdict"])
-    wrong_keys: set[Key] = set()
+    named = {mark.id: mark for mark in marks}
+    touched: list[Mark] = []
     for mistake in truth["mistakes"]:
-        keys = {_key(mark) for mark in mistake["wrong"]}
-        said = [verdict for key in keys for verdict in verdicts.get(key, [])]
+        wrong = [named[mark["id"]] for mark in mistake["wrong"]]
+        said = [element["verdict"] for element in elements if any(_is(element, mark) for mark in wrong)]
         found = next((verdict for verdict in ("red", "amber") if verdict in said), "green" if said else "not judged")
         if found != "red" and _pointed_at(mistake, report["extra"]):
             found = "ink"
         outcome.mistakes.append({"kind": mistake["kind"], "size": mistake["size"], "place": mistake["place"], "said": found})
-        wrong_keys |= keys
-    wrong_keys |= _near(marks, [line for mistake in truth["mistakes"] for line in mistake["lines"]])
+        touched += wrong
+    touched += _near(marks, [line for mistake in truth["mistakes"] for line in mistake["lines"]])
     for element in elements:
-        if element["step"] and _key(element) in wrong_keys:
+        if any(_is(element, mark) for mark in touched):
             continue
         outcome.sound += 1
         if element["verdict"] == "red":

@@ -119,6 +119,18 @@ def joint_wrong(marks: list[Mark], random: Random) -> Planted:
     return {circle.id: replace(circle, radius=circle.radius + size)}, "joint too large", size
 
 
+def _covered(line: Mark, marks: list[Mark]) -> bool:
+    """Whether other lines of the view run along most of this one: what is left when it is left out."""
+    samples = line.points[0] + np.linspace(0, 1, 30)[:, None] * (line.points[1] - line.points[0])
+    under = np.zeros(len(samples), bool)
+    for other in marks:
+        if other.kind == "line" and other.view == line.view and other.id != line.id:
+            start, way = other.points[0], other.points[1] - other.points[0]
+            along = ((samples - start) @ way / max(way @ way, 1e-9)).clip(0, 1)
+            under |= np.hypot(*(samples - start - along[:, None] * way).T) < 0.5
+    return bool(under.mean() > 0.7)
+
+
 def vector_left_out(marks: list[Mark], random: Random) -> Planted:
     """A vector was forgotten."""
     vectors = _lines(marks, 8, ("vector",))
@@ -129,7 +141,7 @@ def vector_left_out(marks: list[Mark], random: Random) -> Planted:
     change: dict[int, Mark | None] = {line.id: None}
     if head:
         change[head.id] = None
-    return change, "left out", _length(line)
+    return change, "left out over a helper" if _covered(line, marks) else "left out", _length(line)
 
 
 def label_moved(marks: list[Mark], random: Random) -> Planted:

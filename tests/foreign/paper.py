@@ -106,7 +106,7 @@ class Paper:
 
 
 def dog_ear(uv: Floats, corner: tuple[int, int], size: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Where, of points (..., 2), the paper is gone and where its back lies on it; corner (0 or 1, 0 or 1), size along the edges in mm."""
+    """Where, of points (..., 2), paper is gone and where its back lies on it; corner (0 or 1, 0 or 1), size in mm."""
     du = uv[..., 0] if corner[0] == 0 else SIZE[0] - uv[..., 0]
     dv = uv[..., 1] if corner[1] == 0 else SIZE[1] - uv[..., 1]
     gone = du + dv < size

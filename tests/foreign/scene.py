@@ -44,6 +44,7 @@ DIFFICULTIES = (
     "small",
     "document",
     "mixed",
+    "cropped",
 )
 STEP = 10.0
 """Step of the truth's map, mm."""
@@ -198,7 +199,8 @@ def take(what: Scene, folder: Path, most: float = 12.0) -> tuple[NDArray[np.uint
     ink = pencil.draw(drawn, random)
     paper = Paper(random, waves="waves" in traits, folds="folds" in traits)
     tilt = float(random.uniform(20, 32)) if "oblique" in traits else float(abs(random.normal(0, 7)) + 2)
-    camera = Camera(random, _megapixels(traits, random, most), min(tilt, 34), float(random.uniform(0.8, 0.93)))
+    roll = float(random.choice((-1, 1)) * random.uniform(4, 8) if "corner" in traits else random.normal(0, 2.5))
+    camera = Camera(random, _megapixels(traits, random, most), np.radians(tilt), float(random.uniform(0.8, 0.93)), np.radians(roll))
     if "corner" in traits:
         _move_corner_out(camera, random)
     picture = _seen(what, marks, ink, paper, camera, random)
@@ -212,9 +214,9 @@ def take(what: Scene, folder: Path, most: float = 12.0) -> tuple[NDArray[np.uint
     u, v = np.meshgrid(np.arange(0, SIZE[0] + STEP, STEP), np.arange(0, SIZE[1] + STEP, STEP))
     grid = np.stack((u, v), axis=-1)
     pixels = camera.project(paper.place(grid))
-    if "document" in traits:
+    if traits & {"document", "cropped"}:
         corners = camera.project(paper.place(np.array([(0, 0), (SIZE[0], 0), SIZE, (0, SIZE[1])], float)))
-        file, turn = document(file, corners, random)
+        file, turn = document(file, corners, random, 0.004 if "cropped" in traits else 0.0015)
         lifted = np.concatenate((pixels, np.ones((*pixels.shape[:2], 1))), axis=-1) @ turn.T
         pixels = lifted[..., :2] / lifted[..., 2:]
     quarter = int(random.integers(1, 4)) if traits & {"turned", "exif"} else 0
@@ -258,11 +260,10 @@ def take(what: Scene, folder: Path, most: float = 12.0) -> tuple[NDArray[np.uint
 
 
 def _move_corner_out(camera: Camera, random: np.random.Generator) -> None:
-    """One corner of the sheet goes out of the picture, with its frame's."""
-    corner = np.array([random.choice((0.0, SIZE[0])), random.choice((0.0, SIZE[1])), 0.0])
-    seen = camera.project(corner[None])[0]
-    goal = np.where(seen < camera.middle, -1, 1) * random.uniform(0.015, 0.05, 2) * (camera.width, camera.height)
-    camera.middle = camera.middle + np.where(goal < 0, goal - seen, goal + np.array([camera.width, camera.height]) - seen)
+    """The corner that reaches furthest to one side goes out of the picture, with the frame's, and it alone."""
+    seen = camera.project(np.array([(0, 0, 0), (SIZE[0], 0, 0), (*SIZE, 0), (0, SIZE[1], 0)], float))[:, 0]
+    out = random.uniform(0.018, 0.035) * camera.width
+    camera.middle[0] += camera.width + out - seen.max() if random.random() < 0.5 else -out - seen.min()
 
 
 def _on_grid(camera: Camera, what: Any) -> Floats:
