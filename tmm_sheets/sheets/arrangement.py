@@ -45,6 +45,7 @@ class Arrangement:
     code: str
     views: tuple[View, ...]
     without: dict[str, str] = field(default_factory=dict)
+    others: tuple[str, ...] = ()
 
     def fitted(self, parts: Collection[str]) -> Arrangement:
         """What is left of it, or stands instead of it, for a project that has only these parts of the results.
@@ -80,7 +81,7 @@ def arrangement(name: str) -> Arrangement:
     """Read an arrangement; :class:`BadInput` names the file and what is wrong with it.
 
     ``like`` names another arrangement whose views it has, under a code or a title of its own; ``without`` by part of the results
-    that a project may lack the arrangement to take instead.
+    that a project may lack the arrangement to take instead; ``or`` names other ways to arrange the same views.
     """
     path = template(f"sheets/{name}.toml")
     try:
@@ -93,10 +94,11 @@ def arrangement(name: str) -> Arrangement:
         raise BadInput(Problem(str(e), str(path))) from None
     if isinstance(data.get("like"), str):
         other = arrangement(data["like"])
-        return Arrangement(name, data.get("title", other.title), data.get("code", other.code), other.views)
+        return Arrangement(name, data.get("title", other.title), data.get("code", other.code), other.views, others=other.others)
     try:
         views = tuple(View(v.pop("draw"), Box(*map(float, v.pop("box"))), v) for v in data.get("view", []))
-        return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})))
+        return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})),
+                           tuple(data.get("or", ())))
     except (KeyError, TypeError, ValueError) as e:
         raise BadInput(Problem(tell("expected title and [[view]] tables with draw and box, found {found!r}").format(found=e),
                                str(path))) from None
