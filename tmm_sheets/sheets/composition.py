@@ -50,7 +50,7 @@ def arranged(project: Project, n: int) -> Arrangement:
         return plan
     if any(view.needs in ("positions", "forces") for view in plan.views) and len(project.cycle.drawn) > kinematic_frames.MOST:
         return plan  # as many positions fit on no sheet
-    ways = [_Way.of(project, way) for way in (plan, *(arrangement(name).fitted(project.parts) for name in plan.others))]
+    ways = [_Way.of(project, way) for way in plan.ways()]
     for way in ways[1:]:
         way.means(ways[0])
     found = [solved for way in ways if (solved := way.solved()) is not None]
@@ -366,6 +366,7 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
     "cam_profile.profile": _profile, "cam.pressure": _cam((0.88, 0.7), 0.6),
     "cam_profile.roller": _cam((0.88, 0.8), 0.6), "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
+    "cam_zone.of_rocker": _cam((0.9, 0.8), 0.6),
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),
     "given_position.values": _values, "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
