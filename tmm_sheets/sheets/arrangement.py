@@ -51,7 +51,7 @@ class Arrangement:
     without: dict[str, str] = field(default_factory=dict)
 
     def ways(self) -> Iterator[Arrangement]:
-        """This arrangement, then the other ways to arrange its views."""
+        """The arrangement itself, then the other ways to arrange its views."""
         yield self
         for name in dict.fromkeys(name for view in self.views for name in view.others):
             yield replace(self, views=tuple(replace(view, box=view.others.get(name, view.box)) for view in self.views))
