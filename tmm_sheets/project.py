@@ -66,18 +66,21 @@ class Project:
     def diagrams(self) -> tuple[str, ...]:
         """Points and links whose motion is drawn over the crank angle: those named, the output, or what the last group drives.
 
+        Of an output that does not slide on the frame the link that carries it.
+
         Raises
         ------
         CannotBuild
             when there is no [cycle].
         """
         cycle = self._section("cycle")
-        if cycle.diagrams or cycle.output:
-            return cycle.diagrams or (cycle.output,)
+        if cycle.diagrams:
+            return tuple(cycle.diagrams)
         m = self.mechanism
-        if not m.groups:
-            return ()
-        g = m.groups[-1]
+        driven = [g for g in m.groups if g.inner == cycle.output] if cycle.output else m.groups
+        if not driven:
+            return (cycle.output,) if cycle.output else ()
+        g = driven[-1]
         slides = g.links[1] in g.kind.carried(g).values() and m.guides[g.guides[0]].link == m.frame
         return (str(g.inner) if slides else g.links[1],)
 

@@ -9,6 +9,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import kinematic_frames
+from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.sheet import INSIDE
 from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
@@ -124,6 +125,34 @@ def test_places_stay_inside_the_frame_apart_and_off_the_title_block(name):
             if views[0].draw.startswith("kinematics") and "axis" not in str([v.options for v in views]):
                 for other in [*parts[i + 1:], TITLE_BLOCK]:
                     assert box.x1 <= other.x0 or other.x1 <= box.x0 or box.y1 <= other.y0 or other.y1 <= box.y0
+
+
+@pytest.mark.parametrize(("name", "upright"), [("sixbar/4:1", True), ("sixbar/8:3", False)])
+def test_of_several_ways_that_is_taken_in_which_the_views_fill_most(name, upright):
+    """The two-armed rocker of task 4 is 2.7 times as high as wide: it stands from top to bottom; task 8 lies."""
+    project = Project(catalogue.read(name))
+    first, other = arrangement("sixbar_1").ways()
+    taken = arranged(project, 1)
+    assert {v.draw for v in taken.views} == {v.draw for v in first.views} == {v.draw for v in other.views}
+    box = next(v.box for v in taken.views if v.draw == "kinematics.position_plans")
+    assert (box.height > 500.0) == upright
+
+
+def test_what_a_view_does_not_name_stays_in_another_way():
+    first, other = arrangement("transport_1").ways()
+    moved = [(a.draw, a.options.get("group")) for a, b in zip(first.views, other.views, strict=True) if a.box != b.box]
+    assert moved == [("kinetics.group", 1), ("kinetics.group", 2)]
+    assert [a.options for a in first.views] == [b.options for b in other.views]
+
+
+def test_an_output_that_turns_has_the_diagrams_of_its_link():
+    """Point C of the crusher's jaw goes along an arc about E: the angle of link 5 is drawn, not a way."""
+    project = Project(catalogue.read("transport/crusher@12-СДМ-1908"))
+    assert project.variant.cycle.output == "C"
+    assert project.diagrams == ("5",)
+    points = project.study.positions.points
+    assert np.ptp(np.abs(points["C"].value - points["E"].value)) < 1e-9
+    assert Project(catalogue.read("transport/press@05-ЭПС-123")).diagrams == ("C",)
 
 
 def test_the_same_project_has_the_same_places():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -15,11 +15,15 @@ from tmm_sheets.words import marked, tell
 
 @dataclass(frozen=True)
 class View:
-    """A place on a sheet and what is drawn there: ``draw`` is module.function of tmm_sheets.sheets."""
+    """A place on a sheet and what is drawn there: ``draw`` is module.function of tmm_sheets.sheets.
+
+    ``others`` are its places in other ways to arrange the same views, by their names; without one it is where it is.
+    """
 
     draw: str
     box: Box
     options: dict[str, Any]
+    others: dict[str, Box] = field(default_factory=dict)
 
     @property
     def needs(self) -> str:
@@ -55,6 +59,12 @@ class Arrangement:
     views: tuple[View, ...]
     without: dict[str, str] = field(default_factory=dict)
     offers: tuple[View, ...] = ()
+
+    def ways(self) -> Iterator[Arrangement]:
+        """The arrangement itself, then the other ways to arrange its views."""
+        yield self
+        for name in dict.fromkeys(name for view in self.views for name in view.others):
+            yield replace(self, views=tuple(replace(view, box=view.others.get(name, view.box)) for view in self.views))
 
     def fitted(self, parts: Collection[str]) -> Arrangement:
         """What is left of it, or stands instead of it, for a project that has only these parts of the results.
@@ -108,9 +118,14 @@ def arrangement(name: str) -> Arrangement:
         return replace(other, name=name, title=data.get("title", other.title), code=data.get("code", other.code), views=views,
                        without={})
     try:
-        views = tuple(View(v.pop("draw"), Box(*map(float, v.pop("box"))), v) for v in data.get("view", []))
-        offers = tuple(View(v.pop("draw"), ANYWHERE, v) for v in data.get("offer", []))
+        views = tuple(View(v.pop("draw"), _box(v.pop("box")), others={name: _box(at) for name, at in v.pop("or", {}).items()},
+                           options=v) for v in data.get("view", []))
+        offers = tuple(View(v.pop("draw"), ANYWHERE, options=v) for v in data.get("offer", []))
         return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})), offers)
     except (KeyError, TypeError, ValueError) as e:
         raise BadInput(Problem(tell("expected title and [[view]] tables with draw and box, found {found!r}").format(found=e),
                                str(path))) from None
+
+
+def _box(sides: Any) -> Box:
+    return Box(*map(float, sides))

@@ -6,7 +6,7 @@ What each kind of view needs is told from the points of its plans; nothing is dr
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from math import ceil, inf
 from types import SimpleNamespace
@@ -39,12 +39,10 @@ DESIGNATION = Box(20.0, 573.0, 92.0, 589.0)
 def arranged(project: Project, n: int) -> Arrangement:
     """Arrangement of sheet ``n`` (from 1) with every view in the place the sheet has for it.
 
+    Of several ways to arrange the same views that in which they fill most of what they are meant to have.
     Raises :class:`CannotBuild` where the project has nothing for any of its views.
     """
-    whole = arrangement(project.sheets[n - 1])
-    plan = whole.fitted(project.parts)
-    if plan.name != whole.name:
-        whole = arrangement(plan.name)
+    plan = arrangement(project.sheets[n - 1]).fitted(project.parts)
     # Whoever sets scale factors by hand has the boxes as they are written.
     if project.variant.scales or any("axis" in view.options for view in plan.views):
         return plan
@@ -52,19 +50,62 @@ def arranged(project: Project, n: int) -> Arrangement:
         return plan
     if any(view.needs in ("positions", "forces") for view in plan.views) and len(project.cycle.drawn) > kinematic_frames.MOST:
         return plan  # as many positions fit on no sheet
-    there = [(view, parts) for view in plan.views if (parts := _parts(project, view))]
-    columns = [joined(1, [node for _, node in parts], [1.0] * len(parts)) for _, parts in there]
-    tree = cut([*(view.box for view, _ in there), TITLE_BLOCK], [*columns, _fixed(TITLE_BLOCK)])
-    if tree is None:
-        return plan
-    for number, leaf in enumerate(_leaves(tree)):
-        leaf.leaf = number
-    boxes = [view.box for view in whole.views]
-    room = Box(min(b.x0 for b in boxes), TITLE_BLOCK.y0, TITLE_BLOCK.x1, max(b.y1 for b in boxes))
-    found = solve(tree, room)
-    if not all(_kept(view.box, found[node.leaf]) for _, parts in there for view, node in parts if view.draw not in NEEDS):
-        return plan
-    return replace(plan, views=tuple(_placed(view, node, found) for _, parts in there for view, node in parts))
+    ways = [_Way.of(project, way) for way in plan.ways()]
+    for way in ways[1:]:
+        way.means(ways[0])
+    found = [solved for way in ways if (solved := way.solved()) is not None]
+    return min(found, key=lambda solved: round(solved[0], 3))[1] if found else plan
+
+
+@dataclass(frozen=True)
+class _Way:
+    """One way to arrange the views of a sheet: each view, or a part of one, with its node."""
+
+    plan: Arrangement
+    parts: list[list[tuple[View, Node]]]
+
+    @classmethod
+    def of(cls, project: Project, plan: Arrangement) -> _Way:
+        return cls(plan, [parts for view in plan.views if (parts := _parts(project, view))])
+
+    def areas(self) -> dict[tuple[str, Any], float]:
+        """Area that each view is meant to have, mm^2."""
+        return {_name(view): sum(leaf.area for leaf in _leaves(node)) for parts in self.parts for view, node in parts}
+
+    def means(self, other: _Way) -> None:
+        """Take over what another way means each view to have: only so are their costs alike."""
+        own, asked = self.areas(), other.areas()
+        for view, node in (part for parts in self.parts for part in parts):
+            for leaf in _leaves(node):
+                leaf.area *= asked.get(_name(view), own[_name(view)]) / own[_name(view)]
+
+    def solved(self) -> tuple[float, Arrangement] | None:
+        """What its places cost and the arrangement with them; None where the boxes cannot be cut apart or what is fixed moves."""
+        columns = [joined(1, [node for _, node in parts], [1.0] * len(parts)) for parts in self.parts]
+        boxes = [_around([view.box for view, _ in parts]) for parts in self.parts]
+        tree = cut([*boxes, TITLE_BLOCK], [*columns, _fixed(TITLE_BLOCK)])
+        if tree is None:
+            return None
+        for number, leaf in enumerate(_leaves(tree)):
+            leaf.leaf = number
+        whole = _around([view.box for view in arrangement(self.plan.name).views])
+        room = Box(whole.x0, TITLE_BLOCK.y0, TITLE_BLOCK.x1, whole.y1)
+        found = solve(tree, room)
+        views = [part for parts in self.parts for part in parts]
+        if not all(_kept(view.box, found[node.leaf]) for view, node in views if view.draw not in NEEDS):
+            return None
+        placed = replace(self.plan, views=tuple(_placed(view, node, found) for view, node in views))
+        return tree.cost(room.width, room.height), placed
+
+
+def _name(view: View) -> tuple[str, Any]:
+    """What tells a view of a sheet from the others."""
+    return view.draw, view.options.get("group")
+
+
+def _around(boxes: Iterable[Box]) -> Box:
+    x0, y0, x1, y1 = zip(*boxes, strict=True)
+    return Box(min(x0), min(y0), max(x1), max(y1))
 
 
 def _kept(box: Box, place: Box) -> bool:
@@ -95,8 +136,7 @@ def _placed(view: View, node: Node, found: dict[int, Box]) -> View:
     if view.draw not in NEEDS:
         return view
     parts = [_below_designation(found[leaf.leaf]) for leaf in _leaves(node)]
-    box = Box(min(b.x0 for b in parts), min(b.y0 for b in parts), max(b.x1 for b in parts), max(b.y1 for b in parts))
-    return replace(view, box=box, options={**view.options, "places": parts} if len(parts) > 1 else view.options)
+    return replace(view, box=_around(parts), options={**view.options, "places": parts} if len(parts) > 1 else view.options)
 
 
 def _parts(project: Project, view: View) -> list[tuple[View, Node]]:
@@ -104,9 +144,9 @@ def _parts(project: Project, view: View) -> list[tuple[View, Node]]:
     if view.draw == "kinetics.groups":
         count = len(project.mechanism.groups)
         height = view.box.height / max(count, 1)
-        box = view.box._replace(y0=view.box.y1 - height)
-        one = View("kinetics.group", box, {"scheme": 0.45})
-        return [part for i in range(count) for part in _parts(project, replace(one, options={**one.options, "group": i + 1}))]
+        return [part for i in range(count) for part in _parts(project, View(
+            "kinetics.group", view.box._replace(y0=view.box.y1 - (i + 1) * height, y1=view.box.y1 - i * height),
+            {"scheme": 0.45, "group": i + 1}))]
     if "cam" in view.needs and not _of_cam(project, view):
         return []
     if view.draw not in NEEDS:
@@ -201,7 +241,7 @@ def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> Node:
         of_plans = joined(inner, [_leaf(box, need, each) for need in plans], [1.0] * len(plans), 4.0)
         return joined(axis, [_leaf(box, scheme, share), of_plans], [share, 1.0 - share], 4.0)
 
-    found = [node(axis, inner) for axis, inner in ((0, 1), (0, 0), (1, 0))]
+    found = [node(axis, inner) for axis, inner in ((0, 1), (0, 0), (1, 0))[::2 if len(plans) == 1 else 1]]
     for tree in found:
         for _ in range(2):
             tree.settle(box.width, box.height, (16.0, 8.0, 4.0))
@@ -229,14 +269,14 @@ def _crank(project: Project, view: View) -> Node:
     reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
     scheme = _reaching(view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0))
     plan = _force_plan(project, project.study.forces.plans[project.mechanism.crank.link], k)
-    left = _leaf(view.box, scheme, share)
-    return joined(0, [left, _leaf(view.box, plan, 1.0 - share)], [share, 1.0 - share], 4.0)
+    return _parted(view.box, share, scheme, [plan])
 
 
 def _lever(project: Project, view: View) -> Node:
     k = project.force_index
     reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
-    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 90.0)))
+    # Every force and its arm hangs on it: no view has more labels.
+    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0)), 2)
 
 
 def _rows(project: Project, view: View, count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> Node:
@@ -277,7 +317,7 @@ def _values(project: Project, view: View) -> Node:
 def _motion(project: Project, view: View) -> Node | None:
     if not project.diagrams:
         return None
-    return _leaf(view.box, Need(least=(180.0, 150.0), drawn=lambda w, h: 0.75 * w * h), 0.8)
+    return _leaf(view.box, Need(least=(180.0, 150.0), drawn=lambda w, h: 0.75 * w * h), 0.5)
 
 
 def _loads(project: Project, view: View) -> Node | None:
@@ -334,6 +374,7 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
     "cam_profile.profile": _profile, "cam.pressure": _cam((0.88, 0.7), 0.6),
     "cam_profile.roller": _cam((0.88, 0.8), 0.6), "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
+    "cam_zone.of_rocker": _cam((0.9, 0.8), 0.6),
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),
     "given_position.values": _values, "false_positions.group": _false_positions,

@@ -255,7 +255,8 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
         graphs.turned_angle(canvas, o + length + graphs.OVER)
         canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)
         canvas.text(o + 1j * (top + graphs.OVER - 3.0) - 2.0, f"{q.letter}, {q.unit}", 3.5, "right")
-    canvas.text(o + length + 1j * (top + graphs.OVER - 4.0), str(scale), 3.5, "right")
+    # Over the numbers, where these stand on the upper side of an axis with nothing above it.
+    canvas.text(o + length + 1j * (top + graphs.OVER - (4.0 if top > 6.0 else 1.0)), str(scale), 3.5, "right")
     feet, drawn = at(project.cycle.turned), [at(c.turned + 1j * c.values) for c in q.curves]
     for c, frame, curve in zip(q.curves, frames, drawn, strict=True):
         with canvas.traced("curve", c.step.path, "", frame, c.symbol):
