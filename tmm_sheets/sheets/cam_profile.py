@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_inversion import Inversion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
 
+CROWDED = 3.0
+"""Distance of two marks of the path, mm, below which their numbers cannot stand beside one another."""
 EDGE = 3.0
 """Room left free at both sides of the place, mm."""
 
@@ -383,10 +385,12 @@ def _rocker(s: Stage, picture: _ProfilePicture) -> None:
     first = phase(complex(marks[0] - a0))
     last = first + float(np.angle((marks[-1] - a0) / (marks[0] - a0)))
     s.pen(inv.axis, "construction").arc(a0, arm, min(first, last), max(first, last), "thin")
+    lettered = complex(marks[0])
     for k, p in enumerate(marks):
         u = (p - a0) / arm
         s.position(k).line(inv.axis, complex(p - 1.8 * u), complex(p + 1.8 * u), "thin", "point")
-        if k:
+        if abs(p - lettered) > CROWDED:  # the first ones lie in the roller's axis
+            lettered = complex(p)
             canvas.label(complex(p + 1.8 * u), inv.plan.labels[k], complex(u), 2.5, 0.4)
     u = (b0 - a0) / arm
     pivot(s.pen("A_0", "symbol"), a0, -1j if (b0 - a0).imag >= -1e-9 else 1j)

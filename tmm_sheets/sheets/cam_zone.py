@@ -78,11 +78,14 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     if rays:
         _rays(stage, z, letter_of, pi / 2)
     points, labels = np.asarray(z.points.value), z.plan.labels
-    for k in distinct(labels, points):
+    numbered = distinct(labels, points)
+    for k in numbered:
         here = stage.position(k)
         here.line(z.points, at(1j * points[k].imag), at(points[k]), "thin")
         here.dot(z.points, 0.5, "main")
-        canvas.label(at(points[k]), labels[k], complex(points[k] - 1j * stroke / 2), 3.5, 0.8)
+        same = [labels[j] for j in numbered if abs(points[j] - points[k]) < 1e-9]
+        if same[0] == labels[k]:
+            canvas.label(at(points[k]), ", ".join(same), complex(points[k] - 1j * stroke / 2), 3.5, 0.8)
     stage.line("r_0", o, b, "main")
     stage.line("C", c, o, "thin")
     stage.line("V" if "V" in z.plan else "O", v, v + 1j * scale.mm(0.75 * z.s0), "centre", "axis")
