@@ -179,7 +179,10 @@ def letters(markup: str) -> Node:
 
 
 def reworded(node: Node, table: Mapping[str, str]) -> Node:
-    """The same with other indices: ``table`` knows them by themselves, or with the letter before (пр, Jпр)."""
+    """The same with other words: ``table`` knows functions, indices by themselves, or with the letter before (tg, пр, Jпр)."""
+    if isinstance(node, Words):
+        name = node.text.strip()
+        return Words(node.text.replace(name, table[name])) if name in table else node
     if not isinstance(node, Scripts):
         return node.of_parts(lambda part: reworded(part, table))
     letter = node.base.text if isinstance(node.base, Letters) else ""

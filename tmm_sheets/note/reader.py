@@ -501,6 +501,9 @@ def _cyrillic(c: str) -> bool:
 
 def named(word: str) -> str:
     """Markup of letters as sentences write them: pb3 is p and b with the index 3, F21τ a force with its mark."""
+    base, power, exponent = word.partition("^")
+    if power and "{" not in word:
+        return f"{named(base)}^{exponent}"
     if "_" in word or "^" in word:
         return re.sub(r"_(\d+|[α-ωа-я]+|\w+)", r"_{\1}", word) if "{" not in word else word
     found = letters_of(word)

@@ -61,9 +61,9 @@ def scope(r: Reader) -> Scope:
 def _written(reason: str) -> str:
     """A reason with the signs and the decimal sign of the paper."""
     text = re.sub(r"(?<=\d)\.(?=\d)", decimal_sign(), reason)
-    for typed, sign in (("*", "·"), (">=", "≥"), ("^2", "²"), (" - ", " − ")):
+    for typed, sign in (("*", "·"), (">=", "≥"), (" - ", " − ")):
         text = text.replace(typed, sign)
-    return text
+    return re.sub(r"(\d[.,]\d+)\^2", r"\1²", text)
 
 
 def _cell(r: Reader, text: str) -> Text:
