@@ -206,7 +206,8 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
         canvas.text(o + length + graphs.OVER - 5.5j, "φ_1", 3.5, "right")
         canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)
         canvas.text(o + 1j * (top + graphs.OVER - 3.0) - 2.0, f"{q.letter}, {q.unit}", 3.5, "right")
-    canvas.text(o + length + 1j * (top + graphs.OVER - 4.0), str(scale), 3.5, "right")
+    # Over a graph that is nowhere above its axis the numbers of the positions stand: the scale factor keeps clear of them.
+    canvas.text(o + length + 1j * (max(top, 1.6) + graphs.OVER - 4.0), str(scale), 3.5, "right")
     feet, drawn = at(project.cycle.turned), [at(c.turned + 1j * c.values) for c in q.curves]
     for c, frame, curve in zip(q.curves, frames, drawn, strict=True):
         with canvas.traced("curve", c.step.path, "", frame, c.symbol):
