@@ -75,7 +75,7 @@ def outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sho
         if reaction.guide is None:
             shown += _hinge(project, reaction, k)
         else:
-            force, beside = _guided(project, reaction.point, reaction, k)
+            force, beside = _guided(project, g.inner or reaction.point, reaction, k)
             shown.append(force)
             couples += beside
     return acting(shown, forces.force_size(k)), couples
