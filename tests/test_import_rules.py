@@ -45,6 +45,7 @@ RULES = {
     "compare": ("drawing sheets", "project"),
     "compare.story_pdf": ("backends compare drawing", ""),
     "compare.report_pages": ("compare", ""),
+    "compare.group": ("compare", "project"),
     "compare.diagnosis": ("construction methods.linkage", ""),
     "compare.measured": (f"compare construction sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),

@@ -15,6 +15,7 @@ from tmm_sheets.spoken import Group, Option, option
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.compare.report import Report
     from tmm_sheets.drawing.plotters import Plotter
     from tmm_sheets.output.building import Order
     from tmm_sheets.output.plot import Job, PlotLook
@@ -530,6 +531,34 @@ def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
             click.echo(plotting.send(job, path, printer))
 
 
+def _of_group(group: Path, opened: Project, corrected: bool, marks: Path | None, pencil: float, reading: float,
+              say: Callable[[str], None]) -> Report:
+    """The report on the work of a whole group."""
+    from tmm_sheets.compare import group as whole
+    from tmm_sheets.compare import marking
+
+    scheme = marking.read(marks) if marks is not None else None
+
+    def drawing(project: Project, sheet: int | None, path: Path) -> Report:
+        from tmm_sheets.compare.cad import cad_drawing
+
+        return cad_drawing.compare(project, sheet, path, None, pencil, lambda what: None)
+
+    def numbers(project: Project, sheet: int | None, path: Path) -> Report:
+        from tmm_sheets.compare.measured import measured_lengths
+
+        return measured_lengths.compare(project, path, pencil, reading, lambda what: None)
+
+    def picture(project: Project, sheet: int | None, path: Path) -> Report:
+        from tmm_sheets.compare.photo import image
+
+        return image.compare(project, int(sheet or 1), path, None, pencil)
+
+    name = opened.variant.project.name
+    return whole.compare(group, name, lambda other: opened if other == name else _open(other, corrected),
+                         {"drawing": drawing, "numbers": numbers, "picture": picture}, scheme, say)
+
+
 def _check_pages(pages: tuple[Path, ...]) -> None:
     """Refuse reports of another kind than can be written."""
     for path in pages:
@@ -547,6 +576,9 @@ def _check_pages(pages: tuple[Path, ...]) -> None:
 @option("--views", type=click.Path(path_type=Path), metavar="FILE",
               help="Where the views stand in the image or the drawing, when its layout is its own.")
 @option("--dxf", type=click.Path(path_type=Path), metavar="FILE", help="Compare a CAD drawing.")
+@option("--group", type=click.Path(path_type=Path), metavar="FOLDER",
+              help="Compare the work of a whole group: a folder in it for each student.")
+@option("--marks", type=click.Path(path_type=Path), metavar="FILE", help="With --group: what each fault costs, for marks.")
 @option("--pencil", type=click.FloatRange(0.01, 5), default=0.25, show_default=True, metavar="MM",
               help="Error of a point drawn by hand.")
 @option("--reading", type=click.FloatRange(0.01, 5), default=0.5, show_default=True, metavar="MM",
@@ -558,12 +590,14 @@ def _check_pages(pages: tuple[Path, ...]) -> None:
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
 def compare(
     project: str, corrected: bool, template: bool, measured: Path | None, sheet: int | None, image: Path | None,
-    views: Path | None, dxf: Path | None, pencil: float, reading: float, target: str | None, pages: tuple[Path, ...],
-    output: Path | None,
+    views: Path | None, dxf: Path | None, group: Path | None, marks: Path | None, pencil: float, reading: float,
+    target: str | None, pages: tuple[Path, ...], output: Path | None,
 ) -> None:
     """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
-    if sum((template, measured is not None, image is not None, dxf is not None)) != 1:
-        raise click.UsageError(tell("give one of --template, --measured FILE, --image FILE and --dxf FILE"))
+    if sum((template, measured is not None, image is not None, dxf is not None, group is not None)) != 1:
+        raise click.UsageError(tell("give one of --template, --measured FILE, --image FILE, --dxf FILE and --group FOLDER"))
+    if marks is not None and group is None:
+        raise click.UsageError(tell("--marks goes with --group FOLDER"))
     if sheet is None and image is not None:
         raise click.UsageError(tell("--image needs --sheet N: which sheet it shows"))
     _check_pages(pages)
@@ -580,6 +614,8 @@ def compare(
             from tmm_sheets.compare.measured import measured_lengths as by_ruler
 
             report = by_ruler.template(opened, folder, say)
+        elif group is not None:
+            report = _of_group(group, opened, corrected, marks, pencil, reading, say)
         elif measured is not None:
             from tmm_sheets.compare.measured import measured_lengths as by_ruler
 

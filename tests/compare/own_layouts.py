@@ -1,11 +1,12 @@
 """Plain CAD drawings by students with layouts of their own: which views are found, what is accused wrongly, what is missed.
 
-``python -m tests.compare.own_layouts [DRAWINGS] [--projects NAME ...] [--seed N] [--first I] [--plans]`` makes so many drawings.
+``python -m tests.compare.own_layouts [DRAWINGS] [--projects NAME ...] [--seed N] [--first I] [--plans | --slips]`` makes so many.
 A student takes most views of a sheet, leaves out construction lines, tables, dimensions and some letters, draws each view at a
 scale factor of the student's own in another place under a title in the student's own words, without a frame, in other units and
 scales. Half of the drawings are sound, in the others some lines are wrong; with ``--plans`` a whole plan is built on one wrong step
-and everything in it that depends on that step is drawn where it leads. A view counts as found where every point of it is; plans
-that are alike (twins) may be taken for one another.
+and everything in it that depends on that step is drawn where it leads; with ``--slips`` something usual is done otherwise (one of
+:mod:`tests.compare.hypotheses`) and all plans of the sheet follow from it: is it named? A view counts as found where every point of
+it is; plans that are alike (twins) may be taken for one another.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from time import perf_counter
 import numpy as np
 
 from tests.compare.cad_plants import Way, draw
+from tests.compare.hypotheses import KINDS, Slip, Slipping
+from tests.compare.students import opened
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing
 from tmm_sheets.compare.elements import Element, ElementView
@@ -49,6 +52,7 @@ class Drawn:
     wrong: dict[int, str] = field(default_factory=dict)
     built: dict[ElementView, str] = field(default_factory=dict)
     way: Placing = field(default_factory=Placing)
+    slip: Slip | None = None
 
 
 def shaped_views(known: KnownSheet) -> list[ElementView]:
@@ -169,6 +173,52 @@ def misbuilt(project: Project, known: KnownSheet, drawn: Drawn, rng: random.Rand
                 return
 
 
+SLIPS = ("coriolis", "normal", "parallel", "sense", "inertia", "force", "scale", "intersection", "crank")
+"""Kinds of what is done otherwise and shows in how plans of vectors lie."""
+
+
+def slipped(name: str, project: Project, known: KnownSheet, drawn: Drawn, number: int) -> Slip | None:
+    """Draw everything on the sheet with something done otherwise; None where that shows in no plan of vectors."""
+    found = opened(name)
+    plans = {plan.name: plan for plan, _ in found.plans}
+    rng = np.random.default_rng([number, 15])
+    for _ in range(12):
+        slip = KINDS[SLIPS[rng.integers(len(SLIPS))]](found, rng)
+        if slip is None or not slip.ways:
+            continue
+        hand = Slipping(found, rng, (slip,))
+        hand.sigma = 0.0
+        shows = False
+        new = {}
+        for v in drawn.places:
+            at = {e.by.frame for e in drawn.elements if e.view == v and e.role == "vector" and e.by is not None and e.by.frame >= 0}
+            frame = known.sheet.frames[min(at)] if len(at) == 1 else None
+            if frame is None or frame.plan not in plans or frame.position not in plans[frame.plan].labels:
+                continue
+            points = np.concatenate([e.points for e in drawn.elements if e.view == v and e.role == "vector"])
+            moved_to = {}
+            for s in plans[frame.plan]:
+                was, now = (np.asarray(x) for x in (s.value, hand.value(s)))
+                if was.dtype.kind == "c":
+                    k = plans[frame.plan].labels.index(frame.position)
+                    z, w = (complex(frame(complex(x[k] if x.ndim else x))) for x in (was, now))
+                    if np.isfinite(w) and np.abs(points - z).min() < 0.03:
+                        moved_to[z] = w
+            far = max((abs(z - w) for z, w in moved_to.items()), default=0.0) * drawn.places[v].scale
+            if far > 400:
+                break  # nobody has so much paper
+            shows |= far > 4
+            new[v] = (moved_to, far)
+        else:
+            if shows:
+                for v, (moved_to, far) in new.items():
+                    if far > 0.3:
+                        _rebuilt(drawn, v, moved_to)
+                        drawn.built[v] = str(slip)
+                return slip
+    return None
+
+
 def replayed(plan, wrong: Step, k: int, way: complex) -> list[tuple[complex, complex]]:
     """Points of a plan at a position, as they are and as they would be with one vector laid off another way."""
     made: dict[int, object] = {}
@@ -225,14 +275,18 @@ def _rebuilt(drawn: Drawn, view: ElementView, new: dict[complex, complex]) -> No
 # --- trial ------------------------------------------------------------------------------------------------------------------
 
 
-def student(project: Project, known: KnownSheet, rng: random.Random, plans: bool, spoiled: bool) -> tuple[Drawn, bytes]:
-    """One drawing."""
+def student(project: Project, known: KnownSheet, rng: random.Random, plans: bool, spoiled: bool, slips: str = "",
+            number: int = 0) -> tuple[Drawn, bytes]:
+    """One drawing; with ``slips``, a project's name, something is done otherwise."""
     views = [v for v in shaped_views(known) if rng.random() < 0.9]
     drawn = Drawn(places=shelved(known, views, rng))
     letters = rng.random() < 0.8
     drawn.elements = [e for v in drawn.places for e in taken(known, v, rng, letters)]
     if plans:
         misbuilt(project, known, drawn, rng)
+    if slips:
+        drawn.slip = slipped(slips, project, known, drawn, number)
+        spoiled = False
     placed = Drawn([moved(e, drawn.places[e.view]) for e in drawn.elements], drawn.places, drawn.wrong, drawn.built)
     if spoiled and not plans:  # in mm of the student's paper
         spoil(placed, rng, rng.randint(1, 3))
@@ -240,6 +294,7 @@ def student(project: Project, known: KnownSheet, rng: random.Random, plans: bool
     shift = complex(rng.uniform(-500, 500), rng.uniform(-500, 500)) * per_mm
     way = Way(per_mm * rng.choice((1.0, 1.0, 1.0, 0.5, 2.0)), shift, unit,
               rng.random() < 0.2, rng.choice((0.0, 0.0, 0.3)), rng.choice((0.0, 0.5)))
+    placed.slip = drawn.slip
     placed.way = Placing(way.turn, way.shift)
     shuffled = list(placed.elements)
     rng.shuffle(shuffled)
@@ -264,12 +319,13 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--plans", action="store_true", help="whole plans built on a wrong step")
+    parser.add_argument("--slips", action="store_true", help="something usual is done otherwise")
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args()
     sheets = [(name, n, project) for name in options.projects for project in [Project(read(name))]
               for n in range(1, len(project.variant.sheets) + 1)]
     known = {(name, n): known_sheet(project, n) for name, n, project in sheets}
-    if options.plans:
+    if options.plans or options.slips:
         sheets = [s for s in sheets if any(f.plan in ("velocities", "accelerations") for f in known[s[:2]].sheet.frames)]
     count: Counter[str] = Counter()
     seconds = []
@@ -277,7 +333,8 @@ def main() -> None:
         for run in range(options.first, options.first + options.drawings):
             name, n, project = sheets[run % len(sheets)]
             rng = random.Random(options.seed * 100_003 + run)
-            drawn, data = student(project, known[name, n], rng, options.plans, run % 2 == 1)
+            drawn, data = student(project, known[name, n], rng, options.plans, run % 2 == 1,
+                                  name if options.slips else "", run)
             path = Path(folder) / "drawing.dxf"
             path.write_bytes(data)
             before = perf_counter()
@@ -333,6 +390,17 @@ def judge(project: Project, name: str, n: int, path: Path, drawn: Drawn, known: 
                 count["said missing"] += 1
                 out.append(f"said missing: {kind} {by_number[number].name} {by_number[number].view.name}")
     count["judged"] += sum(f.verdict is not None for f in found.outcome.findings if f.element.view in there)
+    if drawn.slip is not None:
+        shown = {v for v in drawn.built if v in there}
+        mine = [b for v, b in found.built.items() if v in shown and not isinstance(b.mistake, str)
+                and b.mistake.kind == drawn.slip.kind and b.mistake.step.path in {s.path for s in drawn.slip.ways}]
+        count["slips"] += 1
+        count["named"] += bool(mine)
+        if not mine:
+            out.append(f"not named: {drawn.slip}; said {[(v.name, b.said()) for v, b in found.built.items()]}; lost "
+                       f"{[v.name for v in drawn.built if v not in there]}")
+    else:
+        count["named, none made"] += any(not isinstance(b.mistake, str) for v, b in found.built.items() if v not in drawn.built)
     count["extra"] += len(found.outcome.extras)
     out += [f"extra: {x.length:.0f} mm {x.text} at {x.at:.0f}" for x in found.outcome.extras[:6]]
     return out

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import view_places
-from tmm_sheets.compare.cad import cad_file, cad_overlay, cad_report, cad_story, layout
+from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, cad_story, layout
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
-from tmm_sheets.compare.cad.cad_ink import CadInk
+from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.matching import match
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import worst
-from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
+from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet, sheet_numbers
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal, told
@@ -89,7 +91,22 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
     if not _of_this_sheet(outcome):
         _refuse(project, laid, outcome, ink, sheet, path)
-    return cad_report.Examined(laid, space, places, outcome, (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes))
+    say(tell("looking for what was done wrong"))
+    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome)
+    if built:
+        outcome = _as_built(laid.known, space, places, built, pencil)
+    notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)
+    return cad_report.Examined(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
+
+
+def _as_built(known: KnownSheet, space: DrawingSpace, places: layout.Layout,
+              built: Mapping[ElementView, tuple[cad_built.BuiltPlan, Mapping[complex, complex]]], pencil: float) -> CadOutcome:
+    """The outcome with plans compared as they were built, judged by how they should have been."""
+    now = [cad_built.rebuilt(e, built[e.view][1]) if e.view in built else e for e in known.elements]
+    outcome = match(now, space, places.moves, pencil)
+    findings = [cad_built.as_built(f, was, e, places.moves.get(was.view, Placing()), pencil) if was is not e else f
+                for f, was, e in zip(outcome.findings, known.elements, now, strict=True)]
+    return replace(outcome, findings=tuple(findings))
 
 
 def _how(laid: Laid, unit: float | None) -> Iterator[str]:

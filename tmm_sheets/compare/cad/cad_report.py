@@ -216,6 +216,7 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
         "looks": [{"number": k, "view": look.view.name if look.view is not None else None, "lines": look.lines, "what": look.what,
                    "verdict": look.verdict, "elements": list(look.elements),
                    "entities": [entity(laid.space.entities[i]) for i in look.entities]} for k, look in enumerate(outcome.looks, 1)],
+        "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in found.built.items()],
         "not_drawn": [{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent],
         "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
                     "extra": len(outcome.extras), "looks": len(outcome.looks),

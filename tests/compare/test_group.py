@@ -1,0 +1,97 @@
+"""A group's folder: who made which mistakes, what could not be judged, and marks that follow from the teacher's scheme."""
+
+import pytest
+
+from tmm_sheets.compare import group, marking
+from tmm_sheets.compare.report import Report
+from tmm_sheets.errors import BadInput
+
+SCHEME = """full = 100
+[costs]
+mistake = 10
+red = 2
+amber = 0.5
+missing_view = 8
+[at_most]
+amber = 1
+[[grade]]
+from = 60
+name = "3"
+[[grade]]
+from = 90
+name = "5"
+[[grade]]
+from = 0
+name = "2"
+"""
+
+
+def scheme(tmp_path, text=SCHEME):
+    path = tmp_path / "marks.toml"
+    path.write_text(text, encoding="utf-8")
+    return marking.read(path)
+
+
+def drawing(project, sheet, path):
+    """Two red elements of which one is explained, three amber ones; none in a drawing called sound."""
+    if "sound" in path.name:
+        return Report("", {"elements": [], "built": [], "summary": {"missing_views": []}})
+    verdicts = [("a", "red"), ("b", "red"), *[("b", "amber")] * 3, ("gone", "red")]
+    return Report("", {"elements": [{"view": v, "verdict": x} for v, x in verdicts],
+                       "built": [{"view": "a", "what": "point b3 lies 12,5 mm off" if "two" in path.name else
+                                  "point b3 lies 3,1 mm off"}], "summary": {"missing_views": ["gone"]}})
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name in ("g/One/sheet 1.dxf", "g/Two/two.dxf", "g/Three.dxf", "g/Four/picture.jpg", "g/Five/sound.dxf"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(b"")
+    (tmp_path / "g/projects.toml").write_text('"Two" = "other"\n', encoding="utf-8")
+    return tmp_path / "g"
+
+
+def compared(folder, tmp_path, opened=lambda name: type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()):
+    return group.compare(folder, "own", opened, {"drawing": drawing}, scheme(tmp_path), lambda what: None)
+
+
+def test_table_and_marks(folder, tmp_path):
+    report = compared(folder, tmp_path)
+    found = {s["student"]: s for s in report.tree["students"]}
+    assert list(found) == ["Five", "Four", "One", "Three", "Two"]
+    assert [found[n]["project"] for n in ("One", "Two")] == ["own", "other"]
+    # 100 - 10 for the mistake, 2 for a red one besides, at most 1 for three amber ones, 8 for the view.
+    assert [(s["mark"], s["grade"]) for s in found.values()] == [(100, "5"), (None, None), (79, "3"), (79, "3"), (79, "3")]
+    assert "which sheet" in found["Four"]["files"][0]["refused"]
+    assert report.tree["most_made"] == [{"mistake": "point b3 lies … mm off", "students": 3}]
+    assert "Four, picture.jpg" in report.text
+    assert set(report.files) == {"Five/sound.html", "One/sheet 1.html", "Three/Three.html", "Two/two.html"}
+
+
+def test_the_wrong_student(folder, tmp_path):
+    (folder / "projects.toml").write_text('"One" = "x"\n"Nobody" = "x"\n', encoding="utf-8")
+    with pytest.raises(BadInput, match=r"projects.toml:2: Nobody: there is no such student"):
+        compared(folder, tmp_path)
+
+
+def test_an_empty_folder(tmp_path):
+    with pytest.raises(BadInput, match="nothing to compare"):
+        compared(tmp_path, tmp_path)
+    with pytest.raises(BadInput, match="is no folder"):
+        compared(tmp_path / "none", tmp_path)
+
+
+@pytest.mark.parametrize(("was", "now", "said"), [
+    ("red = 2", "red = -2", r"marks.toml:4: costs.red: expected a number not below 0, not -2"),
+    ("red = 2", "rad = 2", r'marks.toml:4: costs.rad: is not known here\n *did you mean "red"'),
+    ("full = 100", "", r"full: is missing"),
+    ("full = 100", "full = true", r"marks.toml:1: full: expected a number"),
+    ("from = 90", "from = nan", r"marks.toml:13: grade\[2\].from: expected a number"),
+    ('name = "3"', "name = 3", r"marks.toml:11: grade\[1\].name: expected a text"),
+    ("[costs]", "[cost]", r"costs: is missing(.|\n)*"),
+    ("full = 100", "full", "Expected"),
+])  # fmt: skip
+def test_a_bad_scheme(tmp_path, was, now, said):
+    with pytest.raises(BadInput, match=said):
+        scheme(tmp_path, SCHEME.replace(was, now))

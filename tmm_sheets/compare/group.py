@@ -1,0 +1,261 @@
+"""A whole group at once: a folder with every student's drawings, measured files and photographs; a table, the mistakes, the marks.
+
+A folder in it, or a file that lies in it alone, is a student's; ``projects.toml`` in it says whose project is another one than that
+of the command: ``"Petrenko" = "sixbar/3:2"``. What is compared how follows from the names: ``.dxf`` drawings, ``.csv`` measured
+numbers, ``.jpg``, ``.png``, ``.pdf`` photographs, which say their sheet in their names (``sheet 2.jpg``).
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets import texts
+from tmm_sheets.compare.known_sheet import sheet_numbers
+from tmm_sheets.compare.marking import KINDS, Scheme
+from tmm_sheets.compare.report import Report
+from tmm_sheets.compare.report_pages import page
+from tmm_sheets.compare.story import Story, Table
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.numbers import told
+from tmm_sheets.words import tell, tell_n
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+DRAWINGS, NUMBERS, PICTURES = (".dxf",), (".csv",), (".jpg", ".jpeg", ".png", ".pdf")
+"""Endings of the names of what is compared."""
+PROJECTS = "projects.toml"
+SHEET = re.compile(r"(?:sheet|лист|аркуш)[\s_-]*(\d+)", re.IGNORECASE)
+"""How a file says of which sheet it is."""
+MOST = 15
+"""Most rows of the mistakes most made."""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What came of one file: how many faults of each kind of a scheme, mistakes in words, why it was not judged (else empty)."""
+
+    file: str
+    faults: Mapping[str, int] = field(default_factory=dict)
+    mistakes: tuple[str, ...] = ()
+    refused: str = ""
+    report: Report | None = None
+
+
+@dataclass(frozen=True)
+class Student:
+    """A student's work: the project, and what came of each file."""
+
+    name: str
+    project: str
+    files: tuple[Judgement, ...]
+
+    @property
+    def faults(self) -> dict[str, int]:
+        """Faults of each kind in all files together."""
+        return {kind: sum(f.faults.get(kind, 0) for f in self.files) for kind in KINDS}
+
+    def mark(self, scheme: Scheme) -> float | None:
+        """The mark by a scheme; None where no file could be judged."""
+        return scheme.mark(self.faults) if any(not f.refused for f in self.files) else None
+
+    @property
+    def mistakes(self) -> tuple[str, ...]:
+        """Mistakes in words, each once."""
+        return tuple(dict.fromkeys(m for f in self.files for m in f.mistakes))
+
+
+def compare(folder: Path, project: str, opened: Callable[[str], Project], by_kind: Mapping[str, Callable[..., Report]],
+            scheme: Scheme | None, say: Callable[[str], None]) -> Report:
+    """Compare the work of every student in a folder.
+
+    Parameters
+    ----------
+    folder : where it is
+    project : name of the project of those for whom ``projects.toml`` names no other
+    opened : opens a project by its name
+    by_kind : compares a file of a kind, "drawing", "numbers", "picture": called with project, sheet (or None) and path
+    scheme : for marks, None for none
+    say : told what is being done
+
+    Raises
+    ------
+    BadInput
+        If there is no such folder, nothing to compare in it, or ``projects.toml`` cannot be read.
+    """
+    works = _works(folder)
+    projects = _projects(folder / PROJECTS, works)
+    made = {}
+
+    def project_of(name: str) -> Project:
+        if name not in made:
+            made[name] = opened(name)
+        return made[name]
+
+    students = []
+    for name, paths in works.items():
+        own = projects.get(name, project)
+        files = []
+        for path in paths:
+            say(f"{name}: {path.name}")
+            files.append(_judged(path, own, project_of, by_kind))
+        students.append(Student(name, own, tuple(files)))
+    return _report(folder, students, scheme)
+
+
+def _works(folder: Path) -> dict[str, list[Path]]:
+    """Files to compare by student, both in the order of their names."""
+    if not folder.is_dir():
+        raise BadInput(Problem(tell("is no folder"), str(folder)))
+    found: dict[str, list[Path]] = {}
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.suffix.lower() in (*DRAWINGS, *NUMBERS, *PICTURES):
+            inside = path.relative_to(folder)
+            found.setdefault(inside.parts[0] if len(inside.parts) > 1 else path.stem, []).append(path)
+    if not found:
+        raise BadInput(Problem(tell("has nothing to compare"), str(folder),
+                               hint=tell("put each student's drawings (.dxf), measured numbers (.csv) and photographs (.jpg, .png, "
+                                         ".pdf) into a folder of the student's name in it")))
+    return found
+
+
+def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:
+    """Projects of students that have another one."""
+    if not path.is_file():
+        return {}
+    try:
+        text = texts.cleaned(texts.decoded(path.read_bytes()).text)
+        data = tomllib.loads(text)
+    except (OSError, tomllib.TOMLDecodeError, texts.NotText) as e:
+        raise BadInput(Problem(str(e), str(path), hint=tell('a line for each student: "Petrenko" = "sixbar/3:2"'))) from None
+    lines = text.splitlines()
+    problems = []
+    for name, project in data.items():
+        at = next((n for n, line in enumerate(lines, 1) if line.partition("=")[0].strip().strip("\"'") == name), None)
+        if name not in works:
+            problems.append(Problem(tell("there is no such student in the folder"), str(path), at, name))
+        elif not isinstance(project, str):
+            problems.append(Problem(tell("expected the name of a project"), str(path), at, name))
+    if problems:
+        raise BadInput(problems)
+    return data
+
+
+def _judged(path: Path, name: str, opened: Callable[[str], Project], by_kind: Mapping[str, Callable[..., Report]]) -> Judgement:
+    """One file; what cannot be judged is told, and the rest goes on."""
+    try:
+        project = opened(name)
+        said = SHEET.search(path.stem)
+        sheet = int(said[1]) if said else None
+        suffix = path.suffix.lower()
+        kind = "drawing" if suffix in DRAWINGS else "numbers" if suffix in NUMBERS else "picture"
+        if kind == "picture" and sheet is None:
+            if len(sheet_numbers(project, None)) > 1:
+                raise BadInput(tell("its name does not say which sheet it shows"), tell("call it, for instance, sheet 2.jpg"))
+            sheet = 1
+        report = by_kind[kind](project, sheet, path)
+    except (BadInput, CannotBuild) as e:
+        return Judgement(path.name, {"unjudged": 1}, refused=str(e).replace(f"{path}: ", ""))
+    faults, mistakes = _faults(report.tree)
+    return Judgement(path.name, faults, mistakes, report=report)
+
+
+def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
+    """Faults of each kind, and mistakes in words, from the tree of a report."""
+    if "numbers" in tree:  # measured
+        starts = tree["starts"]
+        left = [n for n in tree["numbers"] if n["follows"] is None and not n["starts"]]
+        count = Counter(n["verdict"] for n in left)
+        return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, tuple(s["why"] for s in starts)
+    built = {b["view"]: b["what"] for b in tree.get("built", ())}
+    missing = set(tree.get("summary", {}).get("missing_views", ()))
+    count = Counter(e["verdict"] for e in tree["elements"] if e["view"] not in built and e["view"] not in missing)
+    mistakes = tuple(dict.fromkeys(built.values()))
+    return {"mistake": len(mistakes), "red": count["red"], "amber": count["amber"], "missing_view": len(missing)}, mistakes
+
+
+# --- the report -------------------------------------------------------------------------------------------------------------
+
+
+def _report(folder: Path, students: Sequence[Student], scheme: Scheme | None) -> Report:
+    tables = [*_tables(students, scheme)]
+    refused = [tell("{student}, {file}: {why}").format(student=s.name, file=f.file, why=" ".join(f.refused.split()))
+               for s in students for f in s.files if f.refused]
+    title = tell("Group: {folder}").format(folder=folder.resolve().name)
+    about = tell_n("{n} student", "{n} students", len(students)).format(n=len(students))
+    story = Story(title, (about,), (), tuple(tables), tuple(refused))
+    pages = {f"{s.name}/{Path(f.file).stem}.html": page(f.report, ".html", s.name) for s in students for f in s.files
+             if f.report is not None}
+    return Report(_text(story), _tree(students, scheme), pages, (), story)
+
+
+def _tables(students: Sequence[Student], scheme: Scheme | None) -> Iterator[Table]:
+    head = [tell("student"), tell("project"), tell("files"), tell("mistakes named"), tell("other red"), tell("amber"),
+            tell("views missing"), tell("not judged")]
+    if scheme is not None:
+        head += [tell("mark"), *([tell("grade")] if scheme.grades else [])]
+    rows = []
+    for s in students:
+        faults = s.faults
+        row = [s.name, s.project, str(len(s.files)), *(str(faults[kind]) for kind in KINDS)]
+        if scheme is not None:
+            mark = s.mark(scheme)
+            row += ["–" if mark is None else told(f"{mark:.4g}"), *([scheme.grade(mark) if mark is not None else "–"]
+                                                                   if scheme.grades else [])]
+        rows.append(tuple(row))
+    yield Table(tell("Students"), tuple(head), tuple(rows))
+    made = [(s.name, m) for s in students for m in s.mistakes]
+    if made:
+        yield Table(tell("Mistakes of each"), (tell("student"), tell("mistake")), tuple(made))
+        most = _most_made(students)[:MOST]
+        yield Table(tell("Mistakes most made"), (tell("students"), tell("mistake")), tuple((str(n), m) for m, n in most))
+
+
+def _most_made(students: Sequence[Student]) -> list[tuple[str, int]]:
+    """Mistakes by how many students made them; sizes, which are everybody's own, do not tell them apart."""
+    first: dict[str, str] = {}
+    count: Counter[str] = Counter()
+    for s in students:
+        for key in {_alike(m): m for m in s.mistakes}:
+            count[key] += 1
+        for m in s.mistakes:
+            first.setdefault(_alike(m), m)
+    return [(first[key] if n == 1 else key, n) for key, n in count.most_common()]
+
+
+def _alike(mistake: str) -> str:
+    """A mistake without its sizes."""
+    return re.sub(r"(?<![\w])\d+(?:[.,]\d+)?", "…", mistake)
+
+
+def _text(story: Story) -> str:
+    out = [story.title, *story.about]
+    for table in story.tables:
+        widths = [max(len(row[k]) for row in (table.head, *table.rows)) for k in range(len(table.head))]
+        out += ["", table.title]
+        out += ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (table.head, *table.rows)]
+    if story.unjudged:
+        out += ["", tell("What could not be judged, and why"), *(f"  {line}" for line in story.unjudged)]
+    return "\n".join(out)
+
+
+def _tree(students: Sequence[Student], scheme: Scheme | None) -> dict[str, Any]:
+    def marked(s: Student) -> dict[str, Any]:
+        if scheme is None:
+            return {}
+        mark = s.mark(scheme)
+        return {"mark": mark, "grade": None if mark is None else scheme.grade(mark) or None}
+
+    return {
+        "students": [{"student": s.name, "project": s.project, "faults": s.faults, "mistakes": list(s.mistakes), **marked(s),
+                      "files": [{"file": f.file, "faults": dict(f.faults), "mistakes": list(f.mistakes),
+                                 "refused": f.refused or None} for f in s.files]} for s in students],
+        "most_made": [{"mistake": m, "students": n} for m, n in _most_made(students)],
+    }
+
