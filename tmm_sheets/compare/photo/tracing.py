@@ -29,10 +29,12 @@ from tmm_sheets.compare.photo.own_place import in_place, strips
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.stations import measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
-from tmm_sheets.compare.photo.wiping import fill, wipe_found, wipe_small
+from tmm_sheets.compare.photo.wiping import fill, paint, wipe_found, wipe_small
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
-WRITTEN = 0.02  # share of its place with ink from which on lettering counts as there
+WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
+OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
+BESIDE = 0.9  # mm about lines whose ink is theirs
 
 
 def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[Trace], list[ExtraInk]]:
@@ -76,7 +78,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     ended = with_ends(open_lines, ink, owners, _places_of_lettering(elements, ink), pale)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
-    out = {t.element.number: t for t in (*found, *ended)} | _presence(small, ink, level) | out_of_sight
+    out = {t.element.number: t for t in (*found, *ended)} | _presence(small, found, ink, pale) | out_of_sight
     for e in elements:  # a hand may have written here
         if e.kind == "text":
             fill(left, grown(e.points, 0.8 * e.height + 1.0), 0)
@@ -124,16 +126,30 @@ def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
     return out
 
 
-def _presence(small: Sequence[Element], ink: Any, level: float) -> dict[int, Trace]:
-    """Traces by number of what is not measured: whether there is any ink in the place of lettering; the rest is not looked at."""
+def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level: float) -> dict[int, Trace]:
+    """Traces by number of what is not measured: whether there is any ink in the place of lettering; the rest is not looked at.
+
+    The ink of lines that run through the place does not count, nor does a place that they fill.
+    """
     out = {e.number: Trace(e, "small", covered=1.0) for e in small}
     words = [e for e in small if e.kind == "text"]
     if not words:
         return out
-    u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 12)))
-    corners = np.stack([grown(e.points, 1.0) for e in words])
+    others = np.zeros_like(ink)
+    for t in found:
+        if t.at is not None:
+            paint(others, t.element, t.at, BESIDE)
+    for e in small:
+        if e.kind != "text":
+            paint(others, e, e.points, BESIDE)
+    u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 60), np.linspace(0, 1, 24)))
+    corners = np.stack([grown(e.points, 0.3) for e in words])
     a, b, _, d = corners.T[:, :, None]
-    shares = (sample(ink, pixels(a + u * (b - a) + v * (d - a))) > level).mean(1)
-    for e, share in zip(words, shares.tolist(), strict=True):
-        out[e.number] = Trace(e, "lettering" if share > WRITTEN else "absent lettering", covered=share)
+    places = pixels(a + u * (b - a) + v * (d - a))
+    free = sample(others, places, nearest=True) == 0
+    dark = (sample(ink, places) > level) & free
+    shares = dark.sum(1) / np.maximum(free.sum(1), 1)
+    for e, share, seen in zip(words, shares.tolist(), free.mean(1).tolist(), strict=True):
+        there = share > WRITTEN or seen < OPEN
+        out[e.number] = Trace(e, "lettering" if there else "absent lettering", covered=share)
     return out

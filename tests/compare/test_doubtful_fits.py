@@ -1,0 +1,96 @@
+"""Pictures whose frame is easily mistaken: the fit is judged first; what is hidden is not called missing; else they are refused."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.compare.test_image import N, grey, known, rectified, shot
+from tmm_sheets.compare.elements import grown
+from tmm_sheets.compare.photo import rectification, tracing
+from tmm_sheets.compare.photo.frame_quads import homographies
+from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.photograph import Picture
+from tmm_sheets.compare.photo.refusal import refusal
+from tmm_sheets.compare.photo.sheet_map import CORNERS, projected
+from tmm_sheets.compare.photo.wiping import fill
+
+INSIDE = (np.linspace(90, 820, 12)[None, :] + 1j * np.linspace(20, 570, 9)[:, None]).ravel()
+
+
+def covered(points, value):
+    """The photograph with a polygon of the sheet, mm, painted over."""
+    seen = grey().copy()
+    q = shot().place(np.array(points))
+    cv2.fillPoly(seen, [np.column_stack((q.real, q.imag)).round().astype(np.int32)], value)
+    return seen
+
+
+def without_its_left_side():
+    return covered([-60 - 60j, 60 - 60j, 60 + 660j, -60 + 660j], 95)
+
+
+def worst(found):
+    """Largest error of a place inside, mm."""
+    return float(np.abs(found.map.to_sheet(shot().place(INSIDE)) - INSIDE).max())
+
+
+def test_three_sides_make_a_frame_and_the_hidden_part_is_not_missing():
+    found = rectification.rectify(Picture(without_its_left_side()), known(), Path("photo.jpg"))
+    assert found.check.acceptable
+    assert worst(found) < 0.8
+    traces, _ = tracing.trace(known(), found.ink, found.hidden)
+    left = [t for t in traces if t.element.points.real.max() < 55]
+    assert left
+    assert {t.status for t in left} == {"hidden"}
+    # The four errors planted to the right of it are all that is red.
+    assert sum(judge(t, 0.25, found.uncertainty).verdict == "red" for t in traces) <= 5
+
+
+def test_a_doubtful_fit_is_refused_with_the_reason_and_the_attempt():
+    found = rectified()
+    check = replace(found.check, match=0.45, astray=np.array([71 + 54j, 173 + 54j]), sides=np.array([1.0, 0.9, 0.5, 0.2]))
+    assert not check.acceptable
+    why = refusal(grey(), replace(found, check=check), known(), Path("photo.jpg"), N)
+    said = str(why)
+    assert said.startswith(f"photo.jpg: sheet {N} could not be laid over the picture, so nothing was judged: ")
+    assert "the left side of the frame is hidden or was not drawn" in said
+    assert f"parts of the sheet whose lines are elsewhere: 2 of {check.judged}" in said
+    attempt = cv2.imdecode(np.frombuffer(why.files[f"compare_sheet_{N}_attempt.png"], np.uint8), cv2.IMREAD_COLOR)
+    assert attempt.shape == (2376, 3364, 3)
+    dark = refusal(grey() // 5, replace(found, check=replace(check, sides=np.ones(4))), known(), Path("photo.jpg"), N)
+    assert "too little light" in str(dark)
+
+
+def test_labels_that_stand_elsewhere_are_missed_in_their_places():
+    found = rectified()
+    label = next(e for e in known() if e.kind == "text" and e.view.n and e.height >= 5 and len(e.text) > 12)
+    ink = found.ink.copy()
+    fill(ink, grown(label.points, 1.0), 0)
+    traces, _ = tracing.trace(known(), ink, found.hidden)
+    assert [t.element.number for t in traces if t.status == "absent lettering"] == [label.number]
+
+
+def test_homographies_of_many_quadrilaterals():
+    rng = np.random.default_rng(5)
+    quads = CORNERS + rng.uniform(-40, 40, (6, 4)) + 1j * rng.uniform(-40, 40, (6, 4))
+    for quad, h in zip(quads, homographies(quads), strict=True):
+        assert projected(h, CORNERS) == pytest.approx(quad, abs=1e-6)
+
+
+def test_a_map_that_is_wrong_in_a_corner_is_doubtful():
+    found = rectified()
+    assert found.check.sound
+    assert worst(found) < 0.8
+    sides = found.map.sides.copy()
+    sides[1, :2] += 6  # the right side is 0 to 12 mm off
+    wrong = replace(found.map, sides=sides)
+    lines = rectification.as_lines([e for e in known() if e.length < rectification.LONGEST])
+    level = rectification.line_level(found.ink)
+    check = rectification.fit_check.check(wrong, found.map, found.sides, found.ink, lines, level, 6.0)
+    assert not check.sound
+    assert len(check.astray) > 2
+    assert check.sides[1] < 0.5
+    assert check.match < found.check.match - 0.2
