@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
 """Place of the title block among the views."""
-MAIN = 3
+MAIN = 4
 """How much more than others the position plans count: the mechanism is what a sheet is about."""
 DESIGNATION = Box(20.0, 573.0, 92.0, 589.0)
 """Place of the turned designation, over the views in the upper left corner (GOST 2.104)."""

@@ -8,7 +8,7 @@ views fill the sheet better. Everything is done in a fixed order and in steps of
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import floor, inf, log10
@@ -18,8 +18,11 @@ from tmm_sheets.construction.scale import HANDY
 
 GAP = 6.0
 """Largest distance that is kept between views, mm: the room of a view left out goes to its neighbours."""
-STEPS = (60.0, 35.0, 20.0, 11.0, 6.0), (4.0, 2.0, 1.0)
-"""How far borders move at a time, mm: at first as far as is best, in the end to the millimetre."""
+STEPS = ((60.0, 35.0, 20.0, 11.0, 6.0), (4.0, 2.0, 1.0)), ((20.0, 11.0, 6.0), (4.0, 2.0, 1.0))
+"""How far borders move at a time, mm: at first as far as is best, in the end to the millimetre; and not so far at first.
+
+A far move may end where no other leads on: of several beginnings the best end is taken.
+"""
 ROUNDS = 3
 """How often all borders are tried with each of these."""
 _SERIES = (*HANDY, 10.0)
@@ -81,6 +84,12 @@ class Node:
     shares: list[float] = field(default_factory=list)
     gap: float = GAP
 
+    def every(self) -> Iterator[Node]:
+        """The node and all below it."""
+        yield self
+        for child in self.children:
+            yield from child.every()
+
     def sizes(self, width: float, height: float) -> list[float]:
         """Extents of the children along the axis in a place of this size."""
         free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
@@ -136,11 +145,22 @@ class Node:
 
 def solve(tree: Node, box: Box) -> dict[int, Box]:
     """Places of the views of a tree in a rectangle, by their numbers."""
-    for steps in STEPS:
-        for _ in range(ROUNDS):
-            if not tree.settle(box.width, box.height, steps):
-                break
+    nodes, found = list(tree.every()), list[tuple[float, list[list[float]]]]()
+    begin = [node.shares for node in nodes]
+    for ladder in STEPS:
+        _shared(nodes, begin)
+        for steps in ladder:
+            for _ in range(ROUNDS):
+                if not tree.settle(box.width, box.height, steps):
+                    break
+        found.append((round(tree.cost(box.width, box.height), 3), [node.shares for node in nodes]))
+    _shared(nodes, min(found, key=lambda end: end[0])[1])
     return tree.places(box)
+
+
+def _shared(nodes: Sequence[Node], shares: Sequence[Sequence[float]]) -> None:
+    for node, own in zip(nodes, shares, strict=True):
+        node.shares = list(own)
 
 
 def joined(axis: int, children: Sequence[Node], sizes: Sequence[float], gap: float = GAP) -> Node:
