@@ -189,7 +189,8 @@ def reworded(node: Node, table: Mapping[str, str]) -> Node:
 
     def index(part: Node) -> Node:
         if isinstance(part, Words):
-            return Words(table.get(letter + part.text, table.get(part.text, part.text)))
+            said = table.get(letter + part.text, table.get(part.text, part.text))
+            return Letters(said) if len(said) == 1 and said.isascii() else Words(said)
         return part.of_parts(index)
 
     below, above = (index(x) if x is not None else None for x in (node.below, node.above))

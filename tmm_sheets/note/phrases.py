@@ -299,7 +299,7 @@ class Writer:
     def _explained(self, said: Said) -> Iterator[Explained]:
         for markup, unit in said.explained:
             meaning = meaning_of(markup, self.language, self.template)
-            once = ("" if meaning.endswith(_OF_INDEX) else bare(markup), meaning)
+            once = ("" if meaning.endswith(_OF_INDEX) else bare(markup)[:1], meaning)  # its index may have two spellings
             if meaning and once not in self.known:
                 self.known.add(once)
                 yield Explained(letters(markup), tuple(set_text(meaning.removesuffix(_OF_INDEX).rstrip())), unit)
