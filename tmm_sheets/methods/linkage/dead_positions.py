@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.mechanism.model import Mechanism
@@ -39,7 +40,9 @@ def check_dead_positions(m: Mechanism) -> None:
         group.kind.check_dead_positions(m, group)
 
 
+@primitive("angle turned to a point")
 def _turned(centre: Any, pin: Any, start: Any, sense: Any) -> Any:
+    """Angle from a direction to that from a centre to a point, in the sense of rotation, 0 to 360 degrees."""
     v = pin - centre
     return np.mod(sense * (np.arctan2(v.imag, v.real) - start), 2 * np.pi)
 
