@@ -85,9 +85,11 @@ def taken(known: KnownSheet, view: ElementView, rng: random.Random, letters: boo
     return out
 
 
-def shelved(known: KnownSheet, views: list[ElementView], rng: random.Random) -> dict[ElementView, Placing]:
+def shelved(known: KnownSheet, views: list[ElementView], rng: random.Random, ours: bool = False) -> dict[ElementView, Placing]:
     """Places of views: row by row, each as large as the student likes, plans of one scale factor alike."""
     like = {}
+    if ours:
+        return {v: Placing() for v in views}
     rng.shuffle(views)
     x = y = row = 0.0
     out = {}
@@ -257,12 +259,12 @@ def _rebuilt(drawn: Drawn, view: ElementView, new: dict[complex, complex]) -> No
                 continue
             turn = (b - a) / (e.points[1] - e.points[0])
             turn /= abs(turn)
-            if (a, b) != (e.points[0], e.points[1]):
+            if max(abs(a - e.points[0]), abs(b - e.points[1])) > 0.3:
                 drawn.wrong[e.number] = "built"
             drawn.elements[k] = replace(e, points=np.array([a, b]), fills=tuple(b + (f - e.points[1]) * turn for f in e.fills))
         elif e.kind == "circle":
             d = to(e.centre) - e.centre
-            if d:
+            if abs(d) > 0.3:
                 drawn.wrong[e.number] = "built"
             drawn.elements[k] = replace(e, centre=e.centre + d, points=e.points + d, fills=tuple(f + d for f in e.fills))
         elif e.kind == "text" and e.text != view.name:
@@ -276,10 +278,10 @@ def _rebuilt(drawn: Drawn, view: ElementView, new: dict[complex, complex]) -> No
 
 
 def student(project: Project, known: KnownSheet, rng: random.Random, plans: bool, spoiled: bool, slips: str = "",
-            number: int = 0) -> tuple[Drawn, bytes]:
+            number: int = 0, ours: bool = False) -> tuple[Drawn, bytes]:
     """One drawing; with ``slips``, a project's name, something is done otherwise."""
     views = [v for v in shaped_views(known) if rng.random() < 0.9]
-    drawn = Drawn(places=shelved(known, views, rng))
+    drawn = Drawn(places=shelved(known, views, rng, ours))
     letters = rng.random() < 0.8
     drawn.elements = [e for v in drawn.places for e in taken(known, v, rng, letters)]
     if plans:
@@ -320,6 +322,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--plans", action="store_true", help="whole plans built on a wrong step")
     parser.add_argument("--slips", action="store_true", help="something usual is done otherwise")
+    parser.add_argument("--ours", action="store_true", help="views where ours are, at our scales")
     parser.add_argument("--quiet", action="store_true")
     options = parser.parse_args()
     sheets = [(name, n, project) for name in options.projects for project in [Project(read(name))]
@@ -334,7 +337,7 @@ def main() -> None:
             name, n, project = sheets[run % len(sheets)]
             rng = random.Random(options.seed * 100_003 + run)
             drawn, data = student(project, known[name, n], rng, options.plans, run % 2 == 1,
-                                  name if options.slips else "", run)
+                                  name if options.slips else "", run, options.ours)
             path = Path(folder) / "drawing.dxf"
             path.write_bytes(data)
             before = perf_counter()

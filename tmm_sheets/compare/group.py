@@ -185,7 +185,8 @@ def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
 
 def _report(folder: Path, students: Sequence[Student], scheme: Scheme | None) -> Report:
     tables = [*_tables(students, scheme)]
-    refused = [tell("{student}, {file}: {why}").format(student=s.name, file=f.file, why=" ".join(f.refused.split()))
+    said = tell("{student}, {file}: {why}")
+    refused = [said.format(student=s.name, file=f.file, why="; ".join(map(str.strip, f.refused.splitlines())))
                for s in students for f in s.files if f.refused]
     title = tell("Group: {folder}").format(folder=folder.resolve().name)
     about = tell_n("{n} student", "{n} students", len(students)).format(n=len(students))

@@ -15,7 +15,8 @@ import numpy as np
 
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
-from tmm_sheets.compare.cad.line_fit import KnownLines
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines
+from tmm_sheets.compare.cad.view_search import FoundView, find_changed, unused
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 AT_POINT = 0.03
 """Distance within which an end of a line is at a point of the plan, mm of our sheet."""
+BESIDE = 10.0
+"""How far from its point a letter may stand, mm of our sheet."""
 NEAR = 0.4
 """Distance from ink within which a point of a plan counts as drawn, mm."""
 WHOLE = 0.85
@@ -119,6 +122,33 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
     return out
 
 
+def lost_views(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing]) -> dict[
+        ElementView, FoundView]:
+    """Views of a layout of its own that were not found because their plans were built on a mistake, and where they are."""
+    plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
+    errors = Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
+    free = space.lines
+    for view, move in moves.items():
+        points = lines([move(e.points) for e in known.elements if e.view == view and e.kind not in ("text", "hatch", "fill")])
+        free = unused(free, points.points(1.0))
+    out: dict[ElementView, FoundView] = {}
+    views = list(dict.fromkeys(e.view for e in known.elements if e.view not in moves))
+    shown = {view: drawn for view in views if (drawn := _drawn(known, plans, view)) is not None}
+    order = list(plans)
+    for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
+        left = set(np.unique(free.owner).tolist())
+        strokes = [s for k, s in enumerate(space.strokes) if k in left]
+        if not strokes:
+            break
+        changed = [points for _, points in _mistakes(drawn, errors, ())]
+        every = ((lambda e, points=points: rebuilt(e, points)) for points in changed)
+        found = find_changed(view, known.elements, every, strokes, free, space.writings, {**moves, **{
+            v: one.placing for v, one in out.items()}})
+        if found is not None:
+            out[view] = found
+    return out
+
+
 def rebuilt(e: Element, points: Mapping[complex, complex]) -> Element:
     """An element of a plan whose points come to lie elsewhere; what hangs over a point, and heads, keep their size."""
     if e.kind == "line":
@@ -130,9 +160,9 @@ def rebuilt(e: Element, points: Mapping[complex, complex]) -> Element:
         fills = tuple(_head(f, e.points, new, turn) for f in e.fills)
         marks = tuple(_between_marks(m, e.points, new, turn) for m in e.marks)
         return replace(e, points=new, fills=fills, marks=marks)
-    at = e.centre if e.kind == "circle" else None
+    at = e.centre if e.kind == "circle" else e.middle if e.kind == "text" and e.step else None
     near = min(points, key=lambda z: abs(z - at), default=None) if at is not None else None
-    if at is None or near is None or abs(near - at) > AT_POINT:
+    if at is None or near is None or abs(near - at) > (AT_POINT if e.kind == "circle" else BESIDE):
         return e
     by = points[near] - near
     return replace(e, points=e.points + by, centre=e.centre + by, fills=tuple(f + by for f in e.fills),
@@ -155,7 +185,7 @@ def _near_end(z: complex, was: Points, now: Points, turn: complex) -> complex:
 def as_built(finding: CadFinding, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:
     """A finding on an element of a rebuilt plan, judged by the place it should have; ``was``, ``now``: before the view's move."""
     off = float(np.abs(move(now.points) - move(was.points)).max()) if len(now.points) == len(was.points) else 0.0
-    if finding.verdict is None or off <= tolerance:
+    if finding.verdict is None or off <= tolerance or was.kind == "text":
         return finding
     said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))
     what = said if finding.verdict == "green" else f"{said}; {finding.what}"

@@ -88,6 +88,8 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     space = laid.space.placed(laid.placing)
     say(tell("placing the views"))
     places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say, laid.views)
+    if laid.views:
+        places = places.with_more(cad_built.lost_views(project, laid.known, space, places.moves))
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
     if not _of_this_sheet(outcome):
         _refuse(project, laid, outcome, ink, sheet, path)

@@ -43,6 +43,11 @@ class Layout:
     share: Mapping[ElementView, float]
     notes: tuple[str, ...]
 
+    def with_more(self, found: Mapping[ElementView, FoundView]) -> Layout:
+        """The same with more views."""
+        return Layout({**self.moves, **{v: one.placing for v, one in found.items()}},
+                      {**self.share, **{v: one.share for v, one in found.items()}}, self.notes)
+
 
 def ink(elements: Sequence[Element]) -> Points:
     """Points every millimetre along what a draughtsman cannot omit or draw in another way: lines, circles, curves."""

@@ -8,7 +8,7 @@ ink there that no other view has taken, which of its letters stand there, what t
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
@@ -39,6 +39,10 @@ ALIKE = 0.02
 """Greatest relative difference of the proportions of two curves that may be one."""
 NEAR = 0.3
 """Distance from ink within which a point of ours counts as found, mm."""
+AS_DRAWN, SURE = 0.85, 0.97
+"""Least share of a changed view that must be found, and share at which to stop."""
+FEW_LINES = 3
+"""Least number of lines by which a changed view is known."""
 MANY_LINES = 4
 """From so many lines on a view can be known without others."""
 TRIED = 10
@@ -100,6 +104,28 @@ def find(elements: Sequence[Element], views: Sequence[ElementView], strokes: Seq
     return _Search(elements, views, strokes, theirs, writings, known).found()
 
 
+def find_changed(view: ElementView, elements: Sequence[Element], changed: Iterable[Callable[[Element], Element]],
+                 strokes: Sequence[DrawnStroke], theirs: KnownLines, writings: Sequence[Writing],
+                 known: Mapping[ElementView, Placing]) -> FoundView | None:
+    """Seek a view that is not drawn as ours is: with each of some changes of its elements; None where it is not found whole.
+
+    ``elements`` are those of the sheet, the rest as in :func:`find`.
+    """
+    search = _Search(elements, [view], strokes, theirs, writings, known)
+    if not search.views:
+        return None
+    usual = search.main[view]
+    best: FoundView | None = None
+    for change in changed:
+        search.redrawn(view, [change(e) for e in usual])
+        for one in search.tries(0, view, search.scales.get(view.mu), FEW_LINES, 0):
+            if one.share > max(AS_DRAWN, best.share if best is not None else 0.0):
+                best = FoundView(one.placing, one.share)
+        if best is not None and best.share > SURE:
+            return best
+    return best
+
+
 class _Search:
     def __init__(self, elements: Sequence[Element], views: Sequence[ElementView], strokes: Sequence[DrawnStroke],
                  theirs: KnownLines, writings: Sequence[Writing], known: Mapping[ElementView, Placing]) -> None:
@@ -117,6 +143,12 @@ class _Search:
         self.free = theirs
         self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
 
+    def redrawn(self, v: ElementView, main: list[Element]) -> None:
+        """Seek a view with other lines."""
+        self.main[v] = [e for e in main if e.length > 0.01]
+        z = lines([e.points for e in self.main[v]]).points(1.0)
+        self.points[v] = z[:: max(len(z) // MOST, 1)]
+
     def found(self) -> dict[ElementView, FoundView]:
         """The views that are sure; those of few lines wait until others of their scale factor tell its scale."""
         out: dict[ElementView, FoundView] = {}
@@ -124,7 +156,7 @@ class _Search:
             lost = [(k, v) for k, v in enumerate(self.views) if v not in out]
             scales = {v: self.scales.get(v.mu) for _, v in lost}
             self._place(out, [one for k, v in lost if not at_known or scales[v] is not None
-                              for one in self._tries(k, v, scales[v] if at_known else None, least, len(out))], least)
+                              for one in self.tries(k, v, scales[v] if at_known else None, least, len(out))], least)
         return out
 
     def _place(self, out: dict[ElementView, FoundView], heap: list[_Try], least: int) -> None:
@@ -145,7 +177,7 @@ class _Search:
                 self.scales.setdefault(v.mu, best.placing.scale)
             self.free = unused(self.free, best.placing(self.points[v]))
 
-    def _tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int) -> Iterator[_Try]:
+    def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int) -> Iterator[_Try]:
         """The places a view may be at, at a scale if that is known."""
         seen: list[Placing] = []
         middle = complex(self.points[v].mean())
