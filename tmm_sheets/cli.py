@@ -530,7 +530,8 @@ def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
 @commands.command()
 @PROJECT
 @CORRECTED
-@option("--template", is_flag=True, help="Write a CSV file with a line for everything that can be measured on the sheets.")
+@option("--template", is_flag=True, help="Write a CSV file with a line for each main number of the sheets, to be filled in.")
+@option("--all", "everything", is_flag=True, help="With --template: a line for everything that can be measured.")
 @option("--measured", type=click.Path(path_type=Path), metavar="FILE", help="Compare the numbers of such a file.")
 @option("--sheet", "sheet", type=int, metavar="N", help="Number of the sheet in the image or the drawing.")
 @option("--image", type=click.Path(path_type=Path), metavar="FILE", help="Compare a photograph or scan: jpg, png, pdf.")
@@ -545,12 +546,14 @@ def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
 def compare(
-    project: str, corrected: bool, template: bool, measured: Path | None, sheet: int | None, image: Path | None,
+    project: str, corrected: bool, template: bool, everything: bool, measured: Path | None, sheet: int | None, image: Path | None,
     views: Path | None, dxf: Path | None, pencil: float, reading: float, target: str | None, output: Path | None,
 ) -> None:
     """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
     if sum((template, measured is not None, image is not None, dxf is not None)) != 1:
         raise click.UsageError(tell("give one of --template, --measured FILE, --image FILE and --dxf FILE"))
+    if everything and not template:
+        raise click.UsageError(tell("--all goes with --template"))
     if sheet is None and image is not None:
         raise click.UsageError(tell("--image needs --sheet N: which sheet it shows"))
     from tmm_sheets import files
@@ -565,7 +568,7 @@ def compare(
         if template:
             from tmm_sheets.compare.measured import measured_lengths as by_ruler
 
-            report = by_ruler.template(opened, folder, say)
+            report = by_ruler.template(opened, folder, everything, say)
         elif measured is not None:
             from tmm_sheets.compare.measured import measured_lengths as by_ruler
 
