@@ -113,7 +113,7 @@ class Sheet:
         done = self._otherwise(i)
         if done is not None:
             reached = np.abs(done.shares) > self.tolerance
-            if done.score > NEARLY * float(np.sum(_loss((self.left / self.tolerance)[reached]))):
+            if reached.sum() > 1 and done.score > NEARLY * float(np.sum(_loss((self.left / self.tolerance)[reached]))):
                 return done  # nothing can explain much more
         off = self._displaced(i)
         return off if done is None or (off is not None and off.score * NEARLY > done.score) else done
@@ -198,7 +198,13 @@ class Sheet:
                 yield computed_with(of_plan, times, told(f"{times:.3g}"))
 
     def _leaves_little(self, i: int, h: Hypothesis) -> bool:
-        """Whether a number is nearly what it would be with a mistake, and would not be so without."""
+        """Whether a number is nearly what it would be with a mistake, and would not be so without.
+
+        A neighbour's number is hardly another one: it is seen where it was taken, farther on it would be a guess.
+        """
+        at = [step for step, _, _ in self.judged[i].entry.terms]
+        if h.kind == "neighbour" and not any(h.step is s for step in at for s in (step, *step.args)):
+            return False
         share = self._shares(h, [i])[0]
         left, allowed = self.judged[i].apart(self.left[i] - share), np.hypot(self.tolerance[i], CURVED * share)
         return bool(isfinite(share) and abs(share) > self.tolerance[i] and abs(left) <= LEFT * allowed)
