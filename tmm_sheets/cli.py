@@ -569,7 +569,8 @@ def _check_pages(pages: tuple[Path, ...]) -> None:
 @commands.command()
 @PROJECT
 @CORRECTED
-@option("--template", is_flag=True, help="Write a CSV file with a line for everything that can be measured on the sheets.")
+@option("--template", is_flag=True, help="Write a CSV file with a line for each main number of the sheets, to be filled in.")
+@option("--all", "everything", is_flag=True, help="With --template: a line for everything that can be measured.")
 @option("--measured", type=click.Path(path_type=Path), metavar="FILE", help="Compare the numbers of such a file.")
 @option("--sheet", "sheet", type=int, metavar="N", help="Number of the sheet in the image or the drawing.")
 @option("--image", type=click.Path(path_type=Path), metavar="FILE", help="Compare a photograph or scan: jpg, png, pdf.")
@@ -589,8 +590,8 @@ def _check_pages(pages: tuple[Path, ...]) -> None:
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
 def compare(
-    project: str, corrected: bool, template: bool, measured: Path | None, sheet: int | None, image: Path | None,
-    views: Path | None, dxf: Path | None, group: Path | None, marks: Path | None, pencil: float, reading: float,
+    project: str, corrected: bool, template: bool, everything: bool, measured: Path | None, sheet: int | None,
+    image: Path | None, views: Path | None, dxf: Path | None, group: Path | None, marks: Path | None, pencil: float, reading: float,
     target: str | None, pages: tuple[Path, ...], output: Path | None,
 ) -> None:
     """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
@@ -598,6 +599,8 @@ def compare(
         raise click.UsageError(tell("give one of --template, --measured FILE, --image FILE, --dxf FILE and --group FOLDER"))
     if marks is not None and group is None:
         raise click.UsageError(tell("--marks goes with --group FOLDER"))
+    if everything and not template:
+        raise click.UsageError(tell("--all goes with --template"))
     if sheet is None and image is not None:
         raise click.UsageError(tell("--image needs --sheet N: which sheet it shows"))
     _check_pages(pages)
@@ -613,7 +616,7 @@ def compare(
         if template:
             from tmm_sheets.compare.measured import measured_lengths as by_ruler
 
-            report = by_ruler.template(opened, folder, say)
+            report = by_ruler.template(opened, folder, everything, say)
         elif group is not None:
             report = _of_group(group, opened, corrected, marks, pencil, reading, say)
         elif measured is not None:

@@ -4,6 +4,7 @@ Nothing here knows how a mistake is recognised: what was done wrong is worked ou
 drawn before, and everything after that by the rules, with a pencil's scatter. Each student has a number and can be looked at alone:
 
     python -m tests.compare.hypotheses [PROJECT ...] [--students N] [--first I] [--seed S] [--kind KIND] [--two | --sound]
+        [--all]
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from tmm_sheets.construction.step import Step
 
 PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "sixbar/6:3", "sixbar/9:1", "transport/diesel@01-Т-27",
             "transport/press@05-ЭПС-123", str(OWN / "feeder.toml"))
+LINKAGE = ("positions", "velocities", "accelerations", "loads", "moments", "force", "lever")
 VISIBLE = 3.0
 """Tolerances by which one number at least has to be off for a mistake to be seen."""
 
@@ -88,7 +90,13 @@ class Slipping(Hand):
         for slip in self.slips:
             if e.kind == "length" and e.plan in slip.drawn:
                 value = round(2 * value * slip.drawn[e.plan]) / 2
+            if e.kind == "angle" and slip.mirrored and e.plan == slip.mirrored:
+                value = 180 - value
         return value
+
+    def computed(self, e: Measurable, written: Mapping[str, float]) -> float:
+        """An equation of moments is solved with the senses as they were taken."""
+        return self.measured(e) if e.terms and e.terms[0][0].plan == "moments" else super().computed(e, written)
 
     def filled(self, chosen: Mapping[str, Measurable] | None = None) -> Filled:
         filled = super().filled(chosen)
@@ -115,7 +123,7 @@ def _there(found: Measurables, rng: np.random.Generator) -> tuple[list[Step], in
     for e in found.entries.values():
         if e.label == label:
             for term in e.terms:
-                steps |= {id(s): s for s in term[0].ancestors() if "@" not in s.plan}
+                steps |= {id(s): s for s in term[0].ancestors() if s.plan.partition("-")[0] in LINKAGE}
     return list(steps.values()), positions.labels.index(label), label
 
 
@@ -292,23 +300,29 @@ class Student:
         return f"{self.project} #{self.number} {'; '.join(map(str, self.slips))}\n      " + "\n      ".join(said or ["nothing"])
 
 
-def student(project: str, number: int, seed: int, kinds: tuple[str, ...]) -> Student | None:
-    """A student by number, with these kinds of mistakes; None where the project has no place for one of them."""
+def student(project: str, number: int, seed: int, kinds: tuple[str, ...], everything: bool = False) -> Student | None:
+    """A student by number, with these kinds of mistakes; None where the project has no place for one of them.
+
+    The template's main numbers are filled in, or ``everything``.
+    """
     found = opened(project)
     rng = np.random.default_rng([seed, crc32(project.rpartition("/")[2].encode()), number])
     slips = [KINDS[kind](found, rng) for kind in kinds]
     if any(s is None for s in slips):
         return None
     some = tuple(s for s in slips if s is not None)
-    return Student(project, number, some, judge(Slipping(found, rng, some).filled(), found, PENCIL, READING))
+    asked = {name: e for name, e in found.entries.items() if e.main or everything}
+    if any(name not in asked for slip in some for name in slip.rows):
+        return None
+    return Student(project, number, some, judge(Slipping(found, rng, some).filled(asked), found, PENCIL, READING))
 
 
-def trial(project: str, count: int, first: int, seed: int, kind: str, mistakes: int) -> Iterator[Student]:
+def trial(project: str, count: int, first: int, seed: int, kind: str, mistakes: int, everything: bool) -> Iterator[Student]:
     """So many students of a project."""
     every, number, made = list(KINDS), first, 0
     while made < count and number < first + 5 * count:
         kinds = tuple((kind or every[(number + i * (1 + number // len(every) % 11)) % len(every)]) for i in range(mistakes))
-        one = student(project, number, seed, kinds)
+        one = student(project, number, seed, kinds, everything)
         number += 1
         if one is not None:
             made += 1
@@ -325,11 +339,12 @@ def main() -> None:
     parser.add_argument("--kind", choices=KINDS, default="")
     parser.add_argument("--two", action="store_true", help="two mistakes each")
     parser.add_argument("--sound", action="store_true", help="no mistake")
+    parser.add_argument("--all", action="store_true", help="everything is measured, not the main numbers only")
     options = parser.parse_args()
     mistakes = 0 if options.sound else 1 + options.two
     every: list[Student] = []
     for project in options.projects:
-        for s in trial(project, options.students, options.first, options.seed, options.kind, mistakes):
+        for s in trial(project, options.students, options.first, options.seed, options.kind, mistakes, options.all):
             every.append(s)
             accused = any(j.starts for j in s.judged)
             if (accused if options.sound else s.seen and not all(map(s.told, s.slips))):

@@ -121,6 +121,11 @@ class Hand:
             value = abs(at(head, k) - at(tail, k)) * abs(g)
         elif e.is_size:
             value = abs(at(*e.terms[0][:2]))
+        elif e.kind == "sense":
+            return float(np.sign(at(*e.terms[0][:2]).real))
+        elif e.kind == "angle" and np.iscomplexobj(e.terms[-1][0].value):
+            tail, head = (0j, *(at(step, k) for step, k, _ in e.terms))[-2:]
+            value = float(np.degrees(np.angle(head - tail)))
         else:
             for step, k, g in e.terms:
                 exact = np.asarray(step.value)

@@ -114,7 +114,7 @@ def test_a_wrong_scale_factor(shaper, some):
     """One mistake, not twenty, and the factor is told; stated in the file it is none."""
     filled = drawn(shaper, some)
     for i, line in enumerate(filled.lines):
-        if line.entry.plan == "velocities":
+        if line.entry.plan == "velocities" and line.entry.kind == "length":
             filled.lines[i] = replace(line, value=1.25 * line.value)
     begun = starts(judged(shaper, filled))
     assert len(begun) == 1
@@ -260,7 +260,7 @@ def rows(path):
 def test_template_has_no_answers(cam):
     """Nothing but scale factors stands in the column to be filled in."""
     table = rows(cam)
-    assert len(table) > 60
+    assert len(table) > 50
     assert all(bool(r["measured"]) == r["id"].startswith("mu/") for r in table)
     assert all(r["unit"] or r["plan"] == "" for r in table)
     assert len({r["id"] for r in table}) == len(table)

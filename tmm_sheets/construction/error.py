@@ -270,9 +270,9 @@ class Errors:
     def order(self, step: Step) -> int:
         """Number of a step in an order in which each stands after everything it depends on; -1 for what has no error.
 
-        What is only measured, on no plan, has the number of the last step it is measured on.
+        A direction, and what is only measured, on no plan, has the number of the last step it is drawn or measured on.
         """
-        if not step.plan:
+        if not step.plan or step.rule.gives == "direction":
             return max((self.order(a) for a in step.args if isinstance(a, Step)), default=-1)
         self._of(step)
         return self._numbers.get(id(step), -1)

@@ -86,10 +86,11 @@ class Hypothesis:
         return tell(WORDS[self.words]).format(step=letter_of(self.step), other=self.other)
 
 
-def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = ()) -> Iterator[Hypothesis]:
+def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = (), whole: Iterable[Step] = ()) -> Iterator[Hypothesis]:
     """Mistakes that can be made in some steps of the linkage at position number ``k``, and at every position.
 
-    ``labels`` are those of the positions of these plans; steps of other plans, or with other positions, are left alone.
+    ``labels`` are those of the positions of these plans; steps of other plans, or with other positions, are left alone. ``whole``
+    are all steps of their plans, where ``steps`` are some only: a plan is mirrored as a whole.
     """
     some = [s for s in steps if (s.plan in LINKAGE or s.plan.startswith("force-")) and np.shape(s.value) in ((), (len(labels),))]
     for step in some:
@@ -101,7 +102,7 @@ def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = ()) -> Ite
     for name, of_plan in by_plan.items():
         yield from _among(of_plan, k)
         if name in MIRRORED:
-            yield from _mirrored(of_plan, k)
+            yield from _mirrored([s for s in whole if s.plan == name] or of_plan, k)
 
 
 # --- one step --------------------------------------------------------------------------------------------------------------

@@ -39,6 +39,8 @@ SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
 LONG = 10.0
 """Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
+ANY_WAY = 60.0
+"""Tolerance of an angle, degrees, with which it may be any."""
 MOST_TOLD = 3
 """Own numbers that are named."""
 CHANCE = 1e-3
@@ -102,8 +104,11 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     written = line.half_digit if e.terms or e.calculated else 0.0
     own = hypot(max(read, written), e.calculated * exact)
     tolerance = hypot(error, own, _of_squares(e, errors, reading, ratio))
+    if e.kind == "sense":
+        # One way or the other: of what turns by less than its own error neither is wrong.
+        tolerance, rows = 0.5 if tolerance < 0.5 else float("inf"), []
     # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
-    if not isfinite(tolerance) or (e.kind == "length" and exact > LONG and tolerance > exact):
+    elif not isfinite(tolerance) or tolerance > {"length": max(exact, LONG), "angle": ANY_WAY}.get(e.kind, tolerance):
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact, e.signed) if e.kind == "angle" else measured - exact
@@ -134,9 +139,19 @@ def _remark(judged: Judged, measured: float, tolerance: float) -> str:
         return tell("the construction degenerates here: no tolerance")
     if judged.verdict != "red":
         return ""
+    if judged.entry.kind in ("angle", "sense"):
+        return _way_round(judged)
     if judged.entry.signed and abs(-measured - judged.exact) <= tolerance:
         return tell("the sign is wrong")
-    return "" if judged.entry.kind == "angle" else _slip(measured, judged.exact, tolerance)
+    return _slip(measured, judged.exact, tolerance)
+
+
+def _way_round(judged: Judged) -> str:
+    """That something points or turns the other way."""
+    if judged.entry.kind == "sense":
+        return tell("it turns the other way")
+    opposite = angle_apart(judged.deviation, 180.0, sense=True)
+    return tell("it points the other way") if judged.entry.signed and abs(opposite) <= judged.tolerance else ""
 
 
 def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: Mapping[str, float]) -> float:
@@ -292,12 +307,15 @@ def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> I
     """Take from all numbers what a mistake makes of them; those that are in order then follow from the number it starts with."""
     for i, (j, share, doubt) in enumerate(zip(sheet.judged, found.shares, found.doubt, strict=True)):
         before = sheet.left[i]
-        if not share or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
+        if not sheet.reached(found, i) or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
             continue  # the mistake did not reach it, or with it nothing could be drawn
+        if found.wrong and abs(j.apart(before - share)) > abs(before):
+            continue  # it was gone on with otherwise
         sheet.left[i] = j.apart(before - share)
         # What is left need not be better than other numbers: amber is accused of nothing.
         allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt))
         explained = abs(sheet.left[i]) <= allowed and abs(share) > SHARE * j.tolerance and abs(sheet.left[i]) < abs(before)
+        explained = explained or (abs(before) > j.tolerance and sheet.uncertain(i, before))
         if explained and found.wrong and j.off_own and j is not start:
             # Not from his own numbers by the rule, but by what he did instead.
             j.off_own = j.starts = False
@@ -338,8 +356,9 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
     beyond = _beyond_chance(len(own.judged))
     seen: set[Place] = set()
     for j in own.judged:
-        made = own.steps.value(j) if id(j) in left and isfinite(j.tolerance) and not j.inconsistent else None
-        if made is not None and seen.isdisjoint(made.unmeasured) and _contradicts(j, made, beyond):
+        judgeable = id(j) in left and isfinite(j.tolerance) and not j.inconsistent and not j.entry.is_way
+        made = own.steps.value(j) if judgeable else None
+        if made is not None and seen.isdisjoint(made.known_in_part) and _contradicts(j, made, beyond):
             j.off_own = j.starts = True
             j.remark = _own_gives([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)
         if j.verdict == "red":

@@ -44,4 +44,5 @@ def _graph(found: Measurables, graph: tuple[str, str], quantity: str, step: Step
         for k, label in enumerate(labels):
             ordinate = float(value_at(step, k)) / mu
             found.add(magnitude(Measurable(f"{key}/{label}/y_{quantity}", key, tr(title), label, f"y_{called or quantity}",
-                                           MILLIMETRES, "length", ordinate, ((step, k, 1 / mu + 0j),), key, 1.0)))
+                                           MILLIMETRES, "length", ordinate, ((step, k, 1 / mu + 0j),), key, 1.0,
+                                           main=graph == OF_MOMENT)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite
 from typing import Any, get_args
 
@@ -16,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, computed_with, hypotheses
-from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
+from tmm_sheets.compare.diagnosis.replay import Again, Change, displaced, replay
 from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, ordered, value_at
@@ -43,6 +44,8 @@ EQUAL = 0.98
 """Share of the best discrete explanation with which another cannot be told from it."""
 LEFT = 2.0
 """Tolerances that a discrete mistake may leave of the number it is looked for."""
+CHANCES = 8
+"""Drawings by chance that tell how uncertain a number has become."""
 SPOILT = 3.0
 """Tolerances by which a discrete mistake would spoil a number that it cannot have been made before when that is in order."""
 APART = 0.05
@@ -88,6 +91,7 @@ class Sheet:
         self.left = np.array([j.deviation for j in judged])
         self.tolerance = np.array([j.tolerance for j in judged])
         self.changes: list[Change] = []
+        self._made: dict[int, dict[Step, None]] = {}
         self.predicted = np.zeros(len(judged))
         self.steps: dict[Place, Step] = {}
         self.heads: set[Place] = set()
@@ -106,15 +110,51 @@ class Sheet:
 
     def explanation(self, i: int) -> Explanation | None:
         """What explains a number best; None when nothing does: a slip in reading or computing this one."""
-        done, off = self._otherwise(i), self._displaced(i)
-        if done is None or (off is not None and off.score * NEARLY > done.score):
-            return off
-        return done
+        done = self._otherwise(i)
+        if done is not None:
+            reached = np.abs(done.shares) > self.tolerance
+            if reached.sum() > 1 and done.score > NEARLY * float(np.sum(_loss((self.left / self.tolerance)[reached]))):
+                return done  # nothing can explain much more
+        off = self._displaced(i)
+        return off if done is None or (off is not None and off.score * NEARLY > done.score) else done
 
     def accept(self, found: Explanation) -> None:
         """Go on with what is left when a mistake is known."""
         self.changes += found.changes
         self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
+
+    def reached(self, found: Explanation, i: int) -> bool:
+        """Whether a number depends on what was done wrong, also where that happens to leave it as it is."""
+        return bool(found.shares[i]) or any(change.step in self._before(i) for change in found.changes)
+
+    def uncertain(self, i: int, left: float) -> bool:
+        """Whether a number may be anything with the mistakes found so far: the direction of a vector that has become short.
+
+        A tolerance holds for what is drawn rightly; here the drawing with the mistakes is made several times by chance.
+        """
+        j, rng = self.judged[i], np.random.default_rng(i)
+        drawn = [j.changed(self._with([self._by_chance(s, rng) for s in self._before(i)])) for _ in range(CHANCES)]
+        spread = float(np.max(np.abs([j.apart(x - float(self.predicted[i])) for x in drawn if isfinite(x)]), initial=0.0))
+        return spread > LEFT * self.tolerance[i] and abs(left) <= LEFT * spread
+
+    def _by_chance(self, step: Step, rng: np.random.Generator) -> Change:
+        """A step with a pencil's error by chance; what is kept nineteen times of twenty is two standard deviations."""
+        own = np.nan_to_num(self.errors.own(step))
+        off = (own @ rng.normal(0, 0.5, (len(own), 2, 1)))[:, :, 0]
+
+        def done(again: Again, values: Sequence[Any]) -> Any:
+            made = np.asarray(again(*values))
+            by = off[:, 0] + 1j * off[:, 1] if made.dtype.kind == "c" else off[:, 0]
+            return made + (by if made.ndim else by[0])
+
+        return Change(step, done)
+
+    def _before(self, i: int) -> dict[Step, None]:
+        """Steps of the linkage that a number goes back to."""
+        if i not in self._made:
+            made = self._made_of([step for step, _, _ in self.judged[i].entry.terms])
+            self._made[i] = {s: None for s in made if s.rule.gives != "direction" and self.errors.own(s).any()}
+        return self._made[i]
 
     # --- something done otherwise -----------------------------------------------------------------------------------------
     def _otherwise(self, i: int) -> Explanation | None:
@@ -134,25 +174,39 @@ class Sheet:
         j = self.judged[i]
         if not self.labels:
             return []
-        before = list(ordered((step for step, _, _ in j.entry.terms),
-                              lambda step: [a for a in self.errors.arguments(step) if isinstance(a, Step)]))
+        before = self._made_of([step for step, _, _ in j.entry.terms])
         k = self.labels.index(j.entry.label) if j.entry.label in self.labels else 0
-        found = [*hypotheses(before, k, self.labels), *self._computed_with(i, before)]
+        found = [*hypotheses(before, k, self.labels, self.whole), *self._computed_with(i)]
         return sorted(found, key=lambda h: _KINDS.index(h.kind))
 
-    def _computed_with(self, i: int, before: Sequence[Step]) -> Iterator[Hypothesis]:
+    def _made_of(self, steps: Sequence[Step]) -> list[Step]:
+        """Steps with all that they were made of on paper."""
+        return list(ordered(steps, lambda step: [a for a in self.errors.arguments(step) if isinstance(a, Step)]))
+
+    @cached_property
+    def whole(self) -> list[Step]:
+        """All steps that any number goes back to."""
+        return self._made_of([step for j in self.judged for step, _, _ in j.entry.terms])
+
+    def _computed_with(self, i: int) -> Iterator[Hypothesis]:
         """That a result, and all others of its plan, was computed with another scale factor."""
         j = self.judged[i]
-        of_plan = [s for s in before if s.plan == j.entry.scale]
+        of_plan = [s for s in self.whole if s.plan == j.entry.scale]
         if j.entry.kind == "result" and j.entry.reading and j.exact and of_plan:
             times = float(j.line.value / j.exact)
             if times > 0 and abs(times - 1) > APART:
                 yield computed_with(of_plan, times, told(f"{times:.3g}"))
 
     def _leaves_little(self, i: int, h: Hypothesis) -> bool:
-        """Whether a number is nearly what it would be with a mistake, and would not be so without."""
+        """Whether a number is nearly what it would be with a mistake, and would not be so without.
+
+        A neighbour's number is hardly another one: it is seen where it was taken, farther on it would be a guess.
+        """
+        at = [step for step, _, _ in self.judged[i].entry.terms]
+        if h.kind == "neighbour" and not any(h.step is s for step in at for s in (step, *step.args)):
+            return False
         share = self._shares(h, [i])[0]
-        left, allowed = self.left[i] - share, np.hypot(self.tolerance[i], CURVED * share)
+        left, allowed = self.judged[i].apart(self.left[i] - share), np.hypot(self.tolerance[i], CURVED * share)
         return bool(isfinite(share) and abs(share) > self.tolerance[i] and abs(left) <= LEFT * allowed)
 
     def _drawn(self, h: Hypothesis) -> Explanation:
@@ -161,13 +215,29 @@ class Sheet:
         doubt = CURVED * np.abs(shares)
         # With what cannot be drawn any more nothing is explained.
         known = np.isfinite(shares) & np.isfinite(self.tolerance)
-        left, tolerance = self.left[known], self.tolerance[known]
-        after = (left - shares[known]) / np.hypot(tolerance, doubt[known])
-        score = float(np.sum(_loss(left / tolerance)) - np.sum(_loss(after)))
+        left = self.left[known] / self.tolerance[known]
+        after = self._apart(self.left - shares)[known] / np.hypot(self.tolerance, doubt)[known]
+        gain = _loss(left) - _loss(after)
+        # Results are computed from lengths, whatever their senses: what is not spoilt in them proves nothing.
+        proves = np.array([self._proves(j, h) for j in self.judged])[known]
+        score = float(np.sum(np.where(proves, gain, np.maximum(gain, 0.0))))
         # However much it explains besides: what is in order was not spoilt.
-        if np.any((np.abs(left) <= tolerance) & (np.abs(after) > SPOILT)):
+        if np.any(proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT)):
             score = 0.0
         return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score)
+
+    def _apart(self, differences: Floats) -> Floats:
+        """Differences of all numbers: of angles the short way round."""
+        return np.array([j.apart(float(x)) for j, x in zip(self.judged, differences, strict=True)])
+
+    @staticmethod
+    def _proves(j: Judged, h: Hypothesis) -> bool:
+        """Whether a number that is in order proves that something was not done: it shows where that was done.
+
+        Further on it may have been gone on with otherwise, by lengths without their senses.
+        """
+        here, there = h.step.plan, j.entry.plan
+        return there == here or (here in ("loads", "moments") and there.startswith("force-"))
 
     def _shares(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
         """What a discrete mistake makes of some numbers."""

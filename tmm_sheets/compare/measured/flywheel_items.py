@@ -53,7 +53,7 @@ def collect(project: Project, found: Measurables) -> None:
                 if quantity.startswith("y_") and k == len(plan.labels) - 1 and len(plan.labels) > 1:
                     continue  # the position that closes the cycle
                 entry = measured_step(plan, found.scales, k, step, quantity, key)
-                found.add(replace(entry, slope=(INERTIA, ENERGY)) if entry.kind == "angle" else entry)
+                found.add(replace(entry, slope=(INERTIA, ENERGY) if entry.kind == "angle" else None, main=quantity != "y_T2"))
     _between_positions(f, found)
     _results(f, found)
     if "crank-speed" in plans:
@@ -63,7 +63,7 @@ def collect(project: Project, found: Measurables) -> None:
             step = plan["ω1"]
             entry_id = f"{RESULTS}/{label}/omega_I"
             title = tell("Angular velocity of the driving link")
-            found.add(size(title, entry_id, label, "ω_I", units.ANGULAR_SPEED, k, step, by=step))
+            found.add(replace(size(title, entry_id, label, "ω_I", units.ANGULAR_SPEED, k, step, by=step), main=False))
 
 
 def _between_positions(f: Flywheel, found: Measurables) -> None:

@@ -99,6 +99,9 @@ class Judged:
         elif e.is_size:
             (step, k, _), = e.terms
             change = abs(complex(value_at(step, k)) + moved(step, k)) - e.value
+        elif e.kind == "sense":
+            (step, k, _), = e.terms
+            change = float(np.sign(float(value_at(step, k)) + moved(step, k).real)) - e.value
         elif e.kind == "angle" and np.iscomplexobj(e.terms[-1][0].value):
             foot, tip = (0j, *(complex(value_at(step, k)) for step, k, _ in e.terms))[-2:]
             from_foot, to_tip = (0j, *(moved(step, k) for step, k, _ in e.terms))[-2:]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import degrees, prod
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +19,9 @@ from tmm_sheets.compare.measured.measurable import (
     magnitude,
     measured_step,
     plain,
+    sense,
     size,
+    way,
 )
 from tmm_sheets.compare.measured.measured_units import (
     ACCELERATION,
@@ -37,6 +40,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.protocol import letter_of
+from tmm_sheets.construction.rules import LINE_LINE
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.linkage import accelerations
@@ -47,6 +51,9 @@ from tmm_sheets.words import tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan, Segment
     from tmm_sheets.project import Project
+
+
+LAID_OFF = (rules.LAY_OFF, rules.ALONG)
 
 
 def collect(project: Project, found: Measurables, shown: set[str]) -> None:
@@ -61,7 +68,9 @@ def collect(project: Project, found: Measurables, shown: set[str]) -> None:
         found.plans.append((plan, plan.name))
         for k in indices:
             for entry in _position(plan, found.scales, k) if plan.pole is None else _segments(plan, found.scales, k):
-                found.add(entry)
+                # Of many plans alike the one that accelerations and forces are drawn for is asked for in full.
+                found.add(entry if k == force or plan.pole is None else replace(
+                    entry, main=entry.kind == "length" and entry.head is not None and entry.head.rule is LINE_LINE))
     if "forces" in project.parts and any(fp.plan.name in found.scales for fp in study.forces.plans.values()):
         _forces(project, found)
     _motion_results(project, found, of_velocities)
@@ -70,17 +79,22 @@ def collect(project: Project, found: Measurables, shown: set[str]) -> None:
 def _position(plan: Plan, scales: Mapping[str, Scale], k: int) -> Iterator[Measurable]:
     """Lines of links, distances of the moving points from the first fixed point, directions of the links."""
     seen: set[frozenset[str]] = set()
+    origin = next(s for s in plan if s.rule.gives == "point")
     for tail, head in _position_lines(plan):
         pair = frozenset((tail.name, head.name))
         if pair not in seen and len(pair) == 2 and not any("₀" in name for name in pair):
             seen.add(pair)
-            yield length(plan, scales, k, tail, head, tail.name + head.name)
+            entry = length(plan, scales, k, tail, head, tail.name + head.name)
+            # What is given is only set off; where it goes shows in what is found by crossing lines and arcs.
+            yield replace(entry, main=tail is origin and head.rule not in LAID_OFF and np.ndim(head.value) > 0)
+    crank = next((s for s in plan if s.rule is rules.RAY and np.ndim(s.value)), None)
     for s in plan:
         if s.rule is rules.RAY and np.ndim(s.value):
             u = complex(value_at(s, k))
             label, name = plan.labels[k], f"∠{s.name}"
             yield Measurable(f"{plan.name}/{label}/{name}", plan.name, plan.title, label, name, DEGREES, "angle",
-                             degrees(np.angle(u)) % 360, ((s, k, 1j * u * degrees(1)),), reading=degrees(1 / PROTRACTOR), head=s)
+                             degrees(np.angle(u)) % 360, ((s, k, 1j * u * degrees(1)),), reading=degrees(1 / PROTRACTOR), head=s,
+                             main=s is crank)
 
 
 def _position_lines(plan: Plan) -> list[tuple[Step, Step]]:
@@ -96,10 +110,15 @@ def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = ""
     """Vectors of a plan and the segments that similarity gives, each once."""
     for s in plan.segments:
         yield length(plan, scales, k, s.tail, s.head, f"{s.tail.name}{between}{s.head.name}")
+    for s in plan.segments:
+        direction = way(plan, scales, k, s.tail, s.head, f"{s.tail.name}{between}{s.head.name}")
+        if direction is not None:
+            # Where lines were crossed to find a point it tells which way they went.
+            yield replace(direction, main=LINE_LINE in (s.head.rule, s.tail.rule))
     for step in plan:
         start = step.args[0] if step.rule is SIMILAR else None
         if isinstance(start, Step) and start.name != plan.pole:
-            yield length(plan, scales, k, start, step, f"{start.name}{step.name}")
+            yield replace(length(plan, scales, k, start, step, f"{start.name}{step.name}"), main=False)
 
 
 def _name(vector: Segment) -> str:
@@ -134,13 +153,16 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
                 terms = tuple((s, i, g * mu) for s, i, g in drawn.terms)
                 called = letters.get(head.name, name)
                 found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, called, unit, "result", drawn.value * mu,
-                                     terms, key, mu))
+                                     terms, key, mu, main=False))
                 found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float)
             for link, step in turning.items():
                 alike = step.rule in (SAME, accelerations.SAME) and link != project.mechanism.crank.link
                 if link != project.mechanism.frame and not alike:
                     name = f"{greek}{link}"
-                    found.add(size(title, f"{RESULTS}/{label}/{name}", label, name, angular, k, step, by=step))
+                    turning_so = size(title, f"{RESULTS}/{label}/{name}", label, name, angular, k, step, by=step)
+                    way_round = sense(title, f"{RESULTS}/{label}/sense-{name}", label, name, k, step)
+                    for entry in filter(None, (turning_so, way_round)):
+                        found.add(replace(entry, main=k == force and link != project.mechanism.crank.link))
     if project.variant.flywheel is not None and "velocities" in found.scales:
         _reduced(project, found, indices)
 
@@ -162,7 +184,7 @@ def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> No
                 letter = "ω" if velocity.rule.gives == "number" else "V_"
                 found.check(entry, [f"{RESULTS}/{label}/{letter}{moving[id(velocity)]}"], lambda v, m=moment / speed: m * v)
             found.add(Measurable(entry, RESULTS, title, label, f"M_{power.name.removeprefix('N_')}", unit, "result", moment,
-                                 ((power, k, 1 / r.omega1 + 0j),), "velocities", signed=True))
+                                 ((power, k, 1 / r.omega1 + 0j),), "velocities", signed=True, main=False))
             if moment:
                 working.append(entry)
         found.check(f"{RESULTS}/{label}/M_red", working, lambda *moments: float(sum(moments)))
@@ -193,13 +215,13 @@ def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> N
                 energies.append(f"{RESULTS}/{label}/m{n}V_{link.centre}^2")
                 found.check(energies[-1], [speed], lambda v, m=link.mass: m * v**2)
                 squares.append((link.mass, vel.points[str(link.centre)], k, mu))
-                found.add(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)))
+                found.add(replace(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)), main=False))
             if turning:
                 name = f"{'J' if link.pivot_inertia is not None else 'J_S'}{n}ω{n}²"
                 energies.append(f"{RESULTS}/{label}/{name.replace('ω', 'omega').replace('²', '^2')}")
                 found.check(energies[-1], [f"{RESULTS}/{label}/ω{n}"], lambda w, j=turning: j * w**2)
                 squares.append((turning, vel.omega[n], k, 0.0))
-                found.add(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)))
+                found.add(replace(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)), main=False))
         found.check(f"{RESULTS}/{label}/J_red", energies, lambda *parts: float(sum(parts)) / r.omega1**2)
         found.add(_value(f"{RESULTS}/{label}/J_red", tell("Reduced moment of inertia"), label, tr("J_red"), INERTIA, k, total,
                          tuple((factor / r.omega1**2, step, at, per_mm) for factor, step, at, per_mm in squares)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 GEAR_ANGLES = ("alpha_w", "tau1", "tau2", "phi_alpha1", "phi_alpha2")
+GEAR_MAIN = ("z1", "z2", "x1", "x2", "a_w", "alpha_w", "eps_alpha")
 GEAR_NUMBERS = ("z1", "z2", "x1", "x2", "y", "dy", "eps_alpha", "theta1_greatest", "theta2_greatest")
 
 
@@ -57,7 +59,8 @@ def _lengths(plan: Plan, found: Measurables, key: str) -> None:
     for step in plan:
         if step.rule.gives in ("length", "ordinate", "angle", "inclination") and step.rule not in taken and step.args:
             for k in range(np.size(step.value)):
-                found.add(measured_step(plan, found.scales, k, step, key=key))
+                entry = measured_step(plan, found.scales, k, step, key=key)
+                found.add(replace(entry, main=entry.kind == "length" or np.size(step.value) == 1))
 
 
 def gear(project: Project, found: Measurables) -> None:
@@ -75,10 +78,10 @@ def gear(project: Project, found: Measurables) -> None:
     for name, told in pair.results().items():
         value = told.value
         if name in GEAR_ANGLES:
-            scalar(found, tell("Gear pair"), name, degrees(value), DEGREES, part="gear")
+            scalar(found, tell("Gear pair"), name, degrees(value), DEGREES, part="gear", main=name in GEAR_MAIN)
         else:
             scalar(found, tell("Gear pair"), name, value, "" if name in GEAR_NUMBERS else MILLIMETRES,
-                   part="gear")
+                   part="gear", main=name in GEAR_MAIN)
 
 
 def _sliding(plan: Plan, found: Measurables) -> None:
@@ -93,7 +96,7 @@ def _sliding(plan: Plan, found: Measurables) -> None:
             found.add(Measurable(
                 f"gear-sliding/{label}/{name}", plan.name, plan.title, label, spoken(name) if not ordinate else name,
                 MILLIMETRES if ordinate else "", "length" if ordinate else "result", abs(value) if ordinate else value,
-                ((step, i, complex(sign if ordinate else 1)),), "", 1.0 if ordinate else 0.0,
+                ((step, i, complex(sign if ordinate else 1)),), "", 1.0 if ordinate else 0.0, main=False,
                 calculated=0.0 if ordinate else CALCULATED, head=step, signed=not ordinate))
 
 
@@ -119,7 +122,7 @@ def cam(project: Project, found: Measurables) -> None:
         for step in m.plan:
             if step.rule in (CHORD, ORDINATE, ACROSS):
                 key = f"cam-motion-{step.name.partition('_')[0]}"
-                found.add(measured_step(m.plan, found.scales, 0, step, key=key))
+                found.add(replace(measured_step(m.plan, found.scales, 0, step, key=key), main=not step.name.startswith("S''")))
     for part in ("zone", "inversion"):
         plan = getattr(getattr(cam, part, None), "plan", None)
         if plan is not None and plan.name in found.scales:

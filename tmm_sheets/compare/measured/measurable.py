@@ -18,16 +18,21 @@ from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of, spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
 
-Kind = Literal["length", "angle", "result"]
+Kind = Literal["length", "angle", "result", "sense"]
 Term = tuple[Step, int, complex]
 PROTRACTOR = 57.3
 """Radius of a protractor, mm: an error of reading on its rim is that many times less in radians."""
 CALCULATED = 0.005
 """What a number computed with three digits may be off by, as a share of it."""
+SHORT = 5.0
+"""Length in mm below which the direction of a vector is not asked for."""
+RESTS = 0.02
+"""Share of its greatest speed below which something rests."""
 RESULTS = "results"
 """In place of a plan's name for what is computed from the measured lengths."""
 
@@ -61,7 +66,7 @@ class Measurable:
     unit
         of the number to be written, by its English name.
     kind
-        a length on paper, an angle, or a result.
+        a length on paper, an angle, a result, or the sense something turns in: +1 counter-clockwise, -1 clockwise.
     value
         exact value in that unit, for lengths with the scale factor of the sheets.
     terms
@@ -80,6 +85,8 @@ class Measurable:
         of an angle on a diagram: keys of the scale factors of its abscissa and ordinate, which its tangent depends on.
     squares
         of an energy, which has no gradient where a point rests: factor, step, position, reading error per mm of each square.
+    main
+        False for what is asked for only where everything is.
     """
 
     id: str
@@ -98,6 +105,7 @@ class Measurable:
     signed: bool = False
     slope: tuple[str, str] | None = None
     squares: tuple[tuple[float, Step, int, float], ...] = ()
+    main: bool = True
 
     @property
     def is_distance(self) -> bool:
@@ -108,6 +116,11 @@ class Measurable:
     def is_size(self) -> bool:
         """True for the magnitude of a force."""
         return len(self.terms) == 1 and not self.signed and self.terms[0][0].rule.gives == "force"
+
+    @property
+    def is_way(self) -> bool:
+        """True for what tells only where a vector points or which way something turns."""
+        return self.kind == "sense" or (self.kind == "angle" and len(self.terms) > 1)
 
     @property
     def steps(self) -> str:
@@ -184,6 +197,29 @@ def length(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: St
                       head=last)
 
 
+def way(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: Step, name: str) -> Measurable | None:
+    """Direction of a vector on paper, degrees counter-clockwise from the x axis; None of one too short to lay a protractor to."""
+    away = complex(value_at(head, k) - value_at(tail, k))
+    mu = 1.0 if plan.unit == "mm" else scales[plan.name].mu
+    if not abs(away) > SHORT * mu:
+        return None
+    label = plan.labels[k] if len(plan.labels) > 1 else ""
+    turn = 1j * away / abs(away) ** 2 * degrees(1)
+    entry_id = "/".join(filter(None, (plan.name, label, f"∠{name}")))
+    return Measurable(entry_id, plan.name, plan.title, label, f"∠{name}", DEGREES, "angle", degrees(np.angle(away)) % 360,
+                      ((tail, k, -turn), (head, k, turn)), reading=degrees(1 / PROTRACTOR), signed=True)
+
+
+def sense(title: str, entry_id: str, label: str, quantity: str, k: int, step: Step) -> Measurable | None:
+    """Which way something turns, +1 counter-clockwise; None of what does not, or hardly."""
+    value = float(value_at(step, k))
+    if not abs(value) > RESTS * np.max(np.abs(step.value)):
+        return None
+    said = tell("sense of {quantity}: +1 counter-clockwise, −1 clockwise").format(quantity=quantity)
+    return Measurable(entry_id, RESULTS, title, label, said, "", "sense", float(np.sign(value)),
+                      ((step, k, complex(1 / abs(value))),), signed=True)
+
+
 def measured_step(plan: Plan, scales: Mapping[str, Scale], k: int, step: Step, name: str = "", key: str = "",
                   called: str = "") -> Measurable:
     """A step that is a length, an angle or, of a diagram, a point whose ordinate is measured; ``called`` so on paper."""
@@ -226,12 +262,13 @@ def angle_apart(a: float, b: float, sense: bool = False) -> float:
 
 
 def scalar(found: Measurables, title: str, name: str, value: Any, unit: str, terms: Iterable[Term] = (), *, scale: str = "",
-           reading: float = 0.0, calculated: float = CALCULATED, signed: bool = True, part: str = "") -> None:
+           reading: float = 0.0, calculated: float = CALCULATED, signed: bool = True, part: str = "",
+           main: bool = True) -> None:
     """A result of the whole project; its id begins with its ``part`` where another one has a result of that name, too."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         exact = isinstance(value, int)
         key = f"{part}-{name}" if plain(f"{RESULTS}/{name}") in found.entries else name
         entry = Measurable(f"{RESULTS}/{key}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms), scale,
-                           calculated=0.0 if exact else calculated, reading=reading, signed=True)
+                           calculated=0.0 if exact else calculated, reading=reading, signed=True, main=main)
         found.add(entry if signed else magnitude(entry))
 

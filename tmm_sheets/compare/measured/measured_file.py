@@ -14,6 +14,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from itertools import groupby
 from math import isfinite
 from pathlib import Path
 from typing import Literal
@@ -84,28 +85,42 @@ class Filled:
 # --- writing ---------------------------------------------------------------------------------------------------------------
 
 
-def template(project: str, found: Measurables) -> bytes:
+def template(project: str, found: Measurables, everything: bool = False) -> bytes:
     """The file to be filled in: scale factors as the sheets have them, then a line for each quantity; no exact values.
 
-    Cells are separated by semicolons, as where the comma is in numbers; where that is a point, by commas.
+    Only the main ones, unless ``everything`` is asked for, plan by plan and position by position. Cells are separated by
+    semicolons, as where the comma is in numbers; where that is a point, by commas.
     """
     out = io.StringIO()
     rows = csv.writer(out, delimiter=";" if decimal_sign(reader()) == "," else ",", lineterminator="\r\n")
-    measured = tell(COLUMNS["measured"])
+    asked = asked_for(found, everything)
     rows.writerow([f"# {tell(OF_PROJECT).format(project=project)}"])
     rows.writerow([tell("# Fill in the column “{column}”; leave empty what you have not measured. Lengths are mm of the drawing.")
-                   .format(column=measured)])
+                   .format(column=tell(COLUMNS["measured"]))])
+    rows.writerow([tell("# Angles of vectors are counted counter-clockwise from the x axis, 0° to 360°: ∠pb is that of the arrow "
+                        "from p to b.")])
     rows.writerow([tell("# Lines {lines}: scale factors of the sheets. If you drew to others, write yours.")
                    .format(lines=f"{FACTOR}/...")])
     rows.writerow([tell(heading) for heading in COLUMNS.values()])
-    used = {e.scale for e in found.entries.values() if e.scale}
+    used = {e.scale for e in asked if e.scale}
     for key, scale in found.scales.items():
         if key in used and units.latin(scale.unit) != "mm/mm":
             first = f"{FACTOR}/{plain(key)}"
             rows.writerow([first, tell("scale factors"), "", scale.symbol, "", scale.unit, told(f"{scale.mu:.10g}")])
-    for e in found.entries.values():
-        rows.writerow([e.id, e.title, e.label, e.quantity, e.steps, units.said(e.unit), ""])
+    for (title, label), entries in groupby(asked, key=lambda e: (e.title, e.label)):
+        rows.writerow([f"# {title}, {tell('position {label}').format(label=label)}" if label else f"# {title}"])
+        rows.writerows([e.id, e.title, e.label, e.quantity, e.steps, units.said(e.unit), ""] for e in entries)
     return b"\xef\xbb\xbf" + out.getvalue().encode()
+
+
+def asked_for(found: Measurables, everything: bool = False) -> list[Measurable]:
+    """What is asked for in the file: plan by plan, and there position by position."""
+    asked = [e for e in found.entries.values() if everything or e.main]
+    first: dict[tuple[str, ...], int] = {}
+    for n, e in enumerate(asked):
+        first.setdefault((e.title,), n)
+        first.setdefault((e.title, e.label), n)
+    return sorted(asked, key=lambda e: (first[e.title,], first[e.title, e.label]))
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------------

@@ -25,8 +25,8 @@ NAME = "measured.csv"
 """File name of the template."""
 
 
-def template(project: Project, folder: Path, say: Callable[[str], None]) -> Report:
-    """A CSV file with a line for everything that can be measured on the sheets.
+def template(project: Project, folder: Path, everything: bool, say: Callable[[str], None]) -> Report:
+    """A CSV file with a line for each main number of the sheets, or for ``everything`` that can be measured on them.
 
     Raises
     ------
@@ -39,14 +39,16 @@ def template(project: Project, folder: Path, say: Callable[[str], None]) -> Repo
                                hint=tell("rename it, or choose another folder with -o")))
     found = measurables(project, say)
     name = project.variant.project.name
-    data = measured_file.template(name, found)
-    count = len(found.entries)
+    data = measured_file.template(name, found, everything)
+    asked = measured_file.asked_for(found, everything)
+    count = len(asked)
     said = tell_n("{project}: {n} quantity to measure or compute; fill in what you have, then",
                   "{project}: {n} quantities to measure or compute; fill in what you have, then", count)
     lines = [said.format(project=name, n=count), f"    tmm-sheets compare {name} --measured {path}"]
-    asked = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": said_unit(e.unit)}
-             for e in found.entries.values()]
-    return Report("\n".join(lines), {"project": name, "quantities": asked}, {NAME: data}, tuple(found.notes))
+    if not everything:
+        lines.append(tell("the main ones; --all asks for all {n}").format(n=len(found.entries)))
+    rows = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": said_unit(e.unit)} for e in asked]
+    return Report("\n".join(lines), {"project": name, "quantities": rows}, {NAME: data}, tuple(found.notes))
 
 
 def compare(project: Project, path: Path, pencil: float, reading: float, say: Callable[[str], None]) -> Report:

@@ -69,8 +69,9 @@ SQUARE = 0.3
 
 
 def _informative(j: Judged) -> bool:
-    """Whether a number tells something of others: it has a tolerance, and is no energy of what nearly rests."""
-    return bool(np.isfinite(j.tolerance)) and not (j.entry.squares and j.tolerance > SQUARE * abs(j.exact))
+    """Whether a number tells something of others: it has a tolerance, is no mere sense, no energy of what nearly rests."""
+    nearly_rests = j.entry.squares and j.tolerance > SQUARE * abs(j.exact)
+    return bool(np.isfinite(j.tolerance)) and j.entry.kind != "sense" and not nearly_rests
 
 
 def _covariance(judged: Sequence[Judged], errors: Errors, tolerances: Floats) -> Floats:

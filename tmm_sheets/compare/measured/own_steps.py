@@ -62,9 +62,9 @@ class OwnValue:
         return sorted(parts, key=lambda part: -abs(part[1]))
 
     @property
-    def unmeasured(self) -> Iterator[Place]:
-        """Steps between the measured numbers and this one, its own included."""
-        return (place for place, (_, measured) in self._again.steps.items() if measured is None)
+    def known_in_part(self) -> Iterator[Place]:
+        """Steps between the measured numbers and this one, its own included, and points: one number does not tell where one is."""
+        return (place for place, (step, measured) in self._again.steps.items() if measured is None or np.iscomplexobj(step.value))
 
     def _moved(self, place: Place, way: complex) -> float:
         """What the number does when one step comes out elsewhere."""
@@ -82,7 +82,7 @@ class OwnSteps:
         self._rows: dict[tuple[int, int], Any] = {}
         for j in judged:
             uncertain = [term for term in j.entry.terms if self._uncertain(term[0], term[1])]
-            if len(uncertain) == 1 and np.isfinite(j.tolerance):
+            if len(uncertain) == 1 and np.isfinite(j.tolerance) and not j.entry.is_way:
                 self._measured.setdefault(_place(*uncertain[0][:2]), []).append(j)
 
     def value(self, j: Judged) -> OwnValue | None:
