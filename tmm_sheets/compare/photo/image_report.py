@@ -20,7 +20,12 @@ from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.numbers import told
-from tmm_sheets.words import tell, tell_n
+from tmm_sheets.words import marked, tell, tell_n
+
+NOT_READ = marked(
+    "Not read, so not judged: what lettering says (numbers in tables, letters, the title block), heads of arrows, dots, and "
+    "whatever has less than 6 mm of line."
+)
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,7 @@ def image_report(
         _hidden(judged),
         _tolerance(pencil, found.uncertainty, soft),
         *_table(judged),
+        "", tell(NOT_READ),
     ]
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
