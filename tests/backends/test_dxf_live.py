@@ -174,7 +174,7 @@ def test_what_programs_without_attributes_show_says_the_same(sheet):
     assert not any(text.startswith("ТММ.КП") for text in shown)
 
 
-@pytest.mark.parametrize("fields", [{}, {"group": "Гр. 5"}, {"institution": "Кафедра"}, {"developed": "Щербакова-Ёлкина А. А."}])
+@pytest.mark.parametrize("fields", [{}, {"group": "Гр. 5"}, {"institution": "Кафедра"}, {"developed": "Щербакова Ё. А."}])
 def test_every_line_of_the_form_has_a_place_in_its_cell(fields):
     canvas = Canvas()
     draw_frame(canvas, fields, "1", 1, 1)

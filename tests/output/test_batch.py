@@ -304,7 +304,7 @@ def test_names_of_a_batch(tmp_path):
     names = batch.chosen(("lugansk/engine",), ("press",), (listed,))
     assert names == ("lugansk/engine", "press", "transport/diesel@02-Т-27", "lugansk/cam_flat")
     assert set(batch.chosen((), ("all",), ())) > set(CAMS)
-    with pytest.raises(BadInput, match="shipped are lugansk, press, sixbar, transport"):
+    with pytest.raises(BadInput, match="shipped are loom, lugansk, press, screen, sixbar, transport"):
         batch.chosen((), ("sixbars",), ())
     files = [tmp_path / "a.toml", tmp_path / "b.toml"]
     for file in files:

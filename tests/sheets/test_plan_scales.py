@@ -84,7 +84,7 @@ def test_the_plans_of_the_dead_point_itself_say_what_is_too_short():
     assert pin / mu < 1e-2
     notes = " ".join(t for t in lettering(found) if "a̅" in t or "Меньше" in t)
     assert "Меньше 1 мм, ≈ 0: a̅_B" in notes
-    drawn = [g for p, q in pairwise(found.parts) if p.title.startswith("План ускорений")
+    drawn = [g for p, q in pairwise(found.parts) if p.title.startswith("План ускорений (положение 0)")
              for g in found.groups if p.first <= g.first < q.first and g.kind == "arrow"]
     assert len(drawn) == 1, "only the acceleration of D is an arrow"
 

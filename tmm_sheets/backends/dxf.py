@@ -17,7 +17,7 @@ from itertools import count
 from pathlib import Path
 from typing import Literal
 
-from tmm_sheets.backends.dxf_entities import entity, extents, letter_strokes
+from tmm_sheets.backends.dxf_entities import entity, extents, letter_strokes, short
 from tmm_sheets.backends.dxf_frame import FONT_FILE, STYLE, DxfFrame, SheetParts, frame
 from tmm_sheets.backends.dxf_frame import weight as weight
 from tmm_sheets.backends.dxf_live import LiveSheet, clean
@@ -89,7 +89,8 @@ def _named_view(view: View, around: DxfFrame, handles: Iterator[int]) -> str:
     """Entry of the table of named views."""
     box = view.box
     return (f"0\nVIEW\n5\n{next(handles):X}\n330\n{around.views}\n100\nAcDbSymbolTableRecord\n100\nAcDbViewTableRecord\n"
-            f"2\n{clean(view.name)}\n70\n0\n40\n{box.height:.4f}\n41\n{box.width:.4f}\n10\n{box.centre.real:.4f}\n20\n{box.centre.imag:.4f}\n"
+            f"2\n{clean(view.name)}\n70\n0\n40\n{short(box.height)}\n41\n{short(box.width)}\n10\n{short(box.centre.real)}\n20\n"
+            f"{short(box.centre.imag)}\n"
             "11\n0\n21\n0\n31\n1\n12\n0\n22\n0\n32\n0\n42\n50\n43\n0\n44\n0\n50\n0\n71\n0\n281\n0\n72\n0\n")
 
 

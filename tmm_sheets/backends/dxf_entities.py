@@ -21,9 +21,19 @@ def head(kind: str, owner: str, layer: str, more: str = "") -> str:
     return f"330\n{owner}\n100\nAcDbEntity\n8\n{layer}\n{more}100\n{kind}\n"
 
 
+def flat(code: int, z: complex) -> str:
+    """Tags of a point in the plane of the drawing, whose height goes without saying: there are thousands of them in lettering."""
+    return f"{code}\n{short(z.real)}\n{code + 10}\n{short(z.imag)}\n"
+
+
 def place(code: int, z: complex) -> str:
     """Tags of a point."""
-    return f"{code}\n{z.real:.4f}\n{code + 10}\n{z.imag:.4f}\n{code + 20}\n0\n"
+    return f"{flat(code, z)}{code + 20}\n0\n"
+
+
+def short(value: float, digits: int = 4) -> str:
+    """A number with so many decimals; zeros at the end say nothing."""
+    return f"{value:.{digits}f}".rstrip("0").rstrip(".")
 
 
 def entity(mark: Line | Arc | Polyline | Fill, handle: int, owner: str, layer: str, dashed: bool = False,
@@ -35,9 +45,9 @@ def entity(mark: Line | Arc | Polyline | Fill, handle: int, owner: str, layer: s
     if isinstance(mark, Arc):
         whole = mark.end - mark.start > 2 * pi - 1e-9
         text = (f"0\n{'CIRCLE' if whole else 'ARC'}\n5\n{handle:X}\n{head('AcDbCircle', owner, layer, plain)}"
-                f"{place(10, mark.centre)}40\n{mark.radius:.4f}\n")
+                f"{place(10, mark.centre)}40\n{short(mark.radius)}\n")
         if not whole:
-            text += f"100\nAcDbArc\n50\n{degrees(mark.start) % 360:.6f}\n51\n{degrees(mark.end) % 360:.6f}\n"
+            text += f"100\nAcDbArc\n50\n{short(degrees(mark.start) % 360, 6)}\n51\n{short(degrees(mark.end) % 360, 6)}\n"
         return text
     n = len(mark.points)
     if isinstance(mark, Polyline):

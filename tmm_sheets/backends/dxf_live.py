@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import cache
 from math import cos, degrees, sin
 
-from tmm_sheets.backends.dxf_entities import entity, head, letter_strokes, place
+from tmm_sheets.backends.dxf_entities import entity, flat, head, letter_strokes, place, short
 from tmm_sheets.backends.dxf_frame import DIMENSION_STYLE, LETTERS, STYLE, DxfFrame, SheetParts, weight
 from tmm_sheets.drawing.layers import layer
 from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
@@ -114,7 +114,7 @@ class LiveSheet:
         self._add(d.first, [(handle, (
             f"0\nDIMENSION\n5\n{handle:X}\n{head('AcDbDimension', self.frame.owner, on)}280\n0\n2\n{name}\n3\n{DIMENSION_STYLE}\n"
             f"{place(10, d.a if radius else d.line + (d.b - d.a))}{place(11, d.middle)}70\n{KINDS[d.kind]}\n71\n5\n"
-            f"42\n{abs(d.b - d.a):.4f}\n1\n{_escaped(_said(d.text)) or ' '}\n"
+            f"42\n{short(abs(d.b - d.a))}\n1\n{_escaped(_said(d.text)) or ' '}\n"
             + (f"100\nAcDbRadialDimension\n{place(15, d.b)}40\n0\n" if radius else
                f"100\nAcDbAlignedDimension\n{place(13, d.a)}{place(14, d.b)}")))])
 
@@ -170,7 +170,7 @@ class LiveSheet:
 
 def clean(name: str) -> str:
     """A name that tables of a DXF file take."""
-    return re.sub(r'[<>/\\":;?*|,=`]', " ", name).strip() or "_"
+    return " ".join(re.sub(r'[<>/\\":;?*|,=`]', " ", name).split()) or "_"
 
 
 def _hidden() -> str:
@@ -210,14 +210,14 @@ def _text(handle: int, owner: str, on: str, mark: Text) -> str:
         raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
     turn = _direction(mark.angle)
     end = mark.at + turn * (advance(mark.text, mark.height) - AFTER * mark.height)
-    fit = f"72\n5\n{place(11, end)}" if len(mark.text) > 1 else ""
-    angle = f"50\n{degrees(mark.angle) % 360:.4f}\n" if mark.angle else ""
-    return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, _look(mark.height))}{place(10, mark.at)}40\n{mark.height:g}\n"
-            f"1\n{_escaped(mark.text)}\n{angle}7\n{STYLE}\n{fit}100\nAcDbText\n")
+    fit = f"72\n5\n{flat(11, end)}" if len(mark.text) > 1 else ""
+    angle = f"50\n{short(degrees(mark.angle) % 360)}\n" if mark.angle else ""
+    return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, _look(mark.height))}{flat(10, mark.at)}"
+            f"40\n{mark.height:g}\n1\n{_escaped(mark.text)}\n{angle}7\n{STYLE}\n{fit}100\nAcDbText\n")
 
 
 def _centred(f: FormField, value: str) -> str:
     """Tags of lettering about the middle of its baseline; its left end is told too, as a matter of form."""
     left = f.at - _direction(f.angle) * (advance(value, f.height) - AFTER * f.height if value else 0.0) / 2
-    angle = f"50\n{degrees(f.angle) % 360:.4f}\n" if f.angle else ""
+    angle = f"50\n{short(degrees(f.angle) % 360)}\n" if f.angle else ""
     return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}7\n{STYLE}\n72\n1\n{place(11, f.at)}"

@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.step import Step
@@ -56,6 +58,8 @@ def _lines(project: Project) -> Iterator[str]:
     for part in forces.from_moments:
         sign, arm = f"F_{{{pair_index(part.link, part.source)}}}^τ", f"{part.at}{part.centre}"
         total, centre, at = part.vector.args
+        if not np.isfinite(total.at(k)):
+            continue
         length = float(forces.positions.plan.length(centre, at).at(k))
         terms = list(_terms(project, total))
         if not terms:
@@ -69,7 +73,7 @@ def _lines(project: Project) -> Iterator[str]:
             force=sign, sum=_sum(terms, numbers=True), length=number(length), value=value)
     if project.driver is None and forces.balancing is not None:
         total = forces.balancing.args[0]
-        terms = list(_terms(project, total))
+        terms = list(_terms(project, total)) if np.isfinite(total.at(k)) else []
         if terms:
             name = indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
             turning = -1.0 if float(total.at(k)) > 0 else 1.0
@@ -89,7 +93,7 @@ def _terms(project: Project, total: Step) -> Iterator[Term]:
             arm = forces.arm_about(total.args[0], at, vector)
             force, length = abs(complex(vector.at(k))), float(arm.at(k))
             sign = letters.get(id(vector), symbol(vector.name)).replace(BAR, "")
-            if not is_zero(force * length, least):
+            if np.isfinite(length) and not is_zero(force * length, least):  # a force of nothing has no arm
                 index = re.sub("F_|[_{}]", "", sign)
                 yield Term(f"{sign}·h_{{{index}}}", 1.0 if length > 0 else -1.0, (force, abs(length)))
         if isinstance(couple, Step) and not is_zero(value := float(couple.at(k)), least):

@@ -92,7 +92,8 @@ class Motion:
     def inclination(self, link: str, guide: str) -> Step:
         """Inclination of a rod to the guide of its other end, rad, positive counter-clockwise, at the positions."""
         u, along = self.study.positions.directions[link], self.study.positions.guide_directions[guide]
-        return self.plan.add(f"θ_{link}", INCLINATION, u, along, symbol=f"θ_{{{link}}}")
+        name = f"θ_{link}"
+        return self.plan[name] if name in self.plan else self.plan.add(name, INCLINATION, u, along, symbol=f"θ_{{{link}}}")
 
     @cached_property
     def turned(self) -> Any:
