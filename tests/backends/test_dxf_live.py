@@ -174,7 +174,7 @@ def test_what_programs_without_attributes_show_says_the_same(sheet):
     assert not any(text.startswith("ТММ.КП") for text in shown)
 
 
-@pytest.mark.parametrize("fields", [{}, {"group": "Гр. 5"}, {"institution": "Кафедра"}, {"developed": "Щербакова Ё. А."}])
+@pytest.mark.parametrize("fields", [{}, {"group": "Гр. 5"}, {"institution": "Кафедра"}, {"developed": "Щербакова"}])
 def test_every_line_of_the_form_has_a_place_in_its_cell(fields):
     canvas = Canvas()
     draw_frame(canvas, fields, "1", 1, 1)
@@ -187,6 +187,14 @@ def test_every_line_of_the_form_has_a_place_in_its_cell(fields):
         assert y0 <= at[tag].imag < y1
     assert at["INSTITUTION"].imag != at["GROUP"].imag
     assert {a.dxf.tag.lower(): a.dxf.text for a in block.attribs if a.dxf.text and a.dxf.tag.lower() in fields} == fields
+
+
+def test_a_long_name_is_the_surname():
+    canvas = Canvas()
+    draw_frame(canvas, {"developed": "Щербакова Ё. А.", "checked": "Ли И. И."}, "1", 1, 1)
+    texts = {m.text for m in canvas.marks if isinstance(m, Text)}
+    assert {"Щербакова", "Ли И. И."} <= texts
+    assert not canvas.shortened
 
 
 def test_every_entity_is_in_the_group_of_its_view(sheet):

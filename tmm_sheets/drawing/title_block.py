@@ -127,7 +127,7 @@ def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str
             role = word
             _left(canvas, cell, _word(word or ("Head" if fields.get("supervisor") else "")))
         elif number == "11":
-            found += _lines(canvas, cell, {ROLES[role]: fields.get(ROLES[role], "")}, names)
+            found += _lines(canvas, cell, {ROLES[role]: _surname(fields.get(ROLES[role], ""))}, names)
         elif number == "13":
             found += _lines(canvas, cell, {f"{ROLES[role]}_date": ""}, (CAPTION,))
         elif number in values:
@@ -139,6 +139,11 @@ def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str
 def _word(text: str) -> str:
     """A printed word of the form; the row without one is the department's: most have the head of the project there."""
     return tr_in("title block", text) if text else ""
+
+
+def _surname(name: str) -> str:
+    """A name; where it is too long for its cell, what GOST 2.104 asks for there: the surname without initials."""
+    return name if letter(plain(name), CAPTION).width <= NAME_WIDTH else max(name.split(), key=len, default="")
 
 
 def _name_sizes(fields: Mapping[str, str]) -> tuple[float, ...]:
