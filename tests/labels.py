@@ -16,7 +16,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.drawing import labels as placing
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.marks import Box, Line
+from tmm_sheets.drawing.marks import Arc, Box, Line
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
@@ -61,7 +61,9 @@ def judged(project, n):
         composed = sheet.composed(project, n)
     finally:
         placing._set = original
-    ink = owners.Ink(composed.drawing.marks[: composed.parts[-1].first])
+    # The circle of an enlarged detail is a window: what is inside is read through it.
+    ink = owners.Ink([m for m in composed.drawing.marks[: composed.parts[-1].first]
+                      if not (isinstance(m, Arc) and m.of == "details.corner")])
     widths = [line_type(m.style).width if hasattr(m, "style") else 0.0 for m in ink.marks]
     faults = []
     for p in kept:

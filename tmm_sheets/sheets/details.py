@@ -13,7 +13,8 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import chord
-from tmm_sheets.drawing.marks import PlacedFrame
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import PlacedFrame, Text
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import together
 
@@ -74,10 +75,17 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     with canvas.as_role("symbol"):
         canvas.circle(window.centre, half, "thin")
         _enlarged(canvas, it, window.centre, half, times)
-        radius = it.reach + 1.5
+        radius = _free_radius(canvas, it)
         canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
         canvas.circle(it.centre, radius, "thin")
         canvas.label(it.centre + radius * complex(np.exp(0.25j * np.pi)), name, 1 + 1j, 5.0, 1.5)
+
+
+def _free_radius(canvas: Canvas, it: Corner) -> float:
+    """Radius of the circle round the corners, mm: the least that runs over no lettering, the usual one where all do."""
+    boxes = [np.abs(text_box(m) - it.centre) for m in canvas.marks if isinstance(m, Text) and abs(m.at - it.centre) < 40.0]
+    usual = it.reach + 1.5
+    return next((r for r in usual + 0.5 * np.arange(8) if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes)), usual)
 
 
 def _enlarged(canvas: Canvas, it: Corner, middle: complex, half: float, times: float) -> None:
