@@ -145,7 +145,9 @@ def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8]) -> tuple[Float
             _, best, _, at = cv2.minMaxLoc(score)
             if best > 0.6:
                 places.append((x, y))
-                apart.append([(_peak(score, at, 1) - reach) / DENSITY, -(_peak(score, at, 0) - reach) / DENSITY])
+                found = field_[at[1] : at[1] + 2 * half, at[0] : at[0] + 2 * half]
+                dx, dy = np.array(at) - reach + _rest(found, piece)
+                apart.append([dx / DENSITY, -dy / DENSITY])
     return np.array(places).reshape(-1, 2), np.array(apart).reshape(-1, 2), len(places) / max(tried, 1)
 
 
@@ -158,15 +160,11 @@ def _tells(piece: NDArray[np.float32]) -> bool:
     return bool(spread[0] > 0.15 * spread[1] and spread[0] > 40)
 
 
-def _peak(score: NDArray[np.float32], at: Any, axis: int) -> float:
-    """Subpixel place of the peak along x (axis 1) or y (axis 0)."""
-    i = at[0] if axis == 1 else at[1]
-    line = score[at[1], :] if axis == 1 else score[:, at[0]]
-    if not 0 < i < len(line) - 1:
-        return float(i)
-    left, middle, right = float(line[i - 1]), float(line[i]), float(line[i + 1])
-    bottom = left - 2 * middle + right
-    return float(i) + (0.5 * (left - right) / bottom if bottom < 0 else 0.0)
+def _rest(found: NDArray[np.float32], piece: NDArray[np.float32]) -> Floats:
+    """What is left of the shift (2,) beside whole pixels, by least squares on the slopes of the piece: nothing for equal pictures."""
+    slopes = np.stack([np.gradient(piece, axis=1).ravel(), np.gradient(piece, axis=0).ravel()])
+    shift = np.linalg.solve(slopes @ slopes.T, slopes @ (piece - found).ravel())
+    return np.asarray(np.clip(shift, -1.0, 1.0), np.float64)
 
 
 def _is(element: dict[str, Any], mark: Mark) -> bool:

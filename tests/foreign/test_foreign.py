@@ -16,7 +16,7 @@ def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
     places, apart, share = judge.offsets(true, true)
     assert len(places) > 60
     assert share == 1
-    assert np.quantile(np.abs(apart), 0.99) < 0.05
+    assert np.abs(apart).max() < 0.05
     shifted = cv2.warpAffine(true, np.array([[1, 0, 1.5 * judge.DENSITY], [0, 1, 0]]), true.shape[::-1], borderValue=255)
     _, apart, share = judge.offsets(shifted, true)
     assert share > 0.9

@@ -300,16 +300,22 @@ class TriadKind(GroupKind):
         plan.vector(f"V̅_{self._letters(c, tri)}", vel.pole, step)
         plan.vector(f"V̅_{{{self._letters(c, tri)}{s.name}}}", w, step)
         self._others(vel, _of(g), c, step, w, "V̅")
-        v = vel.points
-        vel.turning(tri, a.corner, b.corner, v[a.corner], v[b.corner])
-        for leg in _of(g).legs:
+        self._turnings(vel, _of(g))
+
+    @staticmethod
+    def _turnings(plan: Velocities | Accelerations, g: TriadGroup) -> None:
+        """Angular quantities of the triangle, from the corners of the pair of legs, and of the legs."""
+        tri, z, pos = g.links[0], plan.points, plan.positions
+        a, b = pos.special[special_name(tri)].pair
+        plan.turning(tri, a.corner, b.corner, z[a.corner], z[b.corner])
+        for leg in g.legs:
             if leg.guide:
-                vel.turns_with(leg.link, pos.mechanism.guides[leg.guide].link)
-                vel.coincident[on_link(leg.corner, leg.link)] = v[leg.corner]
+                plan.turns_with(leg.link, pos.mechanism.guides[leg.guide].link)
+                plan.coincident[on_link(leg.corner, leg.link)] = z[leg.corner]
             elif leg.slot is None:
-                vel.turning(leg.link, leg.outer, leg.corner, v[leg.outer], v[leg.corner])
+                plan.turning(leg.link, leg.outer, leg.corner, z[leg.outer], z[leg.corner])
             else:
-                vel.turns_with(leg.link, tri)
+                plan.turns_with(leg.link, tri)
 
     def _end(self, vel: Velocities, leg: Leg) -> tuple[Step, Step]:
         """Where the line of the velocities along a leg's normal begins on the plan, and its direction."""
@@ -359,16 +365,7 @@ class TriadKind(GroupKind):
         plan.vector(f"a̅_{self._letters(c, tri)}", acc.pole, step)
         plan.vector(f"a̅_{{{self._letters(c, tri)}{s.name}}}^τ", n, step)
         self._others(acc, _of(g), c, step, w, "a̅")
-        z = acc.points
-        acc.turning(tri, a.corner, b.corner, z[a.corner], z[b.corner])
-        for leg in _of(g).legs:
-            if leg.guide:
-                acc.turns_with(leg.link, pos.mechanism.guides[leg.guide].link)
-                acc.coincident[on_link(leg.corner, leg.link)] = z[leg.corner]
-            elif leg.slot is None:
-                acc.turning(leg.link, leg.outer, leg.corner, z[leg.outer], z[leg.corner])
-            else:
-                acc.turns_with(leg.link, tri)
+        self._turnings(acc, _of(g))
 
     @staticmethod
     def _known(acc: Accelerations, leg: Leg, tri: str) -> tuple[Step, Step]:
