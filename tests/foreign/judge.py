@@ -161,7 +161,7 @@ def _tells(piece: NDArray[np.float32]) -> bool:
 
 
 def _rest(found: NDArray[np.float32], piece: NDArray[np.float32]) -> Floats:
-    """What is left of the shift (2,) beside whole pixels, by least squares on the slopes of the piece: nothing for equal pictures."""
+    """What is left of the shift (2,) beside whole pixels, by least squares on the slopes: nothing for equal pictures."""
     slopes = np.stack([np.gradient(piece, axis=1).ravel(), np.gradient(piece, axis=0).ravel()])
     shift = np.linalg.solve(slopes @ slopes.T, slopes @ (piece - found).ravel())
     return np.asarray(np.clip(shift, -1.0, 1.0), np.float64)
