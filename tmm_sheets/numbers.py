@@ -16,24 +16,37 @@ NOISE = 1e-9
 """Share of the size of its kind below which a number is zero."""
 
 
-def size(values: Iterable[Any], k: int) -> float:
-    """Size of a kind of quantities at position ``k``: the greatest there, or what one of them exceeds at every fourth position.
+class Sizes:
+    """Size of a kind of quantities at each position: the greatest there, or what one of them exceeds at every fourth position.
 
     ``values`` are numbers or arrays over the positions, real or complex; what is undefined does not count. The greatest of all
     would not do: next to a dead point it is so large that everything else was nothing.
     """
-    return max((_size(v, k) for v in values), default=0.0)
+
+    def __init__(self, values: Iterable[Any]) -> None:
+        import numpy as np
+
+        self._usual = 0.0
+        self._greatest = np.empty(0)
+        for value in values:
+            sizes = np.abs(np.ravel(value))
+            finite = np.isfinite(sizes)
+            if not finite.any():
+                continue
+            there = np.sort(sizes[finite])
+            self._usual = max(self._usual, float(there[int(0.75 * (there.size - 1))]))
+            if sizes.size > self._greatest.size:
+                self._greatest = np.append(self._greatest, np.zeros(sizes.size - self._greatest.size))
+            np.maximum(self._greatest[:sizes.size], sizes, out=self._greatest[:sizes.size], where=finite)
+
+    def at(self, k: int) -> float:
+        """Size at position ``k``."""
+        return max(self._usual, float(self._greatest[k])) if k < self._greatest.size else self._usual
 
 
-def _size(value: Any, k: int) -> float:
-    import numpy as np
-
-    sizes = np.abs(np.ravel(value))
-    finite = sizes[np.isfinite(sizes)]
-    if not finite.size:
-        return 0.0
-    usual = float(np.sort(finite)[int(0.75 * (finite.size - 1))])
-    return max(usual, float(sizes[k])) if k < sizes.size and np.isfinite(sizes[k]) else usual
+def size(values: Iterable[Any], k: int) -> float:
+    """Size of a kind of quantities at position ``k``, see :class:`Sizes`."""
+    return Sizes(values).at(k)
 
 
 def is_zero(x: Any, kind: float) -> bool:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction.step import Part, Step, Told
 from tmm_sheets.errors import BadInput, CannotBuild, together
-from tmm_sheets.numbers import clean, plain, size
+from tmm_sheets.numbers import Sizes, clean, plain
 from tmm_sheets.project import LINKAGE
 from tmm_sheets.words import tell
 
@@ -203,7 +203,8 @@ def _without_rounding(value: Any, alike: list[Any]) -> Any:
     def cleaned(v: Any, kind: float) -> Any:
         return [cleaned(x, kind) for x in v] if isinstance(v, list) else clean(v, kind) if isinstance(v, float) else v
 
-    return [cleaned(v, size(sizes, i)) for i, v in enumerate(value)]
+    kind = Sizes(sizes)
+    return [cleaned(v, kind.at(i)) for i, v in enumerate(value)]
 
 
 def _largest(value: Any) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from math import degrees
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, take
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
-from tmm_sheets.numbers import degrees_and_minutes, fixed, number, size
+from tmm_sheets.numbers import Sizes, degrees_and_minutes, fixed, number
 from tmm_sheets.words import marked, tr, tr_n
 
 UNITS = {"mm": marked("mm"), "m": marked("m"), "m/s": marked("m/s"), "m/s2": marked("m/s²"), "N": marked("N"), "rad": marked("rad")}
@@ -31,10 +31,10 @@ def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "
 
     A plan that is not drawn has no millimetres: ``to_mm`` leaves its lengths as they are and ``unit`` names theirs.
     """
-    sizes = _sizes(plan, k)
+    sizes = SortSizes(plan)
     for step in plan:
         said = sentence(step, k, to_mm, unit, sizes)
-        segments = [f"|{name}{letter_of(step)}| = {_said(vector, 'vector', to_mm, unit, sizes[_sort(step)])}"
+        segments = [f"|{name}{letter_of(step)}| = {_said(vector, 'vector', to_mm, unit, sizes.at(step, k))}"
                     for name, vector in _segments(plan, step, k)]
         if segments:
             told = tr_n("Segment {segments}.", "Segments {segments}.", len(segments)).format(segments=", ".join(segments))
@@ -42,18 +42,34 @@ def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "
         yield said
 
 
-def _sizes(steps: Iterable[Step], k: int) -> dict[str, float]:
-    """Size of each sort among some steps, at position ``k``."""
-    values: dict[str, list[Any]] = {}
-    for step in steps:
-        if np.asarray(step.value).dtype.kind in "ifc":
-            values.setdefault(_sort(step), []).append(step.value)
-    return {sort: size(found, k) for sort, found in values.items()}
+class SortSizes:
+    """Sizes of the sorts of quantities among some steps, beside which a number is something or nothing."""
+
+    def __init__(self, steps: Iterable[Step]) -> None:
+        values: dict[str, list[Any]] = {}
+        for step in steps:
+            if np.asarray(step.value).dtype.kind in "ifc":
+                values.setdefault(_sort(step), []).append(step.value)
+        self._of = {sort: Sizes(found) for sort, found in values.items()}
+        self._own: dict[int, Sizes] = {}
+
+    def at(self, step: Step, k: int) -> float:
+        """Size of the sort of a step at position ``k``."""
+        of_sort = self._of.get(_sort(step))
+        return of_sort.at(k) if of_sort else 0.0
+
+    def of_argument(self, arg: Any, k: int) -> float:
+        """The same of a step or a given number, which may stand in no plan of these: its own size counts too."""
+        if id(arg) not in self._own:
+            own = value_of(arg)
+            self._own[id(arg)] = Sizes([own] if np.asarray(own).dtype.kind in "ifc" else ())
+        own_size = self._own[id(arg)].at(k)
+        return max(own_size, self.at(arg, k)) if isinstance(arg, Step) else own_size
 
 
-def sizes_of(plan: Plan, k: int) -> dict[str, float]:
-    """Size of each sort of quantities of a plan at position ``k``, for :func:`sentence`."""
-    return _sizes((*plan, *plan.asides.values()), k)
+def sizes_of(plan: Plan) -> SortSizes:
+    """Sizes of the sorts of quantities of a plan, for :func:`sentence`."""
+    return SortSizes((*plan, *plan.asides.values()))
 
 
 def _sort(step: Step) -> str:
@@ -96,16 +112,16 @@ _OPERAND = re.compile(r"(?<=[·/×+−])( ?)(\{\d\})|(\{\d\})(?=²)")
 
 
 def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "mm",
-             sizes: Mapping[str, float] | None = None) -> str:
+             sizes: SortSizes | None = None) -> str:
     """One step as a sentence; ``sizes`` are those of each sort in its plan."""
     if sizes is None:
-        sizes = _sizes([step], k)
+        sizes = SortSizes([step])
     # What is taken from another plan has other positions there. A protractor knows no minutes: they are said in formulas, not
     # where an angle is laid off.
     args, drawn = () if step.rule.compute is take else step.args, step.rule.gives in ("point", "direction")
     shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(args, step.rule.takes, strict=False)]
     exact = _exact_angle(step, k)
-    of_sort = 100.0 if step.rule.unit == "%" else sizes.get(_sort(step), 0.0)
+    of_sort = 100.0 if step.rule.unit == "%" else sizes.at(step, k)
     value = exact or _said(value_at(step, k), step.rule.gives, to_mm, unit, of_sort)
 
     def operand(m: re.Match[str]) -> str:
@@ -126,16 +142,14 @@ def _wording(step: Step, shown: list[str]) -> str:
     return tr(step.rule.wording)
 
 
-def _show(arg: Any, kind: Kind, k: int, to_mm: Callable[[float], float], unit: str, sizes: Mapping[str, float],
+def _show(arg: Any, kind: Kind, k: int, to_mm: Callable[[float], float], unit: str, sizes: SortSizes,
           drawn: bool) -> str:
     if isinstance(arg, Step) and kind in ("point", "direction", "force"):
         return letter_of(arg)
     if not drawn and (exact := _exact_angle(arg, k)):
         return exact
-    own = value_of(arg)
-    of_sort = size([own], k) if np.asarray(own).dtype.kind in "ifc" else 0.0
-    if isinstance(arg, Step):
-        of_sort = max(of_sort, sizes.get(_sort(arg), 0.0))
+    # Millimetres have their one decimal, whatever is beside them.
+    of_sort = sizes.of_argument(arg, k) if kind == "number" or unit != "mm" else 0.0
     said = _said(value_at(arg, k), kind, to_mm, unit, of_sort)
     return f"{letter_of(arg)} ({said})" if isinstance(arg, Step) and kind == "vector" else said
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import pairwise
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -24,11 +23,11 @@ def empty_cells(drawing: Drawing) -> float:
     """Share of the cells of the field in which nothing is drawn, 0 .. 1."""
     nx, ny = round(FIELD.width / CELL), round(FIELD.height / CELL)
     inked = np.zeros((nx, ny), bool)
-    for z in (*(dense(mark, 4.0) for mark in drawing.marks if mark.of != FRAME), *(_over(box) for box in TAKEN)):
-        i = ((z.real - FIELD.x0) / FIELD.width * nx).astype(int)
-        j = ((z.imag - FIELD.y0) / FIELD.height * ny).astype(int)
-        there = (i >= 0) & (i < nx) & (j >= 0) & (j < ny)
-        inked[i[there], j[there]] = True
+    z = np.concatenate((dense((mark for mark in drawing.marks if mark.of != FRAME), 4.0), *map(_over, TAKEN)))
+    i = ((z.real - FIELD.x0) / FIELD.width * nx).astype(int)
+    j = ((z.imag - FIELD.y0) / FIELD.height * ny).astype(int)
+    there = (i >= 0) & (i < nx) & (j >= 0) & (j < ny)
+    inked[i[there], j[there]] = True
     return float(1.0 - inked.mean())
 
 
@@ -46,11 +45,19 @@ def _outline(mark: Mark) -> Points:
     return text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
 
 
-def dense(mark: Mark, step: float) -> Points:
-    """Points along a mark, or round its lettering, no more than ``step`` mm apart."""
-    z = _outline(mark)
-    steps = [np.linspace(a, b, 2 + int(abs(b - a) / step)) for a, b in pairwise(z)]
-    return np.concatenate(steps) if steps else z
+def dense(marks: Iterable[Mark], step: float) -> Points:
+    """Points along marks, or round their lettering, no more than ``step`` mm apart."""
+    outlines = [_outline(mark) for mark in marks]
+    if not outlines:
+        return np.empty(0, complex)
+    z = np.concatenate(outlines)
+    before = np.arange(len(z)) - 1
+    before[np.cumsum([0, *map(len, outlines[:-1])])] += 1  # a segment to each point from the one before, to a first one from itself
+    begin = z[before]
+    count = 2 + (np.abs(z - begin) / step).astype(int)
+    first = np.cumsum(count) - count
+    t = (np.arange(count.sum()) - np.repeat(first, count)) / np.repeat(count - 1, count)
+    return np.asarray(np.repeat(begin, count) + t * np.repeat(z - begin, count))
 
 
 def _over(box: Box) -> Points:

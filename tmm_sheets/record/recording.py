@@ -137,13 +137,7 @@ class _Telling:
         self.plan = plan
         self.to_mm: Any = float if scale is None else scale.mm
         self.unit = plan.unit if scale is None else "mm"
-        self._sizes: dict[int, dict[str, float]] = {}
-
-    def sizes(self, k: int) -> dict[str, float]:
-        """Sizes of the sorts of quantities of the plan at a position."""
-        if k not in self._sizes:
-            self._sizes[k] = protocol.sizes_of(self.plan, k)
-        return self._sizes[k]
+        self.sizes = protocol.sizes_of(plan)
 
     def told(self, step: Step) -> dict[str, Any]:
         """What is said of a step, by the labels of the positions.
@@ -161,7 +155,7 @@ class _Telling:
         sentence, shown, lines = {}, {}, {}
         with np.errstate(invalid="ignore", divide="ignore"):
             for k, label in enumerate(labels):
-                sentence[label] = protocol.sentence(step, k, self.to_mm, self.unit, self.sizes(k))
+                sentence[label] = protocol.sentence(step, k, self.to_mm, self.unit, self.sizes)
                 if tree is not None and (text := formulas.numbers(step, tree, k)):
                     shown[label] = text
                 if found := _helpers(step, k):

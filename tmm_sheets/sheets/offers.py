@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +13,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Mark, Points
+from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets.arrangement import View
 
@@ -37,6 +36,8 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
     A view ``module.function`` tells its sizes, from what it wants down to what it can do with, by ``module.function_sizes``; none
     where it has nothing to show.
     """
+    taken = _closed(inside, closed)
+    seen = 0
     for view in offered:
         module, _, function = view.draw.partition(".")
         room = import_module(f"tmm_sheets.sheets.{module}")
@@ -45,18 +46,22 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
             wanted = sizes(project, canvas, view.options)
         except CannotBuild:
             continue  # what it shows cannot be had; the views that need it have said so
-        box = _place(canvas, wanted, inside, closed) if wanted else None
+        if not wanted:
+            continue
+        for k in range(seen, len(canvas.parts)):
+            taken |= _of_part(canvas, k, inside, taken.shape)
+        seen = len(canvas.parts)
+        box = _place(taken, wanted, inside)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
             getattr(room, function)(project, canvas, box, view.options)
 
 
-def _place(canvas: Canvas, sizes: Sequence[tuple[float, float]], inside: Box, closed: Sequence[Box]) -> Box | None:
-    """The first of the sizes for which there is room, where it is farthest from all else."""
-    taken = _taken(canvas, inside, closed)
+def _place(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]], inside: Box) -> Box | None:
+    """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else."""
     table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int64)
-    table[1:, 1:] = taken.cumsum(axis=0).cumsum(axis=1)
+    table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1)
     for width, height in sizes:
         for apart in APART:
             nx, ny = (int(np.ceil((length + 2 * apart) / CELL)) for length in (width, height))
@@ -71,36 +76,34 @@ def _place(canvas: Canvas, sizes: Sequence[tuple[float, float]], inside: Box, cl
     return None
 
 
-def _taken(canvas: Canvas, inside: Box, closed: Sequence[Box]) -> NDArray[np.int64]:
-    """Cells of the sheet with ink, or between the ink of one part of a view: within its picture nothing else may stand."""
-    shape = tuple(int(length / CELL) for length in (inside.width, inside.height))
-    taken = np.zeros(shape, np.int64)
-    for marks, labels, titled in _parts(canvas):
-        own = np.zeros(shape, bool)
-        points = [*(dense(mark, CELL) for mark in marks), *map(_about, labels)]
-        for z in (*points, _over(points) if titled and points else np.empty(0)):
-            i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
-            there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
-            own[i[there], j[there]] = True
-        taken |= _between(own, 0) | _between(own, 1)
+def _closed(inside: Box, closed: Sequence[Box]) -> NDArray[np.bool_]:
+    """Cells of the sheet, those within boxes ``closed`` to views taken."""
+    taken = np.zeros([int(length / CELL) for length in (inside.width, inside.height)], bool)
     for box in closed:
         i0, i1 = (int((x - inside.x0) / CELL) for x in (box.x0, box.x1))
         j0, j1 = (int((y - inside.y0) / CELL) for y in (box.y0, box.y1))
-        taken[max(i0, 0):i1 + 1, max(j0, 0):j1 + 1] = 1
+        taken[max(i0, 0):i1 + 1, max(j0, 0):j1 + 1] = True
     return taken
 
 
-def _parts(canvas: Canvas) -> Iterator[tuple[list[Mark], list[Label], bool]]:
-    """Marks of each part of a view, the labels that it has asked for, and whether it has a title."""
-    ends = [*(part.first for part in canvas.parts), len(canvas.marks)]
-    for k, (first, end) in enumerate(pairwise(ends)):
-        if canvas.parts[k].draw != "title block":
-            yield canvas.marks[first:end], [label for label in canvas.labels if label.part == k], bool(canvas.parts[k].title)
+def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Cells with ink of a part of a view, or between its ink: within its picture nothing else may stand."""
+    part, own = canvas.parts[k], np.zeros(shape, bool)
+    if part.draw == "title block":
+        return own
+    end = canvas.parts[k + 1].first if k + 1 < len(canvas.parts) else len(canvas.marks)
+    z = np.concatenate((dense(canvas.marks[part.first:end], CELL),
+                        *(_about(label) for label in canvas.labels if label.part == k)))  # fmt: skip
+    if part.title and len(z):
+        z = np.append(z, _over(z))
+    i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
+    there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
+    own[i[there], j[there]] = True
+    return _between(own, 0) | _between(own, 1)
 
 
-def _over(points: Sequence[Points]) -> Points:
-    """Points along the title of a part, as wide as the part is: between a title and its picture nothing else may stand."""
-    z = np.concatenate(points)
+def _over(z: Points) -> Points:
+    """Ends of the title of a part, as wide as the part is: between a title and its picture nothing else may stand."""
     return np.array([complex(x, z.imag.max() - TITLE) for x in (z.real.min(), z.real.max())])
 
 
@@ -114,8 +117,8 @@ def _about(label: Label) -> Points:
     return label.anchor + np.array([0j, complex(u.real * width, u.imag * height)])
 
 
-def _between(cells: NDArray[np.bool_], axis: int) -> NDArray[np.int64]:
+def _between(cells: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
     """Cells between the first and the last inked one of every line along an axis."""
     before = np.maximum.accumulate(cells, axis=axis)
     behind = np.flip(np.maximum.accumulate(np.flip(cells, axis), axis=axis), axis)
-    return np.asarray(before & behind, dtype=np.int64)
+    return np.asarray(before & behind)

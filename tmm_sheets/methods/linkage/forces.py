@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role, Tangen
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
-from tmm_sheets.numbers import size
+from tmm_sheets.numbers import Sizes
 from tmm_sheets.words import marked, tr
 
 WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force",
@@ -107,12 +108,20 @@ class Kinetostatics:
 
     def force_size(self, k: int) -> float:
         """Size of the forces at position ``k``, N: beside it a force is something or nothing."""
-        return size((load.vector.value for loads in self.loads.values() for load in loads), k)
+        return self._sizes.at(k)
+
+    @cached_property
+    def _sizes(self) -> Sizes:
+        return Sizes(load.vector.value for loads in self.loads.values() for load in loads)
 
     def moment_size(self, k: int) -> float:
         """Moment of such a force across the whole mechanism, N m: beside it a moment is something or nothing."""
+        return self._sizes.at(k) * self._reach.at(k)
+
+    @cached_property
+    def _reach(self) -> Sizes:
         points = list(self.positions.points.values())
-        return self.force_size(k) * size((p.value - points[0].value for p in points), k)
+        return Sizes(p.value - points[0].value for p in points)
 
     def reaction(self, j: str, k: str, vector: Step) -> Step:
         """Record F_jk under its name."""
