@@ -275,17 +275,33 @@ class Sheet:
 
         Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
         construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do. A
-        point that nearly rests moves its speed alike to both sides: the search begins also with what its own plan alone tells.
+        point that nearly rests moves its speed alike to both sides: the search begins also with what its own plan alone tells. A
+        vector that became longer than it is may point anywhere now: then it begins on all sides.
         """
-        found = self._descended(place, np.zeros(2), exact)
+        begins = [np.zeros(2)]
+        if exact:
+            begins += [*self._by_own_plan(place), *self._all_round(place)]
+        return max((self._descended(place, x, exact) for x in begins), key=lambda m: m.score)
+
+    def _by_own_plan(self, place: Place) -> Iterator[Floats]:
+        """The displacement that the numbers of the step's own plan tell, where there are others."""
         lines, gradient = self.by_place[place]
         here = np.array([self.judged[i].entry.plan == self.steps[place].plan for i in lines])
-        if not exact or here.all() or not here.any():
-            return found
+        if here.all() or not here.any():
+            return
         rows, aims = (gradient / self.tolerance[lines, None])[here], (self.left[lines] / self.tolerance[lines])[here]
         usual = self._usual(place)
         begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
-        return max(found, self._descended(place, begin, exact), key=lambda m: m.score)
+        yield begin
+
+    def _all_round(self, place: Place) -> Iterator[Floats]:
+        """Displacements to four sides, as long as a vector became that was shorter."""
+        lines, gradient = self.by_place[place]
+        longer = [float(self.left[i] / np.hypot(*g)) for i, g in zip(lines, gradient, strict=True)
+                  if (self.judged[i].entry.is_distance or self.judged[i].entry.is_size)
+                  and self.left[i] > max(abs(self.judged[i].exact), self.judged[i].tolerance)]
+        if longer:
+            yield from max(longer) * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
 
     def _usual(self, place: Place) -> npt.NDArray[np.float64]:
         """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
