@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,8 @@ FAR = 30
 """Steps between measured numbers beyond which a number does not follow from them plainly."""
 UNSEEN = 0.1
 """Share of its tolerance that a number may owe to what was not measured of the points it is made of."""
-Shifts = Mapping["Place", complex]
+_Values = dict[int, Any]
+"""Values of steps by their id()."""
 
 
 class OwnValue:
@@ -32,15 +33,16 @@ class OwnValue:
 
     def __init__(self, j: Judged, again: _Again) -> None:
         self._j, self._again = j, again
-        self._off = {place: m.deviation * _along(m, again.steps[place][0]) for place, m in again.measured.items()}
-        self.expected = again.change(j, self._off)
+        self._off = {place: m.deviation * _along(m, again.steps[place].step) for place, m in again.measured.items()}
+        self._values = again.values(self._off)
+        self.expected = _change(j, self._values)
         """Expected deviation from the exact value, in the unit of the number."""
 
     @cached_property
     def tolerance(self) -> float:
         """How far the number may be from that; infinite where it depends on more than what was measured of a point."""
         scatter, unknown = [self._j.reading], 0.0
-        for place, (step, measured) in self._again.steps.items():
+        for place, (step, measured, _) in self._again.steps.items():
             if measured is None:
                 own = self._again.errors.own(step)
                 scatter += [self._moved(place, complex(*column)) for column in own[min(place[1], len(own) - 1)].T]
@@ -64,11 +66,12 @@ class OwnValue:
     @property
     def known_in_part(self) -> Iterator[Place]:
         """Steps between the measured numbers and this one, its own included, and points: one number does not tell where one is."""
-        return (place for place, (step, measured) in self._again.steps.items() if measured is None or np.iscomplexobj(step.value))
+        return (place for place, (step, measured, _) in self._again.steps.items()
+                if measured is None or np.iscomplexobj(step.value))
 
     def _moved(self, place: Place, way: complex) -> float:
         """What the number does when one step comes out elsewhere."""
-        return self._again.change(self._j, {**self._off, place: self._off.get(place, 0j) + way}) - self.expected if way else 0.0
+        return _change(self._j, self._again.moved(self._values, place, way)) - self.expected if way else 0.0
 
 
 class OwnSteps:
@@ -109,12 +112,13 @@ class OwnSteps:
             return True
         if len(again.steps) == FAR:
             return False
-        for a, at in self._made_of(step, k):
+        made_of = [*self._made_of(step, k)]
+        for a, at in made_of:
             if np.ndim(a.value) and np.size(a.value) not in (1, np.size(step.value)) and step.rule.compute is not take:
                 return False
             if self._uncertain(a, at) and not self._gathered(a, at, j, again):
                 return False
-        again.make(step, place)
+        again.make(step, place, [_place(a, at) for a, at in made_of])
         return True
 
     def _made_of(self, step: Step, k: int) -> Iterator[tuple[Step, int]]:
@@ -139,41 +143,72 @@ class OwnSteps:
         return bool(self._rows[id(step), i][k])
 
 
+class _Done(NamedTuple):
+    """A step at a position: the number measured on it, or what it is made of."""
+
+    step: Step
+    measured: Judged | None
+    made_of: Sequence[Place]
+
+
 class _Again:
     """Steps done again in their order, from measured numbers."""
 
     def __init__(self, errors: Errors) -> None:
         self.errors = errors
-        self.steps: dict[Place, tuple[Step, Judged | None]] = {}
+        self.steps: dict[Place, _Done] = {}
 
     @property
     def measured(self) -> dict[Place, Judged]:
         """The numbers all begins with."""
-        return {place: j for place, (_, j) in self.steps.items() if j is not None}
+        return {place: done.measured for place, done in self.steps.items() if done.measured is not None}
 
     def take(self, step: Step, place: Place, j: Judged) -> None:
         """Begin with a measured number."""
-        self.steps[place] = step, j
+        self.steps[place] = _Done(step, j, ())
 
-    def make(self, step: Step, place: Place) -> None:
+    def make(self, step: Step, place: Place, made_of: Sequence[Place]) -> None:
         """Do a step again from what is there."""
-        self.steps[place] = step, None
+        self.steps[place] = _Done(step, None, made_of)
 
-    def change(self, j: Judged, shifts: Shifts) -> float:
-        """How much a number changes when steps come out so much elsewhere than they follow from those before them."""
-        values: dict[int, Any] = {}
-        for place, (step, measured) in self.steps.items():
-            now = values.get(id(step), step.value)
-            made = now
+    def values(self, shifts: Mapping[Place, complex]) -> _Values:
+        """Values of the steps when the measured ones come out so much elsewhere."""
+        values: _Values = {}
+        for place, (step, measured, _) in self.steps.items():
             if measured is None:
-                args = self.errors.arguments(step)
-                made = self.errors.replayed(step, [values.get(id(a), value_of(a)) for a in args])
-            now, made = np.array(now), np.asarray(made)
-            at = (place[1],) if now.ndim else ()
-            now[at] = (made[at] if made.ndim else made) + (shifts.get(place, 0.0) if now.dtype.kind == "c" else
-                                                           complex(shifts.get(place, 0.0)).real)
-            values[id(step)] = now
-        return j.changed(lambda step: values.get(id(step), step.value))
+                self._do(place, values)
+            else:
+                _shift(values, step, place, shifts[place])
+        return values
+
+    def moved(self, values: _Values, place: Place, way: complex) -> _Values:
+        """The same with one step elsewhere: what depends on it is done again, nothing else."""
+        values, moved = dict(values), {place}
+        _shift(values, self.steps[place].step, place, way)
+        for other, done in self.steps.items():
+            if not moved.isdisjoint(done.made_of):
+                self._do(other, values)
+                moved.add(other)
+        return values
+
+    def _do(self, place: Place, values: _Values) -> None:
+        step = self.steps[place].step
+        made = np.asarray(self.errors.replayed(step, [values.get(id(a), value_of(a)) for a in self.errors.arguments(step)]))
+        now = np.array(values.get(id(step), step.value))
+        at = (place[1],) if now.ndim else ()
+        now[at] = made[at] if made.ndim else made
+        values[id(step)] = now
+
+
+def _shift(values: _Values, step: Step, place: Place, way: complex) -> None:
+    now = np.array(values.get(id(step), step.value))
+    now[(place[1],) if now.ndim else ()] += way if now.dtype.kind == "c" else complex(way).real
+    values[id(step)] = now
+
+
+def _change(j: Judged, values: _Values) -> float:
+    """How much a number changes when steps have these values."""
+    return j.changed(lambda step: values.get(id(step), step.value))
 
 
 def _along(j: Judged, step: Step) -> complex:
