@@ -343,12 +343,16 @@ class Sheet:
         return place in self.heads or bool(error[min(place[1], len(error) - 1)] > 0)
 
     def helps(self, mistake: Mistake, i: int) -> bool:
-        """True when a mistake explains most of another number that is not in order, besides the one it was looked for."""
+        """True when a mistake explains most of the number it was looked for, and of another one that is not in order.
+
+        A little of much that other mistakes have spoilt explains nothing.
+        """
         if np.hypot(*mistake.moved) < 2 * self.errors.pencil * mistake.mu:
             return False  # that is the pencil
         shares = self.shares(mistake.place, mistake.moved)
-        return any(j != i and self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])
-                   for j, share in zip(self.by_place[mistake.place][0], shares, strict=True))
+        mostly = {j for j, share in zip(self.by_place[mistake.place][0].tolist(), shares, strict=True)
+                  if self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])}
+        return i in mostly and len(mostly) > 1
 
     def shares(self, place: Place, x: Floats) -> Floats:
         """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
