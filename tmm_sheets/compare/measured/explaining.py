@@ -113,7 +113,10 @@ class Sheet:
         done = self._otherwise(i)
         if done is not None:
             reached = np.abs(done.shares) > self.tolerance
-            if reached.sum() > 1 and done.score > NEARLY * float(np.sum(_loss((self.left / self.tolerance)[reached]))):
+            alike = reached.copy()  # with all that a step drawn off may explain
+            for place in self.places[i]:
+                alike[self.by_place[place][0]] = True
+            if reached.sum() > 1 and done.score > NEARLY * float(np.sum(_loss((self.left / self.tolerance)[alike]))):
                 return done  # nothing can explain much more
         off = self._displaced(i)
         return off if done is None or (off is not None and off.score * NEARLY > done.score) else done
