@@ -574,6 +574,7 @@ def _check_pages(pages: tuple[Path, ...]) -> None:
 @option("--measured", type=click.Path(path_type=Path), metavar="FILE", help="Compare the numbers of such a file.")
 @option("--sheet", "sheet", type=int, metavar="N", help="Number of the sheet in the image or the drawing.")
 @option("--image", type=click.Path(path_type=Path), metavar="FILE", help="Compare a photograph or scan: jpg, png, pdf.")
+@option("--read-numbers", is_flag=True, help="With --image: also read the numbers of tables and positions (extra ocr).")
 @option("--views", type=click.Path(path_type=Path), metavar="FILE",
               help="Where the views stand in the image or the drawing, when its layout is its own.")
 @option("--dxf", type=click.Path(path_type=Path), metavar="FILE", help="Compare a CAD drawing.")
@@ -591,8 +592,8 @@ def _check_pages(pages: tuple[Path, ...]) -> None:
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
 def compare(
     project: str, corrected: bool, template: bool, everything: bool, measured: Path | None, sheet: int | None,
-    image: Path | None, views: Path | None, dxf: Path | None, group: Path | None, marks: Path | None, pencil: float, reading: float,
-    target: str | None, pages: tuple[Path, ...], output: Path | None,
+    image: Path | None, read_numbers: bool, views: Path | None, dxf: Path | None, group: Path | None, marks: Path | None,
+    pencil: float, reading: float, target: str | None, pages: tuple[Path, ...], output: Path | None,
 ) -> None:
     """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
     if sum((template, measured is not None, image is not None, dxf is not None, group is not None)) != 1:
@@ -601,6 +602,8 @@ def compare(
         raise click.UsageError(tell("--marks goes with --group FOLDER"))
     if everything and not template:
         raise click.UsageError(tell("--all goes with --template"))
+    if read_numbers and image is None:
+        raise click.UsageError(tell("--read-numbers goes with --image FILE"))
     if sheet is None and image is not None:
         raise click.UsageError(tell("--image needs --sheet N: which sheet it shows"))
     _check_pages(pages)
@@ -627,7 +630,7 @@ def compare(
             from tmm_sheets.compare.photo import image as by_eye
 
             try:
-                report = by_eye.compare(opened, int(sheet or 1), image, views, pencil, say)
+                report = by_eye.compare(opened, int(sheet or 1), image, views, pencil, say, read_numbers)
             except CannotBuild as e:
                 files.write_all({folder / name: data for name, data in e.files.items()})
                 for name in e.files:

@@ -14,7 +14,7 @@ from tmm_sheets.compare import view_places
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
-from tmm_sheets.compare.photo import placed_views, rectification, tracing
+from tmm_sheets.compare.photo import numbers_read, placed_views, rectification, tracing
 from tmm_sheets.compare.photo.fit_check import MATCH, SIDE, SIDES
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
@@ -40,7 +40,7 @@ CERTAIN = 0.12
 
 def compare(
     project: Project, n: int, path: Path, views: Path | None = None, pencil: float = 0.25,
-    say: Callable[[str], None] = lambda _: None,
+    say: Callable[[str], None] = lambda _: None, read_numbers: bool = False,
 ) -> Report:
     """Compare a photograph of sheet ``n`` with the exact sheet.
 
@@ -56,15 +56,18 @@ def compare(
         Error of a point drawn by hand, mm.
     say
         Told what is being done.
+    read_numbers
+        Whether to read the numbers of the sheet too (see ``numbers_read``).
 
     Raises
     ------
     BadInput
-        When a file is missing or useless, or there is no such sheet.
+        When a file is missing or useless, there is no such sheet, or numbers cannot be read here.
     CannotBuild
         When the picture has no frame, shows another sheet, or is too blurred or too small, or no view of ``views`` is in it.
     """
     sheet_numbers(project, n)
+    reader = numbers_read.reader() if read_numbers else None
     say(tell("reading the picture and composing the sheet"))
     with ThreadPoolExecutor(1) as aside:  # decoding runs beside Python
         reading = aside.submit(copy_context().run, read, path)  # in the same language
@@ -93,7 +96,11 @@ def compare(
     say(tell("measuring the elements"))
     traces, extra = tracing.trace(known, found.ink, found.hidden)
     extra = [x for x in extra if placed is None or placed.strange(x)]
-    return image_report(project.variant.project.name, n, path, found, traces, extra, pencil, notes)
+    readings = None
+    if reader is not None:
+        say(tell("reading the numbers"))
+        readings = numbers_read.readings(traces, found.ink, reader)
+    return image_report(project.variant.project.name, n, path, found, traces, extra, pencil, notes, readings)
 
 
 def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> Rectified:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees
 from pathlib import Path
@@ -16,6 +16,7 @@ from tmm_sheets.compare.elements import dashed
 from tmm_sheets.compare.findings import called, origin, table, worst
 from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding, judge
+from tmm_sheets.compare.photo.numbers_read import Readings
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.report import Report, said_verdict
@@ -25,6 +26,10 @@ from tmm_sheets.words import marked, tell, tell_n
 NOT_READ = marked(
     "Not read, so not judged: what lettering says (numbers in tables, letters, the title block), heads of arrows, dots, and "
     "whatever has less than 6 mm of line."
+)
+NUMBERS_READ = marked(
+    "Read otherwise is only a hint: look there. Not told: a lost comma or sign, and what is off by less than a twentieth. Not "
+    "read, so not judged: words and letters, heads of arrows, dots, and whatever has less than 6 mm of line."
 )
 
 
@@ -66,13 +71,14 @@ class _Judged:
 
 def image_report(
     name: str, n: int, path: Path, found: Rectified, traces: Sequence[Trace], extra: Sequence[ExtraInk], pencil: float,
-    notes: tuple[str, ...],
+    notes: tuple[str, ...], readings: Readings | None = None,
 ) -> Report:
     """Report of sheet ``n`` of the project ``name`` compared with the picture at ``path``: the table, the tree and the overlays.
 
-    ``pencil`` is the error of a point drawn by hand, mm.
+    ``pencil`` is the error of a point drawn by hand, mm; ``readings`` what was read of its numbers, None where nothing was.
     """
-    judged = _Judged([judge(t, pencil, found.uncertainty, found.soft) for t in traces], extra)
+    findings = [judge(t, pencil, found.uncertainty, found.soft) for t in traces]
+    judged = _Judged([_read_otherwise(f, readings) for f in findings] if readings else findings, extra)
     soft = SOFT_TOLERANCE if found.soft else 0.0
     count = judged.count
     said = tell_n(
@@ -86,15 +92,32 @@ def image_report(
         _hidden(judged),
         _tolerance(pencil, found.uncertainty, soft),
         *_table(judged),
-        "", tell(NOT_READ),
+        "", *([_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]),
     ]
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
         "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged), "notes": list(notes),
+        **({"numbers": readings.tree} if readings else {}),
     }  # fmt: skip
     drawn = _overlays(found, judged, tell("{project}: sheet {n}, {file}").format(project=name, n=n, file=path.name))
     files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in drawn.items()}
     return Report("\n".join(lines), tree, files, notes)
+
+
+def _read_otherwise(f: PhotoFinding, readings: Readings) -> PhotoFinding:
+    """A number that was read as another one is worth a look, nothing worse."""
+    found = readings.otherwise.get(f.element.number)
+    if found is None:
+        return f
+    said = tell("read as {found} instead of {wanted}").format(found=found, wanted=f.element.text)
+    return replace(f, verdict="amber", what=said, at=f.element.middle)
+
+
+def _read(readings: Readings) -> str:
+    """How many numbers were read."""
+    said = tell_n("{n} number looked at: {otherwise} read otherwise, {unread} not readable",
+                  "{n} numbers looked at: {otherwise} read otherwise, {unread} not readable", readings.asked)
+    return said.format(n=readings.asked, otherwise=len(readings.otherwise), unread=readings.unread)
 
 
 def _hidden(judged: _Judged) -> str:
@@ -141,7 +164,7 @@ def _tree(judged: _Judged) -> dict[str, Any]:
     return {
         "count": {**judged.count, "dense": judged.dense, "hidden": judged.hidden, "hidden_ends": judged.hidden_ends,
                   "measured": measured},
-        "elements": [_row(f) for f in judged.findings if f.trace.status in told],
+        "elements": [_row(f) for f in judged.findings if f.trace.status in told or f.verdict != "green"],
         "extra": [{"x": round(x.middle.real, 1), "y": round(x.middle.imag, 1), "width": round(float(x.width), 1),
                    "height": round(float(x.height), 1)} for x in judged.extra],
     }  # fmt: skip
