@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
 
 import numpy as np
 
@@ -49,8 +48,13 @@ def _outline(mark: Mark) -> Points:
 def dense(mark: Mark, step: float) -> Points:
     """Points along a mark, or round its lettering, no more than ``step`` mm apart."""
     z = _outline(mark)
-    steps = [np.linspace(a, b, 2 + int(abs(b - a) / step)) for a, b in pairwise(z)]
-    return np.concatenate(steps) if steps else z
+    if len(z) < 2:
+        return z
+    a, b = z[:-1], z[1:]
+    counts = 2 + (np.abs(b - a) / step).astype(int)
+    which = np.repeat(np.arange(len(a)), counts)
+    place = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return np.asarray(a[which] + (b - a)[which] * (place / (counts[which] - 1)))
 
 
 def _over(box: Box) -> Points:

@@ -50,9 +50,9 @@ def _order() -> dict[str, Any]:
 
 
 def _order_of(project: Project) -> tuple[list[str], list[dict[str, Any]]]:
-    """Names of the parts before the sections, and the sections, in the order of the manual that the project comes from."""
+    """Names of the parts before the sections, and the sections, in the order of the manual that the project names."""
     order = _order()
-    own: dict[str, Any] = next((of for name, of in order["manuals"].items() if project.variant.project.name.startswith(name)), {})
+    own: dict[str, Any] = order["manuals"].get(project.variant.note.manual, {})
     sections = order["section"]
     if "sections" in own:
         sections = sorted(sections, key=lambda s: own["sections"].index(s["template"]) if s["template"] in own["sections"] else -1)
@@ -207,7 +207,7 @@ def general(r: Reader) -> Scope:
     fields: dict[str, Any] = {
         "name": catalogues.of_file(v.project.title),
         "sheets": len(r.pictures.sheets),
-        "transport": v.project.name.startswith("transport/"),
+        f"manual_{v.note.manual or '000'}": True,
         "institution": catalogues.of_file(v.title_block.institution or ""),
         **{f"has_{p}": True for p in parts},
     }
@@ -371,4 +371,4 @@ def _frame(r: Reader) -> Frame:
         "group": catalogues.of_file(block.group or ""),
         "subject": said["stamp_subject"],
     }
-    return Frame(fields, dict(said["stamp"]))
+    return Frame(fields, dict(said["stamp"]), r.project.variant.note.frames == "short")

@@ -21,6 +21,8 @@ from tmm_sheets.sheets.arrangement import View
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
+Cells = NDArray[np.bool_]
+"""Of each cell of the sheet, by columns from the left and rows from below, whether it is taken."""
 CELL = 2.0
 """Side of the cells in which room is looked for, mm."""
 TITLE = 3.0
@@ -37,6 +39,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
     A view ``module.function`` tells its sizes, from what it wants down to what it can do with, by ``module.function_sizes``; none
     where it has nothing to show.
     """
+    taken, counted = _closed(inside, closed), 0
     for view in offered:
         module, _, function = view.draw.partition(".")
         room = import_module(f"tmm_sheets.sheets.{module}")
@@ -45,16 +48,19 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
             wanted = sizes(project, canvas, view.options)
         except CannotBuild:
             continue  # what it shows cannot be had; the views that need it have said so
-        box = _place(canvas, wanted, inside, closed) if wanted else None
+        if not wanted:
+            continue
+        taken |= _inked(canvas, inside, counted)
+        counted = len(canvas.parts)  # what is drawn already stays as it is
+        box = _place(taken, wanted, inside)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
             getattr(room, function)(project, canvas, box, view.options)
 
 
-def _place(canvas: Canvas, sizes: Sequence[tuple[float, float]], inside: Box, closed: Sequence[Box]) -> Box | None:
+def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box) -> Box | None:
     """The first of the sizes for which there is room, where it is farthest from all else."""
-    taken = _taken(canvas, inside, closed)
     table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int64)
     table[1:, 1:] = taken.cumsum(axis=0).cumsum(axis=1)
     for width, height in sizes:
@@ -71,30 +77,41 @@ def _place(canvas: Canvas, sizes: Sequence[tuple[float, float]], inside: Box, cl
     return None
 
 
-def _taken(canvas: Canvas, inside: Box, closed: Sequence[Box]) -> NDArray[np.int64]:
-    """Cells of the sheet with ink, or between the ink of one part of a view: within its picture nothing else may stand."""
-    shape = tuple(int(length / CELL) for length in (inside.width, inside.height))
-    taken = np.zeros(shape, np.int64)
-    for marks, labels, titled in _parts(canvas):
-        own = np.zeros(shape, bool)
-        points = [*(dense(mark, CELL) for mark in marks), *map(_about, labels)]
-        for z in (*points, _over(points) if titled and points else np.empty(0)):
-            i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
-            there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
-            own[i[there], j[there]] = True
-        taken |= _between(own, 0) | _between(own, 1)
+def _closed(inside: Box, closed: Sequence[Box]) -> Cells:
+    """Cells of the sheet within some boxes."""
+    taken = np.zeros(tuple(int(length / CELL) for length in (inside.width, inside.height)), bool)
     for box in closed:
         i0, i1 = (int((x - inside.x0) / CELL) for x in (box.x0, box.x1))
         j0, j1 = (int((y - inside.y0) / CELL) for y in (box.y0, box.y1))
-        taken[max(i0, 0):i1 + 1, max(j0, 0):j1 + 1] = 1
+        taken[max(i0, 0):i1 + 1, max(j0, 0):j1 + 1] = True
     return taken
 
 
-def _parts(canvas: Canvas) -> Iterator[tuple[list[Mark], list[Label], bool]]:
-    """Marks of each part of a view, the labels that it has asked for, and whether it has a title."""
+def _inked(canvas: Canvas, inside: Box, first: int) -> Cells:
+    """Cells of the sheet with ink of the parts from ``first`` on, or between the ink of one of them: within its picture nothing
+    else may stand.
+    """
+    taken = _closed(inside, ())
+    for marks, labels, titled in _parts(canvas, first):
+        points = [*(dense(mark, CELL) for mark in marks), *map(_about, labels)]
+        if not points:
+            continue
+        z = np.concatenate([*points, _over(points)] if titled else points)
+        i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
+        there = (i >= 0) & (i < taken.shape[0]) & (j >= 0) & (j < taken.shape[1])
+        if there.any():
+            i, j = i[there], j[there]
+            own = np.zeros((int(np.ptp(i)) + 1, int(np.ptp(j)) + 1), bool)
+            own[i - i.min(), j - j.min()] = True
+            taken[i.min():i.max() + 1, j.min():j.max() + 1] |= _between(own, 0) | _between(own, 1)
+    return taken
+
+
+def _parts(canvas: Canvas, start: int) -> Iterator[tuple[list[Mark], list[Label], bool]]:
+    """Marks of each part of a view from one on, the labels that it has asked for, and whether it has a title."""
     ends = [*(part.first for part in canvas.parts), len(canvas.marks)]
     for k, (first, end) in enumerate(pairwise(ends)):
-        if canvas.parts[k].draw != "title block":
+        if k >= start and canvas.parts[k].draw != "title block":
             yield canvas.marks[first:end], [label for label in canvas.labels if label.part == k], bool(canvas.parts[k].title)
 
 
@@ -114,8 +131,8 @@ def _about(label: Label) -> Points:
     return label.anchor + np.array([0j, complex(u.real * width, u.imag * height)])
 
 
-def _between(cells: NDArray[np.bool_], axis: int) -> NDArray[np.int64]:
+def _between(cells: Cells, axis: int) -> Cells:
     """Cells between the first and the last inked one of every line along an axis."""
     before = np.maximum.accumulate(cells, axis=axis)
     behind = np.flip(np.maximum.accumulate(np.flip(cells, axis), axis=axis), axis)
-    return np.asarray(before & behind, dtype=np.int64)
+    return np.asarray(before & behind)
