@@ -84,7 +84,7 @@ def test_the_short_way_of_frames_has_three_pages_and_two(cam):
     note = replace(note, front=tuple(front), frame=replace(note.frame, short=True))
     data, places = typst_writer.render(note)
     assert [n for n, text in enumerate(pages(data), 1) if note.frame.words["doc"] in text] == [2, 3, 4, cam.pages - 1, cam.pages]
-    word = docx.Document(io.BytesIO(docx_writer.render(note, places)))
+    word = docx.Document(io.BytesIO(docx_writer.render(composing.counted(note, places["pages"]), places)))
     assert [len(s.footer.tables) for s in word.sections] == [0, 1, 1, 0, 1]
     assert word.sections[1].bottom_margin.mm == pytest.approx(48, abs=0.1)  # form 2: the contents are page 2
 
