@@ -307,7 +307,7 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
         length = abs(value_at(b, r.at(b, None)) - value_at(a, r.at(a, None)))
         value = value_at(step, at)
         size = abs(float(value)) * length  # of the vector across the link
-        symbol = by_ends.get((tail.name, head.name), f"V_{{{head.name}}}").replace(BAR, "")
+        symbol = by_ends.get((tail.name, head.name), f"V_{{{b.name}{a.name}}}").replace(BAR, "")
         if second:
             across = next(
                 (
