@@ -213,8 +213,8 @@ def general(r: Reader) -> Scope:
     }
     said = phrases.words(r.language)
     fields |= {f"keys_{p}": said["keys"][p] if p in parts else "" for p in said["keys"]}
-    fields["objects"] = _listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
-    fields["aims"] = _listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
+    fields["objects"] = phrases.listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
+    fields["aims"] = phrases.listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
     variant = catalogues.of_file(v.project.variant or "")
     fields["variant_text"] = said["phrases"]["variant"].format(variant=variant) if variant else ""
     fields["and_forces"] = said["phrases"]["and_forces"] if "forces" in parts else ""
@@ -225,11 +225,6 @@ def general(r: Reader) -> Scope:
     if "positions" in parts:
         fields["label"] = r.label
     return Scope(fields)
-
-
-def _listed(items: list[str], last: str) -> str:
-    """A list in words."""
-    return last.join(filter(None, (", ".join(items[:-1]), *items[-1:])))
 
 
 def _task(r: Reader) -> Scope:

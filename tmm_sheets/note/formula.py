@@ -126,7 +126,7 @@ class Underlined(Node):
 # --- letters ------------------------------------------------------------------------------------------------------
 
 _NAME = re.compile(
-    r"([FMGRVaωεφhJmzrψθ])(и?[\d–]+)([τn]?)([′″]*)|([FM])(Ми|и|пс|ур|д|с|c)(\d*)|([a-zπ])(\d+)([′″]*)|([A-Z])(\d+)([′″]*)"
+    r"([FMGRVaωεφhJmzrψθ])(и?[\d–]+)([τn]?)([′″]*)|([FMQ])(Ми|[а-я]{1,3}|[a-z]{1,2})(\d*)|([a-zπ])(\d+)([′″]*)|([A-Z])(\d+)([′″]*)"
 )
 
 
@@ -276,6 +276,8 @@ def simplified(tree: expression.Expression) -> expression.Expression:
         parts = kept or parts[:1]
     if tree.name in ("*", "/", "+") and len(parts) == 2:
         return _tidied(tree.name, parts[0], parts[1])
+    if tree.name in ("minimum", "maximum") and len(parts) == 2 and same(*parts):
+        return parts[0]
     if tree.name == "hypot":
         two = expression.Constant(2.0)
         squares = tuple(expression.Operation("^", (p, two)) for p in parts)

@@ -374,7 +374,10 @@ class Reader:
                 for russian, own in said["guides"].items():
                     name = name.replace(russian, own)
                 for end in ("₀", ""):
-                    text = re.sub(rf"(?<![«“\w]){guide.name + end}", said["quoted"].format(name=name + end), text)
+                    quoted = said["quoted"].format(name=name + end)
+                    text = re.sub(rf"(?<![«“\w]){guide.name + end}", quoted, text)
+                for before, line in said["lines"].items():
+                    text = text.replace(f"{before} {quoted}", f"{line} {quoted}")
         return text
 
     # --- tables

@@ -18,6 +18,7 @@ from tmm_sheets.note.document import (
     Heading,
     NewPage,
     Note,
+    Number,
     Paragraph,
     Sheet,
     Symbol,
@@ -182,6 +183,8 @@ def text(parts: Text) -> str:
         if isinstance(x, Symbol)
         else "#pages-of-all;"
         if getattr(x, "step", "") == "note.pages"
+        else f"#box({string(str(x))});"  # no unit is parted behind its slash
+        if isinstance(x, Number) and "/" in x.unit
         else f"#{string(str(x))};"
         for x in parts
     )
