@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tmm_sheets.task.toml_lines import KeyPath
     from tmm_sheets.task.variant import Variant
 
-_QUIET = ("schema", "project", "title_block")
+_QUIET = ("schema", "project", "title_block", "note")
 WIDEST = 40
 """Longest entry that its column makes room for; what is longer (a diagram) pushes its own line only."""
 

@@ -3,6 +3,7 @@
 import re
 from itertools import pairwise
 from math import degrees, isclose
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +14,9 @@ from tmm_sheets.note import composing, phrases
 from tmm_sheets.note.document import Contents, Figure, Formula, Heading, Number, Paragraph, Reference, Sheet, Table, Where, numbers
 from tmm_sheets.note.formula import Letters, Words
 from tmm_sheets.note.phrases import plain_text
-from tmm_sheets.note.pictures import LETTERS, READABLE
-from tmm_sheets.note.sections import forces
+from tmm_sheets.note.pictures import LETTERS, READABLE, Pictures
+from tmm_sheets.note.reader import Reader
+from tmm_sheets.note.sections import flywheel, forces, reducer
 from tmm_sheets.record.recording import book_of
 
 
@@ -294,7 +296,7 @@ def test_the_languages_tell_the_same(language):
         asked = {of: [m for line in phrases.text_of(of, name).splitlines() for m in _asked(line)] for of in ("ru", language)}
         assert asked[language] == asked["ru"], name
     for table, entries in phrases.words("ru").items():
-        if isinstance(entries, dict) and table not in ("several", "guides", "indices"):
+        if isinstance(entries, dict) and table not in ("several", "guides", "indices", "lines"):
             assert entries.keys() <= phrases.words(language)[table].keys(), table
 
 
@@ -327,3 +329,31 @@ def test_arms_belong_to_the_links_of_their_index():
     assert not forces._of_group("h21,0", ("2", "3"))
     assert forces._of_group("h2,10", ("2", "3"))
     assert not forces._of_group("h2,10", ("1", "4"))
+
+
+def undrawn(name):
+    """What the sections read, without any sheet."""
+    return Reader(opened(name), "ru", Pictures({}), {})
+
+
+def said_by(section, reader):
+    scope = section.scope(reader)
+    scope.fields = composing.general(reader).fields | scope.fields
+    blocks = phrases.Writer("ru", phrases.Numbering(composing.literature())).blocks(section.__name__.rpartition(".")[2], scope)
+    return " ".join(plain_text(b.text) for b in blocks if isinstance(b, Paragraph))
+
+
+def test_interference_does_not_contradict_the_conditions():
+    """The ring's tip ends on the involute where z5 (z4 s/2 - 1) + 1 - z4^2 s/4 >= 0, s = sin^2 20 deg: nowhere for z4 = 15."""
+    s = np.sin(np.radians(20)) ** 2
+    assert 15 * s / 2 < 1 < 15**2 * s / 4
+    text = said_by(reducer, undrawn("transport/diesel@01-Т-27"))
+    assert "Условия соосности, сборки и соседства выполнены" in text
+    assert "при 15 зубьях сателлита её не устраняет никакое число зубьев колеса 5" in text
+    assert "Все условия" not in text
+
+
+@pytest.mark.parametrize("name", ["conveyor", "feeder", "stirrer"])
+def test_a_crank_with_a_moment_of_inertia_counts_once(name):
+    r = undrawn(str(Path(__file__).parents[1] / "projects" / f"{name}.toml"))
+    assert flywheel.scope(r).formulas["J"].numbers is not None

@@ -5,13 +5,19 @@ import re
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 
 import pytest
 
 from tests.note.opened import composed, opened
+from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
-from tmm_sheets.errors import CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.note import composing
 from tmm_sheets.note import note as writing
+from tmm_sheets.note.document import Contents
+from tmm_sheets.project import Project
+from tmm_sheets.task import variant
 
 pypdfium2 = pytest.importorskip("pypdfium2")
 
@@ -67,6 +73,38 @@ def test_the_word_file_has_fields_equations_and_headings(cam):
     assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
+def test_the_short_way_of_frames_has_three_pages_and_two(cam):
+    """Manual 003; in Word they are those of whole sections, without an empty page before."""
+    import docx
+
+    from tmm_sheets.note import docx_writer, typst_writer
+
+    note = composed(opened("lugansk/cam_rocker"))
+    front = sorted(note.front, key=lambda b: not isinstance(b, Contents))  # as 003 has it
+    note = replace(note, front=tuple(front), frame=replace(note.frame, short=True))
+    data, places = typst_writer.render(note)
+    assert [n for n, text in enumerate(pages(data), 1) if note.frame.words["doc"] in text] == [2, 3, 4, cam.pages - 1, cam.pages]
+    word = docx.Document(io.BytesIO(docx_writer.render(composing.counted(note, places["pages"]), places)))
+    assert [len(s.footer.tables) for s in word.sections] == [0, 1, 1, 0, 1]
+    assert word.sections[1].bottom_margin.mm == pytest.approx(48, abs=0.1)  # form 2: the contents are page 2
+
+
+@pytest.mark.parametrize(("key", "first"), [('manual = "003"', "contents"), ('manual = "002"', "task"), ("", "abstract")])
+def test_the_order_is_that_of_the_manual_named_and_not_of_the_name(key, first):
+    text = catalogue.read("transport/press@05-ЭПС-123").text
+    text = text.replace('manual = "003"', key).replace('name = "transport/press@05-ЭПС-123"', 'name = "own"', 1)
+    front, sections = composing._order_of(Project(variant.parse(text, "own.toml")))
+    assert front[0] == first
+    names = [s["template"] for s in sections]
+    assert (names.index("flywheel") < names.index("forces")) is (first == "task")
+
+
+def test_an_unknown_manual_is_told():
+    text = catalogue.read("transport/press@05-ЭПС-123").text.replace('manual = "003"', 'manual = "03"')
+    with pytest.raises(BadInput, match=r'own\.toml:\d+: note\.manual: unknown manual, .*: "03"; did you mean "003"'):
+        variant.parse(text, "own.toml")
+
+
 def test_with_note_the_numbers_of_the_sheets_run_on(tmp_path, capsys):
     pytest.importorskip("typst")
     assert run(["build", "lugansk/cam_rocker", "--with-note", "--format", "pdf", "-o", str(tmp_path)]) == 0
@@ -104,7 +142,6 @@ def test_a_language_without_templates_is_told():
 
 
 def test_a_wrong_template_is_told_with_its_line(monkeypatch):
-    from tmm_sheets.errors import BadInput
     from tmm_sheets.note import phrases
 
     real = phrases.text_of
@@ -136,7 +173,6 @@ def test_a_figure_that_does_not_fit_goes_to_the_next_page_of_the_word_file():
 ])  # fmt: skip
 def test_a_wrong_preamble_is_told(note, tmp_path, monkeypatch, right, wrong, told):
     pytest.importorskip("typst")
-    from tmm_sheets.errors import BadInput
     from tmm_sheets.note import typst_writer
 
     real = typst_writer.template

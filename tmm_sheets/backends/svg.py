@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import re
 from cmath import exp
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import ceil, pi
 from pathlib import Path
+
+import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.dashes import strokes
@@ -61,14 +63,66 @@ def render(drawing: Drawing) -> bytes:
 
 
 def picture(marks: Iterable[Mark], box: Box) -> bytes:
-    """SVG of some marks, cut out along a rectangle of the sheet (mm), without titles: for a page of text."""
-    width, height = f"{box.width:g}", f"{box.height:g}"
+    """SVG of some marks, cut out along a rectangle of the sheet (mm), without titles: for a page of text.
+
+    Units are whole micrometres, y points down, and a line type or a height of lettering is one path: it is read by programs only.
+    """
+    corner = complex(box.x0, box.y1)
+    lines: dict[str, _Trace] = {}
+    texts: dict[float, _Trace] = {}
+    fills: list[str] = []
+    for mark in strokes(marks):
+        check(mark)
+        if isinstance(mark, Text):
+            trace = texts.setdefault(mark.height, _Trace())
+            for points in letters(mark):
+                trace.add(points.tolist())
+        elif isinstance(mark, Fill):
+            trace = _Trace()
+            trace.add(mark.points.tolist(), "z")
+            fills.append(trace.path(corner))
+        elif isinstance(mark, Arc):
+            ends, closed = _ends(mark)
+            r = round(MICRO * mark.radius)
+            lines.setdefault(mark.style, _Trace()).add(ends, closed, f"A{r} {r} 0 0 0 ")
+        elif isinstance(mark, Line):
+            lines.setdefault(mark.style, _Trace()).add((mark.a, mark.b))
+        else:
+            lines.setdefault(mark.style, _Trace()).add(mark.points.tolist(), "z" if mark.closed else "")
+    body = "".join((
+        *(_group(f'stroke-width="{MICRO * line_type(style).width:g}"', [lines[style].path(corner)]) for style in lines),
+        _group('stroke="none" fill="#000"', fills),
+        *(_group(f'stroke-width="{MICRO * PEN * height:g}"', [texts[height].path(corner)]) for height in sorted(texts)),
+    ))
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}mm" height="{height}mm" '
-        f'viewBox="0 0 {width} {height}">\n'
-        f'<g transform="matrix(1 0 0 -1 {-box.x0:g} {box.y1:g})" fill="none" stroke="#000" stroke-linecap="round" '
-        f'stroke-linejoin="round">\n{_paths(marks, "class")}</g>\n</svg>\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{box.width:g}mm" height="{box.height:g}mm" '
+        f'viewBox="0 0 {MICRO * box.width:.0f} {MICRO * box.height:.0f}">\n'
+        f'<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">\n{body}</g>\n</svg>\n'
     ).encode()
+
+
+MICRO = 1000.0
+"""Micrometres in a millimetre."""
+
+
+class _Trace:
+    """Lines of one look, gathered into one path."""
+
+    def __init__(self) -> None:
+        self.points: list[complex] = []
+        self.form: list[str] = []
+
+    def add(self, points: Sequence[complex], closed: str = "", to: str = "L") -> None:
+        """One more line through points of the sheet, mm; ``to`` leads from one to the next."""
+        self.points += points
+        self.form.append("M%d %d" + f"{to}%d %d" * (len(points) - 1) + closed)
+
+    def path(self, corner: complex) -> str:
+        """The path in micrometres from the upper left corner of the picture."""
+        z = (np.array(self.points) - corner) * MICRO
+        places = np.rint(np.column_stack((z.real, -z.imag))).astype(int)
+        data = "".join(self.form) % tuple(places.ravel().tolist())
+        return f'<path d="{data}"/>'
 
 
 def _paths(marks: Iterable[Mark], called: str) -> str:
@@ -101,11 +155,16 @@ def _path(mark: Line | Arc | Polyline) -> str:
         return _polyline((mark.a, mark.b))
     if isinstance(mark, Polyline):
         return _polyline(mark.points.tolist()) + ("z" if mark.closed else "")
+    ends, closed = _ends(mark)
+    arc = f"A{_number(mark.radius)} {_number(mark.radius)} 0 0 1 "
+    return f"M{_place(ends[0])}" + "".join(arc + _place(end) for end in ends[1:]) + closed
+
+
+def _ends(mark: Arc) -> tuple[list[complex], str]:
+    """Ends of the pieces of an arc, and "z" for a whole circle."""
     n = max(ceil((mark.end - mark.start) / PIECE - 1e-9), 1)
     ends = [mark.centre + mark.radius * exp(1j * (mark.start + (mark.end - mark.start) * i / n)) for i in range(n + 1)]
-    arc = f"A{_number(mark.radius)} {_number(mark.radius)} 0 0 1 "
-    closed = "z" if mark.end - mark.start > 2 * pi - 1e-9 else ""
-    return f"M{_place(ends[0])}" + "".join(arc + _place(end) for end in ends[1:]) + closed
+    return ends, "z" if mark.end - mark.start > 2 * pi - 1e-9 else ""
 
 
 def _polyline(points: Iterable[complex]) -> str:

@@ -50,9 +50,9 @@ def _order() -> dict[str, Any]:
 
 
 def _order_of(project: Project) -> tuple[list[str], list[dict[str, Any]]]:
-    """Names of the parts before the sections, and the sections, in the order of the manual that the project comes from."""
+    """Names of the parts before the sections, and the sections, in the order of the manual that the project names."""
     order = _order()
-    own: dict[str, Any] = next((of for name, of in order["manuals"].items() if project.variant.project.name.startswith(name)), {})
+    own: dict[str, Any] = order["manuals"].get(project.variant.note.manual, {})
     sections = order["section"]
     if "sections" in own:
         sections = sorted(sections, key=lambda s: own["sections"].index(s["template"]) if s["template"] in own["sections"] else -1)
@@ -207,14 +207,14 @@ def general(r: Reader) -> Scope:
     fields: dict[str, Any] = {
         "name": catalogues.of_file(v.project.title),
         "sheets": len(r.pictures.sheets),
-        "transport": v.project.name.startswith("transport/"),
+        f"manual_{v.note.manual or '000'}": True,
         "institution": catalogues.of_file(v.title_block.institution or ""),
         **{f"has_{p}": True for p in parts},
     }
     said = phrases.words(r.language)
     fields |= {f"keys_{p}": said["keys"][p] if p in parts else "" for p in said["keys"]}
-    fields["objects"] = _listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
-    fields["aims"] = _listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
+    fields["objects"] = phrases.listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
+    fields["aims"] = phrases.listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
     variant = catalogues.of_file(v.project.variant or "")
     fields["variant_text"] = said["phrases"]["variant"].format(variant=variant) if variant else ""
     fields["and_forces"] = said["phrases"]["and_forces"] if "forces" in parts else ""
@@ -225,11 +225,6 @@ def general(r: Reader) -> Scope:
     if "positions" in parts:
         fields["label"] = r.label
     return Scope(fields)
-
-
-def _listed(items: list[str], last: str) -> str:
-    """A list in words."""
-    return last.join(filter(None, (", ".join(items[:-1]), *items[-1:])))
 
 
 def _task(r: Reader) -> Scope:
@@ -371,4 +366,4 @@ def _frame(r: Reader) -> Frame:
         "group": catalogues.of_file(block.group or ""),
         "subject": said["stamp_subject"],
     }
-    return Frame(fields, dict(said["stamp"]))
+    return Frame(fields, dict(said["stamp"]), r.project.variant.note.frames == "short")

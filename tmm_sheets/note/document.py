@@ -166,10 +166,21 @@ class Source:
 
 @dataclass(frozen=True)
 class Frame:
-    """Words of the stamps, forms 2 and 2a (GOST 2.104), by their fields."""
+    """Words of the stamps, forms 2 and 2a (GOST 2.104), by their fields; ``short``: not all pages have frame and stamp."""
 
     fields: dict[str, str]
     words: dict[str, str]
+    short: bool = False
+
+    def on(self, first: int, last: int, all_: int) -> bool:
+        """Whether one of the pages from ``first`` to ``last`` has a frame, in a note of ``all_`` pages: the short way of manual
+        003 is to draw it on the first three after the title page and on the last two.
+        """
+        return first > 1 and (not self.short or first <= 1 + FRAMED[0] or last > all_ - FRAMED[1])
+
+
+FRAMED = (3, 2)
+"""Pages with a frame in the short way: so many after the title page, and so many at the end."""
 
 
 @dataclass(frozen=True)

@@ -129,15 +129,18 @@ class _Writer:
         section = self.made.sections[0]
         self._page(section)
         self._title_page()
-        self._section(WD_SECTION.NEW_PAGE, "2a", first=True)
+        if not isinstance(note.front[0], Contents):
+            self._section(WD_SECTION.NEW_PAGE, "2a", first=True)
         for b in note.front:
             if isinstance(b, Contents):
                 self._section(WD_SECTION.NEW_PAGE, "2")
                 self.block(b)
                 self._section(WD_SECTION.NEW_PAGE, "2a", first=True)
             else:
+                self._framed(b)
                 self.block(b)
         for b in floated(note.body):
+            self._framed(b)
             self.block(b)
         return self.made
 
@@ -149,15 +152,32 @@ class _Writer:
         section.top_margin, section.bottom_margin = self.mm(11), self.mm(23)
         section.header_distance, section.footer_distance = self.mm(5), self.mm(5)
 
+    def _framed(self, b: Block) -> None:
+        """Begin a section where what begins a page has a frame and what was before had none, or the other way round."""
+        from docx.enum.section import WD_SECTION
+
+        if not (isinstance(b, Sheet) or (isinstance(b, Heading) and b.level == 1)):
+            return
+        pages, last = self.places["headings"], int(self.places["pages"])
+        after = (page for (level, *_), page in zip(self.headings[self.seen + 1:], pages[self.seen + 1:], strict=True) if level == 1)
+        wanted = self.note.frame.on(pages[self.seen], next(after, last + 1) - 1, last)
+        if wanted != bool(self.form):
+            self._section(WD_SECTION.NEW_PAGE, "2a" if wanted else "", first=True)
+
     def _section(self, kind: Any, form: str, first: bool = False) -> None:
-        """A new section with the frame in its header and a stamp in its footer; its first heading begins no page of its own."""
+        """A new section with the frame in its header and a stamp in its footer, or without both where there is no ``form``.
+
+        ``first``: its first heading begins no page of its own.
+        """
         section = self.made.add_section(kind)
         self._page(section)
         section.header.is_linked_to_previous = section.footer.is_linked_to_previous = False
         if form == "2":
             section.bottom_margin = self.mm(48)
-        self._frame(section.header.paragraphs[0])
-        self._stamp(section.footer, form)
+        if form:
+            self._frame(section.header.paragraphs[0])
+            self._stamp(section.footer, form)
+        self.form = form
         self.fresh = first
 
     def _frame(self, paragraph: Any) -> None:
@@ -423,6 +443,9 @@ class _Writer:
         _, _, mark = self.headings[self.seen]
         self.seen += 1
         p = self.made.add_heading("", 1)
+        if self.fresh:
+            p.paragraph_format.page_break_before = False
+        self.fresh = False
         _bookmark(p, mark, next(self.ids), lambda: p.add_run(f"{self.note.title_page['appendix']} {b.number}".upper()))
         p.paragraph_format.space_after = self.pt(2)
         title = self.made.add_paragraph(b.title)

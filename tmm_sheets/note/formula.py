@@ -126,7 +126,7 @@ class Underlined(Node):
 # --- letters ------------------------------------------------------------------------------------------------------
 
 _NAME = re.compile(
-    r"([FMGRVaωεφhJmzrψθ])(и?[\d–]+)([τn]?)([′″]*)|([FM])(Ми|и|пс|ур|д|с|c)(\d*)|([a-zπ])(\d+)([′″]*)|([A-Z])(\d+)([′″]*)"
+    r"([FMGRVaωεφhJmzrψθ])(и?[\d–]+)([τn]?)([′″]*)|([FMQ])(Ми|и|пс|ур|д|с|[a-z]{1,2})(\d*)|([a-zπ])(\d+)([′″]*)|([A-Z])(\d+)([′″]*)"
 )
 
 
@@ -246,6 +246,7 @@ _FUNCTIONS = {
     "minimum": "min",
     "maximum": "max",
     "inverse involute": "arcinv",
+    "greatest common divisor": "НОД",
     "sign": "sign",
 }
 
@@ -274,8 +275,12 @@ def simplified(tree: expression.Expression) -> expression.Expression:
         if len(kept) == 1:
             return kept[0]
         parts = kept or parts[:1]
+    if tree.name == "-" and len(parts) == 2 and _negated(parts[1]):
+        return expression.Operation("+", (parts[0], parts[1].parts[0]))
     if tree.name in ("*", "/", "+") and len(parts) == 2:
         return _tidied(tree.name, parts[0], parts[1])
+    if tree.name in ("minimum", "maximum", "greatest common divisor") and len(parts) == 2 and same(*parts):
+        return parts[0]
     if tree.name == "hypot":
         two = expression.Constant(2.0)
         squares = tuple(expression.Operation("^", (p, two)) for p in parts)
@@ -315,6 +320,15 @@ def with_numbers(tree: expression.Expression, known: Mapping[int, float]) -> exp
     return tree
 
 
+def renumbered(tree: expression.Expression, order: Sequence[int]) -> expression.Expression:
+    """The tree with every argument called by another number."""
+    if isinstance(tree, expression.Argument):
+        return expression.Argument(order[tree.index])
+    if isinstance(tree, expression.Operation):
+        return expression.Operation(tree.name, tuple(renumbered(p, order) for p in tree.parts), tree.function)
+    return tree
+
+
 def _is(tree: expression.Expression, value: float) -> bool:
     return isinstance(tree, expression.Constant) and tree.value == value
 
@@ -344,6 +358,7 @@ _WRITTEN = (
     "hypot",
     "minimum",
     "maximum",
+    "greatest common divisor",
 )
 """Operations that stand in formulas."""
 

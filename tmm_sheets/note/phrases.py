@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -541,3 +541,8 @@ def _split(lines: list[tuple[int, str]], i: int, n: int) -> tuple[list[tuple[int
 def plain_text(text: Iterable[Inline]) -> str:
     """Text without its marks."""
     return "".join(str(x) if not isinstance(x, Symbol) else "" for x in text)
+
+
+def listed(items: Sequence[str], last: str) -> str:
+    """A list in words."""
+    return last.join(filter(None, (", ".join(items[:-1]), *items[-1:])))

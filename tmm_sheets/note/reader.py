@@ -31,6 +31,7 @@ from tmm_sheets.note.formula import (
     letters,
     letters_of,
     of_tree,
+    renumbered,
     simplified,
     with_numbers,
 )
@@ -224,7 +225,8 @@ class Reader:
             for i, a in enumerate(step.args)
             if isinstance(a, int | float) and not isinstance(a, GivenNumber | FoundNumber)
         }
-        tree = simplified(with_numbers(tree, plain))
+        firsts = [next(j for j, b in enumerate(step.args) if b is a) for a in step.args]
+        tree = simplified(with_numbers(renumbered(tree, firsts), plain))
         head = symbol or self.letters_of(step)
         if isinstance(tree, expression.Argument | expression.Constant) or not all(
             _presentable(s) for s in (head, *(quantities[i].symbol for i in arguments(tree)))
@@ -374,7 +376,10 @@ class Reader:
                 for russian, own in said["guides"].items():
                     name = name.replace(russian, own)
                 for end in ("₀", ""):
-                    text = re.sub(rf"(?<![«“\w]){guide.name + end}", said["quoted"].format(name=name + end), text)
+                    quoted = said["quoted"].format(name=name + end)
+                    text = re.sub(rf"(?<![«“\w]){guide.name + end}", quoted, text)
+                for before, line in said["lines"].items():
+                    text = text.replace(f"{before} {quoted}", f"{line} {quoted}")
         return text
 
     # --- tables

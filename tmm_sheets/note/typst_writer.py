@@ -10,6 +10,7 @@ from typing import Any
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.note.alphabets import TYPST, spelt, string
 from tmm_sheets.note.document import (
+    FRAMED,
     Block,
     Contents,
     Figure,
@@ -17,6 +18,7 @@ from tmm_sheets.note.document import (
     Heading,
     NewPage,
     Note,
+    Number,
     Paragraph,
     Sheet,
     Symbol,
@@ -108,11 +110,12 @@ def source(note: Note) -> str:
     front = "\n".join(map(w.block, note.front))
     reminders = "\n".join(map(w.block, note.reminders))
     fields = ", ".join(f"{string(k)}: {string(v)}" for k, v in (note.frame.fields | note.frame.words).items())
+    framed = ", ".join(map(str, FRAMED)) if note.frame.short else ""
     title = ", ".join(f"{string(k)}: {_value(v)}" for k, v in note.title_page.items())
     return (
         '#import "preamble.typ": *\n'
         f"#show: note.with(lang: {string(note.language)}, title: {string(note.title)}, author: {string(note.author)}, "
-        f"first: {note.first_page}, words: ({fields or ':'}))\n"
+        f"first: {note.first_page}, framed: ({framed}), words: ({fields or ':'}))\n"
         f"#title-page(({title}))\n{front}\n{body}\n#last-page()\n#places()\n" + (f"#reminders[{reminders}]\n" if reminders else "")
     )
 
@@ -180,6 +183,8 @@ def text(parts: Text) -> str:
         if isinstance(x, Symbol)
         else "#pages-of-all;"
         if getattr(x, "step", "") == "note.pages"
+        else f"#box({string(str(x))});"  # no unit is parted behind its slash
+        if isinstance(x, Number) and "/" in x.unit
         else f"#{string(str(x))};"
         for x in parts
     )

@@ -132,16 +132,14 @@ def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) ->
     points = np.concatenate([np.ravel(z) for z in ink])
     for height in (3.5, 2.5):
         width, high = max(letter(line, height).width for line in lines), len(lines) * 1.7 * height
-        x, y = np.meshgrid(np.arange(room.x0 + 2.0, room.x1 - width, 4.0), np.arange(room.y0, room.y1 - high, 2.0))
-        places = (x + 1j * y).ravel()
-        if not len(places):
+        x, y = np.arange(room.x0 + 2.0, room.x1 - width, 4.0)[:, None], np.arange(room.y0, room.y1 - high, 2.0)[:, None]
+        if not x.size or not y.size:
             continue
-        corner = places[:, None]
-        beside = np.maximum(np.maximum(corner.real - points.real, points.real - corner.real - width), 0.0)
-        apart = np.maximum(np.maximum(corner.imag - points.imag, points.imag - corner.imag - high), 0.0)
-        free = np.hypot(beside, apart).min(axis=1)
-        best = int(np.argmax(free))
-        if free[best] >= 6.0:
+        beside = np.maximum(np.maximum(x - points.real, points.real - x - width), 0.0)
+        apart = np.maximum(np.maximum(y - points.imag, points.imag - y - high), 0.0)
+        free = np.array([np.hypot(beside, above).min(axis=1) for above in apart])
+        row, column = np.unravel_index(np.argmax(free), free.shape)
+        if free[row, column] >= 6.0:
             for i, line in enumerate(lines):
-                canvas.text(complex(places[best]) + 1j * (high - (i + 1) * 1.7 * height + 0.35 * height), line, height)
+                canvas.text(complex(x[column, 0], y[row, 0]) + 1j * (high - (i + 1) * 1.7 * height + 0.35 * height), line, height)
             return

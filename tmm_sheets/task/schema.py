@@ -25,6 +25,7 @@ from tmm_sheets.task.values import (
     Inertia,
     InnerFraction,
     Length,
+    ManualName,
     Mass,
     Name,
     Newtons,
@@ -93,6 +94,15 @@ class TitleBlockTable(Table):
     """field 4: `У` for a study project"""
     first_sheet: Count = 1
     """running number of the first sheet"""
+
+
+class NoteTable(Table):
+    """``[note]``: what the explanatory note is like; the project may go without."""
+
+    manual: ManualName | None = Field(default=None, description=marked("manual whose order the note has: a key of "
+                                                                       "templates/note/order.toml"))
+    frames: Literal["all", "short"] = "all"
+    """pages with frame and stamp: all but the title page, or only the first three and the last two (manual 003)"""
 
 
 class CrankTable(Table):

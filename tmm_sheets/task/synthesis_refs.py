@@ -28,7 +28,7 @@ def uses(data: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, re.Match[str]
             yield path, match
     elif isinstance(data, dict):
         for key, value in data.items():
-            if path or key not in ("project", "title_block", "synthesis"):
+            if path or key not in ("project", "title_block", "note", "synthesis"):
                 yield from uses(value, (*path, key))
     elif isinstance(data, list):
         for i, value in enumerate(data):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import tomllib
+from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from itertools import pairwise
 from typing import Annotated, Any, Literal
@@ -197,15 +198,31 @@ CamDiagram = Annotated[tuple[tuple[Any, Any], ...], AfterValidator(_shares), Bef
 
 def _arrangement(name: str) -> str:
     """Name of an arrangement."""
-    known = sorted(p.stem for p in resources.template("sheets").glob("*.toml"))
+    return _known(name, (p.stem for p in resources.template("sheets").glob("*.toml")),
+                  tell('unknown sheet, not in templates/sheets: "{name}"; {hint}'))
+
+
+def _manual(name: str) -> str:
+    """Name of a manual whose order the note may have."""
+    path = resources.template("note/order.toml")
+    try:
+        order = tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as e:
+        raise units.Refused(f"{path}: {e}") from None
+    return _known(name, order["manuals"], tell('unknown manual, not in templates/note/order.toml: "{name}"; {hint}'))
+
+
+def _known(name: str, names: Iterable[str], message: str) -> str:
+    """A name that is one of those there are."""
+    known = sorted(names)
     if name not in known:
         near, listed = nearest(name, known)
-        hint = near or tell("known are {known}").format(known=listed)
-        raise units.Refused(tell('unknown sheet, not in templates/sheets: "{name}"; {hint}').format(name=name, hint=hint))
+        raise units.Refused(message.format(name=name, hint=near or tell("known are {known}").format(known=listed)))
     return name
 
 
 SheetName = Annotated[Name, AfterValidator(_arrangement)]
+ManualName = Annotated[str, AfterValidator(_manual)]
 
 
 def or_word(word: str) -> WrapValidator:

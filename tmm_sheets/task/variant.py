@@ -36,6 +36,7 @@ from tmm_sheets.task.schema import (
     HeadingTable,
     LinkTable,
     MomentTable,
+    NoteTable,
     PointTable,
     ReducerTable,
     SynthesisTable,
@@ -53,6 +54,7 @@ class Variant(Table):
     schema_: Literal[1] = Field(alias="schema", description=marked("version of the file format: schema = 1"))
     project: HeadingTable = Field(description=marked("table [project] with name, title and sheets"))
     title_block: TitleBlockTable = TitleBlockTable()
+    note: NoteTable = NoteTable()
     synthesis: SynthesisTable | None = None
     crank: CrankTable | None = None
     points: dict[Name, tuple[Coordinate, Coordinate]] = Field(

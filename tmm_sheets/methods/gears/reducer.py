@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.construction.given import GivenNumber
 from tmm_sheets.construction.plan import Plan
@@ -35,6 +35,17 @@ def criterion_of(data: ReducerTable, sets: Sequence[ToothSet]) -> str:
     return tr("among the sets that fulfil coaxiality, assembly and neighbourhood, the least height of the reducer in the first of "
               "the steps {tiers} % of the deviation of the ratio that has any sets; the best sets in order: {sets}"
               ).format(tiers=tiers, sets=told)
+
+
+class Interference(NamedTuple):
+    """An internal pair that interferes without shifts: numbers of its wheels, teeth of the planet, and the least tooth number of
+    the ring that would not, 0 when none will do.
+    """
+
+    planet: str
+    ring: str
+    teeth: int
+    least: int
 
 
 class Reducer:
@@ -144,17 +155,30 @@ class Reducer:
     def warnings(self) -> tuple[str, ...]:
         """Remarks for the sheet."""
         out = []
-        if self.told("u_simple") < self.scheme.least_simple:
+        if self.small_ratio:
             out.append(tr("the ratio of the simple stage is less than {least}").format(least=number(self.scheme.least_simple)))
+        for of in self.interferences:
+            said = (tr("interference in the pair {planet}–{ring}: z_{ring} ≥ {least} is needed") if of.least
+                    else tr("interference in the pair {planet}–{ring}: without shift no ring will do"))
+            out.append(said.format(planet=of.planet, ring=of.ring, least=of.least))
+        return tuple(out)
+
+    @property
+    def small_ratio(self) -> bool:
+        """Whether the ratio of the simple stage is less than is recommended for it."""
+        return self.told("u_simple") < self.scheme.least_simple
+
+    @cached_property
+    def interferences(self) -> tuple[Interference, ...]:
+        """The internal pairs of the first stage that interfere without shifts."""
         z, numbers = self.chosen.stage, stage_numbers(self.data, 0)
+        found = []
         for satellite, ring, sign in internal_pairs(self.scheme.signs):
             if sign < 0:
                 least = int(self.conditions[f"least_z{numbers[ring]}"].value)
                 if not least or z[ring] < least:
-                    said = (tr("interference in the pair {planet}–{ring}: z_{ring} ≥ {least} is needed") if least
-                            else tr("interference in the pair {planet}–{ring}: without shift no ring will do"))
-                    out.append(said.format(planet=numbers[satellite], ring=numbers[ring], least=least))
-        return tuple(out)
+                    found.append(Interference(numbers[satellite], numbers[ring], z[satellite], least))
+        return tuple(found)
 
     def results(self) -> dict[str, Any]:
         """The ``reducer`` section of ``solve --json``: lengths in millimetres, speeds in 1/min, positive as the input's.

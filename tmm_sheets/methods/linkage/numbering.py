@@ -29,7 +29,8 @@ DEAD_POINTS = "dead points"
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
-WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + sense * turned, ("angle", "number", "angle"), "angle",
+WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + sense * turned,
+             ("inclination", "number", "angle"), "angle",  # with its sign, as the sum is told
              marked("Angle of the crank {name} = {0} + {1}·{2} = {value}."), unit="rad", exact=True)
 EQUAL = Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra,
              ("number", "number", "angle"), "angle",

@@ -9,7 +9,7 @@ import numpy as np
 from tmm_sheets.construction.step import value_at
 from tmm_sheets.note.document import Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
-from tmm_sheets.note.phrases import Said, Scope, words
+from tmm_sheets.note.phrases import Scope, words
 from tmm_sheets.note.reader import Quantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
 from tmm_sheets.numbers import is_zero
@@ -111,9 +111,7 @@ def _reduction(r: Reader, found: Scope) -> None:
                 out = out + p
             return out / w**2
 
-        found.formulas["J"] = (
-            r.checked("J_{пр}", total, [omega, *terms], inertia) if not _crank_part(r) else _with_crank(r, omega, terms, inertia)
-        )
+        found.formulas["J"] = r.checked("J_{пр}", total, [omega, *terms], inertia)
     for name, step in plan.steps.items():
         own = name.startswith("N_") and not name.startswith("N_G") and "(" not in name
         if own and not is_zero(float(np.real(value_at(step, r.at(step, None)))), 1.0):
@@ -124,21 +122,6 @@ def _reduction(r: Reader, found: Scope) -> None:
     n = r.of(moment)
     power = Quantity("ΣN", n.value * fw.omega1, "W", r.id(moment), n.position)
     found.formulas["M"] = r.checked("M_{пр}", lambda p, w: p / w, [power, omega], moment)
-
-
-def _crank_part(r: Reader) -> bool:
-    return abs(r.project.flywheel.reduced.crank_inertia) > 0
-
-
-def _with_crank(r: Reader, omega: Quantity, terms: list[Quantity], inertia: Any) -> Said:
-    def total(w: Any, own: Any, *parts: Any) -> Any:
-        out = parts[0]
-        for p in parts[1:]:
-            out = out + p
-        return own + out / w**2
-
-    own = Quantity("J_{кр}", r.project.flywheel.reduced.crank_inertia, "kg*m2", "crank-inertia/J_кр")
-    return r.checked("J_{пр}", total, [omega, own, *terms], inertia)
 
 
 def _term(name: str) -> str:

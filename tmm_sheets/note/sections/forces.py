@@ -10,6 +10,7 @@ import numpy as np
 
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
 from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, words
@@ -235,11 +236,32 @@ def _group(r: Reader, g: Any, nth: int, told: set[str]) -> dict[str, Any]:
             item["equation"] = _shown(made[1], total.name, part.centre)
         tangential.append(item)
     found["tangential"] = tangential
+    found["normal"] = list(_about_special_point(r, g))
     found["plans"] = [{**_force_plan(r, forces.plans[name]), "nth": f"{nth}-{i}"} for i, name in enumerate(g.kind.force_plans(g))]
     arms = [_arm(r, name, step) for name, step in forces.arms.items() if _of_group(name, g.links) and name not in told]
     told |= {name for name in forces.arms if _of_group(name, g.links)}
     found["arms"] = [x for x in arms if x]
     return found
+
+
+def _about_special_point(r: Reader, g: Any) -> Iterator[dict[str, Any]]:
+    """Of a group of class III what the moments of all of it about Assur's special point give."""
+    study = r.project.study
+    for special in study.positions.special.values():
+        step = next((s for s in study.forces.plan if s.rule is BY_MOMENTS and s.args[1] is special.step), None)
+        if step is None or special.third.link not in g.links:
+            continue
+        about, at = (complex(value_at(x, r.k)) for x in step.args[1:3])
+        arm = abs(float((np.conj(at - about) * complex(value_at(step.args[3], r.k))).imag))
+        symbol = letters_of(step.name.removesuffix("n") if special.third.guide else step.name)
+        length = Quantity(f"h_{{{index_of(symbol)}}}", arm, "m", r.id(step.args[2]), r.label)
+        made = _sum(r, step.args[0], symbol, step, length)
+        item: dict[str, Any] = {"slider": bool(special.third.guide), "zero": made is None}
+        item |= {"first": special.pair[0].link, "second": special.pair[1].link, "third": special.third.link}
+        item["special"] = Symbol(letters(letters_of(special.name)))
+        if made is not None:
+            item |= {"force": made[0], "equation": _shown(made[1], step.args[0].name, special.name)}
+        yield item
 
 
 def _of_group(name: str, links: Iterable[str]) -> bool:
@@ -281,6 +303,10 @@ def _arm(r: Reader, name: str, step: Step) -> dict[str, Any]:
     }
 
 
+SEEN = 0.05
+"""Least side of a plan of forces that is told with its length, mm."""
+
+
 def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
     """A force plan: vector equation with what is known underlined, sides in mm, what it gives."""
     scale = r.scales.get(fp.plan.name)
@@ -304,6 +330,7 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
         return found
     found["mu"] = scale_text(scale)
     sides: list[Any] = []
+    tiny: list[Any] = []
     results = []
     extra = [(s.symbol, s.tail, s.head, True) for s in fp.plan.segments if s.symbol not in {x[0] for x in fp.sides}]
     for symbol, tail, head, sought in [*fp.sides, *extra]:
@@ -319,10 +346,14 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
             ]
             tree: Any = expression.Argument(0) * expression.Argument(1)
             results.append({"result": r.written(plain, tree, q, Quantity("", abs(f), "N", r.id(force), r.label))})
+        elif f and mm < SEEN:
+            tiny += [", "] if tiny else []
+            tiny.append(Symbol(letters(plain)))
         elif f:
             sides += [", "] if sides else []
             sides += [Symbol(letters(plain)), " – ", r.fixed(mm, "mm", 1, r.id(force), r.label)]
     found["sides"] = tuple(sides)
+    found |= {"tiny": tuple(tiny), "few": (len(tiny) + 1) // 2}
     found["results"] = results
     return found
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from math import pi
 from typing import Any
 
@@ -14,9 +14,10 @@ from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
-from tmm_sheets.note.phrases import Said, Scope, words
-from tmm_sheets.note.reader import Quantity, Reader, named
+from tmm_sheets.note.phrases import Said, Scope, listed, words
+from tmm_sheets.note.reader import Quantity, Reader, named, shown
 from tmm_sheets.numbers import is_zero
+from tmm_sheets.sheets.false_positions import triads
 
 BAR = "\u0305"
 MOST_COLUMNS = 9
@@ -56,6 +57,7 @@ def scope(r: Reader) -> Scope:
         found.fields[f"{key}_angular"] = list(_angular(r, plan, v.omega if key == "velocity" else a.epsilon))
         found.fields[f"{key}_several"] = len(found.fields[f"{key}_equations"]) > 1
     found.fields |= _greatest_acceleration(r, a.plan)
+    found.fields["triads"] = list(_triads(r))
     found.tables["velocity_vectors"] = _vectors(r, v.plan)
     found.tables["lengths"] = _drawn_lengths(r)
     found.tables["velocities"] = _over_positions(r, v.plan, v.omega, "velocity")
@@ -172,27 +174,78 @@ def _equations(r: Reader, plan: Plan) -> Iterator[tuple[Node, Text]]:
                 continue
             path = _path(plan, pole, start.name)
             last = by_ends.get((start.name, step.name))
-            if path is None or (last is None and start.name != pole):
+            rest = [last] if last is not None else _of_special(r, plan, step, start, path or ())
+            if path is None or not (rest or start.name == pole):
                 continue
             direction = direction_of(r, along)
-            own = last if start.name != pole else head
-            if direction and own:
-                known += [", "] if known else []
-                known += [Symbol(Row((letters(own), *_items(direction))))]
+            for own in rest if start.name != pole else [head]:
+                if direction:
+                    known += [", "] if known else []
+                    known += [Symbol(Row((letters(own), *_items(direction))))]
             if start.name == pole:
                 continue
             nodes: list[Node] = []
             for symbol in path:
                 nodes += [Sign("+")] if nodes else []
                 nodes.append(Underlined(letters(symbol), 2))
-            if last is not None:
-                nodes += [Sign("+"), Underlined(letters(last), 1)] if nodes else [Underlined(letters(last), 1)]
+            for symbol in rest:
+                nodes += [Sign("+")] if nodes else []
+                nodes.append(Underlined(letters(symbol), 1))
             sides.append(Row(tuple(nodes)))
         if sides:
             items: list[Node] = [letters(head)]
             for side in sides:
                 items += [Sign("="), *_items(side)]
             yield Row(tuple(items)), tuple(known)
+
+
+def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[str]) -> list[str]:
+    """Vectors of one direction that lead to a point of a group of class III and are drawn as one.
+
+    Of a velocity those of a leg and of the triangle towards its special point, of an acceleration the tangential ones beside the
+    normal ones of the ``path``.
+    """
+    study = r.project.study
+    if plan is study.accelerations.plan:
+        return [symbol.replace("^n", "^τ") for symbol in path if symbol.endswith("^n")]
+    special = next((s for s in study.positions.special.values() if study.velocities.special.get(s.name) is step), None)
+    for leg in special.pair if special is not None else ():
+        if special is not None and leg.form == "RR" and study.velocities.points[leg.outer] is start:
+            return [f"V{BAR}_{{{leg.corner}{leg.outer}}}", f"V{BAR}_{{{special.name}{leg.corner}}}"]
+    return []
+
+
+def _triads(r: Reader) -> Iterator[dict[str, Any]]:
+    """Groups of class III: their legs, the first of their false positions, the special point."""
+    pos = r.project.study.positions
+    for nth, g in enumerate(triads(r.project), 1):
+        special = pos.special[g.kind.about(g)]
+        a, _, c = g.legs
+        plan = pos.false[g.name]
+        first = tuple(step.name for step in g.false_points(plan)[0])
+        scale = r.scales.get(plan.name)
+        found: dict[str, Any] = {
+            "links": g.name, "base": g.links[0], "first": a.link, "third": c.link, "corner": letters_symbol(c.corner),
+            "slider": bool(c.guide), "nth": str(nth),
+            "false_steps": r.sentences(plan, _all_but(first)),
+            "special": letters_symbol(special.name), "one": special.pair[0].link, "other": special.pair[1].link,
+            "last": special.third.link, "last_corner": letters_symbol(special.third.at),
+        }  # fmt: skip
+        if scale is not None:
+            found["mu"] = _scale(r, scale)
+        figure = r.pictures.figure(plan.name) or r.pictures.figure("false_positions.group")
+        if figure is not None:
+            found["false"] = figure
+        yield found
+
+
+def _all_but(ends: tuple[str, ...]) -> Callable[[Step], bool]:
+    return lambda step: not step.name.endswith(ends)
+
+
+def letters_symbol(name: str) -> Symbol:
+    """A point's letter in the text."""
+    return Symbol(letters_of_point(name))
 
 
 def _items(node: Node) -> tuple[Node, ...]:
@@ -237,10 +290,13 @@ def _greatest_acceleration(r: Reader, plan: Plan) -> dict[str, Any]:
     if not found:
         return {}
     size, symbol, label, step = max(found, key=lambda x: x[0])
+    sizes = np.abs(step.value - next(s.tail for s in plan.segments if s.head is step).value)
+    labels = [at for at, other in zip(plan.labels, sizes, strict=True) if shown(float(other)) == shown(size)]
     return {
         "greatest": r.number(size, plan.unit, r.id(step), label),
         "greatest_letter": Symbol(letters(symbol.replace(BAR, ""))),
-        "greatest_label": label,
+        "greatest_labels": listed(labels, words(r.language)["phrases"]["and"]),
+        "greatest_count": len(labels),
     }
 
 
@@ -307,7 +363,7 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
         length = abs(value_at(b, r.at(b, None)) - value_at(a, r.at(a, None)))
         value = value_at(step, at)
         size = abs(float(value)) * length  # of the vector across the link
-        symbol = by_ends.get((tail.name, head.name), f"V_{{{head.name}}}").replace(BAR, "")
+        symbol = by_ends.get((tail.name, head.name), f"V_{{{b.name}{a.name}}}").replace(BAR, "")
         if second:
             across = next(
                 (

@@ -6,6 +6,7 @@ from typing import Any
 
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import Reader
+from tmm_sheets.numbers import number
 
 
 def scope(r: Reader) -> Scope:
@@ -39,7 +40,13 @@ def scope(r: Reader) -> Scope:
             "tolerance": r.number(100 * table.tolerance, "%", "reducer.tolerance", digits=2),
             "within": abs(off) <= 100 * table.tolerance + 1e-9,
         }
-    found.fields["warnings"] = [{"warning": text} for text in r.project.reducer.warnings]
+    reducer = r.project.reducer
+    found.fields |= {"small_ratio": reducer.small_ratio, "least_ratio": number(reducer.scheme.least_simple)}
+    found.fields["interferences"] = [
+        {"planet": of.planet, "ring": of.ring, "teeth": of.teeth, "least": of.least, "avoidable": bool(of.least)}
+        for of in reducer.interferences
+    ]
+    found.fields["interferes"] = bool(reducer.interferences)
     for name in ("scheme", "speeds"):
         figure = r.pictures.figure(f"reducer.{name}")
         if figure is not None:
