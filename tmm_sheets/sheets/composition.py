@@ -186,11 +186,12 @@ def _positions(project: Project, view: View) -> Node:
 
 
 def _velocities(project: Project, view: View) -> Node:
-    spans = kinematic_frames.velocity_spans(project, view.options)
+    spans, longest = kinematic_frames.velocity_spans(project, view.options)
+    finest = longest / kinematic_frames.LONGEST
     around = kinematic_frames.MARGIN, kinematic_frames.HEAD
     title = 22.0
     if len(spans) == 1:
-        need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0))
+        need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0), finest=finest)
         return _leaf(view.box, need)
 
     @cache
@@ -198,7 +199,7 @@ def _velocities(project: Project, view: View) -> Node:
         mu = kinematic_frames.most_room(spans, Box(0.0, 0.0, width, height - title))[0]
         if not 0 < mu < inf:
             return 1.0
-        mu = rounded_up(mu)
+        mu = rounded_up(max(mu, finest))
         return sum((s.width / mu + around[0]) * (s.height / mu + around[1]) for s in spans) + title * width
 
     def drawn(width: float, height: float) -> float:
@@ -276,7 +277,7 @@ def _lever(project: Project, view: View) -> Node:
     k = project.force_index
     reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
     # Every force and its arm hangs on it: no view has more labels.
-    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0)), 2)
+    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0)), 3)
 
 
 def _rows(project: Project, view: View, count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> Node:

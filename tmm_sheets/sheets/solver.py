@@ -40,13 +40,15 @@ class Need:
 
     ``span`` is what it draws to a scale, in its own unit, ``around`` what comes to it on paper whatever the scale: letters,
     symbols, headings. ``least`` is the size below which it cannot be read, ``most`` that from which on more room is of no use.
-    ``drawn`` tells, for what has no scale, the area it fills of a place of some width and height.
+    ``finest`` is the least scale factor that is of use. ``drawn`` tells, for what has no scale, the area it fills of a place of
+    some width and height.
     """
 
     span: tuple[float, float] = (0.0, 0.0)
     around: tuple[float, float] = (0.0, 0.0)
     least: tuple[float, float] = (60.0, 40.0)
     most: tuple[float, float] = (inf, inf)
+    finest: float = 0.0
     drawn: Callable[[float, float], float] | None = None
 
     def ink(self, width: float, height: float) -> float:
@@ -57,7 +59,7 @@ class Need:
         free = w - self.around[0], h - self.around[1]
         if not max(self.span) > 0 or not min(free) > 1.0:
             return min(w, max(self.around[0], self.least[0])) * min(h, max(self.around[1], self.least[1]))
-        mu = rounded_up(max(self.span[0] / free[0], self.span[1] / free[1]))
+        mu = rounded_up(max(self.span[0] / free[0], self.span[1] / free[1], self.finest))
         return (self.span[0] / mu + self.around[0]) * (self.span[1] / mu + self.around[1])
 
     def short(self, width: float, height: float) -> float:
