@@ -368,13 +368,31 @@ def _profile(project: Project, view: View) -> Node | None:
     return _leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
 
 
+def _roller(project: Project, view: View) -> Node | None:
+    from tmm_sheets.sheets import cam_profile
+
+    cam: Any = project.cam  # one with a roller: others have no such view
+    w, h = cam_profile.roller_extent(cam)
+    left, below, right, above = cam_profile.ROLLER
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        try:
+            mu = standard((w, width - left - right), (h, height - below - above)).mu
+        except CannotBuild:
+            return 1.0
+        return (w / mu + left + right) * (h / mu + below + above)
+
+    return _leaf(view.box, Need(least=(116.0, 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
+
+
 NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinematics.position_plans": _positions, "kinematics.velocity_plans": _velocities,
     "kinematics.acceleration_plan": _accelerations, "kinematics.structure": _structure,
     "kinematics.velocity_tables": _velocity_tables, "kinetics.group": _group, "kinetics.crank": _crank,
     "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
     "cam_profile.profile": _profile, "cam.pressure": _cam((0.88, 0.7), 0.6),
-    "cam_profile.roller": _cam((0.88, 0.8), 0.6), "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
+    "cam_profile.roller": _roller, "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
     "cam_zone.of_rocker": _cam((0.9, 0.8), 0.6),
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),
