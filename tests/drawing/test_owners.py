@@ -48,6 +48,15 @@ def test_a_symbol_about_the_anchor_is_its_own():
     assert here.reads(Box(-2, 4, 2, 8)) == "crossed"
 
 
+def test_the_leader_of_another_label_from_the_same_point_is_foreign():
+    """A second letter beside the leader of the first is read as its letter, not the point's."""
+    ink, label = owners.Ink([Line(0j, 40 + 0j, "main")]), Label(0j, "D", 5.0)
+    beside = Box(-9.0, -9.0, -5.5, -5.0)
+    assert owners.Round(ink, label, 60.0).reads(beside) == ""
+    ink.add([Line(0j, -10 - 10j, "thin")])
+    assert owners.Round(ink, label, 60.0).reads(beside) == "nearer"
+
+
 def test_vectors_on_one_line_are_named_together():
     both = [Line(0j, 60 + 0j, "vector", by=A), Line(50 + 0.1j, 10 + 0.1j, "vector", by=B)]
     assert reads((28, 1, 32, 4), both) == ""

@@ -1,5 +1,7 @@
 """Places of views: what lies gets a wide place, what stands a high one; what is left out gives its room away; always the same."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -98,8 +100,6 @@ def test_a_lying_mechanism_has_a_wide_place_and_a_standing_one_a_high_one():
 @pytest.mark.parametrize("name", ["sixbar/8:3", "sixbar/1:1", "lugansk/shaper", "transport/press@05-ЭПС-123", "press"])
 def test_the_next_larger_scale_would_not_fit(name):
     """The position plans at the next smaller factor of the series come out of their place."""
-    from types import SimpleNamespace
-
     project = Project(catalogue.read(name))
     view = next(v for v in arranged(project, 1).views if v.draw == "kinematics.position_plans")
     frame = kinematic_frames.positions(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
@@ -131,18 +131,37 @@ def test_places_stay_inside_the_frame_apart_and_off_the_title_block(name):
 def test_of_several_ways_that_is_taken_in_which_the_views_fill_most(name, upright):
     """The two-armed rocker of task 4 is 2.7 times as high as wide: it stands from top to bottom; task 8 lies."""
     project = Project(catalogue.read(name))
-    first, other = arrangement("sixbar_1").ways()
     taken = arranged(project, 1)
-    assert {v.draw for v in taken.views} == {v.draw for v in first.views} == {v.draw for v in other.views}
+    assert all({v.draw for v in taken.views} == {v.draw for v in way.views} for way in arrangement("sixbar_1").ways())
     box = next(v.box for v in taken.views if v.draw == "kinematics.position_plans")
     assert (box.height > 500.0) == upright
 
 
 def test_what_a_view_does_not_name_stays_in_another_way():
-    first, other = arrangement("transport_1").ways()
-    moved = [(a.draw, a.options.get("group")) for a, b in zip(first.views, other.views, strict=True) if a.box != b.box]
-    assert moved == [("kinetics.group", 1), ("kinetics.group", 2)]
-    assert [a.options for a in first.views] == [b.options for b in other.views]
+    """Groups side by side, the plans above all else of the kinematics, or both."""
+    first, *others = arrangement("transport_1").ways()
+    moved = [{a.draw for a, b in zip(first.views, other.views, strict=True) if a.box != b.box} for other in others]
+    wide = {"kinematics.position_plans", "diagrams.motion", "kinematics.velocity_plans", "kinematics.acceleration_plan",
+            "kinetics.lever"}
+    assert sorted(moved, key=len) == [{"kinetics.group"}, wide, wide, wide | {"kinetics.group"}, wide | {"kinetics.group"}]
+    assert all([a.options for a in first.views] == [b.options for b in other.views] for other in others)
+
+
+@pytest.mark.parametrize(("name", "mu"), [("transport/press@03-ЭПС-256", 0.003), ("transport/diesel@01-Т-27", 0.0025),
+                                          ("transport/compressor@11-В-145", 0.002), ("sixbar/8:5", 0.006)])
+def test_diagrams_take_nothing_from_the_plans(name, mu):
+    """Mechanisms that lie, as large as on sheets without diagrams of motion; velocity plans with vectors of 30 to 100 mm, the
+    lever, on which all forces hang, not smaller."""
+    project, kept = Project(catalogue.read(name)), SimpleNamespace(scales={}, chosen=set())
+    views = {v.draw: v for v in arranged(project, 1).views}
+    kinematic_frames.positions(project, kept, views["kinematics.position_plans"].box, views["kinematics.position_plans"].options)
+    assert kept.scales["positions"].mu <= mu * (1 + 1e-9)
+    plans = views["kinematics.velocity_plans"]
+    kinematic_frames.velocities(project, kept, plans.box, plans.options)
+    velocities, i = project.study.velocities.plan, project.force_index
+    vectors = [abs(complex(s.head.at(i)) - complex(s.tail.at(i))) / kept.scales["velocities"].mu for s in velocities.segments]
+    assert 30.0 <= max(vectors) <= 100.0
+    assert views["kinetics.lever"].box.width >= plans.box.width
 
 
 def test_an_output_that_turns_has_the_diagrams_of_its_link():

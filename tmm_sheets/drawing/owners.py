@@ -36,10 +36,14 @@ Flags = npt.NDArray[np.bool_]
 
 
 class Ink:
-    """Lines of a sheet as segments ``a`` .. ``b``, shape (n,), each with the number of its mark; lettering is none of them."""
+    """Lines of a sheet as segments ``a`` .. ``b``, shape (n,), each with the number of its mark; lettering is none of them.
+
+    From number ``drawn`` on they are leaders.
+    """
 
     def __init__(self, marks: Iterable[Mark]) -> None:
         self.marks = list(marks)
+        self.drawn = len(self.marks)
         runs, numbers, strong = [], [], []
         for number, mark in enumerate(self.marks):
             if isinstance(mark, Text) or (isinstance(mark, Line) and mark.style == "text"):
@@ -166,7 +170,8 @@ def _own(ink: Ink, here: Round, label: Label) -> Flags:
     if found.any() and not _at_end(ink, here, found, label.anchor):
         return found
     about = np.maximum(np.abs(here.a - label.anchor), np.abs(here.b - label.anchor)) <= label.gap + SYMBOL
-    return np.asarray(found | about | (_distance(here.a, here.b, label.anchor) <= AT))
+    # The leader of another label names nothing by itself, even if it comes from the same point.
+    return np.asarray((found | about | (_distance(here.a, here.b, label.anchor) <= AT)) & (here.of < ink.drawn))
 
 
 def _at_end(ink: Ink, here: Round, lines: Flags, anchor: complex) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from typing import Any
 
 from tmm_sheets.box import Box
@@ -61,10 +62,12 @@ class Arrangement:
     offers: tuple[View, ...] = ()
 
     def ways(self) -> Iterator[Arrangement]:
-        """The arrangement itself, then the other ways to arrange its views."""
-        yield self
-        for name in dict.fromkeys(name for view in self.views for name in view.others):
-            yield replace(self, views=tuple(replace(view, box=view.others.get(name, view.box)) for view in self.views))
+        """The arrangement itself, then the other ways to arrange its views, those that move different views also together."""
+        names = list(dict.fromkeys(name for view in self.views for name in view.others))
+        pairs = [pair for pair in combinations(names, 2) if not any(view.others.keys() >= set(pair) for view in self.views)]
+        for way in ((), *((name,) for name in names), *pairs):
+            yield replace(self, views=tuple(replace(view, box=next((view.others[name] for name in way if name in view.others),
+                                                                   view.box)) for view in self.views))
 
     def fitted(self, parts: Collection[str]) -> Arrangement:
         """What is left of it, or stands instead of it, for a project that has only these parts of the results.

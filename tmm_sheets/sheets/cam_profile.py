@@ -30,6 +30,8 @@ CROWDED = 3.0
 """Distance of two marks of the path, mm, below which their numbers cannot stand beside one another."""
 EDGE = 3.0
 """Room left free at both sides of the place, mm."""
+ROLLER = 8.0, 34.0, 8.0, 24.0
+"""Room round the figure for the roller's radius at the left, below (what follows from it), right and above, mm."""
 
 
 @for_cams
@@ -472,15 +474,13 @@ def _phase_angles(s: Stage, picture: _ProfilePicture) -> None:
 def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Smallest radius of curvature by three points of the centre profile; the radius of the roller by both rules."""
     cam: RollerCam = project.cam
-    plan, phi = cam.inversion.plan, float(cam.sharpest.three[1])
+    plan = cam.inversion.plan
     d, centre = complex(plan["D_ρ"].value), complex(plan["M"].value)
     chords = [complex(plan[f"{n}_ρ"].value) for n in "EDG"]
-    beside = cam.at(phi + np.linspace(-0.6, 0.6, 121))
-    course = beside.centres.value
-    near = course[np.abs(course - d) < 0.75 * abs(centre - d)]
+    beside, near = _sharpest(cam)
     every = np.array([*near, centre])
-    text = 34.0
-    room = Box(box.x0 + 8, box.y0 + text, box.x1 - 8, box.y1 - 24)
+    left, below, right, above = ROLLER
+    room = box.inset(left, below, right, above)
     scale = standard((float(np.ptp(every.real)), room.width), (float(np.ptp(every.imag)), room.height))
     canvas.title(box, tr("Choice of the radius of the roller"), ratio(scale))
     middle = complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2)
@@ -525,6 +525,20 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     taken = tr("Taken: r_p = {radius} mm") if met else tr("Taken: r_p = {radius} mm (more than recommended)")
     lines.append(taken.format(radius=number(cam.roller * 1e3)))
     lines_of_text(canvas, box, lines)
+
+
+def _sharpest(cam: RollerCam) -> tuple[Inversion, Points]:
+    """Positions about the sharpest point of the centre profile, and the centres of the roller as far as they are drawn, m."""
+    d, centre = (complex(cam.inversion.plan[name].value) for name in ("D_ρ", "M"))
+    beside = cam.at(float(cam.sharpest.three[1]) + np.linspace(-0.6, 0.6, 121))
+    course = beside.centres.value
+    return beside, course[np.abs(course - d) < 0.75 * abs(centre - d)]
+
+
+def roller_extent(cam: RollerCam) -> tuple[float, float]:
+    """Width and height of the figure for the roller's radius, m."""
+    every = np.append(_sharpest(cam)[1], complex(cam.inversion.plan["M"].value))
+    return float(np.ptp(every.real)), float(np.ptp(every.imag))
 
 
 def _mm(length: float) -> str:

@@ -186,11 +186,12 @@ def _positions(project: Project, view: View) -> Node:
 
 
 def _velocities(project: Project, view: View) -> Node:
-    spans = kinematic_frames.velocity_spans(project, view.options)
+    spans, longest = kinematic_frames.velocity_spans(project, view.options)
+    finest = longest / kinematic_frames.LONGEST
     around = kinematic_frames.MARGIN, kinematic_frames.HEAD
     title = 22.0
     if len(spans) == 1:
-        need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0))
+        need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0), finest=finest)
         return _leaf(view.box, need)
 
     @cache
@@ -198,7 +199,7 @@ def _velocities(project: Project, view: View) -> Node:
         mu = kinematic_frames.most_room(spans, Box(0.0, 0.0, width, height - title))[0]
         if not 0 < mu < inf:
             return 1.0
-        mu = rounded_up(mu)
+        mu = rounded_up(max(mu, finest))
         return sum((s.width / mu + around[0]) * (s.height / mu + around[1]) for s in spans) + title * width
 
     def drawn(width: float, height: float) -> float:
@@ -276,7 +277,7 @@ def _lever(project: Project, view: View) -> Node:
     k = project.force_index
     reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
     # Every force and its arm hangs on it: no view has more labels.
-    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0)), 2)
+    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0)), 3)
 
 
 def _rows(project: Project, view: View, count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> Node:
@@ -367,13 +368,31 @@ def _profile(project: Project, view: View) -> Node | None:
     return _leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
 
 
+def _roller(project: Project, view: View) -> Node | None:
+    from tmm_sheets.sheets import cam_profile
+
+    cam: Any = project.cam  # one with a roller: others have no such view
+    w, h = cam_profile.roller_extent(cam)
+    left, below, right, above = cam_profile.ROLLER
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        try:
+            mu = standard((w, width - left - right), (h, height - below - above)).mu
+        except CannotBuild:
+            return 1.0
+        return (w / mu + left + right) * (h / mu + below + above)
+
+    return _leaf(view.box, Need(least=(116.0, 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
+
+
 NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinematics.position_plans": _positions, "kinematics.velocity_plans": _velocities,
     "kinematics.acceleration_plan": _accelerations, "kinematics.structure": _structure,
     "kinematics.velocity_tables": _velocity_tables, "kinetics.group": _group, "kinetics.crank": _crank,
     "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
     "cam_profile.profile": _profile, "cam.pressure": _cam((0.88, 0.7), 0.6),
-    "cam_profile.roller": _cam((0.88, 0.8), 0.6), "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
+    "cam_profile.roller": _roller, "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
     "cam_zone.of_rocker": _cam((0.9, 0.8), 0.6),
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -28,6 +28,8 @@ HEAD = 16.0
 """Room for its number and letters over and below it, mm."""
 SMALLEST = 10.0
 """Size from which on the largest of the velocity plans can be read, mm."""
+LONGEST = 100.0
+"""Longest vector of a velocity plan that is of use, mm: what room is left is for others."""
 BEYOND = 10.0
 """A velocity plan so many times as large as usual would leave nothing to see of the others."""
 ACCELERATIONS = 9.0, 8.0, 9.0, 24.0
@@ -171,6 +173,8 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
     if not need < inf:
         raise CannotBuild(tell("the velocity plans have no room for their lettering"),
                           tell("make their place larger in templates/sheets"))
+    if wanted is None:
+        need = max(need, longest(project, [i for i, _ in shown]) / LONGEST)
     scale = pick(project, canvas, "velocities", "μ_V", tr("(m/s)/mm"), need)
     per_row = -(-len(shown) // rows)
     return VelocityLayout(shown, spans, -(-len(shown) // per_row), per_row, inside, scale, beyond, every)
@@ -192,11 +196,17 @@ def most_room(spans: list[Box], inside: Box) -> tuple[float, int]:
     return min((_need(spans, rows, inside), rows) for rows in range(1, len(spans) + 1))
 
 
-def velocity_spans(project: Project, options: dict[str, Any]) -> list[Box]:
-    """Extents of the velocity plans to be drawn, in their unit; ``only`` = "force" shows the analysed one alone."""
+def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box], float]:
+    """Extents of the velocity plans to be drawn and their longest vector, in their unit; ``only`` = "force": the analysed one."""
     beyond = [] if options.get("only") == "force" else [i for i, _ in beyond_drawing(project)]
     shown = [project.force_index] if options.get("only") == "force" else [i for i, _ in project.cycle.drawn if i not in beyond]
-    return [plan_extent(project.study.velocities.plan, i) for i in shown]
+    return [plan_extent(project.study.velocities.plan, i) for i in shown], longest(project, shown)
+
+
+def longest(project: Project, shown: Sequence[int]) -> float:
+    """Longest vector of the velocity plans at some positions, in their unit."""
+    plan = project.study.velocities.plan
+    return max(abs(complex(seg.head.at(i)) - complex(seg.tail.at(i))) for seg in plan.segments for i in shown)
 
 
 def _need(spans: list[Box], rows: int, inside: Box) -> float:

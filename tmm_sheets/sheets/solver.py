@@ -40,13 +40,15 @@ class Need:
 
     ``span`` is what it draws to a scale, in its own unit, ``around`` what comes to it on paper whatever the scale: letters,
     symbols, headings. ``least`` is the size below which it cannot be read, ``most`` that from which on more room is of no use.
-    ``drawn`` tells, for what has no scale, the area it fills of a place of some width and height.
+    ``finest`` is the least scale factor that is of use. ``drawn`` tells, for what has no scale, the area it fills of a place of
+    some width and height.
     """
 
     span: tuple[float, float] = (0.0, 0.0)
     around: tuple[float, float] = (0.0, 0.0)
     least: tuple[float, float] = (60.0, 40.0)
     most: tuple[float, float] = (inf, inf)
+    finest: float = 0.0
     drawn: Callable[[float, float], float] | None = None
 
     def ink(self, width: float, height: float) -> float:
@@ -57,7 +59,7 @@ class Need:
         free = w - self.around[0], h - self.around[1]
         if not max(self.span) > 0 or not min(free) > 1.0:
             return min(w, max(self.around[0], self.least[0])) * min(h, max(self.around[1], self.least[1]))
-        mu = rounded_up(max(self.span[0] / free[0], self.span[1] / free[1]))
+        mu = rounded_up(max(self.span[0] / free[0], self.span[1] / free[1], self.finest))
         return (self.span[0] / mu + self.around[0]) * (self.span[1] / mu + self.around[1])
 
     def short(self, width: float, height: float) -> float:
@@ -67,6 +69,9 @@ class Need:
 
 TOO_SMALL = 1e8
 """Price of a place that is too small by its own size, mm^2: more than that of any sheet."""
+
+EMPTY = 1.0
+"""Price of room of a place that its view does not fill, beside the area of one that fills what it is meant to have."""
 
 
 @dataclass
@@ -98,8 +103,10 @@ class Node:
     def cost(self, width: float, height: float) -> float:
         """What the places of its views cost: more, the less of what it is meant to have each of them fills."""
         if self.need is not None:
+            ink = self.need.ink(width, height)
             # The square: what is worst counts most.
-            return self.area * (self.area / self.need.ink(width, height)) ** 2 + TOO_SMALL * self.need.short(width, height)
+            return (self.area * (self.area / ink) ** 2 + EMPTY * max(width * height - ink, 0.0)
+                    + TOO_SMALL * self.need.short(width, height))
         return sum(self._of(child, size, width, height)
                    for child, size in zip(self.children, self.sizes(width, height), strict=True))
 
