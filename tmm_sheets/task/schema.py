@@ -492,7 +492,7 @@ class FlywheelTable(Table):
 
 
 class GearTable(Table):
-    """``[gear]``: a pair of external involute spur gears."""
+    """``[gear]``: a pair of involute spur gears."""
 
     teeth: Annotated[tuple[Teeth, Teeth], or_word("reducer")] = Field(description=marked("tooth numbers, for example [14, 28]"))
     """`"reducer"`: the simple stage of `[reducer]` with its module, addendum and clearance"""
@@ -501,10 +501,22 @@ class GearTable(Table):
     shift: Annotated[tuple[Number, Number], or_word("rule")] = Field(
         default=(0.0, 0.0), description=marked("shifts, for example [0.2, 0]")
     )
-    """in modules; `"rule"`: the least shifts without undercut"""
+    """in modules; `"rule"`: the least shifts without undercut, of a ring the shift of its pinion"""
+    mesh: Literal["external", "internal"] = "external"
+    """`internal`: wheel 2 is a ring; its shift is positive away from its centre"""
+    centre_distance: Length | None = Field(default=None, description=marked('centre distance, for example "110 mm"'))
+    """instead of `shift`: the sum of the shifts follows from it, of an internal pair their difference"""
+    first_shift: Number | None = None
+    """with `centre_distance`: the shift of wheel 1; left out: the sum is divided inversely as the tooth numbers, as far as neither
+    wheel becomes undercut; in a ring the pinion has its least shift without undercut
+    """
     pressure_angle: AcuteAngle = Field(description=marked('profile angle of the rack, for example "20 deg"'))
     addendum: PositiveNumber | None = None
     """coefficient ha*; left out: 1"""
+    addenda: tuple[PositiveNumber, PositiveNumber] | None = Field(
+        default=None, description=marked("coefficients ha* of each wheel, for example [1.2, 0.8]")
+    )
+    """instead of `addendum`: each wheel is cut as deep as its mate's teeth are high"""
     clearance: PositiveNumber | None = None
     """coefficient c*; left out: 0.25"""
     driver: Literal[1, 2] = 1
@@ -521,9 +533,33 @@ class GearTable(Table):
             if self.module is None:
                 raise ValueError(tell('expected "module" too, for example module = "3.5 mm"'))
         else:
-            given = [k for k in ("module", "addendum", "clearance") if getattr(self, k) is not None]
+            given = [k for k in ("module", "addendum", "addenda", "clearance") if getattr(self, k) is not None]
             if given:
                 raise ValueError(tell('teeth = "reducer" takes {given} from [reducer]').format(given=", ".join(given)))
+        return self
+
+    @model_validator(mode="after")
+    def _one_way_to_the_shifts(self) -> Self:
+        if self.centre_distance is not None and "shift" in self.model_fields_set:
+            raise ValueError(tell("expected either shift or centre_distance; x1 goes with the latter as first_shift"))
+        if self.first_shift is not None and self.centre_distance is None:
+            raise ValueError(tell("first_shift goes with centre_distance; without it write shift = [x1, x2]"))
+        if self.addendum is not None and self.addenda is not None:
+            raise ValueError(tell("expected either addendum or addenda"))
+        return self
+
+    @model_validator(mode="after")
+    def _ring_can_be(self) -> Self:
+        if self.mesh == "external":
+            return self
+        teeth: Any = self.teeth
+        if teeth == "reducer":
+            raise ValueError(tell('the simple stage of [reducer] meshes outside: mesh = "internal" needs tooth numbers'))
+        if teeth[1] <= teeth[0]:
+            raise ValueError(tell("the ring is wheel 2: expected teeth with a larger second number, not {teeth}").format(
+                teeth=list(teeth)))
+        if self.profile == "rack":
+            raise ValueError(tell('no rack cuts a ring: leave profile = "rack" out'))
         return self
 
 
