@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from tmm_sheets.task import units
+from tmm_sheets.task import cam_table, units
 from tmm_sheets.task.values import (
     AcuteAngle,
     Angle,
@@ -692,6 +692,11 @@ class CamTable(Table):
     """
     fall_table: CamDiagram | None = None
     """the same for `fall_law = "table"`"""
+    displacements: tuple[tuple[Any, Any], ...] | None = None
+    """the whole turn instead of law, phases and stroke: cam angle and displacement (of a rocker its angle), for example
+    `[["0 deg", "0 mm"], ["30 deg", "4 mm"], ["60 deg", "9 mm"], ["120 deg", "9 mm"], ["200 deg", "0 mm"], ["360 deg", "0 mm"]]`;
+    joined by cubic splines that are level where a phase ends
+    """
     rise: PhaseAngle = Field(description=marked('phase angle of the rise, for example "100 deg"'))
     upper_dwell: PhaseAngle = 0.0
     """phase angle of the upper dwell"""
@@ -714,7 +719,11 @@ class CamTable(Table):
     centre: Literal["vertex", "least"] = "vertex"
     """where the axis of the cam is put: the vertex of the allowed zone, or the point of it that makes the cam least"""
     base_radius: Length | None = None
-    """of the cam with a flat follower; left out: the least"""
+    """smallest radius, with a roller that of its axis; left out: the least, with a roller that of the permitted pressure angle.
+    Given with a roller, the pressure angle is found, and shown where it exceeds the permitted one
+    """
+    centre_distance: Length | None = None
+    """with the `base_radius` of a rocker's cam: distance of the axes; left out: OB₀ stands square to the rocker"""
     sense: Sense = "clockwise"
     """sense of rotation of the cam"""
     roller: Length | None = None
@@ -738,6 +747,11 @@ class CamTable(Table):
     preload: InnerFraction = 0.3
     """force of the spring in the lowest position as a share of the largest"""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _phases_of_the_displacements(cls, data: Any) -> Any:
+        return cam_table.filled(data)
+
     @model_validator(mode="after")
     def _phases_fit(self) -> Self:
         if self.rise <= 0 or self.fall <= 0:
@@ -747,6 +761,14 @@ class CamTable(Table):
         if self.rise + self.upper_dwell + self.fall > units.parse("360.000001 deg", units.ANGLE):
             raise ValueError(tell("expected rise, upper_dwell and fall of 360 deg together or less"))
         return self
+
+    def place(self, key: str) -> str:
+        """The key of the file in which the number of a key stands."""
+        return cam_table.LAW if self.displacements is not None and key in cam_table.OWN else key
+
+    def ordinates(self, fall: bool) -> tuple[list[float], list[float]]:
+        """Shares of the rise or the fall and of its travel by ``displacements``."""
+        return cam_table.phase_ordinates({"follower": self.follower, "displacements": self.displacements}, fall)
 
     def diagram(self, table: str) -> tuple[list[float], list[float]]:
         """Shares of the phase and relative accelerations of ``table`` or ``fall_table``."""
