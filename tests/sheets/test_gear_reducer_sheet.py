@@ -17,6 +17,7 @@ from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import gear, rack
 from tmm_sheets.sheets import reducer as reducers
+from tmm_sheets.task.schema import GearTable
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
 DESIGNATION = Box(20, 575, 90, 589)
@@ -26,8 +27,7 @@ MODULES = {"gear": gear, "rack": rack, "reducer": reducers}
 
 def project(machine, c, **over):
     found = reducer(cases.column(machine, c, **over))
-    section = SimpleNamespace(teeth="reducer", module=None, addendum=None, clearance=None, shift="rule", pressure_angle=radians(20),
-                              driver=1, sense="clockwise", profile="rack")
+    section = GearTable(teeth="reducer", shift="rule", pressure_angle="20 deg", profile="rack")
     return SimpleNamespace(reducer=found, gear=gear_pair(settled(section, found)))
 
 
@@ -159,7 +159,7 @@ def test_tables_tell_the_choice_and_the_conditions():
 def test_undercut_is_named_on_the_view():
     undercut = SimpleNamespace(gear=gear_pair(SimpleNamespace(
         teeth=(9, 9), shift=(0.2, 0.4), module=0.01, pressure_angle=radians(20), addendum=1.0, clearance=0.25, driver=1,
-        sense="clockwise", profile="rack")))
+        sense="clockwise", profile="rack", mesh="external", centre_distance=None)))
     canvas = Canvas()
     rack.generating(undercut, canvas, dict(arrangement())["rack.generating"], {})
     assert "подрез" in [label.text for label in canvas.labels]

@@ -24,7 +24,7 @@ def project(teeth=(14, 28), shift=(3 / 17, 0.0), module=0.0035, driver=1, sense=
     angle = radians(20)
     return SimpleNamespace(gear=gear_pair(SimpleNamespace(
         teeth=teeth, shift=shift, module=module, pressure_angle=angle, addendum=1.0, clearance=0.25, driver=driver, sense=sense,
-        profile="fillet")))
+        profile="fillet", mesh="external", centre_distance=None)))
 
 
 PROJECTS = {

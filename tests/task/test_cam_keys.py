@@ -44,7 +44,7 @@ def test_several_things_wrong_with_a_key_are_told_in_one_order():
 @pytest.mark.parametrize(("follower", "key", "value"), [
     ("flat", "pressure_angle", '"30 deg"'), ("flat", "roller", '"5 mm"'), ("translating roller", "arm", '"90 mm"'),
     ("oscillating roller", "stroke", '"10 mm"'), ("oscillating roller", "eccentricity", '"1 mm"'),
-    ("translating roller", "base_radius", '"30 mm"'), ("translating roller", "follower_inertia", '"0.1 kg m2"')])
+    ("translating roller", "rotation", '"opposite"'), ("translating roller", "follower_inertia", '"0.1 kg m2"')])
 def test_keys_of_other_followers_are_refused(follower, key, value):
     ((field, message, hint),) = problems(text(follower, **{key: value}))
     assert (field, message) == (f"cam.{key}", f'follower = "{follower}" has no such key')

@@ -35,17 +35,22 @@ def arcs_inside(box: Box, centre: complex, radius: float) -> list[tuple[float, f
     return spans
 
 
-def chords(box: Box, centre: complex, radius: float) -> list[tuple[complex, complex]]:
-    """Parts of the box's sides inside a circle that it cuts, each in the sense of running round the box counter-clockwise."""
+def chords(box: Box, centre: complex, radius: float, hollow: float = 0.0) -> list[tuple[complex, complex]]:
+    """Parts of the box's sides inside a circle that it cuts, each in the sense of running round the box counter-clockwise.
+
+    What lies inside the smaller circle of the radius ``hollow`` is left out.
+    """
     corners = complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)
     found = []
     for a, b in zip(corners, (*corners[1:], corners[0]), strict=True):
         u = (b - a) / abs(b - a)
         foot = a + ((centre - a) * u.conjugate()).real * u
-        inside = radius**2 - abs(centre - foot) ** 2
-        part = segment_inside(box, foot - sqrt(inside) * u, foot + sqrt(inside) * u) if inside > 0 else None
-        if part is not None:
-            found.append(part)
+        inside, left_out = (r**2 - abs(centre - foot) ** 2 for r in (radius, hollow))
+        if inside <= 0:
+            continue
+        ends = foot - sqrt(inside) * u, foot + sqrt(inside) * u
+        free = [ends] if left_out <= 0 else [(ends[0], foot - sqrt(left_out) * u), (foot + sqrt(left_out) * u, ends[1])]
+        found += [part for one in free for part in (segment_inside(box, *one),) if part is not None]
     return found
 
 

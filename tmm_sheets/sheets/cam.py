@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.tables import widened
@@ -319,10 +319,11 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     canvas.label(d.o + d.length + 5, in_degrees("φ"), -1j, 3.5, 1.5, leader=False)
     for side in (1, -1):
         level = course.frame(1j * side * cam.alpha)
-        course.line(cam.zone.borders[0], level, level + d.length, "hidden", "axis")
+        course.line((*cam.zone.borders, cam.zone.apex)[0], level, level + d.length, "hidden", "axis")
         name = f"[{letter_of}] = {number(degrees(cam.alpha))}°" if side > 0 else f"−[{letter_of}]"
         canvas.label(level + 5 / 6 * d.length, name, 1j * side, 3.5, 0.8, leader=False)
     course.curve(dense.angles, course.frame(dense.phi + 1j * found))
+    _exceeded(d, canvas, cam, letter_of)
     at, values = course.frame(inv.phi), inv.angles.value
     for k in range(len(at)):
         marked.position(k).line(inv.angles, at[k], course.frame(inv.phi[k] + 1j * values[k]), "thin")
@@ -332,6 +333,28 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
             canvas.label(complex(at[k]), inv.plan.labels[k], -1j if values[k] > 0 else 1j, 2.5, 0.6, leader=False)
     if cam.data.limit == "rise":
         centred(canvas, box, 3.0, tr("With force closure the angle is limited on the rise only"))
+
+
+def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> None:
+    """Where the pressure angle of a given radius exceeds the permitted one, hatched; its greatest values."""
+    if cam.steepest is None:
+        return
+    phi, found = cam.dense.phi, np.asarray(cam.dense.angles.value)
+    course = d.placed(canvas, cam.steepest)
+    for phase in cam.zone.cones.phases:
+        x = np.linspace(phase.start, phase.end, 257)
+        angle = np.interp(x, phi, found)
+        over = np.flatnonzero(np.abs(angle) > cam.alpha)
+        for run in np.split(over, np.flatnonzero(np.diff(over) > 1) + 1) if len(over) else []:
+            side = np.sign(angle[run[0]])
+            hatch_polygon(canvas, np.concatenate((course.frame(x[run] + 1j * angle[run]),
+                                                         course.frame(x[run][::-1] + 1j * side * cam.alpha))), 2.0)
+    for k in (1, 2):
+        at, angle = (float(cam.steepest[name].value) for name in (f"φ_α{k}", f"α_{k}"))
+        point = complex(course.frame(complex(at, angle)))
+        course.dot(f"α_{k}", 0.7, "main", point)
+        name = f"{letter_of}_{{max{k}}} = {fixed(degrees(angle), 1)}°"
+        canvas.label(point, name, 1j * np.sign(angle) + 0.3, 3.5, 1.0)
 
 
 # --- table ----------------------------------------------------------------------------------------------------------

@@ -44,7 +44,7 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
     def fitted(share: float) -> tuple[float, float, list[float]]:
         """Scale factor, the depth (m, negative) to which the zone is drawn, below the axis a share of the figure; abscissae, m."""
-        depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + (apex - axis).imag
+        depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0)
         xs = [*curve.real, *beyond.real, *(t.real for t in tops), apex.real - depth * slope, apex.real + depth * slope, 0.0]
         return handy(max(float(np.ptp(xs)) / room.width, (stroke - apex.imag + depth) / room.height)), -depth, xs
 
@@ -104,6 +104,8 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.label((o + b) / 2, "r_0", z.right * 1 + 0.6j, 3.5, 0.6)
     measured = [_measured(name, segment, abs(value), "μ_S", mu)
                 for name, segment, value in (("S_0", "CB", z.s0), ("e", "CO", z.e), ("r_0", "OB", z.r0))]
+    if cam.data.base_radius is not None:
+        measured[2] = tr("r_0 = {length} mm (given)").format(length=number(z.r0 * 1e3))
     if cam.data.eccentricity is not None:
         measured[1] = tr("e = {length} mm (given)").format(length=number(z.e * 1e3))
     lines_of_text(canvas, box, measured)
@@ -255,6 +257,8 @@ def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:
     z, mu = cam.zone, 1e-3 if scale is None else scale.mu
     lines = [_measured("r_0", "OB_0", z.r0, "μ_l", mu), _measured("l_0", "OA", z.l0, "μ_l", mu)]
     lines.append(tr("x_i = AB·ψ'_i towards the axis A") if cam.data.rotation == "same" else tr("x_i = AB·ψ'_i on AB produced"))
+    if cam.data.base_radius is not None:
+        lines[0] = tr("r_0 = {length} mm (given)").format(length=number(z.r0 * 1e3))
     if z.least is not None and (r0 := float(z.least["r_0"].value)) < z.r0 * (1 - 1e-6):
         lines += [tr("Least possible r_0 = {radius} mm").format(radius=fixed(r0 * 1e3, 2)),
                   tr("with l_0 = {length} mm (not in the apex of the zone)").format(

@@ -49,25 +49,40 @@ class _GearPicture:
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
-        # Two thirds of the height for the centre distance, and most of the smaller wheel across the width.
+        # Two thirds of the height for the centre distance, of a ring nearly all, and most of the smaller wheel across the width.
         smaller = 1.45 * min(w.ra for w in gear.wheels)
-        room = min(2 / 3 * (box.height - 16), (box.width - 12) / smaller * gear.a_w)
+        tall = box.height - 60 if gear.internal else 2 / 3 * (box.height - 16)
+        room = min(tall, (box.width - 12) / smaller * gear.height)
         self.mu: Scale = gear.picture_scale(room)
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
             canvas.scales[f"gear-{name}"] = self.mu
         self.box = canvas.title(box, tr("Gear meshing"), ratio(self.mu))
+        self.pole = self.pole_of_ring() if gear.internal else self.pole_of_pair()
+        self.at = Frame(self.mu, self.pole)
+        self.stage = stage(canvas, gear.engagement, 0, self.at)
+        self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
+        if gear.internal:  # the ring ends a little over its centre
+            self.box = Box(*self.box[:3], min(self.box.y1, self.of("O2").imag + EDGE))
+        self.window = Window(canvas, self.box.inset(3))  # room for the kinks of break lines
+        self.mm = self.mu.mm
+
+    def pole_of_ring(self) -> complex:
+        """Place of the pole between the ring's rim, which closes the picture below, and its centre, which does so above."""
+        ring = self.gear.wheels[1]
+        below = (ring.outside - ring.rw) / self.mu.mu
+        spare = self.box.height - below - ring.rw / self.mu.mu - EDGE
+        return complex((self.box.x0 + self.box.x1) / 2, self.box.y0 + spare / 2 + below)
+
+    def pole_of_pair(self) -> complex:
+        """Place of the pole between two wheels one over the other."""
+        gear = self.gear
         one, two = (w.ra / self.mu.mu + 4 for w in gear.wheels)
         spare = self.box.height - gear.a_w / self.mu.mu
         # The smaller wheel is shown whole, if that leaves room beyond the other's centre; both are cut alike otherwise.
         above = one if one <= two else spare - two
         if not EDGE <= above <= spare - EDGE or min(one, two) > 0.7 * spare:
             above = spare / 2
-        self.pole = complex((self.box.x0 + self.box.x1) / 2, self.box.y1 - above - gear.wheels[0].rw / self.mu.mu)
-        self.at = Frame(self.mu, self.pole)
-        self.stage = stage(canvas, gear.engagement, 0, self.at)
-        self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
-        self.window = Window(canvas, self.box.inset(3))  # room for the kinks of break lines
-        self.mm = self.mu.mm
+        return complex((self.box.x0 + self.box.x1) / 2, self.box.y1 - above - gear.wheels[0].rw / self.mu.mu)
 
     def of(self, name: str) -> complex:
         """Point of the engagement plan on the sheet."""
@@ -75,12 +90,15 @@ class _GearPicture:
 
     def away(self, wheel: Any) -> int:
         """+1 when the wheel's far side is up."""
-        return 1 if wheel.number == 1 else -1
+        return 1 if wheel.number == 1 or wheel.ring else -1
 
     def spoke(self, wheel: Any, step: str, end: complex, style: str) -> None:
         """Line from a wheel's centre, interrupted where the dimensions of its teeth are written."""
         centre = self.of(f"O{wheel.number}")
         u = (end - centre) / abs(end - centre)
+        if wheel.ring:  # they are written beyond its root circle
+            self.window.line(self.stage, step, centre, end, style)
+            return
         root = self.mm(wheel.rf)
         self.window.line(self.stage, step, centre, centre + u * (root - DIMENSION - 9), style)
         self.window.line(self.stage, step, centre + u * (root - 1), end, style)
@@ -114,7 +132,7 @@ class _GearPicture:
                 pen.arrow_head(tip, rect(1, direction))
                 text = f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}"
                 laid = letter(text, 3.5)
-                outer = self.mm(wheel.rf) - 4
+                outer = self.mm(min(wheel.ra, wheel.rf)) - 4
                 back = cos(direction) < -1e-9
                 start = outer if back else outer - laid.width
                 turned = direction + pi if back else direction
@@ -138,8 +156,8 @@ class _GearPicture:
         chosen: list[float | None] = []
         for side, count in ((1, 3), (-1, 2)):
             free = [a for a in np.radians(np.arange(14.0, 180.0 - degrees(busy), 1.0))
-                    if place.contains(centre + rect(self.mm(wheel.ra), far + side * a))]
-            # The radii are named beside one another a little inside the root circle.
+                    if place.contains(centre + rect(self.mm(max(wheel.ra, wheel.rf)), far + side * a))]
+            # The radii are named beside one another a little inside the root circle, of a ring inside the tip circle.
             room = (free[-1] - free[0]) * 0.7 * self.mm(wheel.rf) if free else 0.0
             apart = min(count, 1 + int(room / 7)) if free else 0
             chosen += [far + side * free[round((k + 0.5) / apart * (len(free) - 1))] for k in range(apart)]
@@ -195,7 +213,7 @@ class _GearPicture:
 
     def dimension_of_centres(self) -> None:
         """Centre distance at the edge of the picture."""
-        top, bottom = self.of("O1"), self.of("O2")
+        top, bottom = (self.of(f"O{i}") for i in ((2, 1) if self.gear.internal else (1, 2)))
         reach = self.box.x1 - 12 - top.real
         self.canvas.dimension(bottom + 12, top + 12, 12 - reach, f"a_w = {fixed(self.gear.a_w * 1e3, 2)}", 5.0)
 
@@ -231,9 +249,13 @@ class _GearPicture:
         shape = self.gear.shape(wheel)
         s.curve(shape.step, self.at(shape.outline(step=self.mu.mu)), "main")
         centre = self.of(f"O{wheel.number}")
+        out = -1 if wheel.ring else 1
         for k in (-1, 0, 1):
             axis = shape.axis_of(k)
-            s.line("axis", centre + axis * (self.mm(wheel.rf) - 3), centre + axis * (self.mm(wheel.ra) + 5), "centre", "axis")
+            s.line("axis", centre + axis * (self.mm(wheel.rf) - 3 * out), centre + axis * (self.mm(wheel.ra) + 5 * out), "centre",
+                   "axis")
+        if wheel.ring:
+            self.rim(wheel)
         k = self.strip_tooth(wheel)
         outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
         half = len(outline) // 2
@@ -243,6 +265,13 @@ class _GearPicture:
         names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
         for name, p in zip(names, ends, strict=True):
             c.label(complex(p), f"{name}_{wheel.number}", away=p - centre - axis * abs(p - centre), height=3.5, gap=1.5)
+
+    def rim(self, ring: Any) -> None:
+        """Outer circle of a ring's rim."""
+        centre, radius = self.of(f"O{ring.number}"), self.mm(ring.outside)
+        pen = self.stage.pen(f"rf{ring.number}", "symbol")
+        for start, end in arcs_inside(self.window.box, centre, radius):
+            pen.arc(centre, radius, start, end, "main")
 
     def strip_tooth(self, wheel: Any) -> int:
         """The tooth whose working flank is hatched: the neighbour that stands clear of the mesh."""
@@ -260,7 +289,7 @@ class _GearPicture:
             self.stage.curve(f"{name}{i}", self.at(self.gear.rolled(wheel, flank, travel)), "thin")
             self.spoke(wheel, f"{name}{i}", p, "construction")
             ends.append(phase(p - centre))
-        if i == 1:
+        if self.away(wheel) > 0:
             ends.reverse()
         first, last = ends
         drawn = float(self.gear.engagement[f"phi{i}"].value)
@@ -276,17 +305,18 @@ class _GearPicture:
         e, f = (complex(self.at(shape.copied(tooth[name].value, k))) for name in "EF")
         radius = self.mm(wheel.r)
         p, q = (centre + radius * shape.axis_of(j) for j in (0, -k))
-        inside = radius - self.mm(wheel.rf)
+        side = -1 if wheel.ring else 1  # the lines stand beyond the root circle
+        inside = side * (radius - self.mm(wheel.rf))
         thickness, step = (fixed(v * 1e3, 2) for v in (wheel.s_chord, wheel.p_chord))
         for a, b, text in ((e, f, f"s̅_{i} = {thickness}"), (p, q, f"p̅_{i} = {step}")):
             # the side of the centre is the left of a .. b
-            a, b = (a, b) if (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
+            a, b = (a, b) if side * (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
             c.dimension(a, b, inside + DIMENSION, text)
 
     def rotation(self, wheel: Any) -> None:
         """Arrow of the angular velocity."""
         first = -1 if self.gear.sense == "clockwise" else 1
-        sense = first if wheel.number == 1 else -first
+        sense = first if wheel.number == 1 or wheel.ring else -first
         centre = self.of(f"O{wheel.number}")
         middle = pi / 2 * self.away(wheel)
         half = radians(50)
@@ -324,7 +354,7 @@ class _Detail:
         inner = canvas.title(box, tr("Meshing zone"), ratio(mu))
         place = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
         self.pole = place.centre
-        tall = mu.mm(max(w.ra - w.rw + gear.clearance * gear.m for w in gear.wheels)) + 8
+        tall = mu.mm(max(abs(w.ra - w.rw) + gear.clearance * gear.m for w in gear.wheels)) + 8
         low, high = self.pole.imag - tall, self.pole.imag + tall
         self.window = Window(canvas, Box(place.x0, max(inner.y0, low), place.x1, min(inner.y1, high)))
         self.at = Frame(mu, self.pole)
@@ -365,11 +395,11 @@ class _Detail:
         """Radial clearances and the distance between the pitch circles, on the line of centres."""
         gear = self.gear
         one, two = gear.wheels
-        h = gear.hand
+        h, way = gear.hand, 1 if gear.internal else -1  # of a circle of wheel 2 its lowest or its highest point
         clearance = f"c^{{*}}m = {number(gear.clearance * gear.m * 1e3, 3)}"
         for low, high, text, side in (
-            (-(two.rw - two.rf), -(one.ra - one.rw), clearance, -h), (two.ra - two.rw, one.rw - one.rf, clearance, h),
-            (-(two.rw - two.r), one.rw - one.r, f"ym = {fixed(gear.y * gear.m * 1e3, 2)}", h),
+            (way * (two.rw - two.rf), -(one.ra - one.rw), clearance, -h), (way * (two.rw - two.ra), one.rw - one.rf, clearance, h),
+            (way * (two.rw - two.r), one.rw - one.r, f"ym = {fixed(gear.y * gear.m * 1e3, 2)}", h),
         ):
             if abs(high - low) < 1e-9:
                 continue
@@ -384,22 +414,22 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     """
     gear = project.gear
     canvas.of = "gear-sliding"
-    one, two = gear.wheels
+    one = gear.wheels[0]
     room = box.width - 34
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
-    if not room / 2 < scale.mm(one.t_pole + two.t_pole) <= room:
-        scale = standard((one.t_pole + two.t_pole, room))
+    if not room / 2 < scale.mm(one.t_pole + gear.beyond_pole) <= room:
+        scale = standard((one.t_pole + gear.beyond_pole, room))
     canvas.scales["gear-sliding"] = scale
-    whole = scale.mm(one.t_pole + two.t_pole)
+    whole = scale.mm(one.t_pole + gear.beyond_pole)
     plan = gear.sliding
-    way = 1 if gear.engagement["N1"].value.real <= gear.engagement["N2"].value.real else -1
+    way = gear.hand
     upper = canvas.title(box, tr("Graphs of the velocities"), ratio(scale))
     left = (box.x0 + box.x1 - whole) / 2
     # rounded: where letters stand must not hang on the last digit
     y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
     highest = float(max(y1.max(), y2.max()))
     share = _ways(gear, plan) / scale.mu
-    pole = left + one.t_pole / scale.mu if way > 0 else left + two.t_pole / scale.mu
+    pole = left + (one.t_pole if way > 0 else gear.beyond_pole) / scale.mu
     xs = np.round(pole + way * share, 9)
     axis = upper.y1 - highest - 8
     s = _along(canvas, gear, plan, complex(pole, axis), scale, way)
@@ -408,7 +438,7 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     speeds = placed(canvas, plan, complex(pole, axis), (scale.mu, 1.0), *_turned(way))
     start, end = (complex(x, axis) for x in (left, left + whole)[::way])
     speeds.line("yV1", start, end + 1j * y1[-1], "curve", "curve")
-    speeds.line("yV2", start + 1j * y2[0], end, "curve", "curve")
+    speeds.line("yV2", start + 1j * y2[0], end + 1j * y2[-1], "curve", "curve")
     canvas.label(end + 1j * y1[-1], "V_1", away=-way + 0.3j, height=5)
     canvas.label(start + 1j * y2[0], "V_2", away=way + 0.5j, height=5)
 
@@ -460,12 +490,13 @@ def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, pole: float, 
     canvas = s.canvas
     s.line("K", origin - 6, origin + whole + 8, "axis", "axis")
     one, two = gear.wheels
-    ends = [pole + way * (one.t_low - one.t_pole) / scale.mu, pole + way * (two.t_pole - two.t_low) / scale.mu]
+    last = two.t_pole - two.t_low
+    ends = [pole + way * t / scale.mu for t in (one.t_low - one.t_pole, -last if gear.internal else last)]
     names = ("A", "B") if gear.driver == 1 else ("B", "A")
     e = _along(canvas, gear, gear.engagement, origin + pole, scale, way)
     e.line("B", origin + ends[0], origin + ends[1], "main", "curve")
-    feet = (0.0, whole)[::way]
-    for name, x in (("N_1", feet[0]), ("P_w", pole), ("N_2", feet[1]), *zip(names, ends, strict=True)):
+    feet = [] if gear.internal else [("N_2", (whole, 0.0)[::way][0])]
+    for name, x in (("N_1", (0.0, whole)[::way][0]), ("P_w", pole), *feet, *zip(names, ends, strict=True)):
         e.dot(name.replace("_", ""), 0.8, "main")
         canvas.label(origin + x, name, away=-1j, height=3.5)
 
@@ -521,7 +552,7 @@ def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         (tr("Number of teeth"), "z", str(one.teeth), str(two.teeth)),
         (tr("Module, mm"), "m", number(gear.m * 1e3)),
         (tr("Profile angle of the basic rack"), "α", degrees_and_minutes(gear.alpha)),
-        (tr("Addendum coefficient"), "h_a^{*}", number(gear.addendum)),
+        (tr("Addendum coefficient"), "h_a^{*}", *dict.fromkeys(number(w.addendum) for w in gear.wheels)),
         (tr("Bottom clearance coefficient"), "c^{*}", number(gear.clearance)),
         (tr("Profile shift coefficient"), "x", number(one.shift), number(two.shift)),
         (tr("Working pressure angle"), "α_w", degrees_and_minutes(gear.alpha_w)),
@@ -572,6 +603,9 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
                   f"{fixed(w.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
         rows += [(tr("Tooth thickness at the tip, in modules (≥ 0.2)"), "s_{a1}; s_{a2}",
                   "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
+    if gear.internal:
+        clear = degrees(float(gear.step("tips_clear").value))
+        rows += [(tr("Clearance of the tips beside the mesh (≥ 0)"), "δ_{12}", f"{fixed(clear, 2)}°")]
     inner = canvas.title(box, tr("Quality indices"))
     end = ruled_table(canvas, Box(box.x0, box.y0 + 50, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
     one, two = gear.wheels

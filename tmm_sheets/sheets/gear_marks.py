@@ -60,8 +60,8 @@ class Window:
     def breaks(self, s: Stage, wheel: Any) -> None:
         """Break lines where the edge of the picture cuts a wheel (GOST 2.303: thin, with a kink)."""
         centre = s.at(f"O{wheel.number}")
-        radius = abs(complex(s.frame(wheel.ra)) - complex(s.frame(0)))
-        for a, b in chords(self.box, centre, radius):
+        inner, outer = (abs(complex(s.frame(r)) - complex(s.frame(0))) for r in (wheel.ra, wheel.outside))
+        for a, b in chords(self.box, centre, outer, inner if wheel.ring else 0.0):
             u = (b - a) / abs(b - a)
             kinks = max(round(abs(b - a) / KINKS), 1)
             points = [a - OVER * u]

@@ -53,7 +53,7 @@ class _RackPicture:
         self.wheel = gear.pinion
         self.rack = self.wheel.rack
         m = gear.m
-        top = max((self.rack.shift + gear.addendum) * m, self.wheel.ra - self.rack.r)
+        top = max((self.rack.shift + self.wheel.addendum) * m, self.wheel.ra - self.rack.r)
         bottom = self.rack.r - self.wheel.rf + BELOW * m
         inner = box.inset(0, 0, MARGIN, 16 + NOTES)
         scale = standard((PITCHES * pi * m, inner.width), (top + bottom, inner.height))
@@ -118,7 +118,7 @@ class _RackPicture:
     def positions(self) -> None:
         """Positions of the rack's flank relative to the wheel, and the points in which they touch the tooth."""
         c, plan, rack = self.canvas, self.stage.plan, self.rack
-        top = self.gear.addendum * self.gear.m
+        top = self.wheel.addendum * self.gear.m
         whole = rack.tooth(top)
         half = whole[: len(whole) // 2]
         outside = self.wheel.ra + 0.2 * self.gear.m
@@ -141,7 +141,7 @@ class _RackPicture:
     def rack_and_teeth(self) -> None:
         """The rack in its middle position and the teeth it has cut, both flanks of each."""
         c = self.canvas
-        top = self.gear.addendum * self.gear.m
+        top = self.wheel.addendum * self.gear.m
         outline = self.at(self.rack.placed(self.rack.outline(-1, 1, top), 0.0))
         self.window.curve(self.stage, "M", outline, "axis", "symbol")
         shape = self.gear.generated(self.wheel)
@@ -172,16 +172,16 @@ class _RackPicture:
         c.arrow_head(touch, (touch - tip) / abs(touch - tip), 2.5)
         c.label(tip, f"ρ_f = {fixed(rack.tip_radius * 1e3, 2)}", away=-1 + 0.4j, gap=1.5)
         x = w.x0 + 6.0
-        for low in (0.0, -gear.addendum * m):
-            a, b = complex(x, self.height(low)), complex(x, self.height(low + gear.addendum * m))
+        for low, part in ((0.0, self.wheel.addendum), (-rack.addendum * m, rack.addendum)):
+            a, b = complex(x, self.height(low)), complex(x, self.height(low + part * m))
             c.line(a, b, "thin")
             c.arrow_head(a, -1j, 3.0)
             c.arrow_head(b, 1j, 3.0)
-            c.label((a + b) / 2, f"h_a^{{*}}m = {number(gear.addendum * m * 1e3)}", away=1, height=3.5, gap=1.0)
-        for level in (-gear.addendum * m, -rack.depth, gear.addendum * m):
+            c.label((a + b) / 2, f"h_a^{{*}}m = {number(part * m * 1e3)}", away=1, height=3.5, gap=1.0)
+        for level in (-rack.addendum * m, -rack.depth, self.wheel.addendum * m):
             y = self.height(level)
             c.line(complex(x - 3, y), complex(x + 8, y), "thin")
-        gaps = [(-rack.depth, -gear.addendum * m, f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}")]
+        gaps = [(-rack.depth, -rack.addendum * m, f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}")]
         if abs(rack.shift) * m / self.at.scale.mu > 0.3:
             low, high = sorted((0.0, -rack.shift * m))
             gaps.append((low, high, f"xm = {fixed(rack.shift * m * 1e3, 2)}"))

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from tmm_sheets.task import cam_table
 from tmm_sheets.task.toml_lines import KeyPath
 from tmm_sheets.words import tell
 
@@ -16,9 +17,11 @@ Found = tuple[KeyPath, str, str]
 
 FOLLOWER_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "translating roller": (
-        ("stroke", "pressure_angle"), ("eccentricity", "limit", "centre", "roller", "curvature_share", "follower_mass")),
+        ("stroke", "pressure_angle"),
+        ("base_radius", "eccentricity", "limit", "centre", "roller", "curvature_share", "follower_mass")),
     "oscillating roller": (
-        ("arm", "swing", "pressure_angle"), ("rotation", "limit", "centre", "roller", "curvature_share", "follower_inertia")),
+        ("arm", "swing", "pressure_angle"),
+        ("base_radius", "centre_distance", "rotation", "limit", "centre", "roller", "curvature_share", "follower_inertia")),
     "flat": (("stroke",), ("base_radius", "follower_mass")),
 }
 """Keys that a follower must and may have beside those that all have."""
@@ -36,12 +39,17 @@ def check_cam(data: dict[str, Any]) -> Iterator[Found]:
     if isinstance(follower, str) and follower in FOLLOWER_KEYS:
         yield from _of_follower(cam, follower)
     yield from _of_laws(cam)
+    if "centre" in cam and "base_radius" in cam:
+        yield ("cam", "centre"), tell("a given base_radius tells where the axis is"), tell("leave one of them out")
+    if "centre_distance" in cam and "base_radius" not in cam:
+        yield ("cam", "centre_distance"), tell("goes with base_radius only"), ""
 
 
 def _of_follower(cam: dict[str, Any], follower: str) -> Iterator[Found]:
     must, may = FOLLOWER_KEYS[follower]
+    told = cam_table.OWN if cam_table.LAW in cam else ()
     for key in must:
-        if key not in cam:
+        if key not in cam and key not in told:
             yield (
                 ("cam", key),
                 tell('missing; follower = "{follower}" needs it, for example {key} = {example}').format(
@@ -71,5 +79,7 @@ def _of_laws(cam: dict[str, Any]) -> Iterator[Found]:
                 ),
                 "",
             )
+        if cam.get(law) == cam_table.LAW and cam_table.LAW not in cam:
+            yield ("cam", law), tell("needs the table displacements"), ""
         if table in cam and cam.get(law) != "table":
             yield ("cam", table), tell('is read with {law} = "table" only').format(law=law), ""

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from tmm_sheets.task import units
+from tmm_sheets.task import cam_table, units
 from tmm_sheets.task.values import (
     AcuteAngle,
     Angle,
@@ -502,7 +502,7 @@ class FlywheelTable(Table):
 
 
 class GearTable(Table):
-    """``[gear]``: a pair of external involute spur gears."""
+    """``[gear]``: a pair of involute spur gears."""
 
     teeth: Annotated[tuple[Teeth, Teeth], or_word("reducer")] = Field(description=marked("tooth numbers, for example [14, 28]"))
     """`"reducer"`: the simple stage of `[reducer]` with its module, addendum and clearance"""
@@ -511,10 +511,22 @@ class GearTable(Table):
     shift: Annotated[tuple[Number, Number], or_word("rule")] = Field(
         default=(0.0, 0.0), description=marked("shifts, for example [0.2, 0]")
     )
-    """in modules; `"rule"`: the least shifts without undercut"""
+    """in modules; `"rule"`: the least shifts without undercut, of a ring the shift of its pinion"""
+    mesh: Literal["external", "internal"] = "external"
+    """`internal`: wheel 2 is a ring; its shift is positive away from its centre"""
+    centre_distance: Length | None = Field(default=None, description=marked('centre distance, for example "110 mm"'))
+    """instead of `shift`: the sum of the shifts follows from it, of an internal pair their difference"""
+    first_shift: Number | None = None
+    """with `centre_distance`: the shift of wheel 1; left out: the sum is divided inversely as the tooth numbers, as far as neither
+    wheel becomes undercut; in a ring the pinion has its least shift without undercut
+    """
     pressure_angle: AcuteAngle = Field(description=marked('profile angle of the rack, for example "20 deg"'))
     addendum: PositiveNumber | None = None
     """coefficient ha*; left out: 1"""
+    addenda: tuple[PositiveNumber, PositiveNumber] | None = Field(
+        default=None, description=marked("coefficients ha* of each wheel, for example [1.2, 0.8]")
+    )
+    """instead of `addendum`: each wheel is cut as deep as its mate's teeth are high"""
     clearance: PositiveNumber | None = None
     """coefficient c*; left out: 0.25"""
     driver: Literal[1, 2] = 1
@@ -531,9 +543,33 @@ class GearTable(Table):
             if self.module is None:
                 raise ValueError(tell('expected "module" too, for example module = "3.5 mm"'))
         else:
-            given = [k for k in ("module", "addendum", "clearance") if getattr(self, k) is not None]
+            given = [k for k in ("module", "addendum", "addenda", "clearance") if getattr(self, k) is not None]
             if given:
                 raise ValueError(tell('teeth = "reducer" takes {given} from [reducer]').format(given=", ".join(given)))
+        return self
+
+    @model_validator(mode="after")
+    def _one_way_to_the_shifts(self) -> Self:
+        if self.centre_distance is not None and "shift" in self.model_fields_set:
+            raise ValueError(tell("expected either shift or centre_distance; x1 goes with the latter as first_shift"))
+        if self.first_shift is not None and self.centre_distance is None:
+            raise ValueError(tell("first_shift goes with centre_distance; without it write shift = [x1, x2]"))
+        if self.addendum is not None and self.addenda is not None:
+            raise ValueError(tell("expected either addendum or addenda"))
+        return self
+
+    @model_validator(mode="after")
+    def _ring_can_be(self) -> Self:
+        if self.mesh == "external":
+            return self
+        teeth: Any = self.teeth
+        if teeth == "reducer":
+            raise ValueError(tell('the simple stage of [reducer] meshes outside: mesh = "internal" needs tooth numbers'))
+        if teeth[1] <= teeth[0]:
+            raise ValueError(tell("the ring is wheel 2: expected teeth with a larger second number, not {teeth}").format(
+                teeth=list(teeth)))
+        if self.profile == "rack":
+            raise ValueError(tell('no rack cuts a ring: leave profile = "rack" out'))
         return self
 
 
@@ -666,6 +702,11 @@ class CamTable(Table):
     """
     fall_table: CamDiagram | None = None
     """the same for `fall_law = "table"`"""
+    displacements: tuple[tuple[Any, Any], ...] | None = None
+    """the whole turn instead of law, phases and stroke: cam angle and displacement (of a rocker its angle), for example
+    `[["0 deg", "0 mm"], ["30 deg", "4 mm"], ["60 deg", "9 mm"], ["120 deg", "9 mm"], ["200 deg", "0 mm"], ["360 deg", "0 mm"]]`;
+    joined by cubic splines that are level where a phase ends
+    """
     rise: PhaseAngle = Field(description=marked('phase angle of the rise, for example "100 deg"'))
     upper_dwell: PhaseAngle = 0.0
     """phase angle of the upper dwell"""
@@ -688,7 +729,11 @@ class CamTable(Table):
     centre: Literal["vertex", "least"] = "vertex"
     """where the axis of the cam is put: the vertex of the allowed zone, or the point of it that makes the cam least"""
     base_radius: Length | None = None
-    """of the cam with a flat follower; left out: the least"""
+    """smallest radius, with a roller that of its axis; left out: the least, with a roller that of the permitted pressure angle.
+    Given with a roller, the pressure angle is found, and shown where it exceeds the permitted one
+    """
+    centre_distance: Length | None = None
+    """with the `base_radius` of a rocker's cam: distance of the axes; left out: OB₀ stands square to the rocker"""
     sense: Sense = "clockwise"
     """sense of rotation of the cam"""
     roller: Length | None = None
@@ -712,6 +757,11 @@ class CamTable(Table):
     preload: InnerFraction = 0.3
     """force of the spring in the lowest position as a share of the largest"""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _phases_of_the_displacements(cls, data: Any) -> Any:
+        return cam_table.filled(data)
+
     @model_validator(mode="after")
     def _phases_fit(self) -> Self:
         if self.rise <= 0 or self.fall <= 0:
@@ -721,6 +771,14 @@ class CamTable(Table):
         if self.rise + self.upper_dwell + self.fall > units.parse("360.000001 deg", units.ANGLE):
             raise ValueError(tell("expected rise, upper_dwell and fall of 360 deg together or less"))
         return self
+
+    def place(self, key: str) -> str:
+        """The key of the file in which the number of a key stands."""
+        return cam_table.LAW if self.displacements is not None and key in cam_table.OWN else key
+
+    def ordinates(self, fall: bool) -> tuple[list[float], list[float]]:
+        """Shares of the rise or the fall and of its travel by ``displacements``."""
+        return cam_table.phase_ordinates({"follower": self.follower, "displacements": self.displacements}, fall)
 
     def diagram(self, table: str) -> tuple[list[float], list[float]]:
         """Shares of the phase and relative accelerations of ``table`` or ``fall_table``."""

@@ -116,7 +116,7 @@ Teeth = Annotated[int, whole(4)]
 Count = Annotated[int, whole(1)]
 EvenParts = Annotated[int, AfterValidator(_even_parts), whole(4)]
 Side = Literal[1, -1]
-CamLaw = Literal["constant", "cosine", "sine", "trapezoid", "linearly decreasing", "table"]
+CamLaw = Literal["constant", "cosine", "sine", "trapezoid", "linearly decreasing", "table", "displacements"]
 Sense = Literal["clockwise", "counter-clockwise"]
 
 

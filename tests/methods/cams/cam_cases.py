@@ -15,7 +15,7 @@ def cam_data(**changes):
          "limit": "rise", "centre": "vertex", "curvature_share": None, "base_radius": None, "sense": "clockwise", "roller": 3.5,
          "closure": "force",
          "speed": None, "follower_mass": None, "follower_inertia": None, "spring_factor": 1.75, "preload": 0.3,
-         "table": None, "fall_table": None} | changes
+         "table": None, "fall_table": None, "centre_distance": None} | changes
     for name in ("rise", "upper_dwell", "fall", "pressure_angle", "swing"):
         d[name] = None if d[name] is None else radians(d[name])
     for name in ("stroke", "roller", "eccentricity", "arm", "base_radius"):
@@ -23,6 +23,7 @@ def cam_data(**changes):
     d["speed"] = None if d["speed"] is None else d["speed"] * pi / 30
     data = SimpleNamespace(**d)
     data.diagram = lambda key: tuple(map(list, zip(*getattr(data, key), strict=True)))
+    data.place = lambda key: key
     return data
 
 

@@ -22,9 +22,10 @@ MANUALS = Path(__file__).parents[2] / "manuals"
 
 
 def data(teeth=(14, 28), shift=(3 / 17, 0.0), module=0.0035, driver=1, sense="clockwise", clearance=0.25, addendum=1.0,
-         profile="fillet"):
+         profile="fillet", mesh="external", centre_distance=None):
     return SimpleNamespace(teeth=teeth, shift=shift, module=module, pressure_angle=radians(20), addendum=addendum,
-                           clearance=clearance, driver=driver, sense=sense, profile=profile)
+                           clearance=clearance, driver=driver, sense=sense, profile=profile, mesh=mesh,
+                           centre_distance=centre_distance)
 
 
 PAIRS = [

@@ -14,8 +14,8 @@ from tests.methods.gears.test_gears import data, polygon
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_engagement import unrolled
-from tmm_sheets.methods.gears.gear_formulas import geometry_plan
 from tmm_sheets.methods.gears.gear_pair import MeshingPair, gear_pair, settled
+from tmm_sheets.methods.gears.gear_steps import geometry_plan
 from tmm_sheets.methods.gears.rack import Rack, flank
 
 ALPHA = radians(20)
@@ -167,7 +167,8 @@ def test_generalised_rule():
 class _Section:
     def __init__(self, **over):
         self.__dict__ |= {"teeth": (12, 30), "module": 0.005, "shift": "rule", "pressure_angle": ALPHA, "addendum": None,
-                          "clearance": None, "driver": 1, "sense": "clockwise", "profile": "rack"} | over
+                          "addenda": None, "clearance": None, "driver": 1, "sense": "clockwise", "profile": "rack",
+                          "mesh": "external", "centre_distance": None} | over
 
 
 class _Reducer:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from itertools import pairwise
 from math import pi
 from typing import Any
@@ -179,13 +179,18 @@ class _Pieces:
 
     def at(self, coefficients: Reals, x: Any) -> Any:
         """Value of a diagram or of an integral; in a jump that of the later piece counts."""
-        x = np.asarray(x, dtype=float)
-        k = np.clip(np.searchsorted(self.starts, x, side="right") - 1, 0, len(self.starts) - 1)
-        t, c = x - self.starts[k], coefficients[k]
-        result = c[..., -1]
-        for power in range(c.shape[-1] - 2, -1, -1):
-            result = result * t + c[..., power]
-        return result
+        return _piecewise(self.starts, coefficients, x)
+
+
+def _piecewise(starts: Reals, coefficients: Reals, x: Any) -> Any:
+    """Value of polynomials that each begin at a start; at a border that of the later one."""
+    x = np.asarray(x, dtype=float)
+    k = np.clip(np.searchsorted(starts, x, side="right") - 1, 0, len(starts) - 1)
+    t, c = x - starts[k], coefficients[k]
+    result = c[..., -1]
+    for power in range(c.shape[-1] - 2, -1, -1):
+        result = result * t + c[..., power]
+    return result
 
 
 def _slopes(x: Reals, y: Reals) -> Reals:
@@ -265,6 +270,62 @@ def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title
     return Law(name, title, (lambda x, a, b: diagram(x, a, b, 0.0), lambda x, a, b: diagram(x, a, b, 1.0),
                              lambda x, a, b: diagram(x, a, b, 2.0)),
                peak=float(np.abs(values).max()), jumps=p.jumps, even=False, nodes=nodes)
+
+
+class _Spline:
+    """Cubic spline through the ordinates of one phase, level at both ends, with its two derivatives."""
+
+    def __init__(self, x: Sequence[float], y: Sequence[float]) -> None:
+        at, values = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+        h, d = np.diff(at), np.diff(values) / np.diff(at)
+        slopes, n = np.zeros(len(at)), len(at) - 2
+        if n:
+            # The second derivative is one on both sides of each inner ordinate.
+            rows = np.diag(2 / h[:-1] + 2 / h[1:]) + np.diag(1 / h[1:-1], 1) + np.diag(1 / h[1:-1], -1)
+            slopes[1:-1] = np.linalg.solve(rows, 3 * (d[:-1] / h[:-1] + d[1:] / h[1:]))
+        self.starts = at[:-1]
+        s = _cubics(at, values, slopes)
+        ds = s[:, 1:] * np.arange(1, 4)
+        self.forms = s, ds, ds[:, 1:] * np.arange(1, 3)
+
+    def at(self, order: int, x: Any) -> Any:
+        """Displacement or a derivative at shares of the phase."""
+        return _piecewise(self.starts, self.forms[order], x)
+
+
+@cache
+def _spline(x: tuple[float, ...], y: tuple[float, ...]) -> _Spline:
+    return _Spline(x, y)
+
+
+@primitive("spline of ordinates")
+def through_ordinates(x: Any, shares: Any, displacements: Any, order: float) -> Any:
+    """The law through given ordinates (see :func:`ordinates_law`), ``order`` 0, or its first or second derivative."""
+    return _spline(tuple(shares), tuple(displacements)).at(int(order), x)
+
+
+def ordinates_law(x: Sequence[float], y: Sequence[float], key: str = "cam.displacements") -> Law:
+    """Law through given ordinates: shares ``x`` of the phase and ``y`` of the travel, both from 0 to 1, by a clamped cubic spline.
+
+    Raises
+    ------
+    CannotBuild
+        when the spline turns back between two ordinates; ``key`` names the table.
+    """
+    nodes = tuple(Given(np.asarray(row, dtype=float), f"{key}[*][{i}]", over="curve") for i, row in enumerate((x, y)))
+    spline = _spline(*(tuple(given.value) for given in nodes))
+    shares = np.union1d(np.linspace(0, 1, 4001), spline.starts)
+    velocity = spline.at(1, shares)
+    if velocity.min() < -1e-9 * velocity.max():
+        raise CannotBuild(tell("{key}: the follower turns back inside the phase, at the share {share:.3f}").format(
+            key=key, share=shares[velocity.argmin()]), tell("give ordinates there, or smoother ones"))
+    forms = tuple(partial(_ordinate, order) for order in range(3))
+    return Law("displacements", marked("by the given table of displacements"), (forms[0], forms[1], forms[2]),
+               peak=float(np.abs(spline.at(2, np.append(spline.starts, 1.0))).max()), even=False, nodes=nodes)
+
+
+def _ordinate(order: int, x: Any, shares: Any, displacements: Any) -> Any:
+    return through_ordinates(x, shares, displacements, float(order))
 
 
 TRAPEZOID = replace(

@@ -34,7 +34,7 @@ from tmm_sheets.methods.cams.cam_inversion import (
     rocker_curvature,
     tappet_curvature,
 )
-from tmm_sheets.methods.cams.cam_laws import LAWS, PHASES, Law, Phase, PositionFunction, table_law
+from tmm_sheets.methods.cams.cam_laws import LAWS, PHASES, Law, Phase, PositionFunction, ordinates_law, table_law
 from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
 from tmm_sheets.methods.cams.cam_zone import Plate, Zone, found_share
 from tmm_sheets.words import marked, tell, tr
@@ -88,7 +88,8 @@ THREE_POINT_CENTRE = Rule(
 
 GIVEN = {"rise": (PHASES["φ_у"], "rad"), "upper_dwell": (PHASES["φ_дс"], "rad"), "fall": (PHASES["φ_с"], "rad"),
          "stroke": ("S_{max}", "m"),
-         "swing": ("ψ_{max}", "rad"), "arm": ("AB", "m"), "eccentricity": ("e", "m"), "pressure_angle": ("[α]", "rad"),
+         "swing": ("ψ_{max}", "rad"), "arm": ("AB", "m"), "centre_distance": ("l_0", "m"), "eccentricity": ("e", "m"),
+         "pressure_angle": ("[α]", "rad"),
          "base_radius": ("r_0", "m"), "roller": ("r_p", "m"), "curvature_share": ("", "1"), "speed": ("ω", "rad/s"),
          "follower_mass": ("m", "kg"), "follower_inertia": ("J", "kg*m2"), "spring_factor": ("", "1"), "preload": ("", "1")}
 """Symbol and unit of the numbers of a project file."""
@@ -98,7 +99,7 @@ def given(data: CamTable, key: str) -> GivenNumber | None:
     """A number of the project file that knows its place there; None where it is left out."""
     value = getattr(data, key)
     symbol, unit = GIVEN[key]
-    return None if value is None else GivenNumber(value, f"cam.{key}", tr(symbol), unit)
+    return None if value is None else GivenNumber(value, f"cam.{data.place(key)}", tr(symbol), unit)
 
 
 @dataclass(frozen=True)
@@ -331,6 +332,18 @@ class RollerCam(Cam):
         """Smallest radius of the centre profile, m."""
         return self.zone.r0
 
+    @cached_property
+    def steepest(self) -> Plan | None:
+        """Greatest pressure angles where the radius is given and they follow; None where the permitted one gives the radius."""
+        return None if self.data.base_radius is None else cam_zone.steepest(self.zone)
+
+    def _found_angles(self) -> dict[str, Any]:
+        """What they are and where, for the results."""
+        if self.steepest is None:
+            return {}
+        return {"steepest": {phase: {"phi": self.steepest[f"φ_α{k}"], "pressure_angle": self.steepest[f"α_{k}"]}
+                             for k, phase in enumerate(("rise", "fall"), 1)}}
+
     def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
         """Rule for the radius of curvature of a centre profile, the curvature itself, and what both take besides the motion."""
         raise NotImplementedError
@@ -358,6 +371,8 @@ class RollerCam(Cam):
 
     def _dimension_plans(self) -> Iterable[Plan]:
         yield from (*self.zone.plans.values(), *self.zone.display_plans())
+        if self.steepest is not None:
+            yield self.steepest
         if self.discs is not None:
             yield self.discs
         yield from (self.curvature, self.near.at.plan, self.near.plan, self.choice)
@@ -544,7 +559,7 @@ class TappetCam(RollerCam):
         """Allowed zone and main dimensions from the ordinates of the diagrams."""
         at = self.motion.ordinates
         return cam_zone.zone(self.law, self.alpha, self.data.limit, self.right, at.s, at.ds, self.given("eccentricity"),
-                             self.data.centre, self.exact)
+                             self.data.centre, self.exact, self.given("base_radius"))
 
     @property
     def distance(self) -> float:
@@ -568,7 +583,7 @@ class TappetCam(RollerCam):
         z = self.zone.plan
         _ = self.roller
         found = {"r0": z["r_0"], "e": z["e"], "s0": z["S_0"], "r_roller": self.choice["r_p"], "rho_min": self.curvature["ρ_min"]}
-        return found | ({"roller_distance": self.apart} if self.apart else {})
+        return found | self._found_angles() | ({"roller_distance": self.apart} if self.apart else {})
 
 
 @dataclass(frozen=True)
@@ -580,7 +595,7 @@ class RockerCam(RollerCam):
         """Allowed zone and main dimensions from the ordinates of the diagrams."""
         d, at = self.data, self.motion.ordinates
         return cam_zone.rocker_zone(self.law, self.arm, self.alpha, d.limit, self.right, d.rotation == "same", at.s, at.ds,
-                                    d.centre, self.exact)
+                                    d.centre, self.exact, self.given("base_radius"), self.given("centre_distance"))
 
     @property
     def arm(self) -> float:
@@ -618,7 +633,7 @@ class RockerCam(RollerCam):
                                  "rho_min": self.curvature["ρ_min"]}
         if z.least is not None:
             found["least"] = {"r0": z.least["r_0"], "l0": z.least["l_0"]}
-        return found | ({"arm_angle": self.apart} if self.apart else {})
+        return found | self._found_angles() | ({"arm_angle": self.apart} if self.apart else {})
 
 
 @dataclass(frozen=True)
@@ -714,6 +729,8 @@ def _check_displacement(data: CamTable, angular: bool) -> None:
 
 
 def _law(data: CamTable, name: str, table: str) -> Law:
+    if name == "displacements":
+        return ordinates_law(*data.ordinates(fall=table == "fall_table"))
     if name == "table":
         return table_law(*data.diagram(table), key=f"cam.{table}")
     if name not in LAWS:

@@ -468,12 +468,22 @@ def _limited_ordinates(law: PositionFunction, s: Any, ds: Any, n: int) -> tuple[
 
 
 def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any, ds: Any, e: float | None = None,
-         centre: Centre = "vertex", exact: ExactMotion | None = None) -> Zone:
+         centre: Centre = "vertex", exact: ExactMotion | None = None, r0: float | None = None) -> Zone:
     """Main dimensions of a translating roller follower; ``s`` and ``ds`` are the ordinates of the numbered positions, m.
 
     The axis is put in the apex of the zone; with a given eccentricity ``e`` (m) on the follower's line at that distance,
-    as high as the zone allows; with ``centre`` = "least" in the point of the zone nearest to B.
+    as high as the zone allows; with ``centre`` = "least" in the point of the zone nearest to B. With a given radius ``r0`` (m) it
+    stands at that distance from B on the follower's line, at the eccentricity or through B, whatever the zone allows.
+
+    Raises
+    ------
+    CannotBuild
+        when the given radius does not reach the follower's line.
     """
+    if r0 is not None and not r0 > abs(e or 0.0):
+        raise CannotBuild(tell("cam.base_radius: with {radius:g} mm the cam's axis cannot stand {offset:g} mm off the follower's "
+                               "line").format(radius=r0 * 1e3, offset=abs(e or 0.0) * 1e3),
+                          tell("take a radius larger than the eccentricity"))
     exact = exact or ExactMotion(law)
     limited = _limited(law, limit)
     cones = Cones(limited, alpha, right)
@@ -496,12 +506,17 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any
                tr("At the angle {angle}° to the axis S draw the tangent to the curve S(S'); point of contact {{name}}."))
         touching.append(plan.add(name, TOUCH, *at, right, say=say.format(angle=fixed(degrees(alpha), 1))))
     borders = [plan.add(f"t_{k}", INCLINED, alpha, right * side) for k, side in ((1, 1.0), (2, -1.0))]
-    if e is not None or centre == "least":
+    if e is not None or r0 is not None or centre == "least":
         plan.add("V", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
                  say=tr("The tangents {1} and {3} meet at the vertex {name} of the zone."))
-    if e is not None:
-        line = plan.add("e_0", rules.OFFSET, start, complex(right), e,
-                        say=tr("On the perpendicular to the axis S lay off the eccentricity {2} from {0}: point {name}."))
+    line = start if e is None else plan.add(
+        "e_0", rules.OFFSET, start, complex(right), e,
+        say=tr("On the perpendicular to the axis S lay off the eccentricity {2} from {0}: point {name}."))
+    if r0 is not None:
+        apex = plan.add("O", rules.ARC_LINE, start, plan.add("r", CHOSEN, r0, symbol="r_0"), line, 1j, -1.0,
+                        say=tr("About {0} with the given radius {1} strike an arc across the parallel to the axis S through {2}: "
+                               "take the centre of rotation {name} there."))
+    elif e is not None:
         met = [plan.add(f"O_{k}", rules.LINE_LINE, line, 1j, touch_, border,
                         say=tr("Through {0}, parallel to the axis S, draw a line up to the tangent {3} from {2}: point {name}."))
                for k, touch_, border in ((1, touching[0], borders[0]), (2, touching[1], borders[1]))]
@@ -527,17 +542,20 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any
 
 
 def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, right: float, same: bool, psi: Any,
-                dpsi: Any, centre: Centre = "vertex", exact: ExactMotion | None = None) -> Zone:
+                dpsi: Any, centre: Centre = "vertex", exact: ExactMotion | None = None, r0: float | None = None,
+                l0: float | None = None) -> Zone:
     """Main dimensions of an oscillating roller follower; ``psi`` and ``dpsi`` are the ordinates of the positions, rad.
 
     ``same``: cam and rocker turn the same way in the rise, so the segments are laid off towards the axis A of the rocker.
     The rocker lies horizontal in position 0 and rises upwards. The vertex of the zone is not always its point nearest
-    to B: the least cam is another one then, ``centre`` = "least".
+    to B: the least cam is another one then, ``centre`` = "least". With a given radius ``r0`` (m) the axis stands at that distance
+    from B against its first velocity, or at the distance ``l0`` (m) from A, whatever the zone allows.
 
     Raises
     ------
     CannotBuild
-        when no point satisfies the limits of all positions; says from which permitted angle on there is one.
+        when no point satisfies the limits of all positions; says from which permitted angle on there is one. When the given
+        distances and the rocker make no triangle.
     """
     exact = exact or ExactMotion(law)
     limited = _limited(law, limit)
@@ -556,7 +574,7 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
            tr("From {0} on AB produced lay off x = AB·ψ' = {2}: point {name}."))
     points = plan.add("D", rules.OFFSET, axis, line, x, say=say)
     found = cones.corner(centre)
-    if found is None:
+    if found is None and r0 is None:
         raise CannotBuild(
             (tell("cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {angle:g} deg on the rise")
              if limit == "rise" else
@@ -564,15 +582,61 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
                   "and the fall")).format(angle=degrees(alpha)), _wider(cones))
     touch = Plan("cam-zone-touch", tr("Points where the outermost rays of the zone begin"), "m")
     z = Zone(plan, {p.name: p for p in (rows, touch, plan)}, exact, cones, axis, points, (), (), start)
-    touching, borders, apex = _rocker_axis(plan, z, found[1], touch)
-    return replace(z, touching=touching, borders=borders, apex=apex)
+    rays = found[1] if found else ()
+    if r0 is None:
+        touching, borders, apex = _rocker_axis(plan, z, rays, touch)
+        return replace(z, touching=touching, borders=borders, apex=apex)
+    touching, borders = _outermost(plan, z, rays, touch)
+    return replace(z, touching=touching, borders=borders, apex=_given_axis(plan, z, r0, l0))
+
+
+def _given_axis(plan: Plan, z: Zone, r0: float, l0: float | None) -> Step:
+    """Record the axis O of the cam of a given radius, with r_0 and l_0."""
+    start, (pivot, turn, _, arm) = plan["B_0"], z.swing
+    radius = plan.add("r", CHOSEN, r0, symbol="r_0")
+    if l0 is None:
+        apex = plan.add("O", rules.ALONG, start, -1j, radius,
+                        say=tr("Perpendicular to AB_0, against the velocity of B at the start, lay off the given radius {2} from "
+                               "{0}: take the centre of rotation {name} of the cam there."))
+    else:
+        if not abs(r0 - arm) < l0 < r0 + arm:
+            raise CannotBuild(tell("cam.centre_distance: {distance:g} mm, the radius {radius:g} mm and the rocker of {arm:g} mm "
+                                   "make no triangle").format(distance=l0 * 1e3, radius=r0 * 1e3, arm=arm * 1e3),
+                              tell("take a distance between {least:g} and {most:g} mm").format(
+                                  least=abs(r0 - arm) * 1e3, most=(r0 + arm) * 1e3))
+        apart = plan.add("l", CHOSEN, l0, symbol="l_0", say=tr("Given distance of the axes {name} = {value}."))
+        apex = plan.add("O", rules.ARC_ARC, start, radius, pivot, apart, turn,
+                        say=tr("About {0} with the given radius {1} and about {2} with the distance of the axes {3} strike arcs: "
+                               "take the centre of rotation {name} of the cam there."))
+    _measure_axis(plan, apex, start, pivot)
+    return apex
 
 
 def _rocker_axis(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan | None = None) -> tuple[
         tuple[Step, ...], tuple[Step, ...], Step]:
     """Record the axis O of the cam on one or two outermost rays, with r_0 and l_0."""
-    touch = touch or plan
-    start, (pivot, turn, right, arm) = z.plan["B_0"], z.swing
+    touching, borders = _outermost(plan, z, rays, touch or plan)
+    start, pivot = z.plan["B_0"], z.plan["A"]
+    if len(touching) == 1:
+        apex = plan.add("O", rules.FOOT, start, touching[0], borders[0],
+                        say=tr("From {0} drop the perpendicular to the ray {2}: take the centre of rotation {name} at its foot."))
+    else:
+        apex = plan.add("O", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
+                        say=tr("The outermost rays {1} and {3} meet at the vertex of the zone; take the centre of rotation {name} "
+                               "of the cam there."))
+    _measure_axis(plan, apex, start, pivot)
+    return touching, borders, apex
+
+
+def _measure_axis(plan: Plan, apex: Step, start: Step, pivot: Step) -> None:
+    """Radius and distance of the axes that belong to an axis of the cam."""
+    plan.add("r_0", rules.DISTANCE, apex, start, say=tr("Measure the segment OB_0 = r_0 = {value}."))
+    plan.add("l_0", rules.DISTANCE, apex, pivot, say=tr("Measure the segment OA = l_0 = {value}."))
+
+
+def _outermost(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
+    """Record the points where outermost rays begin, and their directions."""
+    pivot, turn, right, arm = z.swing
     touching, borders = [], []
     for k, ray in enumerate(rays, 1):
         tag = f"K_{k}"
@@ -583,16 +647,45 @@ def _rocker_axis(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan | None 
                  "at point {name} of the curve D(ψ).") if k == 1 else None
         touching.append(plan.add(f"K_{k}", OUTERMOST, psi, dpsi, pivot, turn, right, arm, say=say))
         borders.append(plan.add(f"t_{k}", OUTERMOST_DIRECTION, psi, turn, z.cones.alpha, ray.side * z.right))
-    if len(touching) == 1:
-        apex = plan.add("O", rules.FOOT, start, touching[0], borders[0],
-                        say=tr("From {0} drop the perpendicular to the ray {2}: take the centre of rotation {name} at its foot."))
-    else:
-        apex = plan.add("O", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
-                        say=tr("The outermost rays {1} and {3} meet at the vertex of the zone; take the centre of rotation {name} "
-                               "of the cam there."))
-    plan.add("r_0", rules.DISTANCE, apex, start, say=tr("Measure the segment OB_0 = r_0 = {value}."))
-    plan.add("l_0", rules.DISTANCE, apex, pivot, say=tr("Measure the segment OA = l_0 = {value}."))
-    return tuple(touching), tuple(borders), apex
+    return tuple(touching), tuple(borders)
+
+
+# --- pressure angle ---------------------------------------------------------------------------------------------------
+
+VELOCITY_OF_B = Rule("direction of the velocity of B", _up, ("inclination", "number"), "direction",
+                     marked("Draw the direction {name} of the velocity of B."))
+PRESSURE = Rule("pressure angle at a place", lambda tip, o, up, right: -right * np.angle((tip - o) / up),
+                ("point", "point", "direction", "number"), "inclination",
+                marked("The ray {1}{0} stands off from the velocity of B by the pressure angle {name} = {value}."), unit="rad",
+                source=SOURCE)
+
+
+def steepest(z: Zone) -> Plan:
+    """Greatest pressure angles ``α_1`` of the rise and ``α_2`` of the fall, rad, at the cam angles ``φ_α1`` and ``φ_α2``."""
+    plan = Plan("cam-steepest", tr("Greatest pressure angles"), "m")
+    law, apex = z.exact.law, complex(z.apex.value)
+    for k, phase in enumerate((law.rise, law.fall), 1):
+
+        def angle(x: Any, p: Phase = phase) -> Any:
+            return np.abs(np.angle((z.cones.tips(p, x) - apex) / z.cones.ups(p, x)))
+
+        lo, hi = 0.0, 1.0
+        for _ in range(9):
+            x = np.linspace(lo, hi, 65)
+            at = int(np.argmax(angle(x)))
+            lo, hi = float(x[max(at - 1, 0)]), float(x[min(at + 1, 64)])
+        tag = f"α{k}"
+        share = found_share(plan, z.exact.phases, phase, float(x[at]), tag, tr("the pressure angle is greatest"))
+        s, ds = in_phase(plan, law, z.exact.phases, phase, share, tag, (0, 1))
+        if z.cones.pivot is None:
+            up: Any = 1j
+            tip = plan.add(f"K_{tag}", TOUCH, s, ds, z.right, say=tr("Point {name} of the curve S(S') there."))
+        else:
+            pivot, turn, right, arm = z.swing
+            up = plan.add(f"u_{tag}", VELOCITY_OF_B, s, turn)
+            tip = plan.add(f"K_{tag}", OUTERMOST, s, ds, pivot, turn, right, arm, say=tr("Point {name} of the curve D(ψ) there."))
+        plan.add(f"α_{k}", PRESSURE, tip, z.plan["O"], up, z.right, symbol=f"α_{k}")
+    return plan
 
 
 def _wider(cones: Cones) -> str:

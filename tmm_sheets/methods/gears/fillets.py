@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import asin, atan
 from typing import Any
 
@@ -26,6 +27,18 @@ def _angle(rho: float, rb: float, rf: float, half: float) -> float:
     return half - t / rb + atan((t + rho) / rb)
 
 
+def _largest(fits: Callable[[float], bool], rho: float) -> float:
+    """The radius, or the largest below it that fits; NaN when none does."""
+    if fits(rho):
+        return rho
+    low, high = 0.0, rho
+    if not fits(low):
+        return float("nan")
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    return low
+
+
 @primitive("largest fillet")
 def radius(rho: float, rb: float, rf: float, half: float, half_pitch: float, t_low: float) -> float:
     """The radius ``rho``, or the largest that leaves room for both fillets of a space and for the mate's tip; NaN if none.
@@ -35,11 +48,22 @@ def radius(rho: float, rb: float, rf: float, half: float, half_pitch: float, t_l
     def fits(r: float) -> bool:
         return _angle(r, rb, rf, half) <= half_pitch and float(start(r, rb, rf)) <= max(t_low, 0.0)
 
-    if fits(rho):
-        return rho
-    low, high = 0.0, rho
-    if rf <= 0 or not fits(low):
-        return float("nan")
-    while low < (middle := (low + high) / 2) < high:
-        low, high = (middle, high) if fits(middle) else (low, middle)
-    return low
+    return _largest(fits, rho) if rf > 0 or fits(rho) else float("nan")
+
+
+def ring_start(rho: Any, rb: Any, rf: Any) -> Any:
+    """Unrolled length at which a fillet of a ring's tooth space leaves the involute towards the root circle."""
+    return np.sqrt(np.maximum((rf - rho - rb) * (rf - rho + rb), 0.0)) + rho
+
+
+@primitive("largest fillet of a ring")
+def ring_radius(rho: float, rb: float, rf: float, half: float, t_low: float) -> float:
+    """The radius ``rho``, or the largest that leaves room for both fillets of a ring's space and for the mate's tip; NaN if none.
+
+    ``half`` of the space on the base circle as an angle, ``t_low`` the unrolled length at the last contact.
+    """
+    def fits(r: float) -> bool:
+        t = float(ring_start(r, rb, rf))
+        return rf - r > rb and t >= t_low and half - t / rb + atan((t - r) / rb) >= 0
+
+    return _largest(fits, rho)

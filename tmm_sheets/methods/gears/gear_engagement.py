@@ -1,7 +1,9 @@
 """Constructions of the engagement picture, of the involutes by unrolling, of the teeth and of the sliding curves.
 
-Manual 000, section 6.4. The pole P_w is the origin, the line of centres vertical, wheel 1 above. ``hand`` is +1 or -1: the
-line of action runs from N1 (upper) to N2 (lower) to the right or to the left, which depends on driver and sense.
+Manual 000, section 6.4. The pole P_w is the origin, the line of centres vertical, wheel 1 above, wheel 2 below or, a ring, about
+it.
+``hand`` is +1 or -1: the line of action runs from N1 through the pole to the right or to the left, which depends on driver and
+sense.
 All points in metres; the unit "m" is real size, not millimetres of paper, except the ordinates of the speeds.
 """
 
@@ -36,7 +38,7 @@ HIGHEST_ORDINATE = 110.0
 
 
 def hand(pair: PairGeometry) -> int:
-    """+1 when the line of action falls to the right from N1 to N2, -1 when to the left.
+    """+1 when the line of action falls to the right from N1 through the pole, -1 when to the left.
 
     The driver presses in the sense of its motion, and the contact runs from the driver's foot towards the driven wheel's.
     """
@@ -166,6 +168,12 @@ FILLET_ON_NORMAL = Rule(
     "fillet on the involute", on_normal, ("point", "point", "point", "point", "length", "length"), "point",
     marked("On the normal to the involute at {3} lay off the radius of the fillet {5}: its centre {name}."),
 )
+RING_FILLET_ON_NORMAL = Rule(
+    "fillet on a ring's involute", lambda o, foot, pole, touch, length, rho: on_normal(o, foot, pole, touch, length, -rho),
+    ("point", "point", "point", "point", "length", "length"), "point",
+    marked("On the normal to the ring's involute at {3} lay off the radius of the fillet {5} towards the foot of the normal: its "
+           "centre {name}."),
+)
 TAKEN_SPEED = Rule("common ordinate of the speeds", lambda y: y, ("number",), "number",
                    marked("Take the ordinate of both velocities at the pitch point as {value} mm."), unit="mm")
 SPEED = Rule(
@@ -178,27 +186,40 @@ SLIDING = Rule("specific sliding", _sliding, ("number", "number"), "number",
                marked("Specific sliding {name} = ({0} − {1})/{0} = {value}."), source="000, 6.3")
 
 
+def side_of(pair: PairGeometry, wheel: GearWheel) -> int:
+    """Sense in which a wheel turns away from its flank: the same for both, but for a ring."""
+    return -hand(pair) if wheel.ring else hand(pair)
+
+
+def last_point(pair: PairGeometry) -> str:
+    """Where the graphs of sliding end beyond the pole: N2 or, with a ring, the last point of contact there."""
+    return "N2" if not pair.internal else "B" if pair.driver == 1 else "A"
+
+
 def engagement_plan(pair: PairGeometry) -> Plan:
     """Centres, circles, line of action, active part and overlap angles.
 
-    Steps: ``O1 O2 Pw``, circles ``rw1 r1 rb1 ra1 rf1`` and of wheel 2, ``N1 N2 A B``, ``alpha_w``, profiles in contact
+    The direction ``N1N2`` runs from N1 through the pole. Steps: ``O1 O2 Pw``, circles ``rw1 r1 rb1 ra1 rf1`` and of wheel 2,
+    ``N1 N2 A B``, ``alpha_w``, profiles in contact
     at A and B cutting the working pitch circles in ``a1 b1 a2 b2``, angles ``phi1 phi2``, ratios ``eps1 eps2``.
     """
     plan = Plan("gear-engagement", tr("Gear meshing"), "m")
     one = pair.wheels[0]
-    down = plan.add("O1O2", GIVEN_DIRECTION, -1j, say=tr("Draw the line of centres."), symbol="O_1O_2")
+    down = plan.add("O1O2", GIVEN_DIRECTION, 1j if pair.internal else -1j, say=tr("Draw the line of centres."), symbol="O_1O_2")
     plan.add("O1", CENTRE, one.step("rw"), symbol="O_1")
     distance = plan.add("aw", TAKEN, pair.step("a_w"), symbol="a_w")
     plan.add("O2", ALONG, plan["O1"], down, distance, symbol="O_2")
     for w in pair.wheels:
         for name in ("rw", "r", "rb", "ra", "rf"):
             plan.add(f"{name}{w.number}", CIRCLE, plan[f"O{w.number}"], w.step(name), symbol=w.step(name).symbol)
-    pole = plan.add("Pw", ALONG, plan["O1"], down, plan["rw1"], symbol="P_w")
+    to_pole = plan.add("O1P", RAY, plan["O2"], plan["O1"]) if pair.internal else down
+    pole = plan.add("Pw", ALONG, plan["O1"], to_pole, plan["rw1"], symbol="P_w")
     side = hand(pair)
     for w in pair.wheels:
         plan.add(f"N{w.number}", TANGENT, pole, plan[f"O{w.number}"], plan[f"rb{w.number}"], side, symbol=f"N_{w.number}")
-    line = plan.add("N1N2", RAY, plan["N1"], plan["N2"], symbol="N_1N_2")
-    ends = ((plan["O2"], plan["ra2"], -1), (plan["O1"], plan["ra1"], 1))
+    feet = (plan["N2"], plan["N1"]) if pair.internal else (plan["N1"], plan["N2"])
+    line = plan.add("N1N2", RAY, *feet, symbol="N_1N_2")
+    ends = ((plan["O2"], plan["ra2"], 1 if pair.internal else -1), (plan["O1"], plan["ra1"], 1))
     for name, (centre, radius, way) in zip("AB", ends if pair.driver == 1 else ends[::-1], strict=True):
         plan.add(name, ARC_LINE, centre, radius, pole, line, way)
     plan.add("alpha_w", ANGLE, pole, plan["O1"], plan["N1"])
@@ -219,7 +240,7 @@ def parts_of_pole_segment(drawn: float) -> int:
 
 def divisions(wheel: GearWheel, parts: int) -> range:
     """Division numbers from 0 at the pole to the last one beyond N that the tip needs, two at least (manual 000: 2-4)."""
-    beyond = (wheel.t_tip / wheel.t_pole - 1) * parts
+    beyond = (wheel.t_outer / wheel.t_pole - 1) * parts
     return range(parts + max(2, int(np.ceil(beyond - 1e-9))) + 1)
 
 
@@ -265,7 +286,7 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
     i = wheel.number
     plan = Plan(f"gear-tooth-{i}", tr("Tooth of wheel {wheel}").format(wheel=i), "m")
     centre, foot, pole = engagement[f"O{i}"], engagement[f"N{i}"], engagement["Pw"]
-    side = hand(pair)  # sense in which a wheel turns away from its flank: the same for both
+    side = side_of(pair, wheel)
     start = plan.add("E", ON_CIRCLE, centre, foot, pole, engagement[f"r{i}"])
     chord = plan.add("s", TAKEN, wheel.step("s_chord"), say=tr("Take the chordal tooth thickness {value}."))
     other = plan.add("F", ARC_ARC, centre, engagement[f"r{i}"], start, chord, -side)
@@ -279,7 +300,8 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
     if wheel.t_fillet > 0:
         length = plan.add("t", TAKEN, wheel.step("t_f"))
         touch = plan.add("Q", UNROLLED, centre, foot, pole, length)
-        fillet = plan.add("C", FILLET_ON_NORMAL, centre, foot, pole, touch, length, rho)
+        normal = RING_FILLET_ON_NORMAL if wheel.ring else FILLET_ON_NORMAL
+        fillet = plan.add("C", normal, centre, foot, pole, touch, length, rho)
     else:
         begin = plan.add("G", UNROLLED, centre, foot, pole, 0.0, say=tr("The involute begins on the base circle at point {name}."))
         fillet = plan.add("C", RADIAL_FILLET, centre, begin, rho, root, side)
@@ -299,7 +321,8 @@ _FOOT_ON_RADIUS = Rule(
 def common_ordinate(pair: PairGeometry) -> Given:
     """Ordinate at the pole, mm of paper, with which the highest one, over a foot of the line, stays in sight."""
     one, two = pair.wheels
-    ratio = max(one.t_pole, two.t_pole) / min(one.t_pole, two.t_pole)
+    # over the foot of the other wheel, of an internal pair over the pinion's tip
+    ratio = one.t_tip / one.t_pole - 1 if pair.internal else max(one.t_pole, two.t_pole) / min(one.t_pole, two.t_pole)
     found = next((y for y in COMMON_ORDINATES if y * (1 + ratio) <= HIGHEST_ORDINATE), COMMON_ORDINATES[-1])
     tried = ", ".join(number(y) for y in COMMON_ORDINATES)
     return Given(found, "gear.sliding.ordinate", "y_V", "mm", "000, 6", "none",
@@ -308,7 +331,7 @@ def common_ordinate(pair: PairGeometry) -> Given:
 
 
 def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = (3, 4)) -> Plan:
-    """Speeds of the contact point along both profiles and specific sliding, from N1 (division 0) over the pole to N2.
+    """Speeds of the contact point along both profiles and specific sliding, from N1 (division 0) over the pole to the last point.
 
     Speeds are ordinates in mm of paper with :func:`common_ordinate` at the pole; sliding is infinite at a wheel's own foot.
     """
@@ -320,7 +343,7 @@ def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = 
 
 
 def sliding_between(pair: PairGeometry, engagement: Plan, share: Any) -> Plan:
-    """The same for any points of N1N2: ``share`` is -1 at N1, 0 at the pole, 1 at N2 (for smooth curves)."""
+    """The same for any points of the line: ``share`` -1 at N1, 0 at the pole, 1 at the :func:`last_point` (for smooth curves)."""
     share = np.asarray(share, dtype=float)
     plan = Plan("gear-sliding-between", tr("Specific sliding between the divisions"), "m", tuple(f"{v:g}" for v in share))
     return _sliding_steps(plan, pair, engagement, np.maximum(-share, 0), np.maximum(share, 0))
@@ -341,9 +364,9 @@ def greatest_sliding(pair: PairGeometry, engagement: Plan) -> Plan:
 
 
 def _sliding_steps(plan: Plan, pair: PairGeometry, engagement: Plan, to_first: Any, to_second: Any) -> Plan:
-    pole, n1, n2 = engagement["Pw"], engagement["N1"], engagement["N2"]
+    pole, n1, n2, last = (engagement[k] for k in ("Pw", "N1", "N2", last_point(pair)))
     shares = [Given(row, f"gear.sliding.share[{i}]") for i, row in enumerate((to_first, to_second))]
-    at = plan.add("K", _BETWEEN, pole, n1, shares[0], n2, shares[1])
+    at = plan.add("K", _BETWEEN, pole, n1, shares[0], last, shares[1])
     ordinate = plan.add("yV", TAKEN_SPEED, common_ordinate(pair), symbol="y_V")
     y1 = plan.add("yV1", SPEED, n1, pole, at, ordinate, symbol="y_{V1}")
     y2 = plan.add("yV2", SPEED, n2, pole, at, ordinate, symbol="y_{V2}")

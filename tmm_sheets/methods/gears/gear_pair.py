@@ -32,7 +32,7 @@ def standard(symbol: str, span: float, room: float) -> Scale:
 
 
 class GearPair(PairGeometry):
-    """An external spur gear pair: GOST 16532 values, and plans as lazy properties.
+    """A spur gear pair: GOST 16532 values, and plans as lazy properties.
 
     Plans: ``gear-geometry``, ``gear-engagement``, ``gear-involute-1/2``, ``gear-tooth-1/2``, ``gear-sliding``,
     ``gear-greatest-sliding``, ``gear-rack``; those that end in ``-between`` only smooth the curves.
@@ -62,12 +62,12 @@ class GearPair(PairGeometry):
         one, two = (ge.tooth_plan(self, w, self.engagement) for w in self.wheels)
         record = gt.record_cut if self.profile == "rack" else gt.record_flank
         for wheel, plan in zip(self.wheels, (one, two), strict=True):
-            record(wheel, self.hand, self.engagement, plan)
+            record(wheel, ge.side_of(self, wheel), self.engagement, plan)
         return one, two
 
     @cached_property
     def _shapes(self) -> tuple[gt.ToothShape, gt.ToothShape]:
-        one, two = (gt.tooth_shape(w, self.hand, self.engagement, plan, plan["flank"])
+        one, two = (gt.tooth_shape(w, ge.side_of(self, w), self.engagement, plan, plan["flank"])
                     for w, plan in zip(self.wheels, self._teeth, strict=True))
         return one, two
 
@@ -94,8 +94,14 @@ class GearPair(PairGeometry):
 
     @property
     def hand(self) -> int:
-        """Which way the line of action falls from N1 to N2: +1 to the right, -1 to the left."""
+        """Which way the line of action falls from N1 through the pole: +1 to the right, -1 to the left."""
         return ge.hand(self)
+
+    @property
+    def beyond_pole(self) -> float:
+        """From the pole to where the graphs of sliding end, m."""
+        one, two = self.wheels
+        return one.t_tip - one.t_pole if self.internal else two.t_pole
 
     def tooth(self, wheel: GearWheel) -> Plan:
         """Tooth, axis and fillet of one wheel."""
@@ -109,9 +115,14 @@ class GearPair(PairGeometry):
         """Closed strip along the working part of the flank through the pole, ``width`` m deep."""
         return gt.strip(wheel, self.engagement, width)
 
+    @property
+    def height(self) -> float:
+        """What the scale of the picture goes by: the centre distance, the root radius of a ring, m."""
+        return self.wheels[1].rf if self.internal else self.a_w
+
     def picture_scale(self, room: float = ROOM) -> Scale:
-        """Scale factor of the largest GOST 2.302 scale with which the centre distance takes at most ``room`` mm of paper."""
-        return standard("μ_l", self.a_w * 1e3, room)
+        """Scale factor of the largest GOST 2.302 scale with which the height of the picture takes at most ``room`` mm of paper."""
+        return standard("μ_l", self.height * 1e3, room)
 
     def parts(self, wheel: GearWheel, scale: Scale | None = None) -> int:
         """Number of equal parts of P_wN when drawn with this scale factor (that of the picture by default)."""
@@ -146,18 +157,18 @@ class GearPair(PairGeometry):
         return self._smooth[key]
 
     def rolled(self, wheel: GearWheel, points: Any, travel: float) -> Any:
-        """Points of a wheel when the contact has moved by ``travel`` m along the line of action from the pole to N2."""
+        """Points of a wheel when the contact has moved by ``travel`` m along the line of action from N1 through the pole."""
         centre, foot = (self.engagement[f"{name}{wheel.number}"].value for name in "ON")
         shift = travel * self.engagement["N1N2"].value
         return centre + (points - centre) * ge.turn_of(centre, foot, shift)
 
     def sliding_curve(self, share: Any) -> Plan:
-        """Speeds and sliding at any points of the line: -1 at N1, 0 at the pole, 1 at N2."""
+        """Speeds and sliding at any points of the line: -1 at N1, 0 at the pole, 1 at the last point."""
         return ge.sliding_between(self, self.engagement, share)
 
     @cached_property
     def smooth_sliding(self) -> Plan:
-        """Speeds and sliding from N1 to N2, close enough for a smooth curve."""
+        """Speeds and sliding along the line, close enough for a smooth curve."""
         return self.sliding_curve(np.concatenate([np.linspace(-1, 0, 241)[:-1], np.linspace(0, 1, 241)]))
 
     @cached_property
@@ -192,11 +203,13 @@ class MeshingPair:
     module: Any
     shift: Any
     pressure_angle: float
-    addendum: float
+    addendum: Any
     clearance: float
     driver: int
     sense: str
     profile: str
+    mesh: str = "external"
+    centre_distance: Any = None
 
 
 def settled(section: Any, reducer: Any = None) -> MeshingPair:
@@ -206,9 +219,13 @@ def settled(section: Any, reducer: Any = None) -> MeshingPair:
     else:
         teeth, module = section.teeth, section.module
         addendum = given(1.0, "gear.addendum", source=tr("GOST 13755-81")) if section.addendum is None else section.addendum
+        addendum = section.addenda or addendum
         clearance = given(0.25, "gear.clearance", source=tr("GOST 13755-81")) if section.clearance is None else section.clearance
-    return MeshingPair(teeth, module, section.shift, section.pressure_angle, addendum, clearance, section.driver, section.sense,
-                       section.profile)
+    shift = section.shift
+    if section.centre_distance is not None:
+        shift = "rule" if section.first_shift is None else (section.first_shift, None)
+    return MeshingPair(teeth, module, shift, section.pressure_angle, addendum, clearance, section.driver, section.sense,
+                       section.profile, section.mesh, section.centre_distance)
 
 
 def gear_pair(data: GearData) -> GearPair:

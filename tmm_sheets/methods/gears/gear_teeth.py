@@ -112,7 +112,7 @@ def record_cut(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan) -> St
     add, name = (tooth.aside, "cut") if "flank" in tooth else (tooth.add, "flank")
     m, tip = (add(name, rack.TAKEN, step) for name, step in (("m", of("m")), ("r_a", wheel.step("ra"))))
     return add(name, CUT, engagement[f"O{wheel.number}"], tooth["axis"], float(side), m,
-               of("alpha"), of("ha"), of("c"), wheel.step("z"), wheel.step("x"), tip)
+               of("alpha"), wheel.depth, of("c"), wheel.step("z"), wheel.step("x"), tip)
 
 
 def tooth_shape(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan, flank: Step) -> ToothShape:
@@ -133,5 +133,5 @@ def strip(wheel: GearWheel, engagement: Plan, width: float, points: int = 24) ->
     centre, foot, pole = (engagement[name].value for name in (f"O{i}", f"N{i}", "Pw"))
     lengths = np.sqrt(np.linspace(wheel.t_low**2, wheel.t_tip**2, points))
     edge = unrolled(centre, foot, pole, lengths)
-    inner = on_normal(centre, foot, pole, edge, lengths, -width)
+    inner = on_normal(centre, foot, pole, edge, lengths, width if wheel.ring else -width)
     return np.concatenate([edge, inner[::-1]])

@@ -57,14 +57,15 @@ def scope(r: Reader) -> Scope:
             found.fields[name] = r.angle(step.value, r.id(step)) if name.startswith("alpha") else r.of(step)
     x1, x2 = (float(plan[n].value) for n in ("x1", "x2"))
     wheels = pair.wheels
-    undercut = [w for w in wheels if (w.rack.undercut if pair.profile == "rack" else w.shift < w.least_shift - 5e-5)]
+    undercut = [w for w in wheels if not w.ring and (
+        w.rack.undercut if pair.profile == "rack" else w.shift < w.least_shift - 5e-5)]
     found.fields |= {
         "shifted": bool(x1 or x2),
         "thin": min(float(plan[f"sa_m{i}"].value) if f"sa_m{i}" in plan else 1.0 for i in (1, 2)) < 0.2,
         "undercut": bool(undercut),
         "rack": pair.profile == "rack",
         "radial": any(w.rf < w.rb for w in wheels),
-        "pole": abs(sum(w.rw for w in wheels) - pair.a_w) < 1e-9 * pair.a_w,
+        "pole": abs(wheels[1].rw + (-wheels[0].rw if pair.internal else wheels[0].rw) - pair.a_w) < 1e-9 * pair.a_w,
         "warnings": [{"warning": text} for text in pair.warnings],
     }
     found.tables["wheels"] = _wheels(r, plan)
