@@ -142,7 +142,7 @@ class Variant(Table):
     def _flywheel_sheet(self) -> str:
         if self.flywheel is not None and self.flywheel.method == "mertsalov":
             return "sixbar_2" if self.balancing is None or self.balancing.kind == "moment" else "press_1"
-        return "engine_2" if self.cycle is not None and self.cycle.turns == 2 else "flywheel"
+        return "engine_2" if self.cycle is not None and self.cycle.turns > 1 else "flywheel"
 
     @property
     def loaded(self) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 from tmm_sheets.construction.step import value_at
 from tmm_sheets.note.document import Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
-from tmm_sheets.note.phrases import Said, Scope, words
+from tmm_sheets.note.phrases import Scope, words
 from tmm_sheets.note.reader import Quantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
 from tmm_sheets.numbers import is_zero
@@ -29,7 +29,10 @@ PLANS = (
     "reduced-inertia",
     "energy-mass",
     "first-energy",
+    "flywheel-given",
     "flywheel-inertia",
+    "flywheel-delta",
+    "drive-power",
     "flywheel-limit",
     "flywheel-wheel",
     "crank-speed",
@@ -48,7 +51,8 @@ def scope(r: Reader) -> Scope:
             "mertsalov": fw.method == "mertsalov",
             "resisting": fw.reduced.resisting,
             "needed": fw.needed,
-            "delta": r.number(fw.delta, "", "flywheel.delta"),
+            "given": fw.given,
+            "delta": r.of(fw.delta) if fw.given else r.number(fw.unevenness, "", "flywheel.delta"),
             "rim": r.project.variant.flywheel is not None and r.project.variant.flywheel.form == "rim",
         }
     )
@@ -111,9 +115,7 @@ def _reduction(r: Reader, found: Scope) -> None:
                 out = out + p
             return out / w**2
 
-        found.formulas["J"] = (
-            r.checked("J_{пр}", total, [omega, *terms], inertia) if not _crank_part(r) else _with_crank(r, omega, terms, inertia)
-        )
+        found.formulas["J"] = r.checked("J_{пр}", total, [omega, *terms], inertia)
     for name, step in plan.steps.items():
         own = name.startswith("N_") and not name.startswith("N_G") and "(" not in name
         if own and not is_zero(float(np.real(value_at(step, r.at(step, None)))), 1.0):
@@ -124,21 +126,6 @@ def _reduction(r: Reader, found: Scope) -> None:
     n = r.of(moment)
     power = Quantity("ΣN", n.value * fw.omega1, "W", r.id(moment), n.position)
     found.formulas["M"] = r.checked("M_{пр}", lambda p, w: p / w, [power, omega], moment)
-
-
-def _crank_part(r: Reader) -> bool:
-    return abs(r.project.flywheel.reduced.crank_inertia) > 0
-
-
-def _with_crank(r: Reader, omega: Quantity, terms: list[Quantity], inertia: Any) -> Said:
-    def total(w: Any, own: Any, *parts: Any) -> Any:
-        out = parts[0]
-        for p in parts[1:]:
-            out = out + p
-        return own + out / w**2
-
-    own = Quantity("J_{кр}", r.project.flywheel.reduced.crank_inertia, "kg*m2", "crank-inertia/J_кр")
-    return r.checked("J_{пр}", total, [omega, own, *terms], inertia)
 
 
 def _term(name: str) -> str:
@@ -154,7 +141,8 @@ def _results(r: Reader, found: Scope) -> None:
     fw = r.project.flywheel
     for name, step in (("ab", fw.ab), ("M_constant", fw.driving_plan["M"]), ("J_flywheel", fw.first_plan["J_м"])):
         found.fields[name] = r.of(step)
-    found.fields["J_flywheel_limit"] = r.of(fw.limit_plan["J_м∞"])
+    if not fw.given:
+        found.fields["J_flywheel_limit"] = r.of(fw.limit_plan["J_м∞"])
     found.fields["difference"] = r.number(abs(fw.difference_percent), "%", "flywheel-limit/разность", digits=2)
     found.fields |= {"above": fw.difference_percent >= 0, "close": abs(fw.difference_percent) < CLOSE}
     work = fw.work_plan
@@ -181,9 +169,10 @@ def _results(r: Reader, found: Scope) -> None:
             (words(r.language)["flywheel"]["difference"],),
         ),
         (
-            (*r.head("J_{м}", "kg*m2"),),
-            (r.number(fw.J_flywheel, "", "flywheel-inertia/J_м"),),
-            (r.number(fw.J_flywheel_converged, "", "flywheel-limit/J_м∞"),),
+            *(((*r.head("δ", ""),), (r.number(fw.unevenness, "", "flywheel-delta/δ"),),
+               (r.number(float(fw.limit_plan["δ∞"].value), "", "flywheel-limit/δ∞"),)) if fw.given else
+              ((*r.head("J_{м}", "kg*m2"),), (r.number(fw.J_flywheel, "", "flywheel-inertia/J_м"),),
+               (r.number(fw.J_flywheel_converged, "", "flywheel-limit/J_м∞"),))),
             (r.number(fw.difference_percent, "", "flywheel-limit/разность", digits=2),),
         ),
     )
