@@ -450,6 +450,27 @@ class BalancingTable(Table):
         return self
 
 
+class FrictionTable(Table):
+    """``[friction]``: friction in the kinematic pairs, which the force plans then count; without the table there is none."""
+
+    turning: Fraction = 0.0
+    """coefficient of friction in the turning pairs, for example `0.1` (reduced, where the journals are worn in)"""
+    sliding: Fraction = 0.0
+    """coefficient of friction in the sliding pairs, for example `0.12`"""
+    radii: dict[Name, Length] = {}
+    """radii of the journals by their hinges, for example `{ A = "25 mm", B = "20 mm" }`; a hinge that is not listed has no
+    friction
+    """
+
+    @model_validator(mode="after")
+    def _turning_has_journals(self) -> Self:
+        if self.turning and not self.radii:
+            raise ValueError(tell('turning needs the radii of the journals, for example radii = { A = "25 mm" }'))
+        if self.radii and not self.turning:
+            raise ValueError(tell("radii need turning, the coefficient of friction, for example turning = 0.1"))
+        return self
+
+
 class MotorTable(Table):
     """``[flywheel.motor]``: the motor to be checked and the gear train between it and the crank."""
 

@@ -30,6 +30,7 @@ from tmm_sheets.task.schema import (
     FlywheelTable,
     ForcesTable,
     ForceTable,
+    FrictionTable,
     GearTable,
     GroupTable,
     GuideTable,
@@ -68,6 +69,7 @@ class Variant(Table):
     force: tuple[ForceTable, ...] = ()
     moment: tuple[MomentTable, ...] = ()
     balancing: BalancingTable | None = None
+    friction: FrictionTable | None = None
     flywheel: FlywheelTable | None = None
     gear: GearTable | None = None
     reducer: ReducerTable | None = None
@@ -132,6 +134,7 @@ class Variant(Table):
         gears = "_".join(name for name in ("gear", "reducer") if getattr(self, name) is not None)
         called = {
             "kinematics_forces_wide" if self.loaded else "kinematics": self.crank is not None,
+            "friction": self.friction is not None and self.loaded,
             self._flywheel_sheet: self.flywheel is not None,
             gears: bool(gears),
             "cam": self.cam is not None,
