@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.checks import SwingLimits
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.forces import GearForce
+    from tmm_sheets.methods.linkage.friction import Coefficients
     from tmm_sheets.methods.linkage.loads import Loads
     from tmm_sheets.methods.linkage.motion import Motion
     from tmm_sheets.methods.linkage.study import Study
@@ -164,6 +165,20 @@ class Project:
                                  of.number(b.pressure_angle, "α", "rad", "balancing", "pressure_angle"),
                                  of.number(b.mate, "", "rad", "balancing", "mate"))
 
+    @cached_property
+    def friction(self) -> Coefficients | None:
+        """Coefficients of friction and radii of journals; None when the pairs have no friction."""
+        f = self.variant.friction
+        if f is None:
+            return None
+        from tmm_sheets.methods.linkage.friction import Coefficients
+        from tmm_sheets.task.assembly import Givens
+
+        of = Givens(self.variant)
+        return Coefficients(of.number(f.turning, "f_{t}", "", "friction", "turning"),
+                            of.number(f.sliding, "f_{s}", "", "friction", "sliding"),
+                            {name: of.number(r, f"r_{{{name}}}", "m", "friction", "radii", name) for name, r in f.radii.items()})
+
     @property
     def gravity(self) -> float:
         """Free fall, m/s2."""
@@ -184,7 +199,7 @@ class Project:
         crank = self.variant.crank
         uneven = crank is not None and crank.angular_acceleration == "flywheel"
         return Study(self.mechanism, self.cycle, turned, labels, self.gravity, lambda: self.applied, self.driver,
-                     (lambda: self.flywheel) if uneven else None, purpose)
+                     (lambda: self.flywheel) if uneven else None, purpose, self.friction)
 
     @cached_property
     def motion(self) -> Motion:

@@ -20,6 +20,7 @@ from tmm_sheets.project import LINKAGE
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.linkage.friction import Friction
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.project import Project
 
@@ -337,6 +338,21 @@ def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]
             "lever": told(lever.balancing),
             "difference_percent": told(balance["Δ"]),
         },
+        **({"friction": _friction(f.friction, told)} if f.friction is not None else {}),
+    }
+
+
+def _friction(of: Friction, told: Callable[..., Any]) -> dict[str, Any]:
+    """Friction in the pairs: circles and moments of the turning ones, deviations of the sliding ones, powers of all."""
+    assert of.power_plan is not None
+    return {
+        "approximations": of.power_plan["n"],
+        "radii": dict(of.radii),
+        "moments": {f"M{index}": told(step) for index, step in of.moments.items()},
+        "deviations": {f"F{index}": told(of.deviations[index]) for index in of.sliding},
+        "powers": {index: told(step) for index, step in of.powers.items()},
+        "power": told(of.total),
+        "on_crank": told(of.on_crank),
     }
 
 

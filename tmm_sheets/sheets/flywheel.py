@@ -347,12 +347,12 @@ def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
 def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Sketch of the wheel to a standard scale: front view and section through the axis, with dimensions in mm.
 
-    Words in its place when no flywheel is needed.
+    Words in its place when no flywheel is needed, or of a given one nothing but its moment of inertia is known.
     """
     fw: Flywheel = project.flywheel
     w = fw.wheel
     if w is None:
-        _no_wheel(fw, canvas, box)
+        (_given_wheel if fw.given else _no_wheel)(fw, canvas, box)
     else:
         with canvas.as_role("symbol"):
             _sketch(w, canvas, box)
@@ -404,6 +404,19 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
         canvas.text(side - half - 8.5 + 1j * (r - h * k / 2 - 1.75), f"H = {fixed(h, 0)}", 3.5, "right")
 
 
+def _given_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
+    left = canvas.title(box, tr("The flywheel is given"))
+    lines = [tr("J_f = {J} kg·m^2").format(J=number(fw.J_flywheel)),
+             tr("It leaves δ = {delta}").format(delta=number(fw.unevenness, 4))]
+    _words(canvas, left, lines)
+
+
+def _words(canvas: Canvas, left: Box, lines: list[str]) -> None:
+    """Lines in the middle of their place, as large as it allows."""
+    height = size_for(lines, left.width, 5.0)
+    canvas.lines(left.centre + 2.0j * height * (len(lines) / 2 - 1), lines, 2.0 * height, height, "centre")
+
+
 def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
     left = canvas.title(box, tr("No flywheel is needed"))
     there, delta = fw.J_first - fw.J_flywheel, fw.running(fw.J_running).delta
@@ -413,9 +426,8 @@ def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
              held.format(there=number(there, 4), needed=number(max(fw.J_first, 0.0), 4))]
     if not np.isnan(delta):
         lines.append(tr("Without a flywheel δ = {found} {sign} {permitted}").format(
-            found=number(delta, 4), sign="≤" if delta <= fw.data.delta else ">", permitted=number(fw.data.delta)))
-    height = size_for(lines, left.width, 5.0)
-    canvas.lines(left.centre + 2.0j * height * (len(lines) / 2 - 1), lines, 2.0 * height, height, "centre")
+            found=number(delta, 4), sign="≤" if delta <= fw.permitted else ">", permitted=number(fw.permitted)))
+    _words(canvas, left, lines)
 
 
 def disagreement(fw: Flywheel) -> list[str]:
@@ -457,26 +469,24 @@ def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None
 
 
 def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
-    """Formulas with their numbers: tangents, segment, moment of inertia drawn and in the limit, sizes, mass."""
+    """Formulas with their numbers: tangents, segment, moment of inertia drawn and in the limit, sizes, mass.
+
+    With a given flywheel the coefficient of non-uniformity in place of the moment of inertia.
+    """
     fw = _with_tangents(project)
-    s, d = fw.scales, fw.data
-    omega, psi = fw.reduced.omega1, fw.psi
+    psi = fw.psi
     slope = {name: float(fw.energy_mass_plan.asides[f"tg ψ_{name}"].value) for name in ("max", "min")}
-    length = _of_segment(fw)
     drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
-    inertia = tr("J_f = {segment}·μ_E/(δ·ω_1^2) − J_r·u^2 = {length}·{mu}/({delta}·{omega}^2) − {rotor} = {J} kg·m^2") \
-        if fw.J_rotor else tr("J_f = {segment}·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {J} kg·m^2")
     tangent = tr("tan ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {slope};  ψ_{name} = {angle}°")
     rows = [
-        tr("ω_1 = {omega} s^{{−1}};  δ = {delta};  ρ = {density} kg/m^3").format(
-            omega=fixed(omega, 3), delta=number(d.delta), density=number(d.density)),
+        _givens(fw),
         *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], 4), angle=fixed(degrees(a), 2))
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
-        drawn.format(length=length),
-        inertia.format(segment="|ab|" if fw.ab_mm >= 0 else "ab", length=length, mu=number(s.energy.mu), delta=number(d.delta),
-                       omega=fixed(omega, 3), rotor=number(fw.J_rotor, 4), J=_alike(fw)[0]),
+        drawn.format(length=_of_segment(fw)),
+        _asked(fw),
         _converged(fw),
         *disagreement(fw),
+        *power(fw),
         *_sizes(fw),
     ]
     left = canvas.title(box, tr("Flywheel design"))
@@ -485,13 +495,54 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.lines(complex(box.x0, left.y1 - step + 3), rows, step, height)
 
 
+def _givens(fw: Flywheel) -> str:
+    """Angular velocity, what is given of δ and of the flywheel, and its density where its sizes are found."""
+    d = fw.data
+    said = tr("ω_1 = {omega} s^{{−1}};  δ = {delta};  ρ = {density} kg/m^3") if not fw.given else \
+        tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given)") if d.density is None else \
+        tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given);  ρ = {density} kg/m^3")
+    return said.format(omega=fixed(fw.reduced.omega1, 3), delta=number(fw.unevenness), J=number(fw.J_flywheel),
+                       density="" if d.density is None else number(d.density))
+
+
+def _asked(fw: Wittenbauer) -> str:
+    """Moment of inertia of the flywheel from the segment ab, or δ that a given one leaves."""
+    said = {(False, False): tr("J_f = {segment}·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {J} kg·m^2"),
+            (False, True): tr("J_f = {segment}·μ_E/(δ·ω_1^2) − J_r·u^2 = {length}·{mu}/({delta}·{omega}^2) − {rotor} = "
+                              "{J} kg·m^2"),
+            (True, False): tr("δ = {segment}·μ_E/(J_f·ω_1^2) = {length}·{mu}/({J}·{omega}^2) = {delta}"),
+            (True, True): tr("δ = {segment}·μ_E/[(J_f + J_r·u^2)·ω_1^2] = {length}·{mu}/[({J} + {rotor})·{omega}^2] = {delta}"),
+            }[fw.given, bool(fw.J_rotor)]
+    found, _ = _alike(fw)
+    given = number(fw.J_flywheel if fw.given else fw.unevenness)
+    return said.format(segment="|ab|" if fw.ab_mm >= 0 else "ab", length=_of_segment(fw), mu=number(fw.scales.energy.mu),
+                       omega=fixed(fw.reduced.omega1, 3), rotor=number(fw.J_rotor, 4),
+                       J=given if fw.given else found, delta=found if fw.given else given)
+
+
+def power(fw: Flywheel) -> list[str]:
+    """Mean power by the work of the cycle, where the efficiency of what lies between motor and crank is given."""
+    if fw.data.efficiency is None:
+        return []
+    takes = fw.reduced.resisting
+    said = tr("P_m = M_{index}·ω_1 = {power} kW;  P_mot = P_m/η = {power}/{efficiency} = {further} kW") if takes else \
+        tr("P_m = M_{index}·ω_1 = {power} kW;  P_out = P_m·η = {power}·{efficiency} = {further} kW")
+    here, further = (number(float(fw.power_plan[name].value) / 1000, 4) for name in ("P", "P_дв"))
+    return [said.format(index=indices(fw)[1], power=here, efficiency=number(fw.data.efficiency), further=further)]
+
+
 def _alike(fw: Flywheel) -> list[str]:
-    """Moment of inertia of the drawn flywheel and of the converged one with the same decimals."""
+    """What is asked by the drawn construction and in the limit with the same decimals."""
+    if fw.given:
+        return graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
     return graphs.column([fw.J_flywheel, fw.J_flywheel_converged], 5)
 
 
 def _converged(fw: Flywheel) -> str:
     """The converged flywheel and how far the drawn one is from it: in percent, beside a small converged one in kg m2."""
+    if fw.given:
+        return tr("For n → ∞ positions: δ = {delta} (difference {difference} %)").format(
+            delta=_alike(fw)[1], difference=fixed(fw.difference_percent, 2))
     said = tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {difference} %)") \
         if fw.needed and abs(fw.difference_percent) < 100 else \
         tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {apart} kg·m^2)")
@@ -502,8 +553,8 @@ def _converged(fw: Flywheel) -> str:
 def _sizes(fw: Flywheel) -> list[str]:
     """Sizes and mass of the wheel as formulas, or that none is needed."""
     w, d = fw.wheel, fw.data
-    if w is None:
-        return [tr("J_f ≤ 0: no flywheel is needed")]
+    if w is None or d.width_ratio is None or d.thickness_ratio is None:
+        return [] if fw.given else [tr("J_f ≤ 0: no flywheel is needed")]
     said = (tr("Rim with spokes:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
             tr("D = (4J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
             tr("m = 4J_f/D^2 = {mass} kg")) if w.form == "rim" else \

@@ -178,8 +178,9 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     k = int(np.argmax(np.abs(np.gradient(own))))
     canvas.label(g(x[k] + 1j * own[k]), f"{first}, ω_1", 1 - 1j, height=5)
     k = int(np.argmax(fw.energy_plan["T_II"].value[1:])) + 1
-    middle = complex(points[k].real, (points[k].imag + upper[k]) / 2)
-    canvas.label(g(middle), second, 1, height=3.5)
+    if fw.energy_plan["T_II"].value[k]:
+        middle = complex(points[k].real, (points[k].imag + upper[k]) / 2)
+        canvas.label(g(middle), second, 1, height=3.5)
 
 
 def _omega_scale(fw: Mertsalov) -> Scale:
@@ -213,23 +214,15 @@ def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> 
 def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Formulas with their numbers: segment, moment of inertia, scale factor and check of omega, acceleration, motor, sizes."""
     fw = _procedure(project)
-    d, omega, k = fw.data, fw.reduced.omega1, project.force_index
+    k = project.force_index
     _, _, _, sign = _signs(options)
     varying, constant = flywheel.indices(fw)
     plan = fw.position_acceleration
     psi, slope, moment, inertia, epsilon = (float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1"))
     mu = _omega_scale(fw)
     held = _held(fw)
-    segment = {"length": fixed(fw.ab_mm, 2), "mu": number(fw.scales.energy.mu), "delta": number(d.delta), "omega": fixed(omega, 3),
-               "first": number(fw.J_first, 5)}
-    givens = tr("ω_{{1m}} = {omega} rad/s;  δ = {delta} (taken);  M_{index} = {moment} N·m") if d.accepted else \
-        tr("ω_{{1m}} = {omega} rad/s;  δ = {delta};  M_{index} = {moment} N·m")
     rows = [
-        givens.format(omega=fixed(omega, 4), delta=number(d.delta), index=constant, moment=fixed(fw.M_constant, 1)),
-        tr("I_I = |ab|·μ_T/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {first} kg·m^2").format(**segment),
-        tr("I_f = I_I − (I_{{cr}} + I_r·u^2) = {first} − {bare} = {flywheel} kg·m^2").format(
-            first=number(fw.J_first, 5), bare=number(fw.J_first - fw.J_flywheel, 4, fw.J_first),
-            flywheel=number(fw.J_flywheel, 5)),
+        _givens(fw), *(_delta(fw) if fw.given else _inertia(fw)),
         tr("μ_ω = μ_T/({held}·ω_{{1m}}) = {mu} {unit}").format(held=held, mu=number(mu.mu), unit=mu.unit),
         *_extremes(fw),
         tr("Position {label}:  ψ = {psi}°;  d{sign}/dφ = tan ψ·μ_J/μ_φ = {slope} kg·m^2").format(
@@ -239,11 +232,44 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
             constant=constant, varying=varying, moment=fixed(moment, 1), held=held, sign=sign, inertia=fixed(inertia, 2)),
         tr("ε_1 = (M − ω_1^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
             sign=sign, held=held, epsilon=fixed(epsilon, 3)),
-        *_motor(fw), *flywheel.disagreement(fw), *_size(fw)]
+        *_motor(fw), *flywheel.power(fw), *flywheel.disagreement(fw), *_size(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):
         canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, size_for([line], box.width, 3.5))
+
+
+def _givens(fw: Mertsalov) -> str:
+    """Mean angular velocity, δ or the flywheel that is given, constant moment."""
+    d = fw.data
+    said = tr("ω_{{1m}} = {omega} rad/s;  I_f = {flywheel} kg·m^2 (given);  M_{index} = {moment} N·m") if fw.given else \
+        tr("ω_{{1m}} = {omega} rad/s;  δ = {delta} (taken);  M_{index} = {moment} N·m") if d.accepted else \
+        tr("ω_{{1m}} = {omega} rad/s;  δ = {delta};  M_{index} = {moment} N·m")
+    return said.format(omega=fixed(fw.reduced.omega1, 4), delta=number(fw.unevenness), flywheel=number(fw.J_flywheel),
+                       index=flywheel.indices(fw)[1], moment=fixed(fw.M_constant, 1))
+
+
+def _inertia(fw: Mertsalov) -> list[str]:
+    """All that turns with the crank from the segment ab, and what of it is the flywheel."""
+    first = number(fw.J_first, 5)
+    return [tr("I_I = |ab|·μ_T/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {first} kg·m^2").format(
+                length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), delta=number(fw.unevenness),
+                omega=fixed(fw.reduced.omega1, 3), first=first),
+            tr("I_f = I_I − (I_{{cr}} + I_r·u^2) = {first} − {bare} = {flywheel} kg·m^2").format(
+                first=first, bare=number(fw.J_first - fw.J_flywheel, 4, fw.J_first), flywheel=number(fw.J_flywheel, 5))]
+
+
+def _delta(fw: Mertsalov) -> list[str]:
+    """The way back from a given flywheel to δ, and what it is for vanishing intervals."""
+    first = number(fw.J_first, 5)
+    found, limit = graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
+    return [tr("I_I = I_f + (I_{{cr}} + I_r·u^2) = {flywheel} + {bare} = {first} kg·m^2").format(
+                flywheel=number(fw.J_flywheel, 5), bare=number(fw.J_first - fw.J_flywheel, 4, fw.J_first), first=first),
+            tr("δ = |ab|·μ_T/(I_I·ω_1^2) = {length}·{mu}/({first}·{omega}^2) = {delta}").format(
+                length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), first=first, omega=fixed(fw.reduced.omega1, 3),
+                delta=found),
+            tr("For n → ∞ positions: δ = {delta} (difference {difference} %)").format(
+                delta=limit, difference=fixed(fw.difference_percent, 2))]
 
 
 def _held(fw: Mertsalov) -> str:
@@ -254,7 +280,13 @@ def _held(fw: Mertsalov) -> str:
 
 
 def _extremes(fw: Mertsalov) -> tuple[str, str]:
-    """Greatest and least angular velocity beside those that are permitted, which they keep to with the flywheel only."""
+    """Greatest and least angular velocity beside those that are permitted, which they keep to with the flywheel only.
+
+    A given flywheel has to keep to none.
+    """
+    if fw.given:
+        highest, lowest = (fixed(found, 4) for found in fw.extremes)
+        return tr("ω_{{max}} = {found} rad/s").format(found=highest), tr("ω_{{min}} = {found} rad/s").format(found=lowest)
     texts = (tr("ω_{{max}} = {found};  ω_m(1 + δ/2) = {permitted} rad/s"),
              tr("ω_{{min}} = {found};  ω_m(1 − δ/2) = {permitted} rad/s")) if fw.needed else \
         (tr("ω_{{max}} = {found} < ω_m(1 + δ/2) = {permitted} rad/s"), tr("ω_{{min}} = {found} > ω_m(1 − δ/2) = {permitted} rad/s"))
@@ -280,8 +312,8 @@ def _motor(fw: Mertsalov) -> list[str]:
 def _size(fw: Mertsalov) -> list[str]:
     """Ratios, sizes and mass of the wheel, or that none is needed."""
     w, d = fw.wheel, fw.data
-    if w is None:
-        return [tr("I_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")]
+    if w is None or d.density is None or d.width_ratio is None or d.thickness_ratio is None:
+        return [] if fw.given else [tr("I_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")]
     if w.form != "rim":
         said = (tr("Disc:  κ = B/D = {width_ratio};  ρ = {density} kg/m^3"),
                 tr("D = (32I_f/(πρκ))^{{1/5}} = {diameter} m;  B = {width} m;  m = {mass} kg"))
@@ -301,6 +333,11 @@ def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
     fw = _procedure(project)
     rows = [[tr("Flywheel"), tr("I_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
+    if fw.given:
+        rows += [[name, fixed(fw.J_first, 2), *(fixed(fw.reduced.omega1 * (1 + side * delta / 2), 4) for side in (1, -1)),
+                  fixed(delta, 5)] for name, delta in ((tr("Mertsalov, construction"), fw.unevenness),
+                                                       (tr("Wittenbauer, construction"), fw.other.unevenness),
+                                                       (tr("Mertsalov, n → ∞"), float(fw.limit_plan["δ∞"].value)))]
     rows += [[c.name, fixed(c.first, 2), fixed(c.running.fastest, 4), fixed(c.running.slowest, 4), fixed(c.running.delta, 5)]
              for c in fw.compared]
     left = canvas.title(box.inset(0, 0, 0, 2), tr("Comparison of the methods with the exact running"))
@@ -308,6 +345,8 @@ def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     first = max(letter(line[0], 3.5).width for line in rows) + 3.0
     widths = widened([first, *[(box.width - first) / 4] * 4], rows, 3.5)
     place = canvas.table(complex(box.x0, left.y1), widths, rows, high, 3.5)
+    if fw.given:
+        return
     _, _, _, sign = _signs(options)
     apart = float(fw.comparison_plan["ΔJ"].value)
     text = tr("n → ∞: difference {apart} kg·m^2; theory: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = {excess} kg·m^2").format(

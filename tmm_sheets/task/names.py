@@ -344,6 +344,8 @@ class _Names:
                 )
             yield from self.symbol((*path, "name"), force.get("name"), taken)
         yield from self.symbol(("balancing", "name"), _table(self.data, "balancing").get("name"), taken)
+        for hinge in _table(_table(self.data, "friction"), "radii"):
+            yield from self.known(("friction", "radii", hinge), hinge, self.hinges(), marked('there is no turning pair "{name}"'))
         wandering = self.points - self.on[FRAME]
         for path, name, among, what in (
             (("cycle", "output"), cycle.get("output"), wandering, marked('unknown point "{name}"')),
@@ -361,6 +363,15 @@ class _Names:
         for label in _table(cycle, "extra"):
             yield from self.spelt(("cycle", "extra", label), label, "position")
         yield from self.spelt(("cycle", "zero"), cycle.get("zero"), "position")
+
+    def hinges(self) -> set[str]:
+        """Points of turning pairs: of a group of kind 5 the inner point is none, nor the corner of a leg with a slot."""
+        found = {_table(self.data, "crank").get("pivot")}
+        for _, group in _tables(self.data, "group"):
+            found |= {*_words(group.get("outer")), None if group.get("kind") == 5 else group.get("inner")}
+            for _, leg in _tables(group, "leg"):
+                found |= {leg.get("outer"), None if "slot" in leg else leg.get("corner")}
+        return {name for name in found if isinstance(name, str)}
 
     def symbol(self, path: KeyPath, name: Any, taken: dict[str, str]) -> Iterator[Found]:
         """A force, a moment or what drives the crank: its sign must not be that of another load."""

@@ -273,8 +273,8 @@ class CycleTable(Table):
     """label of the position of the force analysis, drawn thick; left out: position 0"""
     zero: Name = "0"
     """label of position 0"""
-    turns: Literal[1, 2] = 1
-    """turns of the crank in a cycle"""
+    turns: Count = 1
+    """turns of the crank in a cycle: after so many everything repeats"""
     extra: dict[Name, Angle] = {}
     """further positions by label and angle turned from position 0: `{ "1′" = "22.5 deg" }`"""
     diagrams: tuple[Name, ...] = ()
@@ -460,6 +460,27 @@ class BalancingTable(Table):
         return self
 
 
+class FrictionTable(Table):
+    """``[friction]``: friction in the kinematic pairs, which the force plans then count; without the table there is none."""
+
+    turning: Fraction = 0.0
+    """coefficient of friction in the turning pairs, for example `0.1` (reduced, where the journals are worn in)"""
+    sliding: Fraction = 0.0
+    """coefficient of friction in the sliding pairs, for example `0.12`"""
+    radii: dict[Name, Length] = {}
+    """radii of the journals by their hinges, for example `{ A = "25 mm", B = "20 mm" }`; a hinge that is not listed has no
+    friction
+    """
+
+    @model_validator(mode="after")
+    def _turning_has_journals(self) -> Self:
+        if self.turning and not self.radii:
+            raise ValueError(tell('turning needs the radii of the journals, for example radii = { A = "25 mm" }'))
+        if self.radii and not self.turning:
+            raise ValueError(tell("radii need turning, the coefficient of friction, for example turning = 0.1"))
+        return self
+
+
 class MotorTable(Table):
     """``[flywheel.motor]``: the motor to be checked and the gear train between it and the crank."""
 
@@ -479,16 +500,22 @@ class MotorTable(Table):
 
 
 class FlywheelTable(Table):
-    """``[flywheel]``: how even the rotation must be, and what the flywheel is made of."""
+    """``[flywheel]``: how even the rotation must be, or the flywheel that there is; and what it is made of."""
 
     method: Literal["wittenbauer", "mertsalov"] = Field(description=marked('"wittenbauer" or "mertsalov"'))
     """energy-mass curve, or the energy of the crank's group"""
-    delta: InnerFraction = Field(description=marked("permitted coefficient of non-uniformity, for example 0.025"))
+    delta: InnerFraction | None = Field(
+        default=None, description=marked("permitted coefficient of non-uniformity, for example 0.025")
+    )
+    """the flywheel is found; this or `inertia`"""
+    inertia: Annotated[float, si(units.INERTIA), positive(marked("expected a moment of inertia greater than zero"))] | None = None
+    """of the flywheel that there is, about its axis: the coefficient of non-uniformity is found"""
     form: Literal["rim", "disc"] = "rim"
     """a rim with spokes, or a disc"""
-    density: Density = Field(description=marked('density, for example "7300 kg/m3"'))
-    width_ratio: InnerFraction = Field(description=marked("B/D, for example 0.2"))
-    thickness_ratio: InnerFraction = Field(description=marked("H/D of a rim, for example 0.12"))
+    density: Density | None = Field(default=None, description=marked('density, for example "7300 kg/m3"'))
+    """this and both ratios may be left out together with `inertia`: no sizes are found then"""
+    width_ratio: InnerFraction | None = Field(default=None, description=marked("B/D, for example 0.2"))
+    thickness_ratio: InnerFraction | None = Field(default=None, description=marked("H/D of a rim, for example 0.12"))
     rim_share: Annotated[
         float, si(units.NUMBER), in_range(marked("expected a number above 0, 1 at most"), lambda x: 0 < x <= 1)
     ] = 1.0
@@ -497,8 +524,25 @@ class FlywheelTable(Table):
     """true: the reduced moment counts the weights of the links"""
     accepted: bool = False
     """true: delta is our own assumption, marked so on the sheet"""
+    efficiency: InnerFraction | None = None
+    """of what is between the motor and the crank (of an engine: behind its crank), where no motor is checked: the power on the
+    other side of it is found too
+    """
     motor: MotorTable | None = None
     """table `[flywheel.motor]`; left out: no motor is checked"""
+
+    @model_validator(mode="after")
+    def _one_is_asked(self) -> Self:
+        if (self.delta is None) == (self.inertia is None):
+            raise ValueError(tell('expected either delta, for example delta = 0.025, or the inertia of a flywheel that there is, '
+                                  'for example inertia = "3 kg m2"'))
+        sizes = ("density", "width_ratio", "thickness_ratio")
+        absent = [k for k in sizes if getattr(self, k) is None]
+        if absent and (self.inertia is None or len(absent) < len(sizes)):
+            raise ValueError(tell("the sizes of the flywheel need {absent} as well").format(absent=both(absent)))
+        if self.efficiency is not None and self.motor is not None:
+            raise ValueError(tell("[flywheel.motor] has an efficiency of its own: leave efficiency out"))
+        return self
 
 
 class GearTable(Table):

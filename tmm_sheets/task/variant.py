@@ -30,6 +30,7 @@ from tmm_sheets.task.schema import (
     FlywheelTable,
     ForcesTable,
     ForceTable,
+    FrictionTable,
     GearTable,
     GroupTable,
     GuideTable,
@@ -70,6 +71,7 @@ class Variant(Table):
     force: tuple[ForceTable, ...] = ()
     moment: tuple[MomentTable, ...] = ()
     balancing: BalancingTable | None = None
+    friction: FrictionTable | None = None
     flywheel: FlywheelTable | None = None
     gear: GearTable | None = None
     reducer: ReducerTable | None = None
@@ -134,6 +136,7 @@ class Variant(Table):
         gears = "_".join(name for name in ("gear", "reducer") if getattr(self, name) is not None)
         called = {
             "kinematics_forces_wide" if self.loaded else "kinematics": self.crank is not None,
+            "friction": self.friction is not None and self.loaded,
             self._flywheel_sheet: self.flywheel is not None,
             gears: bool(gears),
             "cam": self.cam is not None,
@@ -144,7 +147,7 @@ class Variant(Table):
     def _flywheel_sheet(self) -> str:
         if self.flywheel is not None and self.flywheel.method == "mertsalov":
             return "sixbar_2" if self.balancing is None or self.balancing.kind == "moment" else "press_1"
-        return "engine_2" if self.cycle is not None and self.cycle.turns == 2 else "flywheel"
+        return "engine_2" if self.cycle is not None and self.cycle.turns > 1 else "flywheel"
 
     @property
     def loaded(self) -> bool:

@@ -32,9 +32,9 @@ from tmm_sheets.project import Project
 MANUALS = Path(__file__).parents[2] / "manuals"
 
 
-def data(delta=0.04, motor=None):
+def data(delta=0.04, motor=None, inertia=None, efficiency=None):
     return SimpleNamespace(method="mertsalov", delta=delta, form="rim", density=7800.0, width_ratio=0.2, thickness_ratio=0.12,
-                           rim_share=1.0, motor=motor)
+                           rim_share=1.0, motor=motor, inertia=inertia, efficiency=efficiency)
 
 
 @pytest.fixture(scope="module")
@@ -284,8 +284,8 @@ def test_rim_share_of_manual_001():
 
 def test_every_plan_speaks_and_can_be_built(fw):
     own = [name for name in fw.plans if "@" not in name]
-    assert own[-8:] == ["first-energy", "flywheel-inertia", "flywheel-limit", "crank-speed", "comparison", "flywheel-wheel",
-                        "motor-check", "crank-acceleration"]
+    assert own[-9:] == ["first-energy", "drive-power", "flywheel-inertia", "flywheel-limit", "crank-speed", "comparison",
+                        "flywheel-wheel", "motor-check", "crank-acceleration"]
     for plan in fw.plans.values():
         assert plan.check() is None
         for k in range(len(plan.labels)):

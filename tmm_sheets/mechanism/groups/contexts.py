@@ -140,8 +140,11 @@ class ForcePlans(Protocol[M, G]):
     def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
         """Part of F_jk at a point across its line to the centre of the moments, from their sum."""
 
-    def across(self, name: str, u: Step, symbol: str = "") -> Step:
-        """Direction across another, drawn once."""
+    def normal(self, j: str, other: str, name: str, u: Step, symbol: str = "") -> Step:
+        """Direction of a sliding pair's reaction on link ``j``: across the guide, with friction deviated from there."""
+
+    def deviates(self, j: str, other: str) -> bool:
+        """True where friction deviates the reaction of a sliding pair from the normal."""
 
     def close(self, fp: ForcePlan, j: str, other: str, tail: Step, head: Step) -> Step:
         """Close a polygon by the reaction on link ``j`` from link ``other``."""

@@ -15,6 +15,7 @@ Role = Literal["weight", "inertia", "applied", "reaction"]
 
 CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point"), "force",
              marked("Close the polygon: {name} = |{0}–{1}|·μ_F = {value}."), lambda a, v: (Helper("line", a[0], a[1]),))
+OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", marked("{name} = {value} N·m."), unit="N*m")
 
 
 @dataclass(frozen=True)

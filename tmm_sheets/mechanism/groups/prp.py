@@ -67,7 +67,8 @@ class PRPKind(GroupKind):
         pos, m = forces.positions, forces.positions.mechanism
         c = str(g.inner)
         bases = m.guides[g.guides[0]].link, m.guides[g.guides[1]].link
-        u, v = (forces.across(name, pos.guide_directions[name]) for name in g.guides)
+        u, v = (forces.normal(link, base, name, pos.guide_directions[name])
+                for link, base, name in zip(g.links, bases, g.guides, strict=True))
         found = forces.group_polygon(g, None, None, u, v, bases)
         for link, base, force in zip(g.links, bases, found[:2], strict=True):
             couple = forces.sliding(link, base, force, pos.points[c])

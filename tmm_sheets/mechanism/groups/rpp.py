@@ -91,8 +91,8 @@ class RPPKind(GroupKind):
         pos, m = forces.positions, forces.positions.mechanism
         (i, j), p, guide = g.links, g.outer[0], g.guides[0]
         base = m.guides[guide].link
-        across_slot = forces.across(pos.directions[i].name, pos.directions[i])
-        across_guide = forces.across(guide, pos.guide_directions[guide])
+        across_slot = forces.normal(i, j, pos.directions[i].name, pos.directions[i])
+        across_guide = forces.normal(j, base, guide, pos.guide_directions[guide])
         fp = forces.plan_of(j, (j,))
         start = fp.plan.add("2", rules.GIVEN, 0j)
         loads = forces.order(forces.loads[j], "inertia")

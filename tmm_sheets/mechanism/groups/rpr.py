@@ -96,8 +96,8 @@ class RPRKind(GroupKind):
         total = forces.moment_sum(f"ΣM{i}–{j}", pos.points[q], [i, j])
         tangential = forces.tangential(i, owner, total, q, p)
         radial = pos.direction(q, p)
-        across = (forces.across(f"{q}{p}", pos.directions[j]) if radial is pos.directions[j]
-                  else forces.across(f"напр {j}", pos.directions[j], tr("⟂dir {link}").format(link=j)))
+        across = (forces.normal(i, j, f"{q}{p}", pos.directions[j]) if radial is pos.directions[j]
+                  else forces.normal(i, j, f"напр {j}", pos.directions[j], tr("⟂dir {link}").format(link=j)))
         block = forces.plan_of(i, (i,))
         start = block.plan.add("2", rules.GIVEN, 0j)
         after = block.plan.add("3", rules.SHIFT, start, tangential)
@@ -106,7 +106,8 @@ class RPRKind(GroupKind):
             head = block.plan.add(str(n), rules.SHIFT, end, load.vector)
             pending.append((load.symbol, end, head))
             end = head
-        one = block.plan.add("1", rules.LINE_LINE, start, radial, end, across, *pos.known_sine(g))
+        one = block.plan.add("1", rules.LINE_LINE, start, radial, end, across,
+                             *(() if forces.deviates(i, j) else pos.known_sine(g)))
         block.between(f"F{io}n", one, start)
         block.side(f"F̅_{{{io}}}^n", one, start, unknown=True)
         block.side(f"F̅_{{{io}}}^τ", start, after)

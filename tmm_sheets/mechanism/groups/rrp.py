@@ -80,9 +80,9 @@ class RRPKind(GroupKind):
         a, base = m.owner(p), m.guides[guide].link
         total = forces.moment_sum(f"ΣM{i}", pos.points[c], [i])
         part = forces.tangential(i, a, total, c, p)
-        across = forces.across(guide, pos.guide_directions[guide])
-        # The lines of the velocities turned by 90 degrees, one of them the other way round.
-        sine = tuple(forces.negative(s) for s in pos.known_sine(g))
+        across = forces.normal(j, base, guide, pos.guide_directions[guide])
+        # The lines of the velocities turned by 90 degrees, one of them the other way round; with friction other lines.
+        sine = () if forces.deviates(j, base) else tuple(forces.negative(s) for s in pos.known_sine(g))
         f_one, f_two, _ = forces.group_polygon(g, part, None, pos.direction(p, c), across, (a, base), sine)
         couple = forces.sliding(j, base, f_two, pos.points[c])
         forces.react(i, a, pos.points[p], f_one)

@@ -7,7 +7,7 @@ The curve is the change of kinetic energy over the reduced moment of inertia, th
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,10 +16,15 @@ from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, taken
 from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.integration import Floats, Quadrature, weighted
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked, tell, tr
 
 Curve = Callable[[Any], Any]
+START = 0.02
+"""Coefficient of non-uniformity where the search for one begins."""
+STOPS = 2.0
+"""Coefficient of non-uniformity at which the slowest is at rest."""
 
 
 def highest(f: Callable[[Floats], Floats], samples: Floats) -> float:
@@ -126,7 +131,7 @@ class ConvergedWheel:
 
     ``segment`` is ``ab mu_E``, J; ``inertia`` that of the flywheel, kg m2, both negative when none is needed; ``error`` the
     relative difference of the last two refinements; ``phi_max`` and ``phi_min`` the angles of the two contacts, rad;
-    ``panels`` those of the quadrature in each interval.
+    ``panels`` those of the quadrature in each interval; ``delta`` the coefficient of non-uniformity.
     """
 
     segment: float
@@ -135,14 +140,82 @@ class ConvergedWheel:
     phi_max: float
     phi_min: float
     panels: int = 1
+    delta: float = np.nan
 
 
-def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: float, tolerance: float = 1e-13,
-          whole: Curve | None = None) -> ConvergedWheel:
+@dataclass(frozen=True)
+class Tangents:
+    """Segment ``ab mu_E`` that the tangents of a coefficient of non-uniformity cut off, J; it falls with it by ``slope``, J.
+
+    ``phi_max`` and ``phi_min`` are the angles of the contacts, rad.
+    """
+
+    segment: float
+    slope: float
+    phi_max: float
+    phi_min: float
+
+
+def tangents(excess: Curve, inertia: Curve, samples: Floats, omega: float, delta: float) -> Tangents:
+    """Tangents of the energy-mass curve from above and below: highest dE - J omega_max^2/2, lowest dE - J omega_min^2/2.
+
+    ``excess`` is the change of energy, J, ``inertia`` the reduced moment of inertia, kg m2, both over the angle.
+    """
+    segment, slope, contact = 0.0, 0.0, []
+    for sign in (1.0, -1.0):
+        fast = 1 + sign * delta / 2
+        half_square = (omega * fast) ** 2 / 2
+
+        def height(t: Floats, sign: float = sign, half_square: float = half_square) -> Floats:
+            return np.asarray(sign * (excess(t) - half_square * inertia(t)))
+
+        contact.append(highest(height, samples))
+        at = np.array(contact[-1:])
+        segment += float(height(at)[0])
+        # Contacts that shift along the curve change nothing to first order.
+        slope -= omega**2 / 2 * fast * float(inertia(at)[0])
+    return Tangents(segment, slope, *contact)
+
+
+def left_by(held: float, of: Callable[[float], Tangents], omega: float, start: float) -> tuple[float, Tangents]:
+    """Coefficient of non-uniformity that a flywheel leaves: its tangents cut off ab mu_E = delta omega^2 J; and they.
+
+    The tangents meet over the flywheel's moment of inertia ``held``, kg m2, laid off to the left of the energy axis. The segment
+    falls as the coefficient grows, so there is one at most; found by Newton's method from ``start``, between 0 and 2.
+
+    Raises
+    ------
+    CannotBuild
+        when the flywheel cannot carry the machine through its cycle: the crank would stop.
+    """
+    whole = held * omega**2
+    low, high, delta = 0.0, STOPS, start
+    for _ in range(100):
+        found = of(delta)
+        lack = found.segment - delta * whole
+        low, high = (delta, high) if lack > 0 else (low, delta)
+        last, delta = delta, delta - lack / (found.slope - whole)
+        if delta >= STOPS and of(STOPS).segment >= STOPS * whole:
+            raise too_light(held)
+        delta = delta if low <= delta <= high else (low + high) / 2
+        if abs(delta - last) <= 1e-9 * delta:  # the error is the square of that
+            break
+    return delta, replace(found, segment=delta * whole)
+
+
+def too_light(held: float) -> CannotBuild:
+    """What to say of a flywheel with which the crank would stop."""
+    return CannotBuild(tell("a flywheel of {held:.4g} kg m2 does not carry the machine through its cycle: the crank would stop"
+                            ).format(held=held), tell("give a greater inertia in [flywheel]"))
+
+
+def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: float | None, tolerance: float = 1e-13,
+          whole: Curve | None = None, held: float = 0.0) -> ConvergedWheel:
     """Flywheel without chords: max(dE - J omega_max^2/2) - min(dE - J omega_min^2/2) = delta omega^2 J_flywheel.
 
     ``moment`` (without the constant one, N m; ``whole`` where it is asked at all nodes at once) and ``inertia`` (without the
-    flywheel, kg m2) are vectorised functions of the angle, smooth between the ``borders``. Work by Gauss-Legendre panels, the
+    flywheel, kg m2) are vectorised functions of the angle, smooth between the ``borders``. Without ``delta`` it is that of a
+    flywheel with the moment of inertia ``held``, kg m2. Work by Gauss-Legendre panels, the
     contacts found between the nodes; the panels are halved until two results agree to ``tolerance``.
     This is the search for the contacts and the panels; what is told of it is a step of :func:`limit_segment`.
     """
@@ -153,19 +226,18 @@ def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: f
         work = Quadrature(moment, borders, panels, whole=whole)
         mean = work.total / (borders[-1] - borders[0])
         done = work(samples)
-        segment, contact = 0.0, []
-        for sign in (1.0, -1.0):
-            half_square = (omega * (1 + sign * delta / 2)) ** 2 / 2
 
-            def height(t: Floats, sign: float = sign, half_square: float = half_square, work: Quadrature = work,
-                       mean: float = mean, done: Floats = done) -> Floats:
-                at, spent = (j, done) if t is samples else (inertia(t), work(t))
-                return np.asarray(sign * (spent - mean * (t - borders[0]) - half_square * at))
+        def excess(t: Floats, work: Quadrature = work, mean: float = mean, done: Floats = done) -> Floats:
+            return np.asarray((done if t is samples else work(t)) - mean * (t - borders[0]))
 
-            contact.append(highest(height, samples))
-            segment += float(height(np.array(contact[-1:]))[0])
+        def of(delta: float, excess: Curve = excess) -> Tangents:
+            return tangents(excess, lambda t: j if t is samples else inertia(t), samples, omega, delta)
+
+        uneven, found = (delta, of(delta)) if delta is not None else left_by(held, of, omega, result.delta if result else START)
+        segment = found.segment
         error = abs(segment - result.segment) / (abs(segment) or 1.0) if result else np.inf
-        result = ConvergedWheel(segment, segment / (delta * omega**2), error, contact[0], contact[1], panels)
+        result = ConvergedWheel(segment, held if delta is None else segment / (delta * omega**2), error, found.phi_max,
+                                found.phi_min, panels, uneven)
         if error <= tolerance:
             break
     assert result is not None
@@ -232,7 +304,7 @@ class AtAngles(Protocol):
 
 
 def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callable[[str, Floats], AtAngles],
-                  mass: Callable[[AtAngles], Step], omega: float, delta: float | None) -> Step:
+                  mass: Callable[[AtAngles], Step], omega: float, delta: float | Given | None) -> Step:
     """Segment ``ab mu_E`` for vanishing intervals, J, as one formula: step ``ab·μ_E`` of the plan.
 
     Parameters

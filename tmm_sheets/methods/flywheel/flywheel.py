@@ -24,7 +24,7 @@ from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step, Told
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, speed
+from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, STOPS, AtAngles, ConvergedWheel, speed, too_light
 from tmm_sheets.methods.flywheel.running import Energy, Running, steady
 from tmm_sheets.methods.flywheel.wheel import MotorCheck, RimWheel, motor_check, wheel
 from tmm_sheets.methods.integration import (
@@ -271,6 +271,24 @@ OF_EXCESS = Rule("moment of inertia from the excess of energy", lambda excess, d
                  source="000, 5.6")
 TOGETHER = Rule("moments of inertia together", lambda a, b: a + b, ("number", "number"), "number",
                 marked("All that turns with the input link: {name} = {0} + {1} = {value} kg·m²."), unit="kg*m2")
+WITH_ROTOR = Rule("flywheel and rotor", lambda a, b: a + b, ("number", "number"), "number",
+                  marked("Flywheel and rotor together: {name} = {0} + {1} = {value} kg·m²."), unit="kg*m2")
+DELTA_OF_SEGMENT = Rule("coefficient of non-uniformity from the segment", lambda ab, mu, j, omega: ab * mu / (j * omega**2),
+                        ("number",) * 4, "number",
+                        marked("From the segment ab, mm: {name} = ab·μ_E/(J·ω1²) = {0}·{1}/({2}·{3}²) = {value}."),
+                        source="000, 5.6")
+DELTA_OF_EXCESS = Rule("coefficient of non-uniformity from the excess of energy", lambda excess, j, omega: excess / (j * omega**2),
+                       ("number",) * 3, "number", marked("{name} = {0}/({1}·{2}²) = {value}."), beyond_paper=True,
+                       source="000, 5.6")
+MEAN_POWER = Rule("mean power of the drive", lambda m, omega: m * omega, ("number", "number"), "number",
+                  marked("Mean power of the drive by the work of the cycle: {name} = M·ω1 = {0}·{1} = {value} W."), unit="W")
+POWER_GIVEN_OFF = Rule("mean power of an engine", lambda m, omega: -m * omega, ("number", "number"), "number",
+                       marked("Mean power that the engine gives off, by the work of the cycle: {name} = −M·ω1 = {value} W."),
+                       unit="W")
+POWER_BEFORE = Rule("power before an efficiency", lambda power, eta: power / eta, ("number", "number"), "number",
+                    marked("Power needed of the motor {name} = P/η = {0}/{1} = {value} W."), unit="W", source="002, 1.13")
+POWER_BEHIND = Rule("power behind an efficiency", lambda power, eta: power * eta, ("number", "number"), "number",
+                    marked("Power behind the drive {name} = P·η = {0}·{1} = {value} W."), unit="W")
 BARE = Rule("moment of inertia of the flywheel", lambda first, crank: first - crank, ("number", "number"), "number",
             marked("Moment of inertia of the flywheel {name} = {0} − {1} = {value} kg·m²."), unit="kg*m2")
 BARE_OF_ROTOR = Rule("moment of inertia of the flywheel beside a rotor", lambda first, crank, rotor: first - crank - rotor,
@@ -313,8 +331,9 @@ class Flywheel(ABC):
     @cached_property
     def labels(self) -> tuple[str, ...]:
         """Numbers of the positions with the one that closes the cycle."""
-        last = self.reduced.labels[-1]
-        return (*self.reduced.labels, str(int(last) + 1) if last.isdigit() else self.reduced.labels[0])
+        first, *others = self.reduced.labels
+        last = str(int(others[-1]) + 1) if others[-1].isdigit() else first
+        return (first, *others, first if last in others else last)
 
     @cached_property
     def edges(self) -> Floats:
@@ -400,10 +419,12 @@ class Flywheel(ABC):
         energies = [*excess[[excess.argmax(), excess.argmin()]], *self._energies(excess, mass), 0.0]
         mu_phi = handy(reduced.period / space.angle)
         largest = _largest(reduced.forces_at(self.samples))
-        if not mass.max() > 0:
+        # A crank that alone has inertia leaves nothing for the others: its own is the scale then.
+        heaviest = float(mass.max()) or reduced.crank_inertia
+        if not heaviest > 0:
             raise CannotBuild(tell("a flywheel needs links with masses"),
                               tell("add mass, centre and inertia to [[link]] of the project file"))
-        spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), float(mass.max()))
+        spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), heaviest)
         mu_m, mu_a, mu_e, mu_j = _stacked(spans, mu_phi, space) if space.stack else _alone(spans, mu_phi, space)
         return FlywheelScales(
             angle=Scale("μ_φ", mu_phi, tr("rad/mm")),
@@ -435,9 +456,25 @@ class Flywheel(ABC):
         return named(self.reduced.omega1, "crank.speed", "ω_1", "rad/s")
 
     @property
-    def delta(self) -> float:
-        """Permitted coefficient of non-uniformity."""
+    def given(self) -> bool:
+        """True where the flywheel is given and the coefficient of non-uniformity is asked."""
+        return self.data.inertia is not None
+
+    @property
+    def permitted(self) -> float:
+        """Permitted coefficient of non-uniformity, of a flywheel that is asked."""
+        assert self.data.delta is not None
         return named(self.data.delta, "flywheel.delta", "δ")
+
+    @property
+    def delta(self) -> Step:
+        """Coefficient of non-uniformity of the machine with its flywheel: the permitted one, or the one that is found."""
+        return self.delta_plan["δ"] if self.given else self.data_plan["δ"]
+
+    @property
+    def unevenness(self) -> float:
+        """Its value."""
+        return float(self.delta.value)
 
     @cached_property
     def closing(self) -> Given:
@@ -475,10 +512,11 @@ class Flywheel(ABC):
 
     @cached_property
     def data_plan(self) -> Plan:
-        """What is given: angles ``φ1`` of the positions and ``δ``."""
+        """What is given: angles ``φ1`` of the positions and ``δ``, unless it is asked."""
         plan = Plan(f"flywheel-data@given{self.where}", tr("Givens of the flywheel"), "", self.labels)
         plan.add("φ1", GIVEN_NUMBER, Given(self.reduced.phi, "cycle", "φ_1", "rad"))
-        plan.add("δ", GIVEN_NUMBER, self.delta)
+        if not self.given:
+            plan.add("δ", GIVEN_NUMBER, self.permitted)
         return plan
 
     # --- the construction ---------------------------------------------------------------------------
@@ -670,10 +708,12 @@ class Flywheel(ABC):
     def plans(self) -> dict[str, Plan]:
         """The plans by name, in drawing order, after those of the reduced quantities."""
         r = self.reduced
-        shown = (self.moment_plan, self.middles_plan, self.slopes_plan, self.intervals_plan, self.area_plan, self.work_plan,
+        held = (*((self.rotor_plan,) if self.rotor_plan.steps else ()), self.given_plan) if self.given else ()
+        shown = (*held, self.moment_plan, self.middles_plan, self.slopes_plan, self.intervals_plan, self.area_plan, self.work_plan,
                  self.driving_plan, self.total_plan, self.inertia_plan, self.contacts_plan, *self.own_plans)
         rotor, check = self.rotor_plan, self.motor
-        last = (*((rotor,) if rotor.steps else ()), self.first_plan, self.limit_plan, *self.later_plans,
+        found = (self.delta_plan,) if self.given else (self.first_plan,)
+        last = (*((rotor,) if rotor.steps and not self.given else ()), self.power_plan, *found, self.limit_plan, *self.later_plans,
                 *((self.wheel.plan,) if self.wheel else ()), *((check.plan,) if check else ()), self.position_acceleration)
         before = (*r.crank_plans, self.data_plan, self.across_plan, self.borders_plan,
                   *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
@@ -752,12 +792,49 @@ class Flywheel(ABC):
         """Record the moment of inertia of all that turns with the crank by the drawn construction: step ``J_I``."""
 
     @abstractmethod
-    def _first_converged(self, plan: Plan) -> Step:
-        """Record the same for vanishing intervals: step ``J_I∞``."""
+    def _excess(self, plan: Plan) -> Step:
+        """Record the excess of energy for vanishing intervals that the segment ab stands for, J."""
+
+    @abstractmethod
+    def _first_converged(self, plan: Plan, excess: Step) -> Step:
+        """Record the moment of inertia of all that turns with the crank for vanishing intervals: step ``J_I∞``."""
+
+    @property
+    @abstractmethod
+    def held(self) -> Step:
+        """What of a given flywheel, and of what turns with the crank beside it, the segment ab belongs to, kg m2."""
+
+    @cached_property
+    def given_plan(self) -> Plan:
+        """A given flywheel: ``J_м``, with a rotor ``J_доб`` both, ``J_I`` with the crank, which is what runs: ``J_вр``."""
+        plan = Plan(f"flywheel-given{self.where}", tr("Given flywheel"), "")
+        assert self.data.inertia is not None
+        added = plan.add("J_м", GIVEN_NUMBER, named(self.data.inertia, "flywheel.inertia", tr("J_f"), "kg*m2"), symbol=tr("J_f"))
+        if "J_рот" in self.rotor_plan:
+            added = plan.add("J_доб", WITH_ROTOR, added, self.rotor_plan["J_рот"], symbol=tr("J_add"))
+        first = plan.add("J_I", TOGETHER, added, self.reduced.crank)
+        plan.add("J_вр", RUNNING, first, plan["J_м"], symbol=tr("J_rot"))
+        return plan
+
+    @property
+    def added(self) -> Step:
+        """A given flywheel and the rotor, kg m2: what turns with the crank and is no part of it."""
+        return self.given_plan["J_доб" if "J_доб" in self.given_plan else "J_м"]
+
+    @cached_property
+    def delta_plan(self) -> Plan:
+        """From the segment ab to the coefficient of non-uniformity that a given flywheel leaves: ``δ``."""
+        plan = Plan(f"flywheel-delta{self.where}", tr("Coefficient of non-uniformity"), "")
+        plan.add("δ", DELTA_OF_SEGMENT, self.ab, self.mu("energy"), self.held, self.omega1)
+        if not float(plan["δ"].value) < STOPS:
+            raise too_light(float(self.given_plan["J_м"].value))
+        return plan
 
     @cached_property
     def first_plan(self) -> Plan:
         """From the segment ab to the flywheel: ``J_I`` all that turns with the crank, ``J_м`` the flywheel, ``J_вр`` what runs."""
+        if self.given:
+            return self.given_plan
         plan = Plan(f"flywheel-inertia{self.where}", tr("Moment of inertia of the flywheel"), "")
         first = self._first(plan)
         flywheel = self._bare(plan, "J_м", first, BARE, BARE_OF_ROTOR, tr("J_f"))
@@ -768,9 +845,17 @@ class Flywheel(ABC):
 
     @cached_property
     def limit_plan(self) -> Plan:
-        """The same for vanishing intervals: ``J_I∞``, ``J_м∞``, and ``разность``, by how many per cent the drawn one is off."""
+        """The same for vanishing intervals: ``J_I∞``, ``J_м∞``, and ``разность``, by how many per cent the drawn one is off.
+
+        Of a given flywheel ``δ∞``, and the difference of ``δ``.
+        """
         plan = Plan(f"flywheel-limit{self.where}", tr("Flywheel as n → ∞"), "")
-        flywheel = self._bare(plan, "J_м∞", self._first_converged(plan), BARE_LIMIT, BARE_OF_ROTOR_LIMIT, tr("J_f∞"))
+        excess = self._excess(plan)
+        if self.given:
+            found = plan.add("δ∞", DELTA_OF_EXCESS, excess, self.held, self.omega1)
+            plan.add("разность", DIFFERENCE, self.delta, found, symbol=tr("difference"))
+            return plan
+        flywheel = self._bare(plan, "J_м∞", self._first_converged(plan, excess), BARE_LIMIT, BARE_OF_ROTOR_LIMIT, tr("J_f∞"))
         plan.add("разность", DIFFERENCE, self.first_plan["J_м"], flywheel, symbol=tr("difference"))
         return plan
 
@@ -800,7 +885,7 @@ class Flywheel(ABC):
     @property
     def J_first_converged(self) -> float:
         """The same for vanishing intervals, kg m2."""
-        return float(self.limit_plan["J_I∞"].value)
+        return float((self.first_plan["J_I"] if self.given else self.limit_plan["J_I∞"]).value)
 
     @property
     def J_rotor(self) -> float:
@@ -814,8 +899,12 @@ class Flywheel(ABC):
 
     @property
     def J_flywheel_converged(self) -> float:
-        """Moment of inertia of the flywheel for vanishing intervals, kg m2."""
-        return float(self.limit_plan["J_м∞"].value)
+        """Moment of inertia of the flywheel for vanishing intervals, kg m2; a given one is what it is."""
+        return float(self._flywheel_converged.value)
+
+    @property
+    def _flywheel_converged(self) -> Step:
+        return self.first_plan["J_м"] if self.given else self.limit_plan["J_м∞"]
 
     @property
     def needed(self) -> bool:
@@ -867,9 +956,12 @@ class Flywheel(ABC):
 
     @cached_property
     def wheel(self) -> RimWheel | None:
-        """Sizes of the wheel with the drawn construction's moment of inertia; None when no flywheel is needed."""
+        """Sizes of the wheel with the drawn construction's moment of inertia; None when no flywheel is needed.
+
+        Nor are there any of a given one whose ratios are not told.
+        """
         d = self.data
-        if not self.needed:
+        if not self.needed or d.density is None or d.width_ratio is None or d.thickness_ratio is None:
             return None
         return wheel(self.first_plan["J_м"], self.omega1, d.form, named(d.density, "flywheel.density", "ρ", "kg/m3"),
                      named(d.width_ratio, "flywheel.width_ratio", "κ"), named(d.thickness_ratio, "flywheel.thickness_ratio", "c"),
@@ -883,14 +975,28 @@ class Flywheel(ABC):
             return None
         return motor_check(self.driving_plan["M"], self.omega1, named(m.efficiency, "flywheel.motor.efficiency", "η"),
                            named(m.synchronous, "flywheel.motor.synchronous", tr("ω_s"), "rad/s"),
-                           named(m.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), m.power, self.data.delta, self.where)
+                           named(m.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), m.power, self.unevenness, self.where)
+
+    @cached_property
+    def power_plan(self) -> Plan:
+        """Mean power on the crank from the work of the cycle: ``P``, W; ``P_дв`` on the other side of what has an efficiency.
+
+        What a working machine takes, what an engine gives off.
+        """
+        plan = Plan(f"drive-power{self.where}", tr("Mean power over the cycle"), "")
+        takes = self.reduced.resisting
+        power = plan.add("P", MEAN_POWER if takes else POWER_GIVEN_OFF, self.driving_plan["M"], self.omega1, symbol=tr("P_m"))
+        if self.data.efficiency is not None:
+            eta = named(self.data.efficiency, "flywheel.efficiency", "η")
+            plan.add("P_дв", POWER_BEFORE if takes else POWER_BEHIND, power, eta, symbol=tr("P_mot") if takes else tr("P_out"))
+        return plan
 
     def speed(self, phi: Floats, inertia: float | None = None) -> Floats:
         """Angular velocity of the crank over the angle with the exact flywheel (or another, kg m2), rad/s.
 
         The motion is the steady one that reaches omega (1 + delta/2) at the upper contact.
         """
-        fastest = self.reduced.omega1 * (1 + self.data.delta / 2)
+        fastest = self.reduced.omega1 * (1 + (self.limit.delta if self.given else self.unevenness) / 2)
         j = self.limit.inertia if inertia is None else inertia
         return speed(self.reduced.moment, self.reduced.inertia, self.edges, j, (self.limit.phi_max, fastest), phi)
 
@@ -946,18 +1052,21 @@ class Flywheel(ABC):
             "method": self.method,
             "labels": list(self.labels),
             "phi": self.data_plan["φ1"],
-            "delta": self.data_plan["δ"],
+            "delta": self.delta,
+            **({"delta_converged": self.limit_plan["δ∞"]} if self.given else {}),
             "M_reduced": self.moment_plan["M_пр"],
             "work": self.total_plan["A"],
             "work_converged": self.area_plan["A"],
             "M_constant": self.driving_plan["M"],
             "M_constant_converged": self.area_plan["M"],
+            "power": self.power_plan["P"],
+            **({"motor_power": self.power_plan["P_дв"]} if "P_дв" in self.power_plan else {}),
             "delta_E": self.total_plan["E"],
             "J_reduced": self.inertia_plan["J_пр"],
             "ab_mm": self.ab,
             "J_first": self.first_plan["J_I"],
             "J_flywheel": self.first_plan["J_м"],
-            "J_flywheel_converged": self.limit_plan["J_м∞"],
+            "J_flywheel_converged": self._flywheel_converged,
             "difference_percent": self.limit_plan["разность"],
             "needed": self.needed,
             "form": w and w.form,

@@ -152,8 +152,8 @@ class Mertsalov(Flywheel):
         plan.add("ω1", ANGULAR_SPEED, y, mu, self.omega1)
         for name in ("max", "min"):
             plan.add(f"ω_{name}", EXTREME_SPEED, energy[f"M_{name}"], axis, mu, self.omega1)
-        for name, rule in (("max", HIGHEST), ("min", LOWEST)):
-            plan.add(f"[ω_{name}]", rule, self.omega1, self.delta)
+        for name, rule in () if self.given else (("max", HIGHEST), ("min", LOWEST)):
+            plan.add(f"[ω_{name}]", rule, self.omega1, self.permitted)
         return plan
 
     @property
@@ -187,9 +187,14 @@ class Mertsalov(Flywheel):
         return self.energy_plan["ab"]
 
     def _first(self, plan: Plan) -> Step:
-        return plan.add("J_I", OF_SEGMENT, self.ab, self.mu("energy"), self.delta, self.omega1)
+        return plan.add("J_I", OF_SEGMENT, self.ab, self.mu("energy"), self.permitted, self.omega1)
 
-    def _first_converged(self, plan: Plan) -> Step:
+    @property
+    def held(self) -> Step:
+        """All that turns with the crank, kg m2: the curve is that of its energy."""
+        return self.given_plan["J_I"]
+
+    def _excess(self, plan: Plan) -> Step:
         work = Quadrature(self.reduced.moment, self.edges, 8, whole=self._limit_row)
         mean, half = work.total / self.reduced.period, self.reduced.omega1**2 / 2
 
@@ -198,8 +203,10 @@ class Mertsalov(Flywheel):
 
         fast, slow = (highest(lambda phi, side=side: side * first(phi), self.samples) for side in (1, -1))  # type: ignore[misc]
         found = ConvergedWheel(np.nan, np.nan, np.inf, fast, slow, work.panels)
-        excess = limit_segment(plan, found, self.edges, self.at, self.mass, self.omega1, None)
-        return plan.add("J_I∞", OF_EXCESS, excess, self.delta, self.omega1)
+        return limit_segment(plan, found, self.edges, self.at, self.mass, self.omega1, None)
+
+    def _first_converged(self, plan: Plan, excess: Step) -> Step:
+        return plan.add("J_I∞", OF_EXCESS, excess, self.permitted, self.omega1)
 
     @property
     def T_second(self) -> Floats:
@@ -234,7 +241,13 @@ class Mertsalov(Flywheel):
 
     @cached_property
     def compared(self) -> tuple[Compared, ...]:
-        """Both methods, drawn and for vanishing intervals, each with the exact running of a machine that has its flywheel."""
+        """Both methods, drawn and for vanishing intervals, each with the exact running of a machine that has its flywheel.
+
+        Of a given flywheel there is one running only.
+        """
+        if self.given:
+            first = self.first_plan["J_I"]
+            return (Compared(tr("Exact running"), float(first.value), self.running(float(first.value)), first),)
         found = ((tr("Mertsalov, construction"), self.first_plan["J_I"]),
                  (tr("Wittenbauer, construction"), self.other.first_plan["J_I"]),
                  (tr("Mertsalov, n → ∞"), self.limit_plan["J_I∞"]), (tr("Wittenbauer, n → ∞"), self.other.limit_plan["J_I∞"]))
@@ -254,6 +267,8 @@ class Mertsalov(Flywheel):
             fast, slow = (plan.add(f"ω_{name}{i}", FOUND, Given(value, f"running {i}", unit="rad/s", over="none", choice=criterion),
                                    say=say) for name, value in (("max", c.running.fastest), ("min", c.running.slowest)))
             plan.add(f"δ{i}", NON_UNIFORMITY, fast, slow)
+        if self.given:
+            return plan
         plan.add("ΔJ", BETWEEN_LIMITS, self.limit_plan["J_I∞"], self.other.limit_plan["J_I∞"])
         contacts = self.mass(self.at("exact-contacts", np.array([self.limit.phi_max, self.limit.phi_min])))
         plan.add("e", EXCESS, *(plan.add(f"J_{name}", AT_CONTACT, contacts, k) for k, name in enumerate(("max", "min"))))

@@ -167,9 +167,16 @@ class Reduction:
         """Reduced moment of inertia of the moving links without the flywheel, kg m2: step ``J``."""
         return self._sum(self.plan, "J", REDUCED_INERTIA, list(self.terms.values()))
 
+    @property
+    def crank_alone(self) -> bool:
+        """True where nothing but the crank has inertia: the others' is nothing then, not what rounding leaves."""
+        return set(self.terms) <= self.reduced.crank_terms
+
     @cached_property
     def others(self) -> Step:
         """The same without the crank's: step ``J_II``."""
+        if self.crank_alone:
+            return self.plan.add("J_II", EVERYWHERE, 0.0, Given(self.phi, "cycle", "φ_1", "rad"))
         return self.plan.add("J_II", WITHOUT_CRANK, self.inertia, self.reduced.crank)
 
     @cached_property
@@ -181,7 +188,7 @@ class Reduction:
         """
         vel, acc, r = self.velocities, self.accelerations, self.reduced
         parts: list[Step] = []
-        for link in r.mechanism.links.values():
+        for link in () if self.crank_alone else r.mechanism.links.values():
             n = link.name
             if turning(link):
                 parts.append(self.slope_plan.add(f"J{n}ω{n}ε{n}", TURNING_SLOPE, turning(link), vel.omega[n], acc.epsilon[n]))
@@ -337,10 +344,14 @@ class Reduced:
 
     def parts(self, at: Reduction) -> dict[str, Any]:
         """The same of a reduction that was made already."""
-        crank = self.mechanism.crank.link
-        mine = {f"J_{{{crank}}}·ω_{crank}²", f"J_{{S{crank}}}·ω_{crank}²", f"m_{crank}·V_{{{self.mechanism.links[crank].centre}}}²"}
         return {name: np.broadcast_to(term.value / self.omega1**2, np.shape(at.phi))
-                for name, term in at.terms.items() if name not in mine}
+                for name, term in at.terms.items() if name not in self.crank_terms}
+
+    @property
+    def crank_terms(self) -> frozenset[str]:
+        """Names of the crank's own terms."""
+        n = self.mechanism.crank.link
+        return frozenset((f"J_{{{n}}}·ω_{n}²", f"J_{{S{n}}}·ω_{n}²", f"m_{n}·V_{{{self.mechanism.links[n].centre}}}²"))
 
     @property
     def inertia_terms(self) -> dict[str, Any]:

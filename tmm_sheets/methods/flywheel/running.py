@@ -83,6 +83,9 @@ def steady(energy: Energy, first: float, omega: float) -> Running:
                        for sign in (1, -1)])
         excess, mass = energy(at)
         mass = first + mass
+        # The slowest may lie between the samples.
+        lowest = max(lowest, -float(excess.min()))
+        level = max(level, lowest * (1 + 1e-9))
         for _ in range(20):
             speeds = np.sqrt(2 * (level + excess) / mass)
             change = (omega - speeds.mean()) / float(np.mean(1 / (mass * speeds)))

@@ -7,10 +7,20 @@ from functools import cached_property
 from math import pi
 from typing import Any
 
+from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.construction.step import Step
-from tmm_sheets.methods.flywheel.energy_mass import ConvergedWheel, energy_mass_plan, limit, limit_segment, touched
+from tmm_sheets.methods.flywheel.energy_mass import (
+    ConvergedWheel,
+    Tangents,
+    energy_mass_plan,
+    left_by,
+    limit,
+    limit_segment,
+    tangents,
+    touched,
+)
 from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, TOGETHER, TOGETHER_LIMIT, DiagramSpace, Flywheel
 from tmm_sheets.methods.integration import Floats
 from tmm_sheets.words import tr
@@ -47,7 +57,8 @@ class Wittenbauer(Flywheel):
         return min(self.reduced.period, TURN)
 
     def _energies(self, excess: Floats, mass: Floats) -> Iterable[float]:
-        upper, lower = (excess - mass * (self.reduced.omega1 * (1 + s * self.data.delta / 2)) ** 2 / 2 for s in (1, -1))
+        delta = self.limit.delta if self.given else self.permitted
+        upper, lower = (excess - mass * (self.reduced.omega1 * (1 + s * delta / 2)) ** 2 / 2 for s in (1, -1))
         return upper.max(), lower.min()  # both intercepts
 
     @cached_property
@@ -61,7 +72,7 @@ class Wittenbauer(Flywheel):
             return self.contact(name, phi, criterion)[1:]
 
         return energy_mass_plan(self.labels, self.total_plan["ΔE"], self.inertia_plan["J"], contact, self.mu("inertia"),
-                                self.mu("energy"), self.omega1, self.delta, self.where)
+                                self.mu("energy"), self.omega1, self.drawn_delta, self.where)
 
     @property
     def own_plans(self) -> tuple[Plan, ...]:
@@ -87,19 +98,46 @@ class Wittenbauer(Flywheel):
         """What has to be added to the drawn J(phi): ab mu_E/(delta omega^2), kg m2."""
         return float(self.first_plan["J_доб"].value)
 
+    @cached_property
+    def drawn_delta(self) -> Any:
+        """Coefficient that the tangents belong to: the permitted one, or that whose tangents meet over a given flywheel's inertia.
+
+        Those are the tangents that lead back to it.
+        """
+        if not self.given:
+            return self.permitted
+
+        def of(delta: float) -> Tangents:
+            return tangents(lambda phi: self.energy_curve(phi) * self.scales.energy.mu, self.inertia, self.samples,
+                            self.reduced.omega1, delta)
+
+        found, _ = left_by(float(self.added.value), of, self.reduced.omega1, self.limit.delta)
+        return Given(found, "δ of the tangents", "δ", over="none",
+                     choice="the tangents meet over the flywheel's moment of inertia: they lead back to it")
+
+    @property
+    def held(self) -> Step:
+        """The given flywheel and the rotor, kg m2: the crank is in the curve."""
+        return self.added
+
     def _first(self, plan: Plan) -> Step:
-        added = plan.add("J_доб", OF_SEGMENT, self.ab, self.mu("energy"), self.delta, self.omega1, symbol=tr("J_add"))
+        added = plan.add("J_доб", OF_SEGMENT, self.ab, self.mu("energy"), self.permitted, self.omega1, symbol=tr("J_add"))
         return plan.add("J_I", TOGETHER, added, self.reduced.crank)
 
     @cached_property
     def limit(self) -> ConvergedWheel:
         """The same for vanishing intervals, with its error."""
         r = self.reduced
-        return limit(r.moment, r.inertia, self.edges, r.omega1, self.data.delta, whole=self._limit_row)
+        return limit(r.moment, r.inertia, self.edges, r.omega1, self.data.delta, whole=self._limit_row,
+                     held=float(self.added.value) if self.given else 0.0)
 
-    def _first_converged(self, plan: Plan) -> Step:
-        excess = limit_segment(plan, self.limit, self.edges, self.at, self.mass, self.omega1, self.delta)
-        added = plan.add("J_доб∞", OF_EXCESS, excess, self.delta, self.omega1, symbol=tr("J_add∞"))
+    def _excess(self, plan: Plan) -> Step:
+        delta = self.permitted if not self.given else Given(
+            self.limit.delta, "δ of the tangents, n → ∞", "δ", over="none", choice="the excess of energy leads back to it")
+        return limit_segment(plan, self.limit, self.edges, self.at, self.mass, self.omega1, delta)
+
+    def _first_converged(self, plan: Plan, excess: Step) -> Step:
+        added = plan.add("J_доб∞", OF_EXCESS, excess, self.permitted, self.omega1, symbol=tr("J_add∞"))
         return plan.add("J_I∞", TOGETHER_LIMIT, added, self.reduced.crank)
 
     @property

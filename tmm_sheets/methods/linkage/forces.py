@@ -1,4 +1,6 @@
-"""Kinetostatics: force plans of each Assur group, the farthest first, then of the crank; no friction.
+"""Kinetostatics: force plans of each Assur group, the farthest first, then of the crank.
+
+Friction in the pairs, where there is some, is a part of the loads: :mod:`~tmm_sheets.methods.linkage.friction`.
 
 ``F_jk`` is the force on link j from link k. Forces are complex, N, shape (n,); couples N m, counter-clockwise positive.
 Source: manual 000, section 4 and table 4.1.
@@ -9,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,12 +21,16 @@ from tmm_sheets.construction.given import FoundNumber
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role, TangentialPart
+from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE, ForcePlan, Load, Role, TangentialPart
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.numbers import Sizes
 from tmm_sheets.words import marked, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.tally import Tally
+    from tmm_sheets.methods.linkage.friction import Friction
 
 WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force",
               marked("Weight {name} = m·g = {0}·{1} = {value}, downwards."))
@@ -34,7 +40,6 @@ COUPLE = Rule("inertia couple", lambda j, e: -j * e, ("number", "number"), "numb
               marked("Moment of the inertia forces {name} = −J·ε = {value} N·m, against ε."), unit="N*m")
 GIVEN_FORCE = Rule("given force vector", lambda f: f, ("force",), "force", marked("Force {name} = {value}."), unit="N")
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.", unit="N")
-OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", marked("{name} = {value} N·m."), unit="N*m")
 NEGATIVE = Rule("opposite number", lambda x: -x, ("number",), "number", "{name} = {value}.", beyond_paper=True, unit="1")
 ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), "length",
            marked("Arm {name} = {value} from the equation of moments."))
@@ -86,6 +91,7 @@ class Kinetostatics:
     plans: dict[str, ForcePlan] = field(default_factory=dict)
     from_moments: list[TangentialPart] = field(default_factory=list)
     balancing: Step | None = None
+    friction: Friction | None = None
 
     @property
     def external(self) -> list[Load]:
@@ -180,8 +186,7 @@ class Kinetostatics:
         title = tr("Force polygon of link "
                    "{link}").format(link=links[0]) if len(links) == 1 else tr("Force polygon of group "
                                                                               "{links}").format(links="–".join(links))
-        fp = ForcePlan(name, links, Plan(f"force-{name}", title, "N", self.positions.plan.labels,
-                                          search=self.positions.plan.search))
+        fp = ForcePlan(name, links, Plan(f"force-{name}", title, "N", self.positions.plan.labels, search=self.plan.search))
         self.plans[name] = fp
         return fp
 
@@ -204,6 +209,15 @@ class Kinetostatics:
         """Direction across another, drawn once."""
         label = f"⟂{name}"
         return self.plan.steps[label] if label in self.plan else self.plan.add(label, rules.TURN, u, symbol=symbol)
+
+    def normal(self, j: str, other: str, name: str, u: Step, symbol: str = "") -> Step:
+        """Direction of a sliding pair's reaction on link ``j``: across the guide, with friction deviated from there."""
+        across = self.across(name, u, symbol)
+        return across if self.friction is None else self.friction.deviated(j, other, across, self.plan)
+
+    def deviates(self, j: str, other: str) -> bool:
+        """True where friction deviates the reaction of a sliding pair from the normal."""
+        return self.friction is not None and pair_index(j, other) in self.friction.deviations
 
     def sliding(self, j: str, other: str, force: Step, about: Step) -> Step:
         """Couple of a sliding pair's reaction on link ``j`` (its force taken at ``about``) and its arm, from moments about it."""
@@ -375,11 +389,17 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
 
 
 def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
-                  driver: GearForce | None, plan: Plan | None = None) -> Kinetostatics:
-    """Force plans of all groups from the farthest to the crank; ``driver`` None means a pure balancing moment."""
-    sums = plan or Plan("moments", tr("Sums of moments"), "m", pos.plan.labels, search=pos.plan.search)
+                  driver: GearForce | None, plan: Plan | None = None, friction: Friction | None = None,
+                  search: Tally | None = None) -> Kinetostatics:
+    """Force plans of all groups from the farthest to the crank; ``driver`` None means a pure balancing moment.
+
+    ``friction`` that acts besides; ``search`` counts plans that are only an approximation.
+    """
+    sums = plan or Plan("moments", tr("Sums of moments"), "m", pos.plan.labels, search=search or pos.plan.search)
     work = {name: list(of_link) for name, of_link in loads.items()}
-    k = Kinetostatics(pos, acc, work, sums, couples)
+    turning = {} if friction is None else friction.couples
+    couples = {link: [*couples.get(link, ()), *turning.get(link, ())] for link in {**couples, **turning}}
+    k = Kinetostatics(pos, acc, work, sums, couples, friction=friction)
     for g in reversed(pos.mechanism.groups):
         g.kind.force(k, g)
     _crank(k, driver)

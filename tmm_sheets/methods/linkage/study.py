@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -24,6 +24,10 @@ from tmm_sheets.methods.linkage.sliding import Sliding
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
 from tmm_sheets.words import marked, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.tally import Tally
+    from tmm_sheets.methods.linkage.friction import Coefficients, Friction
 
 
 class CrankMotion(Protocol):
@@ -45,7 +49,7 @@ class Study:
 
     ``technological`` gives the technological forces and moments; they are asked for when the first force is.
     ``running`` gives the uneven running of the crank and what it carries; None when the mechanism itself says both. ``purpose`` is
-    what the plans search for; empty when they are drawn or told.
+    what the plans search for; empty when they are drawn or told. ``friction`` in the pairs; None without.
     """
 
     mechanism: Mechanism
@@ -57,6 +61,7 @@ class Study:
     driver: GearForce | None
     running: Callable[[], CrankMotion] | None = None
     purpose: str = ""
+    friction: Coefficients | None = None
 
     @property
     def plans(self) -> dict[str, Plan]:
@@ -70,7 +75,10 @@ class Study:
         if "loads" in made:
             found.append(made["loads"][2])
         if "forces" in made:
+            friction = made["forces"].friction
+            found += [friction.plan] if friction else []
             found += [made["forces"].plan, *(fp.plan for fp in made["forces"].plans.values())]
+            found += [friction.power_plan] if friction and friction.power_plan else []
         if "lever" in made:
             found.append(made["lever"].plan)
         found += [made["balance"]] if "balance" in made else []
@@ -121,12 +129,23 @@ class Study:
     def forces(self) -> Kinetostatics:
         """Force plans of all groups and the crank."""
         loads, couples, _ = self.loads
-        return kinetostatics(self.positions, self.accelerations, loads, couples, self.driver)
+
+        def statics(friction: Friction | None = None, search: Tally | None = None) -> Kinetostatics:
+            return kinetostatics(self.positions, self.accelerations, loads, couples, self.driver, friction=friction, search=search)
+
+        if self.friction is None:
+            return statics()
+        from tmm_sheets.methods.linkage.approximations import with_friction
+
+        return with_friction(self.friction, self.velocities, self.sliding, statics)
 
     @cached_property
     def lever(self) -> Lever:
-        """Zhukovsky's lever."""
+        """Zhukovsky's lever; friction in the pairs hangs on it as a moment on the crank."""
         loads, couples, _ = self.loads
+        friction, crank = self.forces.friction if self.friction is not None else None, self.mechanism.crank.link
+        if friction is not None and friction.powers:
+            couples = {**couples, crank: [*couples.get(crank, ()), friction.on_crank]}
         every = [load for of_link in loads.values() for load in of_link]
         return lever(self.velocities, every, couples, self.driver)
 

@@ -29,7 +29,10 @@ PLANS = (
     "reduced-inertia",
     "energy-mass",
     "first-energy",
+    "flywheel-given",
     "flywheel-inertia",
+    "flywheel-delta",
+    "drive-power",
     "flywheel-limit",
     "flywheel-wheel",
     "crank-speed",
@@ -48,7 +51,8 @@ def scope(r: Reader) -> Scope:
             "mertsalov": fw.method == "mertsalov",
             "resisting": fw.reduced.resisting,
             "needed": fw.needed,
-            "delta": r.number(fw.delta, "", "flywheel.delta"),
+            "given": fw.given,
+            "delta": r.of(fw.delta) if fw.given else r.number(fw.unevenness, "", "flywheel.delta"),
             "rim": r.project.variant.flywheel is not None and r.project.variant.flywheel.form == "rim",
         }
     )
@@ -137,7 +141,8 @@ def _results(r: Reader, found: Scope) -> None:
     fw = r.project.flywheel
     for name, step in (("ab", fw.ab), ("M_constant", fw.driving_plan["M"]), ("J_flywheel", fw.first_plan["J_м"])):
         found.fields[name] = r.of(step)
-    found.fields["J_flywheel_limit"] = r.of(fw.limit_plan["J_м∞"])
+    if not fw.given:
+        found.fields["J_flywheel_limit"] = r.of(fw.limit_plan["J_м∞"])
     found.fields["difference"] = r.number(abs(fw.difference_percent), "%", "flywheel-limit/разность", digits=2)
     found.fields |= {"above": fw.difference_percent >= 0, "close": abs(fw.difference_percent) < CLOSE}
     work = fw.work_plan
@@ -164,9 +169,10 @@ def _results(r: Reader, found: Scope) -> None:
             (words(r.language)["flywheel"]["difference"],),
         ),
         (
-            (*r.head("J_{м}", "kg*m2"),),
-            (r.number(fw.J_flywheel, "", "flywheel-inertia/J_м"),),
-            (r.number(fw.J_flywheel_converged, "", "flywheel-limit/J_м∞"),),
+            *(((*r.head("δ", ""),), (r.number(fw.unevenness, "", "flywheel-delta/δ"),),
+               (r.number(float(fw.limit_plan["δ∞"].value), "", "flywheel-limit/δ∞"),)) if fw.given else
+              ((*r.head("J_{м}", "kg*m2"),), (r.number(fw.J_flywheel, "", "flywheel-inertia/J_м"),),
+               (r.number(fw.J_flywheel_converged, "", "flywheel-limit/J_м∞"),))),
             (r.number(fw.difference_percent, "", "flywheel-limit/разность", digits=2),),
         ),
     )
