@@ -52,6 +52,14 @@ class Pictures:
                     if of.startswith("velocity plan "):
                         self._views.setdefault("velocity plans", []).append((n, marks, True))
 
+    def position(self, view: str, label: str, own: bool = False) -> Figure | None:
+        """The view of that kind at a position, also where the plan has several labels: velocity plan 1, 9."""
+        for name in self._views:
+            head, _, labels = name.partition(f"{view} ")
+            if not head and label in labels.split(", "):
+                return self.figure(name, own=own)
+        return None
+
     def sheet_of(self, name: str) -> int | None:
         """Number of the sheet that shows a view; None when none does."""
         found = self._drawn.get(name) or self._views.get(name)
@@ -71,14 +79,14 @@ class Pictures:
         drawing = self.sheets[n].drawing
         marks = [drawing.marks[k] for view in main if view[0] == n for k in view[1]]
         if own:
-            position = name.rpartition(" ")[2]
-            marks = [m for m in marks if m.of == name or (m.by is not None and m.by.position == position and m.by.role == "text")]
+            labels = name.split(" ", 2)[-1]
+            own_labels = {labels, *labels.split(", ")}
+            marks = [m for m in marks if m.of == name or (m.by is not None and m.by.position in own_labels and m.by.role == "text")]
         box = extent(marks)
         if scale(box)[0] * LETTERS < READABLE and focus:
             chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, focus)]
             if chosen:
-                box = extent(chosen)
-                box = _cut(box)
+                box = _cut(_about(extent(chosen), box))
                 marks = [m for m in marks if _touches(m, box)]
         return _figure(name, marks, box)
 
@@ -163,6 +171,16 @@ def scale(box: Box) -> tuple[float, bool]:
 def _figure(name: str, marks: Sequence[Mark], box: Box) -> Figure:
     factor, turned = scale(box)
     return Figure("", "", name, svg.picture(marks, box), box.width * factor, box.height * factor, turned)
+
+
+AROUND = 8.0
+"""What is left round that which is to be seen of a larger picture, mm on the sheet."""
+
+
+def _about(box: Box, whole: Box) -> Box:
+    """A rectangle with some room around it, within the whole picture."""
+    low = max(box.x0 - AROUND, whole.x0), max(box.y0 - AROUND, whole.y0)
+    return Box(*low, min(box.x1 + AROUND, whole.x1), min(box.y1 + AROUND, whole.y1))
 
 
 def _cut(box: Box) -> Box:
