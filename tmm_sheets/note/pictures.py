@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets.backends import svg
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import letters
-from tmm_sheets.drawing.marks import Fill, Line, Mark, Text, flat
+from tmm_sheets.drawing.marks import Fill, Line, Mark, Polyline, Text, flat
 from tmm_sheets.note.document import Figure, Sheet
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ USUAL = 0.715
 SMALL = 70.0
 """Size up to which a small picture is not reduced, mm."""
 MARGIN = 0.6
+TITLE, UNDER = 5.0, 25.0
+"""Least height of the lettering of titles, and how far under one its picture may begin, mm on the sheet: no cut goes there."""
 
 
 class Pictures:
@@ -206,18 +208,24 @@ def _middle(m: Mark) -> complex:
     return complex((p.real.min() + p.real.max()) / 2, (p.imag.min() + p.imag.max()) / 2)
 
 
+CURVE = 10
+"""A cut through a curve is as bad as through so many lines."""
+
+
 def _gaps(marks: Sequence[Mark], box: Box, count: int) -> list[float]:
-    """Heights at which a tall view is best cut: near the equal parts, where the fewest marks are crossed."""
+    """Heights at which a tall view is best cut: near the equal parts, where the fewest marks are crossed, not below a title."""
+    titles = [(m.at.imag - UNDER, m.at.imag + m.height) for m in marks if isinstance(m, Text) and m.height >= TITLE]
     spans = []
     for m in marks:
         if isinstance(m, Line) and abs(m.a.real - m.b.real) < 1e-6 and abs(m.a.imag - m.b.imag) > 0.5 * box.height:
             continue  # an axis or a line of projection through all of it
         p = flat(m, 3.0)
         top = m.at.imag + m.height if isinstance(m, Text) else float(p.imag.max())
-        spans.append((float(p.imag.min()), top))
+        spans += [(float(p.imag.min()), top)] * (CURVE if isinstance(m, Polyline) else 1)
     cuts = [box.y0]
     for i in range(1, count):
         ideal = box.y0 + box.height * i / count
-        tries = [ideal + d for d in range(-40, 41)]
-        cuts.append(min(tries, key=lambda y: (sum(a < y < b for a, b in spans), abs(y - ideal))))
+        tries = [ideal + d for d in range(-75, 76)]
+        cuts.append(min(tries, key=lambda y: (
+            sum(a < y < b for a, b in spans) + len(spans) * any(a < y < b for a, b in titles), abs(y - ideal))))  # fmt: skip
     return [*cuts, box.y1 + 1]

@@ -23,7 +23,7 @@ TALL = 300.0
 
 
 ENGAGED = ("gear-involute-1", "gear-involute-2", "gear-tooth-1", "gear-tooth-2", *(
-    f"gear-engagement/{name}" for name in ("a1", "b1", "a2", "b2", "alpha_w", "phi1", "phi2", "N1", "N2", "B")))  # fmt: skip
+    f"gear-engagement/{name}" for name in ("a1", "b1", "a2", "b2", "alpha_w", "N1", "N2", "B")))  # fmt: skip
 """What is to be seen where the picture of the engagement is too large to be read as a whole: the teeth that touch."""
 
 
