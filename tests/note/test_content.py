@@ -10,6 +10,7 @@ import pytest
 
 from tests.note.opened import composed, opened
 from tmm_sheets import results, words
+from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.note import composing, phrases
 from tmm_sheets.note.document import Contents, Figure, Formula, Heading, Number, Paragraph, Reference, Sheet, Table, Where, numbers
 from tmm_sheets.note.formula import Letters, Words
@@ -130,6 +131,14 @@ def test_nothing_is_empty_or_unfilled(note):
         assert not (isinstance(b, Heading) and isinstance(after, Heading) and b.level == after.level), b.text
 
 
+def test_figures_show_more_than_their_titles(note):
+    """Lines of a thickness that no lettering has."""
+    for b in note.blocks():
+        if isinstance(b, Figure):
+            widths = {float(w) for w in re.findall(rb'<g stroke-width="([\d.]+)"', b.svg)}
+            assert widths & {1000 * of.width for of in line_types().values()}, b.title
+
+
 def test_lettering_of_figures_can_be_read(note):
     """Their lettering of 3.5 mm comes out 2 mm high at least."""
     for b in note.blocks():
@@ -207,6 +216,7 @@ def test_what_a_project_lacks_is_left_out_and_the_rest_renumbered(name, sections
     assert [(n, t) for n, t in headings(made) if n] == [(str(i), t) for i, t in enumerate(sections, 1)]
     assert not made.problems
     test_nothing_is_empty_or_unfilled(made)
+    test_figures_show_more_than_their_titles(made)
     test_every_reference_leads_somewhere(made)
     test_every_figure_and_table_is_spoken_of(made)
     test_formulas_hold_no_name_of_the_program(made)
@@ -318,6 +328,7 @@ def test_a_note_in_another_language(language, name, foreign):
     assert not [text for text in said if re.search(foreign, text)]
     assert not made.problems
     test_nothing_is_empty_or_unfilled(made)
+    test_figures_show_more_than_their_titles(made)
     test_every_reference_leads_somewhere(made)
     test_every_figure_and_table_is_spoken_of(made)
 

@@ -15,7 +15,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.note import composing
 from tmm_sheets.note import note as writing
-from tmm_sheets.note.document import Contents
+from tmm_sheets.note.document import Contents, Heading, Sheet
 from tmm_sheets.project import Project
 from tmm_sheets.task import variant
 
@@ -56,6 +56,8 @@ def test_shaper_is_as_long_as_the_manuals_want(project, note):
 
     data, places = typst_writer.render(note)
     assert 30 <= places["pages"] <= 45
+    # Each has its page in the contents, of Word's file too: also the remarks on the manual, which have no number.
+    assert len(places["headings"]) == sum(isinstance(b, Heading | Sheet) for b in note.blocks())
     assert data.startswith(b"%PDF")
 
 

@@ -241,7 +241,7 @@ def _task(r: Reader) -> Scope:
     rows += [*_data(r), *_places(r)]
     figures = {}
     if r.project.variant.crank is not None and r.project.variant.cycle is not None:
-        figure = r.pictures.figure(f"position plan {r.label}", own=True)
+        figure = r.pictures.position("position plan", r.label, own=True)
         if figure is not None:
             figures["scheme"] = figure
     titles = [{"sheet": str(n), "title": c.drawing.title.split(". ", 1)[-1]} for n, c in r.pictures.sheets.items()]

@@ -463,7 +463,7 @@ class _Writer:
         run = p.add_run(b.title)
         run.font.bold, run.font.size = True, self.pt(15)
         pages = self.places["headings"]
-        for i, ((level, text, mark), page) in enumerate(zip(self.headings, pages, strict=False)):
+        for i, ((level, text, mark), page) in enumerate(zip(self.headings, pages, strict=True)):
             p = self.made.add_paragraph()
             p.paragraph_format.left_indent = self.mm(6 * (level - 1))
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(174), WD_TAB_ALIGNMENT.RIGHT, WD_TAB_LEADER.DOTS)

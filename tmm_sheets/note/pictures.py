@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets.backends import svg
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import letters
-from tmm_sheets.drawing.marks import Fill, Line, Mark, Text, flat
+from tmm_sheets.drawing.marks import Fill, Line, Mark, Polyline, Text, flat
 from tmm_sheets.note.document import Figure, Sheet
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ USUAL = 0.715
 SMALL = 70.0
 """Size up to which a small picture is not reduced, mm."""
 MARGIN = 0.6
+TITLE, UNDER = 5.0, 25.0
+"""Least height of the lettering of titles, and how far under one its picture may begin, mm on the sheet: no cut goes there."""
 
 
 class Pictures:
@@ -52,6 +54,14 @@ class Pictures:
                     if of.startswith("velocity plan "):
                         self._views.setdefault("velocity plans", []).append((n, marks, True))
 
+    def position(self, view: str, label: str, own: bool = False) -> Figure | None:
+        """The view of that kind at a position, also where the plan has several labels: velocity plan 1, 9."""
+        for name in self._views:
+            head, _, labels = name.partition(f"{view} ")
+            if not head and label in labels.split(", "):
+                return self.figure(name, own=own)
+        return None
+
     def sheet_of(self, name: str) -> int | None:
         """Number of the sheet that shows a view; None when none does."""
         found = self._drawn.get(name) or self._views.get(name)
@@ -71,14 +81,14 @@ class Pictures:
         drawing = self.sheets[n].drawing
         marks = [drawing.marks[k] for view in main if view[0] == n for k in view[1]]
         if own:
-            position = name.rpartition(" ")[2]
-            marks = [m for m in marks if m.of == name or (m.by is not None and m.by.position == position and m.by.role == "text")]
+            labels = name.split(" ", 2)[-1]
+            own_labels = {labels, *labels.split(", ")}
+            marks = [m for m in marks if m.of == name or (m.by is not None and m.by.position in own_labels and m.by.role == "text")]
         box = extent(marks)
         if scale(box)[0] * LETTERS < READABLE and focus:
             chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, focus)]
             if chosen:
-                box = extent(chosen)
-                box = _cut(box)
+                box = _cut(_about(extent(chosen), box))
                 marks = [m for m in marks if _touches(m, box)]
         return _figure(name, marks, box)
 
@@ -165,6 +175,16 @@ def _figure(name: str, marks: Sequence[Mark], box: Box) -> Figure:
     return Figure("", "", name, svg.picture(marks, box), box.width * factor, box.height * factor, turned)
 
 
+AROUND = 8.0
+"""What is left round that which is to be seen of a larger picture, mm on the sheet."""
+
+
+def _about(box: Box, whole: Box) -> Box:
+    """A rectangle with some room around it, within the whole picture."""
+    low = max(box.x0 - AROUND, whole.x0), max(box.y0 - AROUND, whole.y0)
+    return Box(*low, min(box.x1 + AROUND, whole.x1), min(box.y1 + AROUND, whole.y1))
+
+
 def _cut(box: Box) -> Box:
     """The box itself, or its middle where even that is too large."""
     width, height = WIDTH / READABLE * LETTERS, HEIGHT / READABLE * LETTERS
@@ -188,18 +208,24 @@ def _middle(m: Mark) -> complex:
     return complex((p.real.min() + p.real.max()) / 2, (p.imag.min() + p.imag.max()) / 2)
 
 
+CURVE = 10
+"""A cut through a curve is as bad as through so many lines."""
+
+
 def _gaps(marks: Sequence[Mark], box: Box, count: int) -> list[float]:
-    """Heights at which a tall view is best cut: near the equal parts, where the fewest marks are crossed."""
+    """Heights at which a tall view is best cut: near the equal parts, where the fewest marks are crossed, not below a title."""
+    titles = [(m.at.imag - UNDER, m.at.imag + m.height) for m in marks if isinstance(m, Text) and m.height >= TITLE]
     spans = []
     for m in marks:
         if isinstance(m, Line) and abs(m.a.real - m.b.real) < 1e-6 and abs(m.a.imag - m.b.imag) > 0.5 * box.height:
             continue  # an axis or a line of projection through all of it
         p = flat(m, 3.0)
         top = m.at.imag + m.height if isinstance(m, Text) else float(p.imag.max())
-        spans.append((float(p.imag.min()), top))
+        spans += [(float(p.imag.min()), top)] * (CURVE if isinstance(m, Polyline) else 1)
     cuts = [box.y0]
     for i in range(1, count):
         ideal = box.y0 + box.height * i / count
-        tries = [ideal + d for d in range(-40, 41)]
-        cuts.append(min(tries, key=lambda y: (sum(a < y < b for a, b in spans), abs(y - ideal))))
+        tries = [ideal + d for d in range(-75, 76)]
+        cuts.append(min(tries, key=lambda y: (
+            sum(a < y < b for a, b in spans) + len(spans) * any(a < y < b for a, b in titles), abs(y - ideal))))  # fmt: skip
     return [*cuts, box.y1 + 1]

@@ -141,7 +141,7 @@ class _Writer:
     def _heading(self, b: Heading) -> str:
         text = f"{b.number}  {b.text}" if b.number else b.text
         self.headings += 1
-        return f"#title({b.level}, {string(text)}, toc: {'true' if b.number or b.level == 1 else 'false'})"
+        return f"#title({b.level}, {string(text)})"
 
     def _paragraph(self, b: Paragraph) -> str:
         function = {"plain": "para", "item": "item", "centre": "middle", "right": "aside"}[b.look]

@@ -22,6 +22,11 @@ TALL = 300.0
 """Height of the graphs of sliding that a page takes, mm of the sheet: they go to infinity below."""
 
 
+ENGAGED = ("gear-involute-1", "gear-involute-2", "gear-tooth-1", "gear-tooth-2", *(
+    f"gear-engagement/{name}" for name in ("a1", "b1", "a2", "b2", "alpha_w", "N1", "N2", "B")))  # fmt: skip
+"""What is to be seen where the picture of the engagement is too large to be read as a whole: the teeth that touch."""
+
+
 def scope(r: Reader) -> Scope:
     """Formulas by their steps' names, the table of both wheels, overlap three ways."""
     pair = r.project.gear
@@ -76,7 +81,7 @@ def scope(r: Reader) -> Scope:
         found.fields["mu"] = scale_text(scale)
     found.fields["in_scale"] = (words(r.language)["phrases"]["in_scale"], *scale_text(scale)) if scale is not None else ""
     for name, picture, focus in (
-        ("engagement", "gear.engagement", ("gear-involute-1", "gear-involute-2", "gear-engagement/N1N2")),
+        ("engagement", "gear.engagement", ENGAGED),
         ("mesh", "gear.mesh", ()),
         ("rack", "rack.generating", ()),
     ):

@@ -64,12 +64,12 @@ def scope(r: Reader) -> Scope:
     found.tables["accelerations"] = _over_positions(r, a.plan, a.epsilon, "acceleration")
     for name, picture in (
         ("positions", "kinematics.position_plans"),
-        ("velocity", f"velocity plan {r.label}"),
+        ("velocity", "velocity plan"),
         ("acceleration", "kinematics.acceleration_plan"),
     ):
-        figure = r.pictures.figure(picture)
-        if figure is None and name == "velocity":
-            figure = r.pictures.figure("kinematics.velocity_plans")
+        figure = r.pictures.figure(picture) if name != "velocity" else (
+            r.pictures.position(picture, r.label) or r.pictures.figure("kinematics.velocity_plans")
+        )  # fmt: skip
         if figure is not None:
             found.figures[name] = figure
         n = r.pictures.sheet_of(picture)
