@@ -34,6 +34,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     clear,
     couples_of,
     crank_scheme,
+    hinge_of,
     lever_scheme,
     on_crank,
     on_lever,
@@ -171,11 +172,17 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
 
 
 def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) -> None:
-    """Couples of the links round their centres of mass, or their first points."""
+    """Couples of the links round their centres of mass, or their first points; moments of friction round their hinges."""
+    round_hinge: dict[str, int] = {}
     for shape in drawn:
         centre = project.mechanism.links[shape.link].centre or shape.block or shape.bar[0]
         for n, c in couples_of(project, shape.link):
-            _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
+            hinge = hinge_of(project, c)
+            if hinge is None:
+                _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
+            else:
+                round_hinge[hinge] = round_hinge.get(hinge, -1) + 1
+                _turning(s, s.at(hinge), 6.0 + 4.0 * round_hinge[hinge], 1 - 1j, c)
 
 
 def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
@@ -347,7 +354,11 @@ def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: comp
     k, forces = project.force_index, project.study.forces
     said = []
     for n, couple in couples_of(project, project.mechanism.crank.link):
-        _turning(s, at, 34.0 + 10.0 * n, away, couple)
+        hinge = hinge_of(project, couple)
+        if hinge is None:
+            _turning(s, at, 34.0 + 10.0 * n, away, couple)
+        else:
+            _turning(s, s.at(hinge), 6.0, -away if s.at(hinge) == at else away, couple)
         said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
     if said and project.driver is None and forces.balancing is not None:
         moment = number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))
