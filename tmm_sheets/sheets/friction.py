@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 ARROW = 24.0
 """Length of a reaction's arrow, mm."""
-JOURNAL = 0.24
-"""Greatest radius of a journal in parts of an enlarged pair's place: the arrow of the reaction and the words lie outside."""
+OUTSIDE, WORDS, LEAST = 22.0, 30.0, 8.0
+"""Room round a journal for its arrows and signs, height of the words above and below, least radius of the largest journal, mm."""
 
 
 def _friction(project: Project) -> Friction:
@@ -107,7 +107,8 @@ def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     rows = ceil(len(shown) / columns)
     width, height = box.width / columns, (box.height - 18.0) / rows
     radii = [float(radius.args[1]) for radius in of.radii.values()]
-    scale = standard((max(radii, default=0.02), JOURNAL * min(width, height)))
+    room = max(min(width, height - WORDS) / 2 - OUTSIDE, LEAST)
+    scale = standard((max(radii, default=0.02), room))
     left = canvas.title(box, tr("Pairs with friction"), ratio(scale) if radii else "")
     height = left.height / rows
     for n, (index, step, force) in enumerate(shown):
@@ -225,10 +226,6 @@ def _balance(project: Project, of: Friction, k: int) -> list[str]:
                  power=number(loss, 5), moment=number(abs(float(of.on_crank.at(k))), 4))]
     if study.driver is None:
         drive = float(study.balance["M"].at(k)) * crank.speed
-        if drive > loss > 0:
-            lines.append(tr("Power of the drive N = {drive} W; without friction {free} W; η = {eta}").format(
-                drive=number(drive, 5), free=number(drive - loss, 5), eta=fixed(1 - loss / drive, 3)))
-        else:
-            lines.append(tr("Power of the drive N = {drive} W; without friction {free} W").format(
-                drive=number(drive, 5), free=number(drive - loss, 5)))
+        lines.append(tr("Power of the drive N = {drive} W; without friction {free} W").format(
+            drive=number(drive, 5), free=number(drive - loss, 5)))
     return lines
