@@ -18,7 +18,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets import linkage
+from tmm_sheets.sheets import graphs, kinetics, linkage
 from tmm_sheets.sheets.frame import Frame, fit_frame, ratio, standard
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr
@@ -229,3 +229,23 @@ def _balance(project: Project, of: Friction, k: int) -> list[str]:
         lines.append(tr("Power of the drive N = {drive} W; without friction {free} W").format(
             drive=number(drive, 5), free=number(drive - loss, 5)))
     return lines
+
+
+def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Sizes of the reactions with friction in all positions, what drives the crank, and the power of friction."""
+    of, study = _friction(project), project.study
+    n, forces = len(study.labels), study.forces
+    assert forces.balancing is not None
+    drive, sign = np.abs(np.broadcast_to(forces.balancing.value, (n,))), kinetics.balancing_sign(project)
+    columns = [(tr("F_{{{index}}}, N").format(index=index), np.abs(np.broadcast_to(forces.reactions[f"F{index}"].value, (n,))))
+               for index in of.pairs]
+    columns.append((f"|{sign}|, {tr('N·m') if study.driver is None else tr('N')}", drive))
+    columns.append((tr("N_f, W"), np.broadcast_to(of.total.value, (n,))))
+    rows = [[tr("No."), *(name for name, _ in columns)]]
+    cells = [graphs.column(values, 4) for _, values in columns]
+    rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(study.labels)]
+    left = canvas.title(box, tr("Reactions with friction in all positions"))
+    row = min(left.height / len(rows), 7.0)
+    height = size_in(row)
+    widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
+    canvas.table(complex(box.x0, left.y1), widths, rows, row, height)

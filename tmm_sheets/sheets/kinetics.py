@@ -344,7 +344,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     symbols.rotation_arrow(s.pen(study.velocities.omega[c.link], "symbol"), s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
-        _turning(s, s.at(centre), 24.0, away, Couple(_balancing(project), 0j, float(moment.at(k)), moment))
+        _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
     _crank_couples(project, s, left, s.at(centre), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
 
@@ -362,7 +362,7 @@ def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: comp
         said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
     if said and project.driver is None and forces.balancing is not None:
         moment = number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))
-        said.append(tr("{quantity} = {value} N·m").format(quantity=_balancing(project), value=moment))
+        said.append(tr("{quantity} = {value} N·m").format(quantity=balancing_sign(project), value=moment))
     if said:
         _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
 
@@ -408,7 +408,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     forces: Kinetostatics = study.forces
     assert forces.balancing is not None
     assert study.lever.balancing is not None
-    force, sign = project.driver is not None, _balancing(project)
+    force, sign = project.driver is not None, balancing_sign(project)
     kind = forces.force_size(k) if force else forces.moment_size(k)
     kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing)) if force else \
         (clean(float(study.balance[name].at(k)), kind) for name in ("M", "M_р"))
@@ -422,7 +422,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     canvas.table(complex(box.x0, box.y1), widened([box.width * 0.66, box.width * 0.34], rows, 3.5), rows, row, 3.5)
 
 
-def _balancing(project: Project) -> str:
+def balancing_sign(project: Project) -> str:
     """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" is what one without has."""
     return linkage.indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
 
