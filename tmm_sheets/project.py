@@ -313,6 +313,8 @@ class Project:
                     _ = self.study, self.force_index, self.diagrams
                 elif part == "forces" and "positions" not in refused:
                     _ = self.applied
+                    if self.friction is not None:
+                        _ = self.study.forces  # it may jam
                 elif part == "cam":
                     self.cam.check()
                 elif part in ("gear", "reducer"):

@@ -34,7 +34,7 @@ class View:
 
 NEEDS = {
     "kinematics": "positions", "false_positions": "positions", "diagrams": "positions", "given_position": "positions",
-    "load_diagram": "positions", "synthesis": "positions", "kinetics": "forces", "moments": "forces",
+    "load_diagram": "positions", "synthesis": "positions", "kinetics": "forces", "moments": "forces", "friction": "forces",
     "details": "forces",
     "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
     "flywheel": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear", "reducer": "reducer",

@@ -203,6 +203,12 @@ def couples_of(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
             yield n, Couple(symbol(step.symbol or step.name).replace(BAR, ""), 0j, value, step)
 
 
+def hinge_of(project: Project, couple: Couple) -> str | None:
+    """Hinge that a moment of friction acts in; None for another couple."""
+    friction = project.study.forces.friction
+    return None if friction is None else friction.hinges.get(couple.step.name)
+
+
 def arrows(shown: Iterable[Shown]) -> list[tuple[Shown, complex]]:
     """Arrow of each force in mm; forces along one ray from one point get different lengths."""
     forces = sorted(shown, key=lambda s: abs(s.vector))

@@ -34,6 +34,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     clear,
     couples_of,
     crank_scheme,
+    hinge_of,
     lever_scheme,
     on_crank,
     on_lever,
@@ -171,11 +172,17 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
 
 
 def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) -> None:
-    """Couples of the links round their centres of mass, or their first points."""
+    """Couples of the links round their centres of mass, or their first points; moments of friction round their hinges."""
+    round_hinge: dict[str, int] = {}
     for shape in drawn:
         centre = project.mechanism.links[shape.link].centre or shape.block or shape.bar[0]
         for n, c in couples_of(project, shape.link):
-            _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
+            hinge = hinge_of(project, c)
+            if hinge is None:
+                _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
+            else:
+                round_hinge[hinge] = round_hinge.get(hinge, -1) + 1
+                _turning(s, s.at(hinge), 6.0 + 4.0 * round_hinge[hinge], 1 - 1j, c)
 
 
 def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
@@ -337,7 +344,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     symbols.rotation_arrow(s.pen(study.velocities.omega[c.link], "symbol"), s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
-        _turning(s, s.at(centre), 24.0, away, Couple(_balancing(project), 0j, float(moment.at(k)), moment))
+        _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
     _crank_couples(project, s, left, s.at(centre), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
 
@@ -347,11 +354,15 @@ def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: comp
     k, forces = project.force_index, project.study.forces
     said = []
     for n, couple in couples_of(project, project.mechanism.crank.link):
-        _turning(s, at, 34.0 + 10.0 * n, away, couple)
+        hinge = hinge_of(project, couple)
+        if hinge is None:
+            _turning(s, at, 34.0 + 10.0 * n, away, couple)
+        else:
+            _turning(s, s.at(hinge), 6.0, -away if s.at(hinge) == at else away, couple)
         said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
     if said and project.driver is None and forces.balancing is not None:
         moment = number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))
-        said.append(tr("{quantity} = {value} N·m").format(quantity=_balancing(project), value=moment))
+        said.append(tr("{quantity} = {value} N·m").format(quantity=balancing_sign(project), value=moment))
     if said:
         _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
 
@@ -397,7 +408,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     forces: Kinetostatics = study.forces
     assert forces.balancing is not None
     assert study.lever.balancing is not None
-    force, sign = project.driver is not None, _balancing(project)
+    force, sign = project.driver is not None, balancing_sign(project)
     kind = forces.force_size(k) if force else forces.moment_size(k)
     kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing)) if force else \
         (clean(float(study.balance[name].at(k)), kind) for name in ("M", "M_р"))
@@ -411,7 +422,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     canvas.table(complex(box.x0, box.y1), widened([box.width * 0.66, box.width * 0.34], rows, 3.5), rows, row, 3.5)
 
 
-def _balancing(project: Project) -> str:
+def balancing_sign(project: Project) -> str:
     """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" is what one without has."""
     return linkage.indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
 

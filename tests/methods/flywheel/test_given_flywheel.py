@@ -55,7 +55,7 @@ def truth():
     return closed()
 
 
-@pytest.mark.parametrize("inertia", [40.0, 3.0, 1.6])
+@pytest.mark.parametrize("inertia", [40.0, 1.6])
 def test_delta_of_a_given_flywheel(truth, inertia):
     """From an even running to one that nearly stops."""
     f = pump(inertia=f"{inertia} kg m2").flywheel
@@ -81,8 +81,8 @@ def test_the_way_back_is_the_way_there():
         assert drawn.unevenness == pytest.approx(0.04, rel=1e-9)
         assert float(limit.limit_plan["δ∞"].value) == pytest.approx(0.04, rel=1e-11)
         assert drawn.wheel is None
-        sized = pump(method=method, inertia=f"{there.J_flywheel!r} kg m2", **sizes).flywheel
-        assert sized.wheel.diameter == pytest.approx(there.wheel.diameter, rel=1e-12)
+    sized = pump(method=method, inertia=f"{there.J_flywheel!r} kg m2", **sizes).flywheel
+    assert sized.wheel.diameter == pytest.approx(there.wheel.diameter, rel=1e-12)
 
 
 def test_delta_by_mertsalov(truth):
@@ -108,6 +108,15 @@ def test_a_rotor_turns_with_a_given_flywheel(truth):
 def test_too_light_a_flywheel(method):
     with pytest.raises(CannotBuild, match="the crank would stop"):
         _ = pump(method=method, inertia="0.2 kg m2").flywheel.results()
+
+
+@pytest.mark.parametrize("method", ["wittenbauer", "mertsalov"])
+def test_an_even_running(method):
+    """A constant moment on a crank that alone has inertia: nothing varies, and there is nothing to draw."""
+    even = {"moment": [{"name": "M1", "link": "1", "direction": "clockwise", "value": "50 N m"}],
+            "link": [{"name": "1", "inertia": "0.5 kg m2"}]}
+    with pytest.raises(CannotBuild, match="runs evenly"):
+        _ = pump({"force": None, "link": None}, even, method=method).flywheel.results()
 
 
 def test_limits_of_the_search():
@@ -138,7 +147,7 @@ def test_three_turns_and_power(truth):
     named = pump({"cycle": {"zero": "6"}}).flywheel
     assert len(set(named.labels[:-1])) == 18
     assert named.labels[0] == named.labels[-1] or named.labels[-1] not in named.labels[:-1]
-    assert named.unevenness == pytest.approx(f.unevenness, rel=1e-12)
+    assert len(set(named.borders)) == len(named.edges)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03])

@@ -208,6 +208,8 @@ INERTIA_AT = taken("reduced moment of inertia at the positions", "kg*m2",
                    marked("Reduced moment of inertia {name} = {value} kg·m²."))
 SLOPE_AT = taken("slope of the moment of inertia at the positions", "kg*m2", marked("Derivative {name} = {value} kg·m²."))
 ORDINATE_AT = taken("ordinate of an interval", "mm", marked("Ordinate {name} = {value} mm."))
+EVEN = 1e-12
+"""A change of energy that is none, in parts of the work."""
 JUMP = 1e-6
 """Ordinates of a graph on both sides of a border that differ by more, mm, are those of a jump."""
 BULGE = Rule("bulge of a curve", lambda y, a, b, share: y - ((1 - share) * a + share * b), ("number",) * 4, "number",
@@ -417,6 +419,9 @@ class Flywheel(ABC):
         mass = self.inertia(self.samples)
         # The zero level belongs to the diagram as well.
         energies = [*excess[[excess.argmax(), excess.argmin()]], *self._energies(excess, mass), 0.0]
+        if not max(np.ptp(excess), np.ptp(mass) * reduced.omega1**2 / 2) > EVEN * np.ptp(done):
+            raise CannotBuild(tell("the machine runs evenly: in every position the moments balance each other, and no link gains "
+                                   "or loses energy"), tell("leave [flywheel] and its sheet out"))
         mu_phi = handy(reduced.period / space.angle)
         largest = _largest(reduced.forces_at(self.samples))
         # A crank that alone has inertia leaves nothing for the others: its own is the scale then.

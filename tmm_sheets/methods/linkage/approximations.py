@@ -11,7 +11,7 @@ from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN_NUMBER
-from tmm_sheets.construction.step import Rule
+from tmm_sheets.construction.step import Helper, Rule
 from tmm_sheets.construction.tally import Tally
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.forces import Kinetostatics
@@ -20,6 +20,26 @@ from tmm_sheets.methods.linkage.sliding import Sliding
 from tmm_sheets.methods.linkage.velocities import Velocities
 from tmm_sheets.words import marked, tell, tr
 
+REACH = 6.0
+"""Line of action of a reaction that touches a circle of friction, in radii of the circle."""
+
+
+def _touch(centre: Any, force: Any, moment: Any, radius: Any) -> Any:
+    return centre - 1j * force * moment / np.abs(force) ** 2
+
+
+def _touch_lines(args: Any, value: Any) -> tuple[Helper, ...]:
+    centre, force, _, radius = args
+    circle = Helper("circle", centre, radius=radius)
+    if not abs(force) > 0:
+        return (circle,)
+    return circle, Helper("line", centre, value), Helper("line", value, value - REACH * radius * force / abs(force))
+
+
+TOUCH = Rule("reaction that touches the circle of friction", _touch, ("point", "force", "number", "length"), "point",
+             marked("About {0} draw the circle of friction with the radius {3}; the line of the reaction {1} touches it at "
+                    "{name}."),
+             _touch_lines, unit="m")
 POWER_OF_MOMENT = Rule("power of a moment of friction", lambda m, w: m * w, ("number", "number"), "number",
                        marked("Power of friction {name} = M·ω = {0}·{1} = {value} W."), unit="W")
 POWER_OF_SLIDING = Rule("power of a reaction on sliding", lambda f, v: (f * np.conj(v)).real, ("force", "vector"), "number",
@@ -112,11 +132,15 @@ def with_friction(given: Coefficients, vel: Velocities, sliding: Sliding, static
 
 
 def _powers(of: Friction, vel: Velocities, found: Kinetostatics) -> None:
-    """Record the power of friction in each pair, in all, and as a moment on the crank."""
+    """Record where the reactions touch, the power of friction in each pair, in all, and as a moment on the crank."""
     crank, search = vel.positions.mechanism.crank, of.plan.search
-    plan = of.power_plan = Plan("friction-power", tr("Power of friction"), "", of.plan.labels, search=search)
+    plan = of.power_plan = Plan("friction-power", tr("Reactions and power of friction"), "m", of.plan.labels, search=search)
     plan.add("n", GIVEN_NUMBER, Given(float(of.approximations), "approximations", over="none", choice="until the reactions stay"))
-    for index in of.pairs:
+    for index, pair in of.pairs.items():
+        if index in of.moments:
+            hinge = pair.name.rstrip("′″")
+            of.touches[index] = plan.add(f"T{index}", TOUCH, vel.positions.points[hinge], found.reactions[f"F{index}"],
+                                         of.moments[index], of.radii[hinge], symbol=f"T_{{{index}}}")
         of.powers[index] = (plan.add(f"N{index}", POWER_OF_MOMENT, of.moments[index], of.turning[index]) if index in of.moments else
                             plan.add(f"N{index}", POWER_OF_SLIDING, found.reactions[f"F{index}"], of.sliding[index]))
     parts: list[Any] = list(of.powers.values()) or [Given(np.zeros(len(of.plan.labels)), "no friction", unit="W")]

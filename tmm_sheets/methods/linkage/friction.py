@@ -71,8 +71,8 @@ class Friction:
     """Friction in the pairs that have some, from reactions that are assumed: ``rows``.
 
     ``pairs`` by index ("21": on link 2 from 1); ``moments`` N m on the first link of a turning pair, ``couples`` by link, both
-    links of the pair; ``deviations`` of the normals of sliding pairs, rad, by both indices of a pair. ``power_plan`` is there when
-    the reactions were found.
+    links of the pair; ``deviations`` of the normals of sliding pairs, rad, by both indices of a pair. When the reactions were
+    found, ``touches`` (points where they touch the circles) and ``powers`` (W) of the ``power_plan``.
     """
 
     plan: Plan
@@ -85,6 +85,7 @@ class Friction:
     couples: dict[str, list[Step]] = field(default_factory=dict)
     deviations: dict[str, Step] = field(default_factory=dict)
     hinges: dict[str, str] = field(default_factory=dict)
+    touches: dict[str, Step] = field(default_factory=dict)
     powers: dict[str, Step] = field(default_factory=dict)
     power_plan: Plan | None = None
     approximations: int = 0
@@ -118,7 +119,7 @@ def order(m: Mechanism, pair: Pair) -> tuple[str, str]:
     if pair.motion == "translation":
         return ordered(m, pair)
     k, j = pair.links
-    return j, k
+    return (k, j) if j == m.frame else (j, k)
 
 
 def friction(given: Coefficients, vel: Velocities, sliding: Sliding, rows: Rows, search: Tally | None = None) -> Friction:
@@ -141,8 +142,9 @@ def friction(given: Coefficients, vel: Velocities, sliding: Sliding, rows: Rows,
                                 symbol=tr("Mf{index}").format(index=pair_index(k, j)))
             of.moments[index] = moment
             for link, couple in ((j, moment), (k, opposite)):
-                of.couples.setdefault(link, []).append(couple)
                 of.hinges[couple.name] = hinge
+                if link != m.frame:
+                    of.couples.setdefault(link, []).append(couple)
         elif pair.motion == "translation" and given.sliding:
             if of.angle is None:
                 of.angle = plan.add("φ", ANGLE, given.sliding)

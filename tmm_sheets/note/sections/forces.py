@@ -32,6 +32,8 @@ def scope(r: Reader) -> Scope:
             "count": len(m.groups),
             "crank": m.crank.link,
             "gear_force": study.driver is not None,
+            "friction": study.forces.friction is not None,
+            "approximations": "" if study.forces.friction is None else str(study.forces.friction.approximations),
             "balancing": Symbol(letters(letters_of(r.project.balancing))),
             "gravity": r.number(r.project.gravity, "m/s2", "forces.gravity"),
         }

@@ -1,0 +1,251 @@
+"""Views of the friction in the pairs: the mechanism with its reactions, each pair enlarged, and the table of all.
+
+A turning pair shows the journal, the circle of friction and the reaction that touches it, a sliding one the normal and the reaction
+that deviates from it by the angle of friction; both the motion of the one link on the other.
+"""
+
+from __future__ import annotations
+
+from math import ceil, degrees, sqrt
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.drawing import symbols
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import size_for
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import fixed, is_zero, number
+from tmm_sheets.sheets import graphs, kinetics, linkage
+from tmm_sheets.sheets.frame import Frame, fit_frame, ratio, standard
+from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.words import tell, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.methods.linkage.friction import Friction
+    from tmm_sheets.project import Project
+
+ARROW = 24.0
+"""Length of a reaction's arrow, mm."""
+OUTSIDE, WORDS, LEAST = 22.0, 30.0, 8.0
+"""Room round a journal for its arrows and signs, height of the words above and below, least radius of the largest journal, mm."""
+
+
+def _friction(project: Project) -> Friction:
+    found = project.study.forces.friction
+    if found is None:
+        raise CannotBuild(tell("the project has no [{name}]").format(name="friction"),
+                          tell("add the table [{name}] to the project file or leave its sheet out").format(name="friction"))
+    return found
+
+
+def _reactions(project: Project) -> list[tuple[str, Step, complex]]:
+    """Pairs with friction: index, step of the reaction on the first link, and the reaction, N."""
+    of, k, forces = _friction(project), project.force_index, project.study.forces
+    found = []
+    for index in of.pairs:
+        step = forces.reactions[f"F{index}"]
+        force = complex(step.at(k))
+        found.append((index, step, 0j if is_zero(abs(force), forces.force_size(k)) else force))
+    return found
+
+
+def _hinge(of: Friction, index: str) -> str:
+    return of.pairs[index].name.rstrip("′″")
+
+
+def _line(project: Project, index: str) -> Step:
+    """A point of the line of a reaction: where it touches the circle of friction, or the point of a sliding pair."""
+    of = _friction(project)
+    return of.touches.get(index) or project.study.positions.points[_hinge(of, index)]
+
+
+def mechanism(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The mechanism at the analysed position: circles of friction to scale, in each pair the reaction on its first link."""
+    of, k, pos = _friction(project), project.force_index, project.study.positions
+    shown = _reactions(project)
+    points = [complex(step.at(k)) for step in pos.points.values()]
+    ends = [complex(pos.points[_hinge(of, index)].at(k)) for index, *_ in shown]
+    reach = [1.3 * ARROW * force / abs(force) if force else 0j for *_, force in shown]
+    frame = fit_frame(project, canvas, "friction-scheme", "μ_l", tr("m/mm"), [*points, *points, *ends],
+                      [*[12 + 12j] * len(points), *[-12 - 14j] * len(points), *reach], box.inset(4.0, 4.0, 4.0, 20.0))
+    title = tr("Reactions with friction (position {label})").format(label=project.cycle.labels[k])
+    canvas.title(box, title, str(frame.scale))
+    s = stage(canvas, pos.plan, k, frame)
+    linkage.draw_guides(s, pos)
+    linkage.draw(s, pos, "main")
+    for name, step in pos.points.items():
+        if name in of.radii or name in pos.mechanism.fixed:
+            s.letters(step, linkage.indexed(name), gap=3.0)
+    for index, step, force in shown:
+        _reaction(project, s, step, index, force, ARROW)
+
+
+def _reaction(project: Project, s: Stage, step: Step, index: str, force: complex, length: float) -> None:
+    """Arrow of a reaction from the point of its line, the circle of friction that it touches."""
+    line = _line(project, index)
+    play(s, [line] if index in _friction(project).touches else (), "thin")
+    if not force:
+        return
+    at, u = s.at(line), force / abs(force)
+    s.pen(step, "vector").arrow(at, at + length * u, "vector")
+    s.pen(step, "text").label(at + (length - 4.0) * u, f"F̅_{{{index}}}", 1j * u, 3.5, 1.5)
+
+
+def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Every pair with friction enlarged, side by side and in rows."""
+    of, k = _friction(project), project.force_index
+    shown = _reactions(project)
+    if not shown:
+        left = canvas.title(box, tr("Friction in the pairs"))
+        canvas.text(left.centre, tr("No pair has friction"), 3.5, "centre")
+        return
+    columns = min(len(shown), max(round(sqrt(len(shown) * box.width / box.height)), 1))
+    rows = ceil(len(shown) / columns)
+    width, height = box.width / columns, (box.height - 18.0) / rows
+    radii = [float(radius.args[1]) for radius in of.radii.values()]
+    room = max(min(width, height - WORDS) / 2 - OUTSIDE, LEAST)
+    scale = standard((max(radii, default=0.02), room))
+    left = canvas.title(box, tr("Pairs with friction"), ratio(scale) if radii else "")
+    height = left.height / rows
+    for n, (index, step, force) in enumerate(shown):
+        x, y = left.x0 + n % columns * width, left.y1 - n // columns * height
+        place = Box(x, y - height, x + width, y)
+        at = complex(project.study.positions.points[_hinge(of, index)].at(k))
+        frame = Frame(scale, place.centre + 3.0j - scale.mm(at))
+        (_turning if index in of.moments else _sliding)(project, canvas, place, frame, index, step, force)
+        _said(canvas, place, _told(project, of, index, force, k))
+
+
+def _turning(project: Project, canvas: Canvas, box: Box, frame: Frame, index: str, step: Step, force: complex) -> None:
+    """A journal, its circle of friction, the reaction that touches it, the relative turning."""
+    of, k, pos = _friction(project), project.force_index, project.study.positions
+    hinge, turn = _hinge(of, index), of.turning[index]
+    s = stage(canvas, pos.plan, k, frame)
+    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(index, hinge), 3.5, "centre")
+    centre, journal = s.at(hinge), frame.scale.mm(float(of.radii[hinge].args[1]))
+    with canvas.as_role("symbol"):
+        canvas.circle(centre, journal, "main")
+        for u in (1, 1j):
+            canvas.line(centre - (journal + 4) * u, centre + (journal + 4) * u, "centre")
+    _reaction(project, s, step, index, force, journal + 14.0)
+    if not of.still(index, k):
+        symbols.rotation_arrow(s.pen(turn, "symbol"), centre, journal + 3.0, -force if force else 1 + 1j,
+                               float(np.real(turn.at(k))), f"ω_{{{index}}}")
+
+
+def _sliding(project: Project, canvas: Canvas, box: Box, frame: Frame, index: str, step: Step, force: complex) -> None:
+    """A block on its guide, the normal, the reaction that deviates from it, the velocity of sliding."""
+    of, k, pos = _friction(project), project.force_index, project.study.positions
+    hinge = _hinge(of, index)
+    s = stage(canvas, pos.plan, k, frame)
+    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(index, hinge), 3.5, "centre")
+    centre, v, turn = s.at(hinge), complex(of.sliding[index].at(k)), float(of.deviations[index].at(k))
+    normal = force * complex(np.exp(-1j * turn)) / abs(force) if force else 1j * v / abs(v) if v else 1j
+    along = -1j * normal
+    with canvas.as_role("symbol"):
+        for side in (4.0, -4.0):
+            a, b = (centre + x * along + side * normal for x in (-22.0, 22.0))
+            symbols.fixed_guide(canvas, a, b, 1 if side > 0 else -1)
+        symbols.block(canvas, centre, along, size=(16.0, 8.0))
+    _reaction(project, s, step, index, force, ARROW + 4.0)
+    if force:
+        s.pen(of.deviations[index], "axis").line(centre - 12.0 * normal, centre + (ARROW + 2.0) * normal, "axis")
+        if turn:
+            start, end = sorted((float(np.angle(normal)), float(np.angle(normal)) + turn))
+            s.pen(of.deviations[index], "dimension").angle_mark(centre, start, end, ARROW - 6.0, "φ")
+    if not of.still(index, k):
+        u = v / abs(v)
+        tail = centre - 9.0 * normal + 4.0 * u
+        pen = s.pen(of.sliding[index], "symbol")
+        pen.arrow(tail, tail + 16.0 * u, "vector")
+        pen.label(tail + 12.0 * u, f"V̅_{{{index}}}", -normal, 3.5, 1.5)
+
+
+def _name(index: str, hinge: str) -> str:
+    return tr("Pair {hinge}, reaction F_{{{index}}}").format(hinge=linkage.indexed(hinge), index=index)
+
+
+def _told(project: Project, of: Friction, index: str, force: complex, k: int) -> list[str]:
+    """Numbers of a pair beneath it."""
+    size = number(abs(force), 5, project.study.forces.force_size(k))
+    if of.still(index, k):
+        return [tr("F_{{{index}}} = {force} N").format(index=index, force=size), tr("its links do not move: no friction")]
+    if index in of.moments:
+        hinge = _hinge(of, index)
+        rho = 1e3 * float(of.radii[hinge].value)
+        return [tr("ρ_{{{hinge}}} = {rho} mm;  F_{{{index}}} = {force} N").format(
+                    hinge=hinge, rho=number(rho), index=index, force=size),
+                tr("M_{{f{index}}} = ρ·F = {moment} N·m").format(
+                    index=index, moment=number(abs(float(np.real(of.moments[index].at(k)))), 4))]
+    assert of.angle is not None
+    return [tr("φ = arctan f = {angle}°").format(angle=fixed(degrees(float(of.angle.value)), 2)),
+            tr("F_{{{index}}} = {force} N").format(index=index, force=size)]
+
+
+def _said(canvas: Canvas, box: Box, lines: list[str]) -> None:
+    height = size_for(lines, box.width - 4.0, 3.5)
+    canvas.lines(complex(box.centre.real, box.y0 + 3.0 + 6.0 * (len(lines) - 1)), lines, 6.0, height, "centre")
+
+
+def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """All pairs with friction: reaction, moment or deviation, relative velocity, power; their sum, and what the drive has."""
+    of, k, study = _friction(project), project.force_index, project.study
+    assert of.power_plan is not None
+    rows = [[tr("Pair"), tr("F, N"), tr("ρ, mm"), tr("M_f, N·m"), tr("ω, rad/s"), tr("φ, °"), tr("V, m/s"), tr("N_f, W")]]
+    for index in of.pairs:
+        hinge, force = _hinge(of, index), number(abs(complex(study.forces.reactions[f"F{index}"].at(k))), 5)
+        power = number(float(of.powers[index].at(k)), 4, float(abs(of.total.at(k))) or 1.0)
+        if index in of.moments:
+            moment, turn = (number(float(np.real(step.at(k))), 4) for step in (of.moments[index], of.turning[index]))
+            rho = number(1e3 * float(of.radii[hinge].value))
+            rows.append([f"{linkage.indexed(hinge)} ({index})", force, rho, moment, turn, "−", "−", power])
+        else:
+            rows.append([f"{linkage.indexed(hinge)}′ ({index})", force, "−", "−", "−",
+                         fixed(degrees(float(of.deviations[index].at(k))), 2),
+                         number(abs(complex(of.sliding[index].at(k))), 4), power])
+    left = canvas.title(box, tr("Friction in the pairs"))
+    said = _balance(project, of, k)
+    row = min((left.height - 7.0 * len(said)) / len(rows), 8.0)
+    height = size_in(row)
+    widths = widened([box.width / len(rows[0])] * len(rows[0]), rows, height)
+    place = canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
+    canvas.lines(complex(box.x0 + 2.0, place.y0 - 6.5), said, 7.0, size_for(said, box.width - 4.0, 3.5))
+
+
+def _balance(project: Project, of: Friction, k: int) -> list[str]:
+    """Number of approximations, power of friction, and what the drive gives: the part that friction takes of it."""
+    assert of.power_plan is not None
+    study, crank = project.study, project.mechanism.crank
+    loss = -float(of.total.at(k))
+    lines = [tr("Approximations until the reactions stay: {count}").format(count=int(of.approximations)),
+             tr("Power of friction N_f = {power} W; on the input link M_f = {moment} N·m").format(
+                 power=number(loss, 5), moment=number(abs(float(of.on_crank.at(k))), 4))]
+    if study.driver is None:
+        drive = float(study.balance["M"].at(k)) * crank.speed
+        lines.append(tr("Power of the drive N = {drive} W; without friction {free} W").format(
+            drive=number(drive, 5), free=number(drive - loss, 5)))
+    return lines
+
+
+def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Sizes of the reactions with friction in all positions, what drives the crank, and the power of friction."""
+    of, study = _friction(project), project.study
+    n, forces = len(study.labels), study.forces
+    assert forces.balancing is not None
+    drive, sign = np.abs(np.broadcast_to(forces.balancing.value, (n,))), kinetics.balancing_sign(project)
+    columns = [(tr("F_{{{index}}}, N").format(index=index), np.abs(np.broadcast_to(forces.reactions[f"F{index}"].value, (n,))))
+               for index in of.pairs]
+    columns.append((f"|{sign}|, {tr('N·m') if study.driver is None else tr('N')}", drive))
+    columns.append((tr("N_f, W"), np.broadcast_to(of.total.value, (n,))))
+    rows = [[tr("No."), *(name for name, _ in columns)]]
+    cells = [graphs.column(values, 4) for _, values in columns]
+    rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(study.labels)]
+    left = canvas.title(box, tr("Reactions with friction in all positions"))
+    row = min(left.height / len(rows), 7.0)
+    height = size_in(row)
+    widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
+    canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
