@@ -25,6 +25,8 @@ CELL = 2.0
 """Side of the cells in which room is looked for, mm."""
 TITLE = 3.0
 """Depth of the middle of a title under its upper edge, mm."""
+UNDER = 80.0
+"""What stands so near under a title belongs to it, and nothing else may stand between, mm."""
 REACH = 2.0
 """How far a label may stand off beyond its gap, mm."""
 APART = (12.0, 9.0, 6.0)
@@ -78,11 +80,13 @@ def _taken(canvas: Canvas, inside: Box, closed: Sequence[Box]) -> NDArray[np.int
     for marks, labels, titled in _parts(canvas):
         own = np.zeros(shape, bool)
         points = [*(dense(mark, CELL) for mark in marks), *map(_about, labels)]
-        for z in (*points, _over(points) if titled and points else np.empty(0)):
+        for z in points:
             i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
             there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
             own[i[there], j[there]] = True
         taken |= _between(own, 0) | _between(own, 1)
+        if titled and own.any():
+            taken |= _under_title(own)
     for box in closed:
         i0, i1 = (int((x - inside.x0) / CELL) for x in (box.x0, box.x1))
         j0, j1 = (int((y - inside.y0) / CELL) for y in (box.y0, box.y1))
@@ -98,10 +102,12 @@ def _parts(canvas: Canvas) -> Iterator[tuple[list[Mark], list[Label], bool]]:
             yield canvas.marks[first:end], [label for label in canvas.labels if label.part == k], bool(canvas.parts[k].title)
 
 
-def _over(points: Sequence[Points]) -> Points:
-    """Points along the title of a part, as wide as the part is: between a title and its picture nothing else may stand."""
-    z = np.concatenate(points)
-    return np.array([complex(x, z.imag.max() - TITLE) for x in (z.real.min(), z.real.max())])
+def _under_title(cells: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Cells between the title of a part, as if it were as wide as the part, and what is drawn near under it."""
+    columns, level = np.arange(cells.shape[1]), int(np.flatnonzero(cells.any(axis=0))[-1]) - int(TITLE / CELL)
+    top = np.where(cells[:, :level], columns[:level], -1).max(axis=1, initial=-1)
+    near = (top >= 0) & ((level - top) * CELL < UNDER)
+    return np.asarray(near[:, None] & (columns > top[:, None]) & (columns <= level), dtype=np.int64)
 
 
 def _about(label: Label) -> Points:
