@@ -82,7 +82,7 @@ class Project:
         if not driven:
             return (cycle.output,) if cycle.output else ()
         g = driven[-1]
-        slides = g.links[1] in g.kind.carried(g).values() and m.guides[g.guides[0]].link == m.frame
+        slides = any(point == g.inner and m.guides[guide].link == m.frame for point, guide in g.kind.guided(g))
         return (str(g.inner) if slides else g.links[1],)
 
     def _section(self, name: str) -> Any:

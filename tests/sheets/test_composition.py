@@ -174,6 +174,13 @@ def test_an_output_that_turns_has_the_diagrams_of_its_link():
     assert Project(catalogue.read("transport/press@05-ЭПС-123")).diagrams == ("C",)
 
 
+def test_an_output_between_two_guides_has_the_diagrams_of_its_point():
+    """The feeder's slider goes up and down a fixed column, driven through a slot: its angle never changes."""
+    project = Project(catalogue.read("tests/projects/feeder.toml"))
+    assert project.diagrams == ("E",)
+    assert np.ptp(project.study.positions.points["E"].value.real) < 1e-12
+
+
 def test_the_same_project_has_the_same_places():
     one, other = (arranged(Project(catalogue.read("lugansk/shaper")), 1).views for _ in range(2))
     assert one == other

@@ -10,6 +10,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
+from tmm_sheets.drawing import notes
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.labels import place
 from tmm_sheets.drawing.marks import Text, flat
@@ -169,3 +170,16 @@ def test_build_says_so_and_is_done(tmp_path, capsys, monkeypatch):
     assert told[0].startswith('own: sheet 1: view "Рычаг Жуковского (положение 3)" leaves its place by ')
     assert "scales.lever = " in told[0]
     assert (tmp_path / "out" / "sheet1.dxf").exists()
+
+
+def test_a_note_that_has_no_room_in_its_view_stands_on_free_paper_and_is_no_fault():
+    canvas, box = Canvas(), Box(200.0, 200.0, 230.0, 220.0)
+    canvas.begin(box, "", "kinematics.velocity_plans")
+    canvas.begin(box, "Plan")
+    for y in range(202, 219, 2):
+        canvas.line(complex(202.0, y), complex(228.0, y))
+    canvas.note(box, "point e cannot be found better than to 2.6 mm")
+    canvas.begin(INSIDE, "", "labels")
+    assert not notes.place(canvas, INSIDE)
+    assert any(isinstance(mark, Text) and not box.contains(mark.at) for mark in canvas.marks)
+    assert leaving(canvas, INSIDE, TITLE_BLOCK) == []

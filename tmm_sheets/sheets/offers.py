@@ -24,6 +24,8 @@ CELL = 2.0
 """Side of the cells in which room is looked for, mm."""
 TITLE = 3.0
 """Depth of the middle of a title under its upper edge, mm."""
+UNDER = 80.0
+"""What stands so near under a title belongs to it, and nothing else may stand between, mm."""
 REACH = 2.0
 """How far a label may stand off beyond its gap, mm."""
 APART = (12.0, 9.0, 6.0)
@@ -94,17 +96,19 @@ def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDA
     end = canvas.parts[k + 1].first if k + 1 < len(canvas.parts) else len(canvas.marks)
     z = np.concatenate((dense(canvas.marks[part.first:end], CELL),
                         *(_about(label) for label in canvas.labels if label.part == k)))  # fmt: skip
-    if part.title and len(z):
-        z = np.append(z, _over(z))
     i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
     there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
     own[i[there], j[there]] = True
-    return _between(own, 0) | _between(own, 1)
+    taken = _between(own, 0) | _between(own, 1)
+    return taken | _under_title(own) if part.title and own.any() else taken
 
 
-def _over(z: Points) -> Points:
-    """Ends of the title of a part, as wide as the part is: between a title and its picture nothing else may stand."""
-    return np.array([complex(x, z.imag.max() - TITLE) for x in (z.real.min(), z.real.max())])
+def _under_title(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Cells between the title of a part, as if it were as wide as the part, and what is drawn near under it."""
+    columns, level = np.arange(cells.shape[1]), int(np.flatnonzero(cells.any(axis=0))[-1]) - int(TITLE / CELL)
+    top = np.where(cells[:, :level], columns[:level], -1).max(axis=1, initial=-1)
+    near = (top >= 0) & ((level - top) * CELL < UNDER)
+    return np.asarray(near[:, None] & (columns > top[:, None]) & (columns <= level))
 
 
 def _about(label: Label) -> Points:

@@ -108,12 +108,15 @@ def _views(canvas: Canvas) -> list[Box]:
 
 
 def _ink(canvas: Canvas) -> list[tuple[list[Mark], list[Mark]]]:
-    """Lines and labels of every part; labels are set when all views are drawn, without their leader lines."""
+    """Lines and labels of every part; labels are set when all views are drawn, without their leader lines.
+
+    Notes, which have no anchor, take free paper anywhere.
+    """
     ends = [part.first for part in canvas.parts[1:]] + [len(canvas.marks)]
     found: list[tuple[list[Mark], list[Mark]]] = [
         (canvas.marks[part.first:end], []) for part, end in zip(canvas.parts, ends, strict=True)]
     for group in canvas.groups:
-        if group.part >= 0:
+        if group.part >= 0 and group.anchor is not None:
             found[group.part][1].extend(mark for mark in canvas.marks[group.first:group.end] if isinstance(mark, Text))
     return found
 

@@ -70,9 +70,6 @@ class Need:
 TOO_SMALL = 1e8
 """Price of a place that is too small by its own size, mm^2: more than that of any sheet."""
 
-EMPTY = 1.0
-"""Price of room of a place that its view does not fill, beside the area of one that fills what it is meant to have."""
-
 
 @dataclass
 class Node:
@@ -103,10 +100,8 @@ class Node:
     def cost(self, width: float, height: float) -> float:
         """What the places of its views cost: more, the less of what it is meant to have each of them fills."""
         if self.need is not None:
-            ink = self.need.ink(width, height)
             # The square: what is worst counts most.
-            return (self.area * (self.area / ink) ** 2 + EMPTY * max(width * height - ink, 0.0)
-                    + TOO_SMALL * self.need.short(width, height))
+            return self.area * (self.area / self.need.ink(width, height)) ** 2 + TOO_SMALL * self.need.short(width, height)
         return sum(self._of(child, size, width, height)
                    for child, size in zip(self.children, self.sizes(width, height), strict=True))
 
