@@ -12,6 +12,7 @@ from tmm_sheets.task.values import (
     Angle,
     CamDiagram,
     CamLaw,
+    CarrierName,
     Coordinate,
     Count,
     CrankAcceleration,
@@ -35,10 +36,12 @@ from tmm_sheets.task.values import (
     Sense,
     SheetName,
     Side,
+    SignedSpeed,
     Speed,
     Start,
     Teeth,
     Torque,
+    WheelName,
     diagram,
     in_range,
     or_word,
@@ -669,6 +672,58 @@ class ReducerTable(Table):
                     "carrier": marked('scheme = "{scheme}" is driven by the carrier'),
                     "ring": marked('scheme = "{scheme}" is driven by the sun or the ring')}  # fmt: skip
             raise ValueError(tell(said[can[-1]]).format(scheme=self.scheme))
+        return self
+
+
+class MeshTable(Table):
+    """``[[train.mesh]]``: two wheels in mesh, one of them about the main axis."""
+
+    sun: WheelName | None = None
+    """the wheel about the main axis, meshing outside"""
+    ring: WheelName | None = None
+    """the same, a ring about its planet"""
+    planet: WheelName = Field(description=marked('number of the other wheel, for example "2"'))
+    carrier: CarrierName | None = None
+    """the carrier of the planet, `"H"` or `"H1"`; left out: its axis stands still"""
+
+    @model_validator(mode="after")
+    def _sun_or_ring(self) -> Self:
+        if (self.sun is None) == (self.ring is None):
+            raise ValueError(tell("expected either sun or ring"))
+        if self.planet in (self.sun, self.ring):
+            raise ValueError(tell("a wheel does not mesh with itself"))
+        return self
+
+
+class TrainTable(Table):
+    """``[train]``: a train of gears of given tooth numbers, with speeds given at any of its links."""
+
+    module: Length = Field(description=marked('module, for example "2 mm"'))
+    teeth: dict[WheelName, Teeth] = Field(description=marked('tooth numbers of all wheels, for example { "1" = 20, "2" = 40 }'))
+    speeds: dict[Name, SignedSpeed] = Field(
+        description=marked('speeds that are given, for example { "1" = "900 rpm", "H" = "0 rpm" }')
+    )
+    """of as many wheels or carriers as the train has degrees of freedom, with signs; `"0 rpm"` for what is held"""
+    shafts: tuple[tuple[Name, ...], ...] = ()
+    """wheels and carriers that turn together, for example `[["2", "3"], ["H1", "4"]]`"""
+    satellites: Count = 3
+    """number of planets on each carrier, for the picture"""
+    mesh: tuple[MeshTable, ...] = Field(min_length=1, description=marked("the meshes, tables [[train.mesh]]"))
+
+    @model_validator(mode="after")
+    def _names_are_known(self) -> Self:
+        wheels = {name for m in self.mesh for name in (m.sun or m.ring, m.planet) if name}
+        if wheels != set(self.teeth):
+            raise ValueError(tell("expected teeth of the wheels {wheels}, not of {teeth}").format(
+                wheels=", ".join(sorted(wheels)), teeth=", ".join(sorted(self.teeth))))
+        known = wheels | {m.carrier for m in self.mesh if m.carrier}
+        for key, names in (("speeds", list(self.speeds)), ("shafts", [name for shaft in self.shafts for name in shaft])):
+            unknown = [name for name in names if name not in known]
+            if unknown:
+                raise ValueError(tell("{key} has {unknown}; here are {known}").format(
+                    key=key, unknown=", ".join(unknown), known=", ".join(sorted(known))))
+            if len(set(names)) < len(names):
+                raise ValueError(tell("{key}: a wheel or carrier stands there twice").format(key=key))
         return self
 
 

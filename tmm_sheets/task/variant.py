@@ -41,6 +41,7 @@ from tmm_sheets.task.schema import (
     SynthesisTable,
     Table,
     TitleBlockTable,
+    TrainTable,
 )
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber
@@ -71,6 +72,7 @@ class Variant(Table):
     flywheel: FlywheelTable | None = None
     gear: GearTable | None = None
     reducer: ReducerTable | None = None
+    train: TrainTable | None = None
     cam: CamTable | None = None
     scales: dict[Name, PositiveNumber] = Field(default={})
     """scale factors that the program is not to choose itself, by the names of plans in `protocol`, SI per mm:
@@ -134,6 +136,7 @@ class Variant(Table):
             "kinematics_forces_wide" if self.loaded else "kinematics": self.crank is not None,
             self._flywheel_sheet: self.flywheel is not None,
             gears: bool(gears),
+            "train": self.train is not None,
             "cam": self.cam is not None,
         }
         return tuple(name for name, needed in called.items() if needed)
@@ -163,7 +166,7 @@ class Variant(Table):
         return _problem(self._file, self._lines, path, message, hint)
 
 
-_SECTIONS = ("flywheel", "gear", "reducer", "cam")
+_SECTIONS = ("flywheel", "gear", "reducer", "train", "cam")
 
 # --- reading --------------------------------------------------------------------------------------------------------
 
@@ -217,7 +220,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     problems += [_problem(file, lines, *found) for check in (check_names, check_cam, check_letters) for found in check(data)]
     if variant is not None and variant.project.sheets is None and not variant.sheets:
         problems.append(_problem(file, lines, ("project",), tell("there is nothing to draw"),
-                                 tell("add [crank] and [[group]] for a mechanism, [gear], [reducer] or [cam]")))
+                                 tell("add [crank] and [[group]] for a mechanism, [gear], [reducer], [train] or [cam]")))
     if problems or variant is None:
         raise BadInput(sorted(dict.fromkeys(problems), key=lambda p: (p.line or 0, p.field)))
     variant._file = file

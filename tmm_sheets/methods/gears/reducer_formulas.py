@@ -127,7 +127,7 @@ LEAST_RING = _formula("least ring without interference", planetary.least_ring, 2
                              "{name} = {value}."))
 
 
-def _said(rule: Rule, sign: int) -> str:
+def said_with_sign(rule: Rule, sign: int) -> str:
     """The rule's sentence with the sign of its pairs."""
     return tr(rule.wording).replace("±", "+" if sign > 0 else "−").replace("∓", "−" if sign > 0 else "+")
 
@@ -171,7 +171,8 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
     stages = Given(data.stages, "reducer.stages", over="none")
     sign = scheme.signs[0] * scheme.signs[1]
     simple = plan.add("u_simple", SIMPLE_RATIO, plan[names.wheel], plan[names.pinion], symbol=tr("u_{s}"))
-    inner = plan.add("i14", INNER_RATIO, sign, *(plan[z] for z in names.stage), symbol="i_{14}^{H}", say=_said(INNER_RATIO, sign))
+    inner = plan.add("i14", INNER_RATIO, sign, *(plan[z] for z in names.stage), symbol="i_{14}^{H}",
+                     say=said_with_sign(INNER_RATIO, sign))
     driver = data.driver or scheme.drivers[0]
     stage = plan.add("u_stage", STAGE_RATIO[driver], inner, symbol=tr("u_{st}"))
     whole = plan.add("u_planetary", PLANETARY_RATIO, stage, stages, symbol=tr("u_{pl}"))
@@ -203,7 +204,7 @@ def kinematics_plan(data: ReducerTable, ratio: Plan) -> Plan:
             plan.add(f"d{n}", DIAMETER, z, m, symbol=f"d_{{{n}}}")
     scheme = planetary.SCHEMES[data.scheme]
     plan.add("a_H", CARRIER_RADIUS, plan[f"d{first[0]}"], scheme.signs[0], plan[f"d{first[1]}"], symbol="r_H",
-             say=_said(CARRIER_RADIUS, scheme.signs[0]))
+             say=said_with_sign(CARRIER_RADIUS, scheme.signs[0]))
     plan.add("a_simple", AXES, *(plan[f"d{n}"] for n in simple), symbol="a")
     speed: Step | None = None
     if data.simple == "before":
@@ -251,7 +252,7 @@ def _stage_speeds(plan: Plan, data: ReducerTable, ratio: Plan, z: Mapping[str, S
         carrier = plan.add(f"n{name}", CARRIER, speed, ratio["u_stage"], symbol=f"n_{{{name}}}")
         sun = plan[f"n{one}"]
     block = plan.add(f"n{two}", BLOCK, carrier, scheme.signs[0], sun, z[one], z[two], symbol=f"n_{{{two}}}",
-                     say=_said(BLOCK, scheme.signs[0]))
+                     say=said_with_sign(BLOCK, scheme.signs[0]))
     if three != two:
         plan.add(f"n{three}", SAME_SHAFT, block, symbol=f"n_{{{three}}}")
     return sun if driver == "carrier" else carrier
@@ -264,11 +265,11 @@ def conditions_plan(data: ReducerTable, ratio: Plan) -> Plan:
     s, z = scheme.signs, [ratio[name] for name in Names(data).stage]
     q = plan.add("q", SATELLITES, Given(data.satellites, "reducer.satellites", "q", over="none"))
     h = plan.add("ha", ADDENDUM, GivenNumber(data.addendum, "reducer.addendum"), symbol="h_a^{*}")
-    left, right = (plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b], say=_said(SIDE_OF_COAXIALITY, s[i]),
-                            symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
+    left, right = (plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b],
+                            say=said_with_sign(SIDE_OF_COAXIALITY, s[i]), symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
                    for i, (side, a, b) in enumerate((("left", 0, 1), ("right", 3, 2))))
     plan.add("coaxiality", COAXIALITY, left, right)
-    plan.add("assembly", ASSEMBLY, s[0] * s[1], q, *z, say=_said(ASSEMBLY, s[0] * s[1]))
+    plan.add("assembly", ASSEMBLY, s[0] * s[1], q, *z, say=said_with_sign(ASSEMBLY, s[0] * s[1]))
     between = plan.add("between", BETWEEN_AXES, left, q)
     width = plan.add("width", WIDTH, z[1], z[2], h)
     plan.add("neighbourhood", NEIGHBOURHOOD, between, width)

@@ -62,11 +62,11 @@ READ = Rule("measure a speed of rotation", _read, ("point", "point", "point"), "
             marked("The segment {1}{0} gives the speed of rotation {name} = {value} rpm."), unit="1/min", source="003, 4")
 
 
-class _SpeedPicture:
+class SpeedPicture:
     """Adds the links one after another, in the order of the power."""
 
-    def __init__(self) -> None:
-        self.plan = Plan("reducer-velocities", tr("Picture of velocities"), "m/s")
+    def __init__(self, part: str = "reducer") -> None:
+        self.plan = Plan(f"{part}-velocities", tr("Picture of velocities"), "m/s")
         self.axis = self.plan.add("O", GIVEN, 0j)
         self.letters = iter(LETTERS)
 
@@ -128,7 +128,7 @@ def picture(simple: tuple[ReducerWheel, ReducerWheel], stages: Sequence[Stage], 
 
     A link that is one with the link before it (a carrier with the next sun) has one line, under its first name.
     """
-    drawn = _SpeedPicture()
+    drawn = SpeedPicture()
     line = drawn.simple(simple, distance, before, None) if before else None
     for stage in stages:
         line = drawn.stage(stage, line)
@@ -142,13 +142,13 @@ def links_of(velocities: Plan) -> tuple[str, ...]:
     return tuple(step.name for step in velocities if step.rule is RAY)
 
 
-def speeds(velocities: Plan, distance: float) -> Plan:
+def speeds(velocities: Plan, distance: float, part: str = "reducer") -> Plan:
     """Plan of the speeds of rotation, pole ``distance`` m under the line on which they are read.
 
     For each line of the picture the end of its ray, named like the link, and the speed ``n<link>`` in 1/min.
     """
-    plan = Plan("reducer-speeds", tr("Plan of the speeds of rotation"), "m/s")
-    given = Given(-1j * distance, "reducer.speeds.pole", "H", "m", over="none",
+    plan = Plan(f"{part}-speeds", tr("Plan of the speeds of rotation"), "m/s")
+    given = Given(-1j * distance, f"{part}.speeds.pole", "H", "m", over="none",
                   choice=tr("with it the scale factor μ_n is handy for counting"))
     pole = plan.add("P", GIVEN, given, say=tr("Mark the pole {name}."))
     origin = plan.add("0", GIVEN, 0j, say=tr("Above the pole mark the origin {name} on the axis of the speeds of rotation."))
