@@ -142,7 +142,7 @@ class _Scheme(SchemeViews):
         self.before = reducer.data.simple == "before"
         stage = self.stages[0]
         self.reach = stage.axis + max(stage.wheels[1].diameter, stage.wheels[2].diameter) / 2
-        one, two = (w.diameter / 2 for w in self.pair)
+        one, two = (w.diameter / 2 for w in self.pair) if self.pair else (0.0, 0.0)
         self.offset = (one + two) * (1 if self.before else -1)
         self.top = max(self.reach, two + 2 * one if self.before else one)
         self.bottom = max(self.reach, two if self.before else one + 2 * two)
@@ -197,7 +197,7 @@ class _Scheme(SchemeViews):
             x += STUB
         for k, stage in enumerate(self.stages):
             x = self.stage(stage, x, first=k == 0)
-        if self.before:
+        if self.before or not self.pair:
             c.line(complex(x, self.axis), complex(x + STUB, self.axis), "main")
             self.bearing(x + STUB - 6, self.axis)
             self.arrow(complex(x + STUB, self.axis), tr("n_{out}"), 1)
@@ -312,9 +312,10 @@ class _Scheme(SchemeViews):
         reach = mm(self.side) + 4
         c.line(o - reach, o + reach, "centre")
         c.line(complex(o.real, self.y(-self.bottom) - 4), complex(o.real, self.y(self.top) + 4), "centre")
-        other = complex(o.real, self.y(self.offset))
-        arm = mm(max(w.diameter for w in self.pair)) / 2 * 0.35
-        c.line(other - arm, other + arm, "centre")
+        if self.pair:
+            other = complex(o.real, self.y(self.offset))
+            arm = mm(max(w.diameter for w in self.pair)) / 2 * 0.35
+            c.line(other - arm, other + arm, "centre")
         for wheel in (one, four):
             c.circle(o, mm(wheel.diameter / 2), "main" if wheel is stage.fixed else "axis")
         satellites = (two,) if stage.single else (two, three)
@@ -326,17 +327,23 @@ class _Scheme(SchemeViews):
                 c.circle(o + spoke, mm(wheel.diameter / 2), "axis")
             c.dot(o + spoke, 1.0)
         c.dot(o, 1.2)
+        simple = self.simple_end_view() if self.pair else []
+        side = spokes[-1] / abs(spokes[-1])
+        gap = pi / 2 - pi / count  # between two satellites
+        named = [(o, one, rect(1, gap + 0.05)), (o, four, rect(1, gap - 0.12)), *simple]
+        named += [(o + spokes[-1], wheel, side * rect(1, 0.6 + 0.9 * k)) for k, wheel in enumerate(satellites)]
+        for centre, wheel, way in named:
+            c.label(centre + mm(wheel.diameter / 2) * way, self.numbers(wheel), away=way, height=3.5, gap=1.0)
+
+    def simple_end_view(self) -> list[tuple[complex, Any, complex]]:
+        """Pitch circles of the simple stage; centres, wheels and directions of their numbers."""
+        c, o, mm = self.canvas, self.front, self.mu.mm
+        other = complex(o.real, self.y(self.offset))
         c.dot(other, 1.2)
         near, far = reversed(self.pair) if self.before else self.pair
         c.circle(o, mm(near.diameter / 2), "thin")
         c.circle(other, mm(far.diameter / 2), "axis")
-        side = spokes[-1] / abs(spokes[-1])
-        gap = pi / 2 - pi / count  # between two satellites
-        named = [(o, one, rect(1, gap + 0.05)), (o, four, rect(1, gap - 0.12)), (o, near, rect(1, -0.45)),
-                 (other, far, rect(1, 0.5 if self.before else -0.5))]
-        named += [(o + spokes[-1], wheel, side * rect(1, 0.6 + 0.9 * k)) for k, wheel in enumerate(satellites)]
-        for centre, wheel, way in named:
-            c.label(centre + mm(wheel.diameter / 2) * way, self.numbers(wheel), away=way, height=3.5, gap=1.0)
+        return [(o, near, rect(1, -0.45)), (other, far, rect(1, 0.5 if self.before else -0.5))]
 
     def numbers(self, wheel: Any) -> str:
         """Numbers of a wheel of the first stage and of those in its place in the next ones, which are like it."""
@@ -419,7 +426,8 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     rows: list[tuple[str, ...]] = [
         (tr("Quantity"), tr("Value")),
         (tr("Ratio asked for"), fixed(chosen["u_asked"], 3)),
-        (tr("Simple stage × planetary part"), f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}"),
+        *([(tr("Simple stage × planetary part"), f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}")]
+          if r.simple else []),
         (tr("Ratio found; deviation"), f"{fixed(chosen['u'], 3)}; {fixed(chosen['u_deviation'] * 100, 2)} %"),
         (tr("Coaxiality, teeth"), f"{held['coaxiality_left']} = {held['coaxiality_right']}"),
         (tr("Assembly with q = {planets} (whole)").format(planets=held["q"]), number(held["assembly"], 6)),
@@ -427,10 +435,11 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         (tr("Efficiency: pair; planetary part; whole"), f"{number(chosen['eta_pair'])}; {fixed(chosen['eta_planetary'], 3)}; "
          f"{fixed(chosen['eta'], 3)}"),
     ]
-    first, second = r.simple
-    rows += [(tr("Wheels 1 and 2 of the gear meshing"),
-              tr("{one} (z = {teeth}) and {two} (z = {teeth2})").format(
-                  one=first.number, teeth=first.teeth, two=second.number, teeth2=second.teeth))]
+    if r.simple:
+        first, second = r.simple
+        rows += [(tr("Wheels 1 and 2 of the gear meshing"),
+                  tr("{one} (z = {teeth}) and {two} (z = {teeth2})").format(
+                      one=first.number, teeth=first.teeth, two=second.number, teeth2=second.teeth))]
     each = ceil(len(r.wheels) / ceil(len(r.wheels) / 4))
     for some in (r.wheels[i:i + each] for i in range(0, len(r.wheels), each)):
         names = "; ".join(f"d_{{{w.number}}}" for w in some)

@@ -622,7 +622,9 @@ class ReducerTable(Table):
     """`single row`: sun, satellites, ring; `external-internal`: sun, blocks of two satellites, ring;
     `two external`, `two internal`: the carrier drives, blocks between two suns or two rings
     """
-    simple: Literal["before", "after"] = Field(description=marked('the simple stage stands "before" or "after" the planetary one'))
+    simple: Literal["before", "after", "none"] = Field(
+        description=marked('the simple stage stands "before" or "after" the planetary one, or there is "none"')
+    )
     stages: Literal[1, 2] = 1
     """2: two equal single rows"""
     driver: Literal["sun", "ring", "carrier"] | None = None
@@ -632,10 +634,11 @@ class ReducerTable(Table):
     input_speed: Speed = Field(description=marked('speed of the input, for example "1250 rpm"'))
     output_speed: Speed | None = Field(default=None, description=marked('speed of the output, for example "300 rpm"'))
     """this or `ratio`"""
-    teeth: dict[Name, Teeth] = Field(description=marked("tooth numbers that are given, for example { z5 = 12 }"))
-    """the pinion of the simple stage must be there, any other may"""
+    teeth: dict[Name, Teeth] = Field(default={}, description=marked("tooth numbers that are given, for example { z5 = 12 }"))
+    """the pinion of a simple stage must be there, any other may"""
     module: Length = Field(description=marked('module of the planetary stage, for example "5 mm"'))
-    simple_module: Length = Field(description=marked('module of the simple stage, for example "10 mm"'))
+    simple_module: Length | None = Field(default=None, description=marked('module of the simple stage, for example "10 mm"'))
+    """needed with a simple stage"""
     satellites: Annotated[int, whole(2)] = Field(description=marked("number of satellites, for example 3"))
     addendum: PositiveNumber = 1.0
     """coefficient ha*"""
@@ -662,6 +665,15 @@ class ReducerTable(Table):
             raise ValueError(tell('stages = 2 goes with scheme = "single row" only'))
         if self.simple_ratio is not None and not self.simple_ratio[0] <= self.simple_ratio[1]:
             raise ValueError(tell("expected a simple_ratio that rises, for example [1.5, 4]"))
+        return self
+
+    @model_validator(mode="after")
+    def _simple_stage_has_its_keys(self) -> Self:
+        own = [k for k in ("simple_module", "simple_ratio") if getattr(self, k) is not None]
+        if self.simple == "none" and own:
+            raise ValueError(tell('simple = "none" has no {keys}').format(keys=", ".join(own)))
+        if self.simple != "none" and self.simple_module is None:
+            raise ValueError(tell('expected "simple_module" too, for example simple_module = "10 mm"'))
         return self
 
     @model_validator(mode="after")

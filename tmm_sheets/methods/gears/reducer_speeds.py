@@ -88,7 +88,7 @@ class SpeedPicture:
         velocity = self.plan.add(f"V{point.name}", VELOCITY_OF, n, point, centre, symbol=f"V_{point.name}")
         return self.plan.add(point.name.lower(), LAY_VELOCITY, point, velocity)
 
-    def simple(self, pair: tuple[ReducerWheel, ReducerWheel], distance: Step, before: bool, line: Step | None) -> Step:
+    def simple(self, pair: Sequence[ReducerWheel], distance: Step, before: bool, line: Step | None) -> Step:
         """The simple stage over the main axis, where it begins the train, or under it; gives the driven wheel's line."""
         one, two = pair
         up = 1 if before else -1
@@ -121,18 +121,18 @@ class SpeedPicture:
         return self.line(one.number if stage.driver == "carrier" else stage.carrier, self.axis, velocity)
 
 
-def picture(simple: tuple[ReducerWheel, ReducerWheel], stages: Sequence[Stage], distance: Step, before: bool) -> Plan:
+def picture(simple: Sequence[ReducerWheel], stages: Sequence[Stage], distance: Step | None, before: bool) -> Plan:
     """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link.
 
-    ``distance`` is the step of the simple stage's centre distance (mm).
+    ``distance`` is the step of the simple stage's centre distance (mm), None without one.
 
     A link that is one with the link before it (a carrier with the next sun) has one line, under its first name.
     """
     drawn = SpeedPicture()
-    line = drawn.simple(simple, distance, before, None) if before else None
+    line = drawn.simple(simple, distance, before, None) if before and distance else None
     for stage in stages:
         line = drawn.stage(stage, line)
-    if not before:
+    if distance and not before:
         drawn.simple(simple, distance, before, line)
     return drawn.plan
 
