@@ -64,8 +64,8 @@ ALONE = {"reducer": {"scheme": "single row", "simple": "none", "input_speed": "1
                      "satellites": 3}}
 
 
-@pytest.mark.parametrize(("changes", "ratio"), [({}, 1450 / 250), ({"reducer.driver": "ring", "reducer.output_speed": "1000 "
-                                                                                                                      "rpm"}, 1.45)])
+@pytest.mark.parametrize(("changes", "ratio"), [
+    ({}, 1450 / 250), ({"reducer.driver": "ring", "reducer.output_speed": "1000 rpm"}, 1.45)])
 def test_reducer_without_a_simple_stage(changes, ratio):
     """The least of all rows within 1 %: by trying every sun and satellite, with the conditions of manual 003 written out."""
     made = project(ALONE, changes).reducer

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from tests.project_files import merged, project, read
+from tests.project_files import project, read
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.sheets.sheet import composed
 
@@ -94,9 +94,11 @@ def test_ferguson_paradox():
     ("two inputs", {"1": 960, "3": 0, "H": 9}, "degrees of freedom: 2; .* given are 3"),
     ("closed", {"H": 1, "1": 2}, "degrees of freedom: 1; .* given are 2"),
     ("two stages and a pair", {"1": 1500, "2": 3, "3": 0}, "hang together"),
+    ("alike", {"1": 0, "3": 0}, "hang together"),
 ])
 def test_speeds_that_do_not_tell(case, speeds, message):
-    teeth, meshes, _, shafts = CASES[case]
+    alike = {"1": 100, "2": 20, "3": 100}, FERGUSON[1][:2], {}, ()
+    teeth, meshes, _, shafts = CASES.get(case, alike)
     with pytest.raises(CannotBuild, match=message):
         _ = project(train(teeth, meshes, speeds, shafts)).train
 
@@ -134,4 +136,3 @@ def test_sheet(case):
     p = project(train(*CASES[case]))
     assert p.sheets == ("train",)
     assert composed(p, 1).crowded == ()
-    assert merged(train(*CASES[case]))
