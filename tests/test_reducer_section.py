@@ -57,3 +57,49 @@ def test_teeth_from_a_reducer_that_is_not_there():
 def test_unknown_wheel_is_named():
     with pytest.raises(CannotBuild, match="teeth has z7; here are z1, z2, z3, z4, z5, z6"):
         _ = project(FILE, {"reducer.teeth.z7": 20}).reducer
+
+
+ALONE = {"reducer": {"scheme": "single row", "simple": "none", "input_speed": "1450 rpm", "output_speed": "250 rpm", "module": "3 "
+                                                                                                                               "mm",
+                     "satellites": 3}}
+
+
+@pytest.mark.parametrize(("changes", "ratio"), [
+    ({}, 1450 / 250), ({"reducer.driver": "ring", "reducer.output_speed": "1000 rpm"}, 1.45)])
+def test_reducer_without_a_simple_stage(changes, ratio):
+    """The least of all rows within 1 %: by trying every sun and satellite, with the conditions of manual 003 written out."""
+    made = project(ALONE, changes).reducer
+    ring = "reducer.driver" in changes
+    sets = [(z1 + 2 * z2, z1, z2) for z1 in range(15, 91) for z2 in range(15, 91)
+            if abs((1 + (z1 / (z1 + 2 * z2) if ring else (z1 + 2 * z2) / z1)) / ratio - 1) <= 0.01 and (2 * z1 + 2 * z2) % 3 == 0
+            and (z1 + z2) * 3**0.5 / 2 > z2 + 2]
+    least = min(sets)[0]
+    one, two, _, four = made.chosen.stage
+    assert (four, one, two) in sets
+    assert four == least
+    tree = made.results()
+    assert "ratio_simple" not in tree
+    assert tree["speeds_rpm"]["nH"].value == pytest.approx(1450 / tree["ratio"].value, rel=1e-12)
+    assert [w.number for w in made.wheels] == ["1", "2", "3"]
+    assert made.speeds(0.05)["nH"].value == pytest.approx(tree["speeds_rpm"]["nH"].value, rel=1e-9)
+
+
+@pytest.mark.parametrize(("changes", "message"), [
+    ({"reducer.simple_module": "5 mm"}, 'simple = "none" has no simple_module'),
+    ({"reducer.simple": "after"}, 'expected "simple_module" too'),
+])
+def test_keys_of_the_simple_stage(changes, message):
+    with pytest.raises(BadInput, match=message):
+        read(ALONE, changes)
+
+
+@pytest.mark.parametrize(("changes", "message"), [
+    ({"reducer.output_speed": "1400 rpm"}, "no tooth set|no tooth set meets"), ({"reducer.teeth": {"z4": 20}}, "teeth has z4; "
+                                                                                                               "here are z1, z2, "
+                                                                                                               "z3"),
+    ({"gear": {"teeth": "reducer", "pressure_angle": "20 deg"}}, "the reducer has no simple stage"),
+])
+def test_reducer_without_a_simple_stage_that_cannot_be(changes, message):
+    p = project(ALONE, changes)
+    with pytest.raises(CannotBuild, match=message):
+        _ = p.gear if "gear" in changes else p.reducer

@@ -29,7 +29,7 @@ FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
 NOTE_FORMATS = ("pdf", "docx")
 """Formats of the explanatory note."""
 
-PARTS = ("positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "cam")
+PARTS = ("positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
 """Parts of the results."""
 
 MOST_POSITIONS = 1_000_000

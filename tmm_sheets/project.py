@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.reduced import Reduced
     from tmm_sheets.methods.gears.gear_pair import GearPair
     from tmm_sheets.methods.gears.reducer import Reducer
+    from tmm_sheets.methods.gears.train import Train
     from tmm_sheets.methods.linkage.checks import SwingLimits
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.forces import GearForce
@@ -34,7 +35,7 @@ LINKAGE = ("positions", "velocities", "accelerations", "forces")
 """Parts of the results that the linkage has."""
 
 
-PLANNED = ("synthesis", "cycle", "driver", "applied", "study", "motion", "reduced", "flywheel", "reducer", "gear", "cam")
+PLANNED = ("synthesis", "cycle", "driver", "applied", "study", "motion", "reduced", "flywheel", "reducer", "gear", "train", "cam")
 """Parts of a project that construct something, each with its ``plans``."""
 
 
@@ -56,7 +57,7 @@ class Project:
         parts: tuple[str, ...] = ()
         if v.crank is not None:
             parts += LINKAGE if v.loaded else LINKAGE[:3]
-        return parts + tuple(name for name in ("flywheel", "gear", "reducer", "cam") if getattr(v, name) is not None)
+        return parts + tuple(name for name in ("flywheel", "gear", "reducer", "train", "cam") if getattr(v, name) is not None)
 
     @property
     def balancing(self) -> str:
@@ -281,6 +282,19 @@ class Project:
         return reducer(self._section("reducer"))
 
     @cached_property
+    def train(self) -> Train:
+        """Train of gears with given speeds.
+
+        Raises
+        ------
+        CannotBuild
+            when there is no [train], or its speeds or tooth numbers do not fit.
+        """
+        from tmm_sheets.methods.gears.train import train
+
+        return train(self._section("train"))
+
+    @cached_property
     def cam(self) -> Cam:
         """Cam and follower.
 
@@ -317,7 +331,7 @@ class Project:
                         _ = self.study.forces  # it may jam
                 elif part == "cam":
                     self.cam.check()
-                elif part in ("gear", "reducer"):
+                elif part in ("gear", "reducer", "train"):
                     getattr(self, part)
             except CannotBuild as e:
                 refused[part] = e

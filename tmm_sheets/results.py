@@ -1,6 +1,6 @@
 """Results of a project as numbers: the tree that ``solve`` writes as JSON. Nothing is drawn, only what is asked is computed.
 
-SI units; only ``gear`` and ``reducer`` in millimetres. World frame: x right, y up, origin at the crank pivot, angles
+SI units; only ``gear``, ``reducer`` and ``train`` in millimetres. World frame: x right, y up, origin at the crank pivot, angles
 counter-clockwise.
 """
 
@@ -77,7 +77,7 @@ def told(
     if plans:
         with _losing(lost, "scales"):
             scales |= _drawn_scales(project, plans, by_angle=phi is not None or positions is not None)
-    for name in ("flywheel", "gear", "reducer", "cam"):
+    for name in ("flywheel", "gear", "reducer", "train", "cam"):
         if name in asked:
             with _losing(lost, name):
                 tree[name] = _flywheel(project, scales) if name == "flywheel" else getattr(project, name).results()

@@ -37,7 +37,7 @@ NEEDS = {
     "load_diagram": "positions", "synthesis": "positions", "kinetics": "forces", "moments": "forces", "friction": "forces",
     "details": "forces",
     "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
-    "flywheel": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear", "reducer": "reducer",
+    "flywheel": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear", "reducer": "reducer", "train": "train",
     "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
 }
 """Parts of the results that views need, by module or by view."""

@@ -352,7 +352,7 @@ def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> N
     for k in (1, 2):
         at, angle = (float(cam.steepest[name].value) for name in (f"φ_α{k}", f"α_{k}"))
         point = complex(course.frame(complex(at, angle)))
-        course.dot(f"α_{k}", 0.7, "main", point)
+        canvas.tracing("symbol").dot(point, 0.7)
         name = f"{letter_of}_{{max{k}}} = {fixed(degrees(angle), 1)}°"
         canvas.label(point, name, 1j * np.sign(angle) + 0.3, 3.5, 1.0)
 

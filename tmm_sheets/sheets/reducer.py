@@ -39,8 +39,102 @@ def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     _Scheme(project.reducer, canvas, box).draw()
 
 
-class _Scheme:
-    """The three views; heights in metres over the main axis become millimetres of the sheet."""
+class SchemeViews:
+    """Views on one main axis and the picture of velocities; heights in metres over the axis become millimetres of the sheet."""
+
+    reducer: Any
+    canvas: Canvas
+    mu: Scale
+    box: Box
+    axis: float
+    picture: Box
+
+    def y(self, height: float) -> float:
+        """Ordinate on the sheet of a height over the main axis."""
+        return float(self.axis + height / self.mu.mu)
+
+    def arrow(self, at: complex, text: str, side: int) -> None:
+        """Name of a shaft's speed at its free end."""
+        self.canvas.label(at, text, away=complex(side, 1), height=5, gap=1.5)
+
+    def wheel(self, wheel: Any, x: float, height: float, label: int = 1, free: bool = False) -> None:
+        """A wheel edge on: its disc with the rim at both ends; a ``free`` one turns on its shaft with a hub of its own."""
+        c, r = self.canvas, wheel.diameter / 2
+        low, high = complex(x, self.y(height - r)), complex(x, self.y(height + r))
+        if free:
+            hub = [complex(x, self.y(height) + side * HUB) for side in (-1, 1)]
+            c.line(low, hub[0], "main")
+            c.line(hub[1], high, "main")
+            for end in hub:
+                c.line(end - FACE / 2, end + FACE / 2, "main")
+        else:
+            c.line(low, high, "main")
+        for end in (low, high):
+            c.line(end - FACE / 2, end + FACE / 2, "main")
+        at = high if label > 0 else low
+        c.label(at + FACE / 2, wheel.number, away=complex(1, label), height=5, gap=1.2)
+
+    def bearing(self, x: float, y: float) -> None:
+        """A shaft's bearing in the frame: a hatched stroke on each side of it."""
+        for side in (-1, 1):
+            a, b = complex(x - 3, y + side * HUB), complex(x + 3, y + side * HUB)
+            self.canvas.line(a, b, "main")
+            self.canvas.hatch(a, b, side, depth=2.0, step=2.0)
+
+    # --- picture of velocities ----------------------------------------------------------------------------------
+
+    def velocities(self) -> None:
+        """Lines of the links over the heights of their points."""
+        c, plan = self.canvas, self.reducer.velocities
+        ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
+        low, high = (f([v.real for v in ends.values()]) for f in (min, max))
+        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, WIDEST)), tr("(m/s)/mm"))
+        c.scales[plan.name] = mu
+        whole = mu.mm(high - low)
+        zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
+        # As large as the title, if the picture's part of the place is wide enough.
+        laid = fitted(str(mu), self.picture.width, 5.0)
+        c.put(laid, complex((self.picture.x0 + self.picture.x1 - laid.width) / 2, self.picture.y1 - 3.0), 0.0, str(mu))
+
+        s = placed(c, plan, complex(zero, self.axis), (mu.mu, self.mu.mu))
+        bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
+        s.line("O", complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis", "axis")
+        self.heights(s, [name for name in ends if name[0].isupper()])
+        self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
+        self.lines(s)
+
+    def vectors(self, s: Stage, ends: Mapping[str, complex]) -> None:
+        """Velocities of the points, from the line of zero velocity to their ends."""
+        for name, value in ends.items():
+            s.vector(name.upper(), name)
+            way = 1 if value.real > 0 else -1
+            self.canvas.label(s.at(name), name, away=complex(way, 0.4), height=3.5, gap=1.2)
+
+    def lines(self, s: Stage) -> None:
+        """Line of each link through the ends of the velocities of all its points."""
+        plan = self.reducer.velocities
+        points = [step for step in plan if step.rule.gives == "point"]
+        for step in (step for step in plan if step.rule.gives == "direction"):
+            on = sorted((complex(p.value) for p in (*step.args, *(p for p in points if step in p.args))), key=lambda z: z.imag)
+            a, b = complex(s.frame(on[0])), complex(s.frame(on[-1]))
+            s.pen(step, "axis").ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
+            away = 1j * (b - a) * (-1 if (b - a).real > 0 else 1)
+            self.canvas.label(a + 0.62 * (b - a), _link(step.name), away=away, height=5, gap=1.2)
+
+    def heights(self, s: Stage, points: Sequence[str]) -> None:
+        """Points of the scheme carried over to the line of zero velocity; those of one height have one line."""
+        names: dict[float, list[str]] = {}
+        for name in points:
+            names.setdefault(round(s.at(name).imag, 1), []).append(name)
+        for group in names.values():
+            end = s.at(group[0])
+            s.line(group[0], complex(self.box.x0 + STUB, end.imag), end, "construction", "axis")
+            s.dot(group[0], 0.7, "main")
+            letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
+            self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
+
+class _Scheme(SchemeViews):
+    """The three views of a reducer."""
 
     def __init__(self, reducer: Any, canvas: Canvas, box: Box) -> None:
         self.reducer, self.canvas = reducer, canvas
@@ -48,7 +142,7 @@ class _Scheme:
         self.before = reducer.data.simple == "before"
         stage = self.stages[0]
         self.reach = stage.axis + max(stage.wheels[1].diameter, stage.wheels[2].diameter) / 2
-        one, two = (w.diameter / 2 for w in self.pair)
+        one, two = (w.diameter / 2 for w in self.pair) if self.pair else (0.0, 0.0)
         self.offset = (one + two) * (1 if self.before else -1)
         self.top = max(self.reach, two + 2 * one if self.before else one)
         self.bottom = max(self.reach, two if self.before else one + 2 * two)
@@ -70,10 +164,6 @@ class _Scheme:
         """Columns of the axial view between the shafts that lead in and out."""
         each = 2 if self.stages[0].single else 3
         return len(self.stages) * each
-
-    def y(self, height: float) -> float:
-        """Ordinate on the sheet of a height over the main axis."""
-        return float(self.axis + height / self.mu.mu)
 
     def draw(self) -> None:
         with self.canvas.as_role("symbol"):
@@ -107,7 +197,7 @@ class _Scheme:
             x += STUB
         for k, stage in enumerate(self.stages):
             x = self.stage(stage, x, first=k == 0)
-        if self.before:
+        if self.before or not self.pair:
             c.line(complex(x, self.axis), complex(x + STUB, self.axis), "main")
             self.bearing(x + STUB - 6, self.axis)
             self.arrow(complex(x + STUB, self.axis), tr("n_{out}"), 1)
@@ -121,27 +211,6 @@ class _Scheme:
         c.line(complex(at - FACE, other), complex(at + STUB, other), "main")
         self.bearing(at + STUB - 5, other)
         self.arrow(complex(at + STUB, other), tr("n_{out}"), 1)
-
-    def arrow(self, at: complex, text: str, side: int) -> None:
-        """Name of a shaft's speed at its free end."""
-        self.canvas.label(at, text, away=complex(side, 1), height=5, gap=1.5)
-
-    def wheel(self, wheel: Any, x: float, height: float, label: int = 1, free: bool = False) -> None:
-        """A wheel edge on: its disc with the rim at both ends; a ``free`` one turns on its shaft with a hub of its own."""
-        c, r = self.canvas, wheel.diameter / 2
-        low, high = complex(x, self.y(height - r)), complex(x, self.y(height + r))
-        if free:
-            hub = [complex(x, self.y(height) + side * HUB) for side in (-1, 1)]
-            c.line(low, hub[0], "main")
-            c.line(hub[1], high, "main")
-            for end in hub:
-                c.line(end - FACE / 2, end + FACE / 2, "main")
-        else:
-            c.line(low, high, "main")
-        for end in (low, high):
-            c.line(end - FACE / 2, end + FACE / 2, "main")
-        at = high if label > 0 else low
-        c.label(at + FACE / 2, wheel.number, away=complex(1, label), height=5, gap=1.2)
 
     def ring(self, wheel: Any, x: float) -> None:
         """A ring that stands still: its rim above and below, held in the frame."""
@@ -226,13 +295,6 @@ class _Scheme:
             y = self.y(height) + side * HUB
             self.canvas.line(complex(x, y), complex(end, y), "main")
 
-    def bearing(self, x: float, y: float) -> None:
-        """A shaft's bearing in the frame: a hatched stroke on each side of it."""
-        for side in (-1, 1):
-            a, b = complex(x - 3, y + side * HUB), complex(x + 3, y + side * HUB)
-            self.canvas.line(a, b, "main")
-            self.canvas.hatch(a, b, side, depth=2.0, step=2.0)
-
     def arm(self, stage: Any, x: float) -> None:
         """The carrier's arm from the main axis to the satellite's."""
         self.canvas.line(complex(x, self.axis), complex(x, self.y(stage.axis)), "main")
@@ -250,9 +312,10 @@ class _Scheme:
         reach = mm(self.side) + 4
         c.line(o - reach, o + reach, "centre")
         c.line(complex(o.real, self.y(-self.bottom) - 4), complex(o.real, self.y(self.top) + 4), "centre")
-        other = complex(o.real, self.y(self.offset))
-        arm = mm(max(w.diameter for w in self.pair)) / 2 * 0.35
-        c.line(other - arm, other + arm, "centre")
+        if self.pair:
+            other = complex(o.real, self.y(self.offset))
+            arm = mm(max(w.diameter for w in self.pair)) / 2 * 0.35
+            c.line(other - arm, other + arm, "centre")
         for wheel in (one, four):
             c.circle(o, mm(wheel.diameter / 2), "main" if wheel is stage.fixed else "axis")
         satellites = (two,) if stage.single else (two, three)
@@ -264,17 +327,23 @@ class _Scheme:
                 c.circle(o + spoke, mm(wheel.diameter / 2), "axis")
             c.dot(o + spoke, 1.0)
         c.dot(o, 1.2)
+        simple = self.simple_end_view() if self.pair else []
+        side = spokes[-1] / abs(spokes[-1])
+        gap = pi / 2 - pi / count  # between two satellites
+        named = [(o, one, rect(1, gap + 0.05)), (o, four, rect(1, gap - 0.12)), *simple]
+        named += [(o + spokes[-1], wheel, side * rect(1, 0.6 + 0.9 * k)) for k, wheel in enumerate(satellites)]
+        for centre, wheel, way in named:
+            c.label(centre + mm(wheel.diameter / 2) * way, self.numbers(wheel), away=way, height=3.5, gap=1.0)
+
+    def simple_end_view(self) -> list[tuple[complex, Any, complex]]:
+        """Pitch circles of the simple stage; centres, wheels and directions of their numbers."""
+        c, o, mm = self.canvas, self.front, self.mu.mm
+        other = complex(o.real, self.y(self.offset))
         c.dot(other, 1.2)
         near, far = reversed(self.pair) if self.before else self.pair
         c.circle(o, mm(near.diameter / 2), "thin")
         c.circle(other, mm(far.diameter / 2), "axis")
-        side = spokes[-1] / abs(spokes[-1])
-        gap = pi / 2 - pi / count  # between two satellites
-        named = [(o, one, rect(1, gap + 0.05)), (o, four, rect(1, gap - 0.12)), (o, near, rect(1, -0.45)),
-                 (other, far, rect(1, 0.5 if self.before else -0.5))]
-        named += [(o + spokes[-1], wheel, side * rect(1, 0.6 + 0.9 * k)) for k, wheel in enumerate(satellites)]
-        for centre, wheel, way in named:
-            c.label(centre + mm(wheel.diameter / 2) * way, self.numbers(wheel), away=way, height=3.5, gap=1.0)
+        return [(o, near, rect(1, -0.45)), (other, far, rect(1, 0.5 if self.before else -0.5))]
 
     def numbers(self, wheel: Any) -> str:
         """Numbers of a wheel of the first stage and of those in its place in the next ones, which are like it."""
@@ -283,59 +352,6 @@ class _Scheme:
             return str(wheel.number)
         return ", ".join(s.wheels[first.index(wheel)].number for s in self.stages)
 
-    # --- picture of velocities ----------------------------------------------------------------------------------
-
-    def velocities(self) -> None:
-        """Lines of the links over the heights of their points."""
-        c, plan = self.canvas, self.reducer.velocities
-        ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
-        low, high = (f([v.real for v in ends.values()]) for f in (min, max))
-        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, WIDEST)), tr("(m/s)/mm"))
-        c.scales["reducer-velocities"] = mu
-        whole = mu.mm(high - low)
-        zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
-        # As large as the title, if the picture's part of the place is wide enough.
-        laid = fitted(str(mu), self.picture.width, 5.0)
-        c.put(laid, complex((self.picture.x0 + self.picture.x1 - laid.width) / 2, self.picture.y1 - 3.0), 0.0, str(mu))
-
-        s = placed(c, plan, complex(zero, self.axis), (mu.mu, self.mu.mu))
-        bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
-        s.line("O", complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis", "axis")
-        self.heights(s, [name for name in ends if name[0].isupper()])
-        self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
-        self.lines(s)
-
-    def vectors(self, s: Stage, ends: Mapping[str, complex]) -> None:
-        """Velocities of the points, from the line of zero velocity to their ends."""
-        for name, value in ends.items():
-            s.vector(name.upper(), name)
-            way = 1 if value.real > 0 else -1
-            self.canvas.label(s.at(name), name, away=complex(way, 0.4), height=3.5, gap=1.2)
-
-    def lines(self, s: Stage) -> None:
-        """Line of each link through the ends of the velocities of all its points."""
-        plan = self.reducer.velocities
-        points = [step for step in plan if step.rule.gives == "point"]
-        for step in (step for step in plan if step.rule.gives == "direction"):
-            on = sorted((complex(p.value) for p in (*step.args, *(p for p in points if step in p.args))), key=lambda z: z.imag)
-            a, b = complex(s.frame(on[0])), complex(s.frame(on[-1]))
-            s.pen(step, "axis").ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
-            away = 1j * (b - a) * (-1 if (b - a).real > 0 else 1)
-            self.canvas.label(a + 0.62 * (b - a), _link(step.name), away=away, height=5, gap=1.2)
-
-    def heights(self, s: Stage, points: Sequence[str]) -> None:
-        """Points of the scheme carried over to the line of zero velocity; those of one height have one line."""
-        names: dict[float, list[str]] = {}
-        for name in points:
-            names.setdefault(round(s.at(name).imag, 1), []).append(name)
-        for group in names.values():
-            end = s.at(group[0])
-            s.line(group[0], complex(self.box.x0 + STUB, end.imag), end, "construction", "axis")
-            s.dot(group[0], 0.7, "main")
-            letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
-            self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
-
-
 def _link(name: str) -> str:
     """A link's name as it is written: carriers with an index, blocks of satellites with a dash."""
     return f"H_{name[1:]}" if name.startswith("H") and len(name) > 1 else name.replace("-", "–")
@@ -343,10 +359,14 @@ def _link(name: str) -> str:
 
 def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Plan of the speeds of rotation: rays through the pole parallel to the lines of the picture of velocities."""
-    reducer = project.reducer
-    canvas.of = "reducer-speeds"
-    picture: Scale = canvas.scales["reducer-velocities"]
-    heights: Scale = canvas.scales["reducer-scheme"]
+    plan_of_speeds(project.reducer, canvas, box, "reducer")
+
+
+def plan_of_speeds(reducer: Any, canvas: Canvas, box: Box, part: str) -> None:
+    """The same of the reducer or the train whose scheme is drawn."""
+    canvas.of = f"{part}-speeds"
+    picture: Scale = canvas.scales[f"{part}-velocities"]
+    heights: Scale = canvas.scales[f"{part}-scheme"]
     values = [float(n.value) for n in reducer.links.values()]
     low, high = min(0.0, *values), max(0.0, *values)
     room, tall = box.width - 30, box.height - 44
@@ -356,7 +376,7 @@ def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     distance = 30 / pi * picture.mu / (heights.mu * mu.mu)
     inner = canvas.title(box, tr("Plan of the speeds of rotation"), tr("{scale};  H = {distance} mm").format(
         scale=mu, distance=fixed(distance, 1)))
-    canvas.scales["reducer-speeds"] = picture
+    canvas.scales[f"{part}-speeds"] = picture
     plan = reducer.speeds(distance * heights.mu)
     zero = (inner.x0 + inner.x1) / 2 - mu.mm(low + high) / 2
     y = inner.y1 - max(14.0, (inner.height - distance) * 0.5)
@@ -406,7 +426,8 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     rows: list[tuple[str, ...]] = [
         (tr("Quantity"), tr("Value")),
         (tr("Ratio asked for"), fixed(chosen["u_asked"], 3)),
-        (tr("Simple stage × planetary part"), f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}"),
+        *([(tr("Simple stage × planetary part"), f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}")]
+          if r.simple else []),
         (tr("Ratio found; deviation"), f"{fixed(chosen['u'], 3)}; {fixed(chosen['u_deviation'] * 100, 2)} %"),
         (tr("Coaxiality, teeth"), f"{held['coaxiality_left']} = {held['coaxiality_right']}"),
         (tr("Assembly with q = {planets} (whole)").format(planets=held["q"]), number(held["assembly"], 6)),
@@ -414,10 +435,11 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         (tr("Efficiency: pair; planetary part; whole"), f"{number(chosen['eta_pair'])}; {fixed(chosen['eta_planetary'], 3)}; "
          f"{fixed(chosen['eta'], 3)}"),
     ]
-    first, second = r.simple
-    rows += [(tr("Wheels 1 and 2 of the gear meshing"),
-              tr("{one} (z = {teeth}) and {two} (z = {teeth2})").format(
-                  one=first.number, teeth=first.teeth, two=second.number, teeth2=second.teeth))]
+    if r.simple:
+        first, second = r.simple
+        rows += [(tr("Wheels 1 and 2 of the gear meshing"),
+                  tr("{one} (z = {teeth}) and {two} (z = {teeth2})").format(
+                      one=first.number, teeth=first.teeth, two=second.number, teeth2=second.teeth))]
     each = ceil(len(r.wheels) / ceil(len(r.wheels) / 4))
     for some in (r.wheels[i:i + each] for i in range(0, len(r.wheels), each)):
         names = "; ".join(f"d_{{{w.number}}}" for w in some)

@@ -12,6 +12,7 @@ from tmm_sheets.task.values import (
     Angle,
     CamDiagram,
     CamLaw,
+    CarrierName,
     Coordinate,
     Count,
     CrankAcceleration,
@@ -36,10 +37,12 @@ from tmm_sheets.task.values import (
     Sense,
     SheetName,
     Side,
+    SignedSpeed,
     Speed,
     Start,
     Teeth,
     Torque,
+    WheelName,
     diagram,
     in_range,
     or_word,
@@ -673,7 +676,9 @@ class ReducerTable(Table):
     """`single row`: sun, satellites, ring; `external-internal`: sun, blocks of two satellites, ring;
     `two external`, `two internal`: the carrier drives, blocks between two suns or two rings
     """
-    simple: Literal["before", "after"] = Field(description=marked('the simple stage stands "before" or "after" the planetary one'))
+    simple: Literal["before", "after", "none"] = Field(
+        description=marked('the simple stage stands "before" or "after" the planetary one, or there is "none"')
+    )
     stages: Literal[1, 2] = 1
     """2: two equal single rows"""
     driver: Literal["sun", "ring", "carrier"] | None = None
@@ -683,10 +688,11 @@ class ReducerTable(Table):
     input_speed: Speed = Field(description=marked('speed of the input, for example "1250 rpm"'))
     output_speed: Speed | None = Field(default=None, description=marked('speed of the output, for example "300 rpm"'))
     """this or `ratio`"""
-    teeth: dict[Name, Teeth] = Field(description=marked("tooth numbers that are given, for example { z5 = 12 }"))
-    """the pinion of the simple stage must be there, any other may"""
+    teeth: dict[Name, Teeth] = Field(default={}, description=marked("tooth numbers that are given, for example { z5 = 12 }"))
+    """the pinion of a simple stage must be there, any other may"""
     module: Length = Field(description=marked('module of the planetary stage, for example "5 mm"'))
-    simple_module: Length = Field(description=marked('module of the simple stage, for example "10 mm"'))
+    simple_module: Length | None = Field(default=None, description=marked('module of the simple stage, for example "10 mm"'))
+    """needed with a simple stage"""
     satellites: Annotated[int, whole(2)] = Field(description=marked("number of satellites, for example 3"))
     addendum: PositiveNumber = 1.0
     """coefficient ha*"""
@@ -716,6 +722,15 @@ class ReducerTable(Table):
         return self
 
     @model_validator(mode="after")
+    def _simple_stage_has_its_keys(self) -> Self:
+        own = [k for k in ("simple_module", "simple_ratio") if getattr(self, k) is not None]
+        if self.simple == "none" and own:
+            raise ValueError(tell('simple = "none" has no {keys}').format(keys=", ".join(own)))
+        if self.simple != "none" and self.simple_module is None:
+            raise ValueError(tell('expected "simple_module" too, for example simple_module = "10 mm"'))
+        return self
+
+    @model_validator(mode="after")
     def _driver_fits(self) -> Self:
         can = {"single row": ("sun", "ring"), "external-internal": ("sun",)}.get(self.scheme, ("carrier",))
         if self.driver is not None and self.driver not in can:
@@ -723,6 +738,58 @@ class ReducerTable(Table):
                     "carrier": marked('scheme = "{scheme}" is driven by the carrier'),
                     "ring": marked('scheme = "{scheme}" is driven by the sun or the ring')}  # fmt: skip
             raise ValueError(tell(said[can[-1]]).format(scheme=self.scheme))
+        return self
+
+
+class MeshTable(Table):
+    """``[[train.mesh]]``: two wheels in mesh, one of them about the main axis."""
+
+    sun: WheelName | None = None
+    """the wheel about the main axis, meshing outside"""
+    ring: WheelName | None = None
+    """the same, a ring about its planet"""
+    planet: WheelName = Field(description=marked('number of the other wheel, for example "2"'))
+    carrier: CarrierName | None = None
+    """the carrier of the planet, `"H"` or `"H1"`; left out: its axis stands still"""
+
+    @model_validator(mode="after")
+    def _sun_or_ring(self) -> Self:
+        if (self.sun is None) == (self.ring is None):
+            raise ValueError(tell("expected either sun or ring"))
+        if self.planet in (self.sun, self.ring):
+            raise ValueError(tell("a wheel does not mesh with itself"))
+        return self
+
+
+class TrainTable(Table):
+    """``[train]``: a train of gears of given tooth numbers, with speeds given at any of its links."""
+
+    module: Length = Field(description=marked('module, for example "2 mm"'))
+    teeth: dict[WheelName, Teeth] = Field(description=marked('tooth numbers of all wheels, for example { "1" = 20, "2" = 40 }'))
+    speeds: dict[Name, SignedSpeed] = Field(
+        description=marked('speeds that are given, for example { "1" = "900 rpm", "H" = "0 rpm" }')
+    )
+    """of as many wheels or carriers as the train has degrees of freedom, with signs; `"0 rpm"` for what is held"""
+    shafts: tuple[tuple[Name, ...], ...] = ()
+    """wheels and carriers that turn together, for example `[["2", "3"], ["H1", "4"]]`"""
+    satellites: Count = 3
+    """number of planets on each carrier, for the picture"""
+    mesh: tuple[MeshTable, ...] = Field(min_length=1, description=marked("the meshes, tables [[train.mesh]]"))
+
+    @model_validator(mode="after")
+    def _names_are_known(self) -> Self:
+        wheels = {name for m in self.mesh for name in (m.sun or m.ring, m.planet) if name}
+        if wheels != set(self.teeth):
+            raise ValueError(tell("expected teeth of the wheels {wheels}, not of {teeth}").format(
+                wheels=", ".join(sorted(wheels)), teeth=", ".join(sorted(self.teeth))))
+        known = wheels | {m.carrier for m in self.mesh if m.carrier}
+        for key, names in (("speeds", list(self.speeds)), ("shafts", [name for shaft in self.shafts for name in shaft])):
+            unknown = [name for name in names if name not in known]
+            if unknown:
+                raise ValueError(tell("{key} has {unknown}; here are {known}").format(
+                    key=key, unknown=", ".join(unknown), known=", ".join(sorted(known))))
+            if len(set(names)) < len(names):
+                raise ValueError(tell("{key}: a wheel or carrier stands there twice").format(key=key))
         return self
 
 

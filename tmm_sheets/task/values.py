@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
@@ -101,6 +102,7 @@ Angle = Annotated[float, si(units.ANGLE)]
 AcuteAngle = Annotated[float, si(units.ANGLE), _ACUTE]
 PhaseAngle = Annotated[float, si(units.ANGLE), _PHASE]
 Speed = Annotated[float, si(units.ANGULAR_VELOCITY), positive(marked("expected a speed of rotation greater than zero"))]
+SignedSpeed = Annotated[float, si(units.ANGULAR_VELOCITY)]
 CrankAcceleration = Annotated[float | Literal["flywheel"], si_or("flywheel", units.ANGULAR_ACCELERATION)]
 Start = Annotated[str | float, si_or("dead", units.ANGLE)]
 Gravity = Annotated[float, si(units.ACCELERATION), not_negative(marked("expected a gravity of zero or more"))]
@@ -127,6 +129,20 @@ def _name(value: Any) -> str:
     return value
 
 
+def _wheel(name: str) -> str:
+    """Number of a wheel in quotes."""
+    if not re.fullmatch("[1-9][0-9]*", name):
+        raise ValueError(tell('expected the number of a wheel in quotes, for example "1"'))
+    return name
+
+
+def _carrier(name: str) -> str:
+    """`"H"` or `"H1"`."""
+    if not re.fullmatch("H[0-9]*", name):
+        raise ValueError(tell('expected a carrier "H" or "H1"'))
+    return name
+
+
 def _direction(value: Any) -> float | str:
     """`"against motion"`, `"along motion"` or an angle."""
     if isinstance(value, str) and value in ("against motion", "along motion"):
@@ -147,6 +163,8 @@ def _through(value: Any) -> str | tuple[float, float]:
 
 
 Name = Annotated[str, BeforeValidator(_name)]
+WheelName = Annotated[str, AfterValidator(_wheel), BeforeValidator(_name)]
+CarrierName = Annotated[str, AfterValidator(_carrier), BeforeValidator(_name)]
 ForceDirection = Annotated[str | float, BeforeValidator(_direction)]
 GuidePoint = Annotated[str | tuple[float, float], BeforeValidator(_through)]
 

@@ -43,6 +43,7 @@ from tmm_sheets.task.schema import (
     SynthesisTable,
     Table,
     TitleBlockTable,
+    TrainTable,
 )
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber
@@ -75,6 +76,7 @@ class Variant(Table):
     flywheel: FlywheelTable | None = None
     gear: GearTable | None = None
     reducer: ReducerTable | None = None
+    train: TrainTable | None = None
     cam: CamTable | None = None
     scales: dict[Name, PositiveNumber] = Field(default={})
     """scale factors that the program is not to choose itself, by the names of plans in `protocol`, SI per mm:
@@ -139,6 +141,7 @@ class Variant(Table):
             "friction": self.friction is not None and self.loaded,
             self._flywheel_sheet: self.flywheel is not None,
             gears: bool(gears),
+            "train": self.train is not None,
             "cam": self.cam is not None,
         }
         return tuple(name for name, needed in called.items() if needed)
@@ -168,7 +171,7 @@ class Variant(Table):
         return _problem(self._file, self._lines, path, message, hint)
 
 
-_SECTIONS = ("flywheel", "gear", "reducer", "cam")
+_SECTIONS = ("flywheel", "gear", "reducer", "train", "cam")
 
 # --- reading --------------------------------------------------------------------------------------------------------
 
@@ -222,7 +225,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     problems += [_problem(file, lines, *found) for check in (check_names, check_cam, check_letters) for found in check(data)]
     if variant is not None and variant.project.sheets is None and not variant.sheets:
         problems.append(_problem(file, lines, ("project",), tell("there is nothing to draw"),
-                                 tell("add [crank] and [[group]] for a mechanism, [gear], [reducer] or [cam]")))
+                                 tell("add [crank] and [[group]] for a mechanism, [gear], [reducer], [train] or [cam]")))
     if problems or variant is None:
         raise BadInput(sorted(dict.fromkeys(problems), key=lambda p: (p.line or 0, p.field)))
     variant._file = file

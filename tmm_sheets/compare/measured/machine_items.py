@@ -107,7 +107,8 @@ def reducer(project: Project, found: Measurables) -> None:
         for name, told in results[group].items():
             scalar(found, tell("Reducer"), f"reducer-{name}", told.value, unit)
     for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q"):
-        scalar(found, tell("Reducer"), f"reducer-{name}", results[name].value, "")
+        if name in results:
+            scalar(found, tell("Reducer"), f"reducer-{name}", results[name].value, "")
 
 
 def cam(project: Project, found: Measurables) -> None:

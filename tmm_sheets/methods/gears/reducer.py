@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from tmm_sheets.construction.given import GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, Told
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import reducer_speeds
 from tmm_sheets.methods.gears.planetary import SCHEMES, Driver
 from tmm_sheets.methods.gears.reducer_formulas import carrier_of, conditions_plan, internal_pairs, kinematics_plan, ratio_plan
@@ -22,7 +23,7 @@ from tmm_sheets.methods.gears.tooth_search import (
     stage_numbers,
 )
 from tmm_sheets.numbers import number
-from tmm_sheets.words import tr
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import ReducerTable
@@ -107,15 +108,24 @@ class Reducer:
         return ReducerWheel(number, teeth, self.kinematics[f"d{number}"], self.kinematics[f"n{number}"])
 
     @cached_property
-    def simple(self) -> tuple[ReducerWheel, ReducerWheel]:
-        """Pinion and wheel of the simple stage."""
-        first, second = simple_numbers(self.data)
-        return self._wheel(first, self.chosen.pinion), self._wheel(second, self.chosen.wheel)
+    def simple(self) -> tuple[ReducerWheel, ...]:
+        """Pinion and wheel of the simple stage; none without one."""
+        teeth = self.chosen.pinion, self.chosen.wheel
+        return tuple(self._wheel(n, z) for n, z in zip(simple_numbers(self.data), teeth, strict=False))
 
     @property
     def simple_pair(self) -> tuple[tuple[Step, Step], GivenNumber, GivenNumber, GivenNumber]:
-        """Tooth numbers, module, addendum and clearance of the simple stage."""
+        """Tooth numbers, module, addendum and clearance of the simple stage.
+
+        Raises
+        ------
+        CannotBuild
+            when there is none.
+        """
         d, names = self.data, simple_numbers(self.data)
+        if d.simple_module is None:
+            raise CannotBuild(tell('gear.teeth: the reducer has no simple stage, "reducer" means its wheels'),
+                              tell("give tooth numbers and a module in [gear]"))
         return ((self.sets[0][f"z{names[0]}"], self.sets[0][f"z{names[1]}"]),
                 GivenNumber(d.simple_module, "reducer.simple_module", "m", "m"),
                 GivenNumber(d.addendum, "reducer.addendum", "h_a^{*}"), GivenNumber(d.clearance, "reducer.clearance", "c^{*}"))
@@ -134,7 +144,8 @@ class Reducer:
     @cached_property
     def velocities(self) -> Plan:
         """Picture of velocities."""
-        return reducer_speeds.picture(self.simple, self.stages, self.kinematics["a_simple"], self.data.simple == "before")
+        apart = self.kinematics["a_simple"] if self.simple else None
+        return reducer_speeds.picture(self.simple, self.stages, apart, self.data.simple == "before")
 
     def speeds(self, distance: float) -> Plan:
         """Plan of the speeds of rotation with its pole ``distance`` m over the line on which they are read."""
@@ -166,7 +177,7 @@ class Reducer:
     @property
     def small_ratio(self) -> bool:
         """Whether the ratio of the simple stage is less than is recommended for it."""
-        return self.told("u_simple") < self.scheme.least_simple
+        return bool(self.simple) and self.told("u_simple") < self.scheme.least_simple
 
     @cached_property
     def interferences(self) -> tuple[Interference, ...]:
@@ -190,7 +201,8 @@ class Reducer:
                  for n, of in zip(stage_numbers(self.data, k), stage_numbers(self.data, 0), strict=True)}
         return {
             "ratio_asked": Told(chosen["u_asked"]), "ratio": Told(chosen["u"]), "deviation": Told(chosen["u_deviation"]),
-            "ratio_planetary": Told(chosen["u_planetary"]), "ratio_simple": Told(chosen["u_simple"]),
+            "ratio_planetary": Told(chosen["u_planetary"]),
+            **({"ratio_simple": Told(chosen["u_simple"])} if self.simple else {}),
             "teeth": {f"z{w.number}": Told(chosen[f"z{first.get(w.number, w.number)}"]) for w in self.wheels},
             "q": Told(conditions["q"]),
             "efficiency": Told(chosen["eta"]), "efficiency_planetary": Told(chosen["eta_planetary"]),

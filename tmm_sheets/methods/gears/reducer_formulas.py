@@ -60,6 +60,8 @@ PLANETARY_RATIO = _formula("ratio of the planetary stages", lambda u, stages: np
                            marked("Ratio of the planetary part without its sign (stages: {1}): {name} = {value}."))
 RATIO = _formula("ratio of the reducer", lambda planetary, simple: planetary * simple, 2,
                  marked("Ratio of the reducer: {name} = {0} × {1} = {value}."))
+SAME_RATIO = _formula("ratio without a simple stage", lambda u: u, 1,
+                      marked("There is no simple stage; ratio of the reducer: {name} = {0} = {value}."))
 DEVIATION = _formula("deviation of the ratio", lambda u, asked: u / asked - 1, 2,
                      marked("Relative deviation from the ratio asked for: {name} = {0}/{1} − 1 = {value}."))
 PAIR_EFFICIENCY = _formula("efficiency of a pair", lambda eta: eta, 1, marked("Efficiency of one pair of wheels {name} = {value}."))
@@ -83,6 +85,8 @@ PLANETARY_EFFICIENCY = _formula("efficiency of the planetary stages", lambda eta
                                 marked("Efficiency of the planetary part (stages: {1}): {name} = {value}."))
 EFFICIENCY = _formula("efficiency of the reducer", lambda planetary, pair: planetary * pair, 2,
                       marked("Efficiency of the reducer: {name} = {0} × {1} = {value}."))
+SAME_EFFICIENCY = _formula("efficiency without a simple stage", lambda eta: eta, 1,
+                           marked("There is no simple stage; efficiency of the reducer: {name} = {0} = {value}."))
 DIAMETER = _formula("pitch diameter", lambda z, m: z * m, 2,
                     marked("Pitch diameter (there are no shifts) d = mz: {name} = {1} × {0} = {value} mm."), "mm")
 CARRIER_RADIUS = _formula("distance of the satellites' axes", lambda d1, sign, d2: (d1 + sign * d2) / 2, 3,
@@ -127,7 +131,7 @@ LEAST_RING = _formula("least ring without interference", planetary.least_ring, 2
                              "{name} = {value}."))
 
 
-def _said(rule: Rule, sign: int) -> str:
+def said_with_sign(rule: Rule, sign: int) -> str:
     """The rule's sentence with the sign of its pairs."""
     return tr(rule.wording).replace("±", "+" if sign > 0 else "−").replace("∓", "−" if sign > 0 else "+")
 
@@ -137,7 +141,7 @@ class Names:
 
     def __init__(self, data: ReducerTable) -> None:
         self.stage = tuple(f"z{n}" for n in stage_numbers(data, 0))
-        self.pinion, self.wheel = (f"z{n}" for n in simple_numbers(data))
+        self.simple = tuple(f"z{n}" for n in simple_numbers(data))
 
 
 def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chosen: Plan | None = None) -> Plan:
@@ -170,12 +174,15 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
     names = Names(data)
     stages = Given(data.stages, "reducer.stages", over="none")
     sign = scheme.signs[0] * scheme.signs[1]
-    simple = plan.add("u_simple", SIMPLE_RATIO, plan[names.wheel], plan[names.pinion], symbol=tr("u_{s}"))
-    inner = plan.add("i14", INNER_RATIO, sign, *(plan[z] for z in names.stage), symbol="i_{14}^{H}", say=_said(INNER_RATIO, sign))
+    if names.simple:
+        pinion, wheel = (plan[name] for name in names.simple)
+        plan.add("u_simple", SIMPLE_RATIO, wheel, pinion, symbol=tr("u_{s}"))
+    inner = plan.add("i14", INNER_RATIO, sign, *(plan[z] for z in names.stage), symbol="i_{14}^{H}",
+                     say=said_with_sign(INNER_RATIO, sign))
     driver = data.driver or scheme.drivers[0]
     stage = plan.add("u_stage", STAGE_RATIO[driver], inner, symbol=tr("u_{st}"))
     whole = plan.add("u_planetary", PLANETARY_RATIO, stage, stages, symbol=tr("u_{pl}"))
-    ratio = plan.add("u", RATIO, whole, simple)
+    ratio = plan.add("u", *((RATIO, whole, plan["u_simple"]) if names.simple else (SAME_RATIO, whole)))
     plan.add("u_deviation", DEVIATION, ratio, asked, symbol="Δu")
     if chosen is None:
         pair = plan.add("eta_pair", PAIR_EFFICIENCY, GivenNumber(data.pair_efficiency, "reducer.pair_efficiency"),
@@ -186,7 +193,7 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
     formula = planetary.efficiency_formula(planetary.inner_ratio(scheme.signs, teeth.stage), driver)
     one = plan.add("eta_stage", STAGE_EFFICIENCY[formula], inner, both, symbol=tr("η_{st}"))
     part = plan.add("eta_planetary", PLANETARY_EFFICIENCY, one, stages, symbol=tr("η_{pl}"))
-    plan.add("eta", EFFICIENCY, part, pair, symbol="η")
+    plan.add("eta", *((EFFICIENCY, part, pair) if names.simple else (SAME_EFFICIENCY, part)), symbol="η")
     return plan
 
 
@@ -196,21 +203,23 @@ def kinematics_plan(data: ReducerTable, ratio: Plan) -> Plan:
     first = stage_numbers(data, 0)
     teeth = [{n: ratio[f"z{of}"] for n, of in zip(stage_numbers(data, k), first, strict=True)} for k in range(data.stages)]
     simple = {n: ratio[f"z{n}"] for n in simple_numbers(data)}
-    module, simple_module = (plan.add(name, MODULE, GivenNumber(getattr(data, k), f"reducer.{k}", "m", "m"), symbol=symbol)
-                             for name, k, symbol in (("m", "module", "m"), ("m_simple", "simple_module", tr("m_{s}"))))
-    for wheels, m in (*((z, module) for z in teeth), (simple, simple_module)):
+    modules = [plan.add(name, MODULE, GivenNumber(value, f"reducer.{k}", "m", "m"), symbol=symbol)
+               for name, k, symbol in (("m", "module", "m"), ("m_simple", "simple_module", tr("m_{s}")))
+               if (value := getattr(data, k)) is not None]
+    for wheels, m in (*((z, modules[0]) for z in teeth), (simple, modules[-1])):
         for n, z in wheels.items():
             plan.add(f"d{n}", DIAMETER, z, m, symbol=f"d_{{{n}}}")
     scheme = planetary.SCHEMES[data.scheme]
     plan.add("a_H", CARRIER_RADIUS, plan[f"d{first[0]}"], scheme.signs[0], plan[f"d{first[1]}"], symbol="r_H",
-             say=_said(CARRIER_RADIUS, scheme.signs[0]))
-    plan.add("a_simple", AXES, *(plan[f"d{n}"] for n in simple), symbol="a")
+             say=said_with_sign(CARRIER_RADIUS, scheme.signs[0]))
+    if simple:
+        plan.add("a_simple", AXES, *(plan[f"d{n}"] for n in simple), symbol="a")
     speed: Step | None = None
     if data.simple == "before":
         speed = _simple_speeds(plan, data, simple, None)
     for k, of_stage in enumerate(teeth):
         speed = _stage_speeds(plan, data, ratio, of_stage, k, speed)
-    if data.simple != "before":
+    if data.simple == "after":
         _simple_speeds(plan, data, simple, speed)
     return plan
 
@@ -251,7 +260,7 @@ def _stage_speeds(plan: Plan, data: ReducerTable, ratio: Plan, z: Mapping[str, S
         carrier = plan.add(f"n{name}", CARRIER, speed, ratio["u_stage"], symbol=f"n_{{{name}}}")
         sun = plan[f"n{one}"]
     block = plan.add(f"n{two}", BLOCK, carrier, scheme.signs[0], sun, z[one], z[two], symbol=f"n_{{{two}}}",
-                     say=_said(BLOCK, scheme.signs[0]))
+                     say=said_with_sign(BLOCK, scheme.signs[0]))
     if three != two:
         plan.add(f"n{three}", SAME_SHAFT, block, symbol=f"n_{{{three}}}")
     return sun if driver == "carrier" else carrier
@@ -264,11 +273,11 @@ def conditions_plan(data: ReducerTable, ratio: Plan) -> Plan:
     s, z = scheme.signs, [ratio[name] for name in Names(data).stage]
     q = plan.add("q", SATELLITES, Given(data.satellites, "reducer.satellites", "q", over="none"))
     h = plan.add("ha", ADDENDUM, GivenNumber(data.addendum, "reducer.addendum"), symbol="h_a^{*}")
-    left, right = (plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b], say=_said(SIDE_OF_COAXIALITY, s[i]),
-                            symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
+    left, right = (plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b],
+                            say=said_with_sign(SIDE_OF_COAXIALITY, s[i]), symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
                    for i, (side, a, b) in enumerate((("left", 0, 1), ("right", 3, 2))))
     plan.add("coaxiality", COAXIALITY, left, right)
-    plan.add("assembly", ASSEMBLY, s[0] * s[1], q, *z, say=_said(ASSEMBLY, s[0] * s[1]))
+    plan.add("assembly", ASSEMBLY, s[0] * s[1], q, *z, say=said_with_sign(ASSEMBLY, s[0] * s[1]))
     between = plan.add("between", BETWEEN_AXES, left, q)
     width = plan.add("width", WIDTH, z[1], z[2], h)
     plan.add("neighbourhood", NEIGHBOURHOOD, between, width)

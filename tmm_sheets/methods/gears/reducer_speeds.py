@@ -62,11 +62,11 @@ READ = Rule("measure a speed of rotation", _read, ("point", "point", "point"), "
             marked("The segment {1}{0} gives the speed of rotation {name} = {value} rpm."), unit="1/min", source="003, 4")
 
 
-class _SpeedPicture:
+class SpeedPicture:
     """Adds the links one after another, in the order of the power."""
 
-    def __init__(self) -> None:
-        self.plan = Plan("reducer-velocities", tr("Picture of velocities"), "m/s")
+    def __init__(self, part: str = "reducer") -> None:
+        self.plan = Plan(f"{part}-velocities", tr("Picture of velocities"), "m/s")
         self.axis = self.plan.add("O", GIVEN, 0j)
         self.letters = iter(LETTERS)
 
@@ -88,7 +88,7 @@ class _SpeedPicture:
         velocity = self.plan.add(f"V{point.name}", VELOCITY_OF, n, point, centre, symbol=f"V_{point.name}")
         return self.plan.add(point.name.lower(), LAY_VELOCITY, point, velocity)
 
-    def simple(self, pair: tuple[ReducerWheel, ReducerWheel], distance: Step, before: bool, line: Step | None) -> Step:
+    def simple(self, pair: Sequence[ReducerWheel], distance: Step, before: bool, line: Step | None) -> Step:
         """The simple stage over the main axis, where it begins the train, or under it; gives the driven wheel's line."""
         one, two = pair
         up = 1 if before else -1
@@ -121,18 +121,18 @@ class _SpeedPicture:
         return self.line(one.number if stage.driver == "carrier" else stage.carrier, self.axis, velocity)
 
 
-def picture(simple: tuple[ReducerWheel, ReducerWheel], stages: Sequence[Stage], distance: Step, before: bool) -> Plan:
+def picture(simple: Sequence[ReducerWheel], stages: Sequence[Stage], distance: Step | None, before: bool) -> Plan:
     """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link.
 
-    ``distance`` is the step of the simple stage's centre distance (mm).
+    ``distance`` is the step of the simple stage's centre distance (mm), None without one.
 
     A link that is one with the link before it (a carrier with the next sun) has one line, under its first name.
     """
-    drawn = _SpeedPicture()
-    line = drawn.simple(simple, distance, before, None) if before else None
+    drawn = SpeedPicture()
+    line = drawn.simple(simple, distance, before, None) if before and distance else None
     for stage in stages:
         line = drawn.stage(stage, line)
-    if not before:
+    if distance and not before:
         drawn.simple(simple, distance, before, line)
     return drawn.plan
 
@@ -142,13 +142,13 @@ def links_of(velocities: Plan) -> tuple[str, ...]:
     return tuple(step.name for step in velocities if step.rule is RAY)
 
 
-def speeds(velocities: Plan, distance: float) -> Plan:
+def speeds(velocities: Plan, distance: float, part: str = "reducer") -> Plan:
     """Plan of the speeds of rotation, pole ``distance`` m under the line on which they are read.
 
     For each line of the picture the end of its ray, named like the link, and the speed ``n<link>`` in 1/min.
     """
-    plan = Plan("reducer-speeds", tr("Plan of the speeds of rotation"), "m/s")
-    given = Given(-1j * distance, "reducer.speeds.pole", "H", "m", over="none",
+    plan = Plan(f"{part}-speeds", tr("Plan of the speeds of rotation"), "m/s")
+    given = Given(-1j * distance, f"{part}.speeds.pole", "H", "m", over="none",
                   choice=tr("with it the scale factor μ_n is handy for counting"))
     pole = plan.add("P", GIVEN, given, say=tr("Mark the pole {name}."))
     origin = plan.add("0", GIVEN, 0j, say=tr("Above the pole mark the origin {name} on the axis of the speeds of rotation."))

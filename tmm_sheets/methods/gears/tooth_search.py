@@ -45,7 +45,8 @@ BOUNDS = (36, 48, 64, 90)
 
 @dataclass(frozen=True)
 class ToothSet:
-    """Tooth numbers of the planetary stage (z1 .. z4, in a single row z2 = z3) and of the simple one, and what they give.
+    """Tooth numbers of the planetary stage (z1 .. z4, in a single row z2 = z3) and of the simple one (1 and 1 without), and
+    results.
 
     ``deviation`` is relative, against the ratio asked for; ``height`` that of the whole reducer over its pitch circles, m.
     """
@@ -80,7 +81,10 @@ class _Task:
     def height(self, largest: Any, wheel: Any) -> Any:
         """Height of the reducer over its pitch circles, m: ``largest`` is the planetary stage's diameter in modules."""
         d = self.data
-        stage, one, two = largest * d.module / 2, self.pinion * d.simple_module / 2, wheel * d.simple_module / 2
+        stage = largest * d.module / 2
+        if d.simple_module is None:
+            return 2 * stage + 0 * wheel
+        one, two = self.pinion * d.simple_module / 2, wheel * d.simple_module / 2
         if d.simple == "before":
             return np.maximum(stage, two) + np.maximum(stage, two + 2 * one)
         return np.maximum(stage, one) + np.maximum(stage, one + 2 * two)
@@ -212,15 +216,18 @@ def stage_numbers(data: ReducerTable, k: int) -> tuple[str, str, str, str]:
     return str(first), str(first + 1), str(first + block), str(first + last)
 
 
-def simple_numbers(data: ReducerTable) -> tuple[str, str]:
-    """Numbers of pinion and wheel of the simple stage."""
+def simple_numbers(data: ReducerTable) -> tuple[str, ...]:
+    """Numbers of pinion and wheel of the simple stage; none without one."""
+    if data.simple == "none":
+        return ()
     first = 1 if data.simple == "before" else data.stages * SCHEMES[data.scheme].wheels + 1
     return str(first), str(first + 1)
 
 
 def named_teeth(data: ReducerTable, teeth: ToothSet) -> dict[str, int]:
     """Tooth numbers of a set by name, "z1" ..; equal stages are named once."""
-    out = dict(zip((*stage_numbers(data, 0), *simple_numbers(data)), (*teeth.stage, teeth.pinion, teeth.wheel), strict=True))
+    simple = dict(zip(simple_numbers(data), (teeth.pinion, teeth.wheel), strict=False))
+    out = dict(zip(stage_numbers(data, 0), teeth.stage, strict=True)) | simple
     return {f"z{n}": out[n] for n in sorted(out, key=int)}
 
 
@@ -234,6 +241,8 @@ def search(data: ReducerTable) -> list[ToothSet]:
     """
     scheme, asked = SCHEMES[data.scheme], asked_ratio(data)
     spans = [data.simple_ratio] if data.simple_ratio is not None else [(scheme.least_simple, GREATEST_SIMPLE)]
+    if data.simple == "none":
+        spans = [(1.0, 1.0)]
     if data.simple_ratio is None and data.simple == "before":
         spans.append((1.0, GREATEST_SIMPLE))  # an output nearly as fast as a planetary stage can make it needs that
     given, (pinion, wheel) = _given(data)
@@ -243,7 +252,8 @@ def search(data: ReducerTable) -> list[ToothSet]:
         found = _sets(task)
         if found:
             return found
-    hint = tell("give another pinion, number of satellites or range simple_ratio of the simple stage")
+    hint = (tell("give another number of satellites, or a simple stage") if data.simple == "none" else
+            tell("give another pinion, number of satellites or range simple_ratio of the simple stage"))
     nearest = tasks[-1].nearest()
     if nearest is None:
         raise CannotBuild(tell("reducer: no tooth set meets coaxiality, assembly and neighbourhood near the ratio {asked:.4g}"
@@ -256,7 +266,7 @@ def search(data: ReducerTable) -> list[ToothSet]:
 
 
 def _given(data: ReducerTable) -> tuple[Known, tuple[int, int | None]]:
-    """Given tooth numbers of wheels 1 to 4, of the pinion and of its wheel."""
+    """Given tooth numbers of wheels 1 to 4, of the pinion and of its wheel (1 and 1 without a simple stage)."""
     names = [f"z{n}" for n in stage_numbers(data, 0)]
     pair = [f"z{n}" for n in simple_numbers(data)]
     known = list(dict.fromkeys((*names, *pair)))
@@ -265,8 +275,10 @@ def _given(data: ReducerTable) -> tuple[Known, tuple[int, int | None]]:
         raise CannotBuild(tell("reducer: teeth has {unknown}; here are {known}").format(unknown=", ".join(unknown),
                                                                                        known=", ".join(known)),
                           tell("equal stages have the tooth numbers of the first") if data.stages > 1 else "")
+    one, two, three, four = (data.teeth.get(name) for name in names)
+    if not pair:
+        return (one, two, three, four), (1, 1)
     if pair[0] not in data.teeth:
         raise CannotBuild(tell("reducer: teeth has no {pinion}, the pinion of the simple stage").format(pinion=pair[0]),
                           tell("write teeth = {{ {pinion} = 12 }}").format(pinion=pair[0]))
-    one, two, three, four = (data.teeth.get(name) for name in names)
     return (one, two, three, four), (data.teeth[pair[0]], data.teeth.get(pair[1]))

@@ -1,0 +1,138 @@
+"""Trains of gears against the equations of Willis solved in fractions, whatever link the speeds are given of."""
+
+from fractions import Fraction
+
+import pytest
+
+from tests.project_files import project, read
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.sheets.sheet import composed
+
+
+def mesh(sun=None, planet="", carrier=None, ring=None):
+    return {k: v for k, v in (("sun", sun), ("ring", ring), ("planet", planet), ("carrier", carrier)) if v}
+
+
+def train(teeth, meshes, speeds, shafts=()):
+    return {"train": {"module": "2 mm", "teeth": teeth, "speeds": {k: f"{n} rpm" for k, n in speeds.items()},
+                      "shafts": [list(shaft) for shaft in shafts], "mesh": list(meshes)}}
+
+
+EPICYCLIC = {"1": 24, "2": 30, "3": 84}, (mesh("1", "2", "H"), mesh(ring="3", planet="2", carrier="H"))
+FERGUSON = {"1": 100, "2": 20, "3": 101, "4": 99}, (mesh("1", "2", "H"), mesh("3", "2", "H"), mesh("4", "2", "H"))
+TWO = ({"1": 20, "2": 30, "3": 80, "4": 18, "5": 32, "6": 82, "7": 24, "8": 48},
+       (mesh("1", "2", "H1"), mesh(ring="3", planet="2", carrier="H1"), mesh("4", "5", "H2"),
+        mesh(ring="6", planet="5", carrier="H2"), mesh("7", "8")))
+BLOCK = {"1": 30, "2": 24, "3": 20, "4": 34}, (mesh("1", "2", "H"), mesh("4", "3", "H"))
+BACK = {"1": 20, "2": 40, "3": 24, "4": 36}, (mesh("1", "2"), mesh("4", "3"))
+CLOSED = ({"1": 24, "2": 30, "3": 84, "4": 20, "5": 40, "6": 24, "7": 36},
+          (mesh("1", "2", "H"), mesh(ring="3", planet="2", carrier="H"), mesh("4", "5"), mesh("7", "6")))
+JOINED = [("1", "4"), ("5", "6"), ("7", "3")]
+CASES = {
+    "reducer without a simple stage": (*EPICYCLIC, {"1": 1500, "3": 0}, ()),
+    "ring drives": (*EPICYCLIC, {"3": 700, "1": 0}, ()),
+    "two inputs": (*EPICYCLIC, {"1": 960, "3": -400}, ()),
+    "carrier and ring": (*EPICYCLIC, {"H": 120, "3": 50}, ()),
+    "planet and sun": (*EPICYCLIC, {"2": -500, "1": 900}, ()),
+    "planet and carrier": (*EPICYCLIC, {"2": -500, "H": 200}, ()),
+    "all turn as one": (*EPICYCLIC, {"1": 300, "3": 300}, ()),
+    "Ferguson": (*FERGUSON, {"1": 0, "H": 60}, ()),
+    "Ferguson between its wheels": (*FERGUSON, {"3": 1, "4": -1}, ()),
+    "two stages and a pair": (*TWO, {"8": -27, "3": 0, "6": 0}, (("H1", "4"), ("H2", "7"))),
+    "block of planets": (*BLOCK, {"1": 0, "H": 1000}, (("2", "3"),)),
+    "back shaft": (*BACK, {"4": 100}, (("2", "3"),)),
+    "closed": (*CLOSED, {"H": 100}, JOINED),
+    "closed, from its sun": (*CLOSED, {"1": 100}, JOINED),
+}
+
+
+def truth(teeth, meshes, speeds, shafts):
+    """Speeds of all wheels and carriers by elimination in fractions."""
+    names = [*teeth, *dict.fromkeys(m["carrier"] for m in meshes if "carrier" in m)]
+    rows = []
+    for m in meshes:
+        row = dict.fromkeys(names, Fraction(0))
+        central, sign = (m["sun"], 1) if "sun" in m else (m["ring"], -1)
+        row[central] += teeth[central]
+        row[m["planet"]] += sign * teeth[m["planet"]]
+        if "carrier" in m:
+            row[m["carrier"]] -= teeth[central] + sign * teeth[m["planet"]]
+        rows.append([*row.values(), Fraction(0)])
+    rows += [[Fraction((k == a) - (k == b)) for k in names] + [Fraction(0)] for a, b in shafts]
+    rows += [[Fraction(int(k == name)) for k in names] + [Fraction(n)] for name, n in speeds.items()]
+    for column in range(len(names)):
+        pivot = next(row for row in rows[column:] if row[column])
+        rows.remove(pivot)
+        pivot = [v / pivot[column] for v in pivot]
+        rows = [[v - row[column] * p for v, p in zip(row, pivot, strict=True)] for row in rows]
+        rows.insert(column, pivot)
+    return {name: float(row[-1]) for name, row in zip(names, rows, strict=False)}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_speeds_of_all_links(case):
+    """By the recorded formulas and as they are read from the plan of speeds behind the picture of velocities."""
+    made = project(train(*CASES[case])).train
+    found = {name[1:]: told.value for name, told in made.results()["speeds_rpm"].items()}
+    exact = truth(*CASES[case])
+    assert found == pytest.approx(exact, rel=1e-10, abs=1e-9)
+    drawn = made.speeds(0.05)
+    for link, step in made.links.items():
+        assert drawn[f"n{link}"].value == pytest.approx(exact[link], rel=1e-9, abs=1e-8), link
+        assert step.rule.tree(len(step.args)) is not None
+
+
+def test_ferguson_paradox():
+    """Wheels of 101 and 99 teeth on the planet of a standing one of 100: one creeps forwards, the other backwards."""
+    made = project(train(*CASES["Ferguson"])).train
+    assert [made.kinematics[f"n{k}"].value for k in "34"] == pytest.approx([60 / 101, -60 / 99], rel=1e-11)
+    assert made.warnings == ("для ступени с водилом H нужны смещения: её межосевые расстояния отличаются на 1 m",)
+
+
+@pytest.mark.parametrize(("case", "speeds", "message"), [
+    ("two inputs", {"1": 960}, "degrees of freedom: 2; of so many links speeds are needed, given are 1"),
+    ("two inputs", {"1": 960, "3": 0, "H": 9}, "degrees of freedom: 2; .* given are 3"),
+    ("closed", {"H": 1, "1": 2}, "degrees of freedom: 1; .* given are 2"),
+    ("two stages and a pair", {"1": 1500, "2": 3, "3": 0}, "hang together"),
+    ("alike", {"1": 0, "3": 0}, "hang together"),
+])
+def test_speeds_that_do_not_tell(case, speeds, message):
+    alike = {"1": 100, "2": 20, "3": 100}, FERGUSON[1][:2], {}, ()
+    teeth, meshes, _, shafts = CASES.get(case, alike)
+    with pytest.raises(CannotBuild, match=message):
+        _ = project(train(teeth, meshes, speeds, shafts)).train
+
+
+@pytest.mark.parametrize(("changes", "message"), [
+    ({"train.teeth.3": 90}, "no common axis"), ({"train.teeth.3": 30}, "ring 3 has no more teeth"),
+    ({"train.shafts": [["1", "H"]]}, "degrees of freedom: 1|nothing can turn"),
+])
+def test_trains_that_cannot_be(changes, message):
+    with pytest.raises(CannotBuild, match=message):
+        _ = project(train(*CASES["two inputs"]), changes).train
+
+
+@pytest.mark.parametrize(("changes", "message"), [
+    ({"train.teeth.9": 30}, "expected teeth of the wheels 1, 2, 3, not of 1, 2, 3, 9"), ({"train.speeds.7": "1 rpm"}, "speeds has "
+                                                                                                                      "7"),
+    ({"train.shafts": [["1", "5"]]}, "shafts has 5; here are 1, 2, 3, H"), ({"train.shafts": [["1", "1"]]}, "stands there twice"),
+    ({"train.mesh[1].ring": "3"}, "either sun or ring"), ({"train.mesh[1].carrier": "K"}, 'a carrier "H" or "H1"'),
+    ({"train.mesh[1].planet": "x"}, "number of a wheel"), ({"train.mesh[1].planet": "1"}, "does not mesh with itself"),
+    ({"train.speeds.1": "3 mm"}, "unit of length"),
+])
+def test_bad_tables(changes, message):
+    with pytest.raises(BadInput, match=message):
+        read(train(*CASES["two inputs"]), changes)
+
+
+def test_pair_off_the_main_axis_is_refused():
+    teeth, meshes = {"1": 20, "2": 40, "3": 30, "4": 30}, (mesh("1", "2"), mesh("3", "4"))
+    with pytest.raises(CannotBuild, match="wheel 3 of the pair 3–4 is not on the main axis"):
+        _ = project(train(teeth, meshes, {"1": 100}, [("2", "3")])).train.velocities
+
+
+@pytest.mark.parametrize("case", ["two stages and a pair", "closed"])
+def test_sheet(case):
+    p = project(train(*CASES[case]))
+    assert p.sheets == ("train",)
+    assert composed(p, 1).crowded == ()

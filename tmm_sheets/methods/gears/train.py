@@ -1,0 +1,205 @@
+"""A train of gears with speeds given at any of its links: simple pairs, planetary stages, two moving inputs, Ferguson's paradox.
+
+Every mesh gives an equation of Willis, z_c(n_c - n_H) ± z_p(n_p - n_H) = 0 with + for an external one; H is the frame for a pair
+whose axes stand still. One unknown at a time is found from them, by formulas and graphically in the picture of velocities. Tooth
+numbers are given; where the reference distances of a stage differ, its pitch points are the working ones of one common distance,
+for which
+shifts are needed. Diameters in millimetres, speeds in 1/min.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Step, Told
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.gears import reducer_speeds
+from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, Picture, distance_of
+from tmm_sheets.numbers import number
+from tmm_sheets.words import tell, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.schema import TrainTable
+
+FARTHEST = 2.0
+"""Teeth by which the sums of tooth numbers of one stage may differ: so much can shifts bridge."""
+
+
+class Train:
+    """A train of gears: its meshes, the speeds of all links, the picture of velocities.
+
+    Plans: ``train-kinematics``, ``train-velocities``, ``train-speeds``.
+    """
+
+    def __init__(self, data: TrainTable) -> None:
+        self.data = data
+        self.meshes = tuple(Mesh(m.sun or m.ring or "", m.planet, m.carrier or FRAME, 1 if m.sun else -1) for m in data.mesh)
+        self.shafts = {name: shaft[0] for shaft in data.shafts for name in shaft}
+        _check_speeds(self)
+        _check_distances(self)
+        self.axes = dict(heights(self))
+        """Heights of the axes of all links over the main one, m."""
+
+    def link(self, name: str) -> str:
+        """The link a wheel or carrier belongs to, by its first name."""
+        return self.shafts.get(name, name)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All wheels by number, then the carriers."""
+        found = dict.fromkeys(name for m in self.meshes for name in (m.central, m.planet, m.carrier) if name)
+        return tuple(sorted(found, key=lambda name: (not name.isdigit(), int(name) if name.isdigit() else 0, name)))
+
+    @cached_property
+    def equations(self) -> tuple[list[str], npt.NDArray[np.float64]]:
+        """Links, and the equations of Willis, one row for each mesh."""
+        links = list(dict.fromkeys(map(self.link, self.names)))
+        rows = np.zeros((len(self.meshes), len(links)))
+        for row, m in zip(rows, self.meshes, strict=True):
+            zc, zp = (self.data.teeth[name] for name in (m.central, m.planet))
+            for name, share in ((m.central, zc), (m.planet, m.sign * zp), (m.carrier, -(zc + m.sign * zp))):
+                if name:
+                    row[links.index(self.link(name))] += share
+        return links, rows
+
+    @cached_property
+    def kinematics(self) -> Plan:
+        """Tooth numbers, distances, pitch diameters and the speeds ``n1`` .. of all wheels and carriers."""
+        return Kinematics(self).plan
+
+    @cached_property
+    def velocities(self) -> Plan:
+        """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link."""
+        return Picture(self).plan
+
+    def speeds(self, distance: float) -> Plan:
+        """Plan of the speeds of rotation with its pole ``distance`` m over the line on which they are read."""
+        if distance not in self._speed_plans:
+            self._speed_plans[distance] = reducer_speeds.speeds(self.velocities, distance, "train")
+        return self._speed_plans[distance]
+
+    @cached_property
+    def _speed_plans(self) -> dict[float, Plan]:
+        return {}
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """Plans by name in the order of construction; that of the speeds as far as it was drawn."""
+        return {plan.name: plan for plan in (self.kinematics, self.velocities, *self._speed_plans.values())}
+
+    @property
+    def links(self) -> dict[str, Step]:
+        """Speed of every turning link, 1/min, by its first name."""
+        return {name: self.kinematics[f"n{name}"] for name in self.names if self.link(name) == name}
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Wheels and carriers whose speeds are given."""
+        return tuple(self.data.speeds)
+
+    def stands(self, name: str) -> bool:
+        """True for what is held in the frame."""
+        return float(self.kinematics[f"n{name}"].value) == 0 and self.link(name) in map(self.link, self.given)
+
+    def radius(self, name: str, mesh: Mesh) -> float:
+        """Pitch radius of a wheel in a mesh, m."""
+        central = float(self.kinematics[f"d{mesh.central}-{mesh.planet}"].value) / 2e3
+        return central if name == mesh.central else abs(self.distance(mesh) - central)
+
+    def distance(self, mesh: Mesh) -> float:
+        """Distance of the axes of a mesh, m."""
+        return float(self.kinematics[distance_of(self, mesh)].value) / 1e3
+
+    def height(self, name: str) -> float:
+        """Height of the axis of a wheel or carrier over the main one, m; of a planet on a carrier that of one over it."""
+        on = next((m for m in self.meshes if m.carrier and self.link(m.planet) == self.link(name)), None)
+        return self.distance(on) if on else self.axes[self.link(name)]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Remarks for the sheet."""
+        out = []
+        for carrier, sums in _sums(self).items():
+            if carrier and len(set(sums)) > 1:
+                out.append(tr("the stage with the carrier {carrier} needs shifts: its distances differ by {teeth} m").format(
+                    carrier=carrier, teeth=number((max(sums) - min(sums)) / 2)))
+        return tuple(out)
+
+    def results(self) -> dict[str, Any]:
+        """The ``train`` section of ``solve --json``: speeds in 1/min, distances in millimetres."""
+        plan = self.kinematics
+        return {"teeth": {name: Told(plan[f"z{name}"]) for name in self.names if name.isdigit()},
+                "distances": {step.name: Told(step) for step in plan if step.rule is DISTANCE},
+                "speeds_rpm": {f"n{name}": Told(plan[f"n{name}"]) for name in self.names}}
+
+
+def _check_speeds(train: Train) -> None:
+    """As many speeds must be given as the train has degrees of freedom, and of links that tell the others."""
+    links, rows = train.equations
+    free = len(links) - int(np.linalg.matrix_rank(rows))
+    told = list(dict.fromkeys(map(train.link, train.given)))
+    if free < 1:
+        raise CannotBuild(tell("train: nothing can turn, the meshes lock one another"), tell("look at shafts and carriers"))
+    if len(told) != free or len(train.given) != len(told):
+        raise CannotBuild(tell("train: degrees of freedom: {free}; of so many links speeds are needed, given are {given}").format(
+            free=free, given=len(train.given)), tell('a link that is held has the speed "0 rpm"'))
+    fixed = np.eye(len(links))[[links.index(name) for name in told]]
+    if np.linalg.matrix_rank(np.vstack((rows, fixed))) < len(links):
+        raise CannotBuild(tell("train: the speeds of {links} hang together and do not tell those of the others").format(
+            links=", ".join(train.given)), tell("give the speed of another link"))
+
+
+def _sums(train: Train) -> dict[str, list[int]]:
+    """z_c ± z_p of the meshes of each carrier."""
+    found: dict[str, list[int]] = {}
+    for m in train.meshes:
+        found.setdefault(m.carrier, []).append(train.data.teeth[m.central] + m.sign * train.data.teeth[m.planet])
+    return found
+
+
+def _check_distances(train: Train) -> None:
+    for m in train.meshes:
+        if m.sign < 0 and train.data.teeth[m.central] <= train.data.teeth[m.planet]:
+            raise CannotBuild(tell("train: ring {ring} has no more teeth than planet "
+                                   "{planet}").format(ring=m.central, planet=m.planet),
+                              tell("a ring is the larger wheel"))
+    for carrier, sums in _sums(train).items():
+        if carrier and max(sums) - min(sums) > FARTHEST:
+            raise CannotBuild(tell("train: the central wheels of carrier {carrier} have no common axis: z_c ± z_p are "
+                                   "{sums}").format(
+                carrier=carrier, sums=", ".join(map(str, sums))), tell("shifts bridge two teeth at most"))
+
+
+def heights(train: Train) -> Iterator[tuple[str, float]]:
+    """Heights of the axes of all links over the main one, m; planets on carriers are left out.
+
+    The main axis is that of the carriers and their central wheels, without any that of the first wheel. Pairs beside it stand over
+    it where they lead in first, under it else.
+
+    Raises
+    ------
+    CannotBuild
+        when a pair has no wheel on the main axis.
+    """
+    on = [m for m in train.meshes if m.carrier]
+    found = {train.link(name): 0.0 for m in on for name in (m.central, m.carrier)} or {train.link(train.meshes[0].central): 0.0}
+    for m in (m for m in train.meshes if not m.carrier):
+        central, planet, apart = train.link(m.central), train.link(m.planet), train.distance(m)
+        if central not in found and abs(abs(found.get(planet, 0.0)) - apart) < 1e-9 * apart:
+            found[central] = 0.0
+        if found.get(central) != 0.0 or found.get(planet) == 0.0:
+            raise CannotBuild(tell("train: wheel {wheel} of the pair {wheel}–{mate} is not on the main axis").format(
+                wheel=m.central, mate=m.planet), tell("write the wheel on the main axis as sun or ring, in the order of the train"))
+        found.setdefault(planet, apart * (1 if m is train.meshes[0] else -1))
+    yield from found.items()
+
+
+def train(data: TrainTable) -> Train:
+    """Train of a project; raises :class:`CannotBuild` with what its speeds or tooth numbers lack."""
+    return Train(data)

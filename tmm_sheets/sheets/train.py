@@ -1,0 +1,209 @@
+"""Views of a train of gears: scheme with the picture of velocities, plan of speeds, table."""
+
+from __future__ import annotations
+
+from cmath import rect
+from math import pi
+from typing import Any
+
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import fitted
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import number
+from tmm_sheets.sheets.frame import ratio, standard
+from tmm_sheets.sheets.gear_marks import ruled_table
+from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, NARROWEST, STUB, SchemeViews, plan_of_speeds
+from tmm_sheets.words import tr
+
+SLEEVE = 6.0
+"""Length of the sleeve of a wheel about the main axis, mm."""
+
+
+def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Axial view, picture of velocities and end view side by side on one main axis, to one scale."""
+    canvas.of = "train-velocities"
+    _Scheme(project.train, canvas, box).draw()
+
+
+def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Plan of the speeds of rotation: rays through the pole parallel to the lines of the picture of velocities."""
+    plan_of_speeds(project.train, canvas, box, "train")
+
+
+def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Tooth numbers and speeds of all wheels and carriers, and what was given."""
+    train = project.train
+    plan = train.kinematics
+    rows: list[tuple[str, ...]] = [(tr("Link"), "z", "n")]
+    for name in train.names:
+        teeth = str(int(plan[f"z{name}"].value)) if name.isdigit() else "–"
+        n = number(float(plan[f"n{name}"].value))
+        rows.append((f"{name} — {tr('given')}" if name in train.given else name, teeth, n))
+    inner = canvas.title(box, tr("Wheels and speeds of rotation, rpm"))
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(train.warnings), box.x1, inner.y1), rows, (30.0, 40.0), 8.0)
+    for k, text in enumerate(train.warnings):
+        said = f"{text[0].upper()}{text[1:]}."
+        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 6 - 6 * k), 0.0, said)
+
+
+class _Scheme(SchemeViews):
+    """The views of a train: each mesh has a column of its own, wheels on one planet shaft are joined by a sleeve."""
+
+    def __init__(self, train: Any, canvas: Canvas, box: Box) -> None:
+        self.reducer = self.train = train
+        self.canvas = canvas
+        ends = [(self.height(name) + side * train.radius(name, m)) for m in train.meshes
+                for name in (m.central, m.planet) for side in (1, -1)]
+        self.top, self.bottom = max(ends), -min(ends)
+        self.side = max(train.radius(m.central, m) for m in train.meshes)
+        self.side = max(self.side, *(train.distance(m) + train.radius(m.planet, m) for m in train.meshes if m.carrier), 0.0)
+        columns = len(train.meshes) + len({m.carrier for m in train.meshes if m.carrier})
+        self.width = columns * COLUMN + 2 * STUB
+        inner = box.inset(0, 0, 0, 18)
+        beside = inner.width - self.width - NARROWEST - 24
+        self.mu = standard((self.top + self.bottom, inner.height - 30), (2 * self.side, beside))
+        canvas.scales["train-scheme"] = self.mu
+        self.box = canvas.title(box, tr("Scheme of the train, picture of velocities and end view"), ratio(self.mu))
+        spare = self.box.height - (self.top + self.bottom) / self.mu.mu
+        self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
+        self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
+        self.picture = Box(self.box.x0 + self.width + 12, self.box.y0, self.front.real - self.side / self.mu.mu - 12,
+                           self.box.y1 - 8)
+
+    def height(self, name: str) -> float:
+        """Height of a wheel's axis over the main one, m."""
+        found = self.train.height(name)
+        return float(found)
+
+    def draw(self) -> None:
+        with self.canvas.as_role("symbol"):
+            self.axial()
+            self.end_view()
+        self.velocities()
+
+    def axial(self) -> None:
+        c, train = self.canvas, self.train
+        c.line(complex(self.box.x0 + 1, self.axis), complex(self.box.x0 + self.width + 2, self.axis), "centre")
+        x = self.box.x0 + STUB
+        self.columns: dict[str, list[float]] = {}
+        for carrier in dict.fromkeys(m.carrier for m in train.meshes):
+            of = [m for m in train.meshes if m.carrier == carrier]
+            if carrier:
+                self.arm(carrier, of[0], x)
+                x += COLUMN
+            first = x
+            for m in of:
+                self.central(m, x)
+                self.planet(m, x)
+                for name in (m.central, m.planet):
+                    self.columns.setdefault(name, []).append(x)
+                x += COLUMN
+            if carrier:
+                height = self.y(train.distance(of[0]))
+                c.line(complex(first - COLUMN, height), complex(x - COLUMN + FACE, height), "main")
+        self.joined()
+
+    def joined(self) -> None:
+        """Shafts and sleeves of what turns together: on the main axis a shaft, planets on a carrier by a sleeve."""
+        for shaft in (*self.train.data.shafts, *([m.planet] for m in self.train.meshes)):
+            columns = [x for name in shaft for x in self.columns.get(name, ())]
+            height = self.y(self.height(shaft[-1]))
+            free = any(m.carrier and m.planet in shaft for m in self.train.meshes)
+            for side in (-1, 1) if free else (0,):
+                if max(columns) > min(columns):
+                    self.canvas.line(complex(min(columns), height + side * HUB), complex(max(columns), height + side * HUB), "main")
+        for name, columns in self.columns.items():
+            for m in self.train.meshes:
+                if name == m.planet and len(columns) > 1:  # one wide wheel
+                    for side in (-1, 1):
+                        rim = self.y(self.height(name) + side * self.train.radius(name, m))
+                        self.canvas.line(complex(columns[0], rim), complex(columns[-1], rim), "main")
+
+    def on_shaft(self, name: str) -> bool:
+        """True for a wheel that turns with another one or with a carrier."""
+        return any(name in shaft for shaft in self.train.data.shafts)
+
+    def planet(self, m: Any, x: float) -> None:
+        """The planet of a mesh on its axis."""
+        again = m.planet in self.columns
+        wheel = _Wheel("" if again else m.planet, 2 * self.train.radius(m.planet, m))
+        up = self.height(m.planet)
+        self.wheel(wheel, x, up, label=1 if up >= 0 else -1, free=bool(m.carrier))
+        if not m.carrier:
+            self.canvas.line(complex(x - SLEEVE, self.y(up)), complex(x + SLEEVE, self.y(up)), "main")
+            self.bearing(x - SLEEVE, self.y(up))
+
+    def central(self, m: Any, x: float) -> None:
+        """The wheel about the main axis with a sleeve or on its shaft, or held in the frame."""
+        r, stands, free = self.train.radius(m.central, m), self.train.stands(m.central), not self.on_shaft(m.central)
+        if m.sign < 0:
+            self.ring(m.central, r, x, stands)
+            return
+        self.wheel(_Wheel(m.central, 2 * r), x, 0.0, label=-1, free=free)
+        if stands:
+            for side in (-1, 1):
+                a, b = (complex(x + end * FACE / 2, self.axis + side * HUB) for end in (-1, 1))
+                self.canvas.hatch(a, b, side, depth=2.0, step=2.0)
+
+    def ring(self, name: str, r: float, x: float, stands: bool) -> None:
+        """A ring: its rim held in the frame, or joined by a disc beside the planets to a sleeve about the main axis."""
+        c, web = self.canvas, x + FACE + 3
+        for side in (1, -1):
+            rim = complex(x, self.y(side * r))
+            c.line(rim - FACE / 2, rim + FACE / 2, "main")
+            if stands:
+                out = rim + 6j * side
+                c.line(rim, out, "main")
+                c.line(out - 5, out + 5, "main")
+                c.hatch(out - 5, out + 5, side)
+                continue
+            hub = complex(web, self.axis + side * HUB)
+            c.line(rim + FACE / 2, complex(web, rim.imag), "main")
+            c.line(complex(web, rim.imag), hub, "main")
+            c.line(hub - FACE / 2, hub + FACE / 2, "main")
+        c.label(complex(x - FACE / 2, self.y(-r)), name, away=-1 - 0.6j, height=5, gap=1.2)
+
+    def arm(self, carrier: str, m: Any, x: float) -> None:
+        """The carrier's arm from the main axis to the planets'."""
+        self.columns[carrier] = [x]
+        c, top = self.canvas, self.y(self.train.distance(m))
+        c.line(complex(x - STUB, self.axis), complex(x, self.axis), "main")
+        c.line(complex(x, self.axis), complex(x, top), "main")
+        self.bearing(x - STUB / 2, self.axis)
+        if self.train.stands(carrier):
+            c.hatch(complex(x - STUB, self.axis - 4), complex(x - STUB, self.axis + 4), 1, depth=2.0, step=2.0)
+        name = f"H_{carrier[1:]}" if len(carrier) > 1 else "H"
+        c.label(complex(x, (self.axis + top) / 2), name, away=1, height=5, gap=1.2)
+
+    def end_view(self) -> None:
+        """Pitch circles of all wheels, the planets of a carrier at equal angles."""
+        c, o, mm, train = self.canvas, self.front, self.mu.mm, self.train
+        reach = mm(self.side) + 4
+        c.line(o - reach, o + reach, "centre")
+        c.line(complex(o.real, self.y(-self.bottom) - 4), complex(o.real, self.y(self.top) + 4), "centre")
+        c.dot(o, 1.2)
+        named: list[tuple[complex, float, str]] = []
+        for m in train.meshes:
+            named.append((o, mm(train.radius(m.central, m)), m.central))
+            c.circle(o, named[-1][1], "main" if train.stands(m.central) else "axis")
+            count = train.data.satellites if m.carrier else 1
+            up = mm(self.height(m.planet))
+            for k in range(count):
+                at = o + rect(up, pi / 2 + 2 * pi * k / count)
+                if m.carrier:
+                    c.line(o, at, "main")
+                c.circle(at, mm(train.radius(m.planet, m)), "axis")
+                c.dot(at, 1.0)
+            named.append((at, mm(train.radius(m.planet, m)), m.planet))
+        for k, (centre, radius, name) in enumerate({name: (centre, radius, name) for centre, radius, name in named}.values()):
+            way = rect(1, pi / 2 - (0.55 + 0.35 * (k // 2)) if centre == o else -0.4 - 0.5 * (k // 2))
+            c.label(centre + radius * way, name, away=way, height=3.5, gap=1.0)
+
+
+class _Wheel:
+    """A wheel as :meth:`SchemeViews.wheel` draws it: number, pitch diameter in m."""
+
+    def __init__(self, number: str, diameter: float) -> None:
+        self.number, self.diameter = number, diameter
+
+
