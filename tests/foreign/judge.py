@@ -167,7 +167,8 @@ def _best(score: NDArray[np.float32], reach: int) -> tuple[float, tuple[int, int
 def _tells(piece: NDArray[np.float32]) -> bool:
     """Whether a piece has enough lines, in more than one direction and not all in one corner, to say where it lies."""
     half = len(piece) // 2
-    quarters = [piece[rows, columns].mean() for rows in (slice(half), slice(half, None)) for columns in (slice(half), slice(half, None))]
+    halves = slice(half), slice(half, None)
+    quarters = [piece[rows, columns].mean() for rows in halves for columns in halves]
     if piece.mean() < 0.01 or sorted(quarters)[1] < 0.002:  # the tip of a line that reaches in
         return False
     dx, dy = cv2.Sobel(piece, cv2.CV_32F, 1, 0), cv2.Sobel(piece, cv2.CV_32F, 0, 1)

@@ -23,8 +23,8 @@ from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
 NOT_READ = marked(
-    "Not read, so not judged: what lettering says (numbers in tables, letters, the title block), heads of arrows, dots, and "
-    "whatever has less than 6 mm of line."
+    "Not read, so not judged: what lettering says (numbers in tables, letters, the title block), heads of arrows among other "
+    "lines, dots, and whatever has less than 6 mm of line."
 )
 
 
