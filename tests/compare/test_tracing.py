@@ -135,3 +135,40 @@ def test_a_soft_picture_has_a_wider_tolerance():
     assert found[0].deviation == pytest.approx(0.5, abs=0.05)
     assert judge(found[0], 0.25, 0.15).verdict == "amber"
     assert judge(found[0], 0.25, 0.15, soft=True).verdict == "green"
+
+
+def arrow(number, a, b):
+    """A vector, its head 5 mm long and 1.8 mm wide."""
+    u = (b - a) / abs(b - a)
+    head = b - 5 * u + 0.9j * u, b - 5 * u - 0.9j * u
+    return Element(number, VIEW, "", "line", np.array([a, b]), "vector", fills=(np.array([b, *head]),))
+
+
+def fill_head(ink, at, way):
+    """A head drawn by hand at a place: somewhat smaller and not quite straight."""
+    u = np.exp(1j * (way + 0.05))
+    corners = at + np.array([0, -3.6 * u + 0.6j * u, -3.6 * u - 0.65j * u])
+    pixels = np.rint(16 * np.stack((corners.real * SCALE - 0.5, (594 - corners.imag) * SCALE - 0.5), 1)).astype(np.int32)
+    cv2.fillPoly(ink, [pixels], 180, cv2.LINE_AA, 4)
+
+
+@pytest.mark.parametrize(("head", "verdict", "said"), [
+    ("there", "green", "within a pencil's reach"), ("absent", "amber", "no arrow head here"),
+    ("reversed", "red", "the arrow points the other way"),
+])
+def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
+    a, b = 300 + 300j, 330 + 320j
+    helper = line(2, 2 * a - b, b, "thin")  # a line under it does not matter
+    ink = paper()
+    known = [arrow(1, a, b), helper]
+    for e in known:
+        draw(ink, *e.points, e.style)
+    way = float(np.angle(b - a))
+    if head == "reversed":
+        fill_head(ink, a, way + np.pi)
+    elif head == "there":
+        fill_head(ink, b, way)
+    found, _ = trace(known, ink)
+    f = judge(found[0], 0.25, 0.15)
+    assert (found[0].head, f.verdict) == (head, verdict)
+    assert said in f.what

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -30,6 +31,8 @@ WINDOW, REACH, GRID = 26.0, 7.0, 20.0
 """Side of a piece that is looked for, how far it is looked for, and how far apart pieces are, mm."""
 WRONG = 2.0
 """A fit is wrong when it is off by more than this somewhere, mm."""
+CLEARLY = 0.06
+"""By how much a farther place must fit better than one near the true one to be believed: lines of a table look alike."""
 VISIBLE = 1.5
 """Mistakes from this size on should be found, mm."""
 
@@ -142,7 +145,7 @@ def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8]) -> tuple[Float
             tried += 1
             field_ = theirs[row - half - reach : row + half + reach, column - half - reach : column + half + reach]
             score = np.asarray(cv2.matchTemplate(field_, piece, cv2.TM_CCOEFF_NORMED), np.float32)
-            _, best, _, at = cv2.minMaxLoc(score)
+            best, at = _best(score, reach)
             if best > 0.6:
                 places.append((x, y))
                 found = field_[at[1] : at[1] + 2 * half, at[0] : at[0] + 2 * half]
@@ -151,9 +154,22 @@ def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8]) -> tuple[Float
     return np.array(places).reshape(-1, 2), np.array(apart).reshape(-1, 2), len(places) / max(tried, 1)
 
 
+def _best(score: NDArray[np.float32], reach: int) -> tuple[float, tuple[int, int]]:
+    """The best score and where it is; a place within WRONG of the true one goes before a farther one that is hardly better."""
+    _, best, _, at = cv2.minMaxLoc(score)
+    first = reach - int(WRONG * DENSITY)
+    _, near, _, there = cv2.minMaxLoc(score[first : 2 * reach + 1 - first, first : 2 * reach + 1 - first])
+    if near > best - CLEARLY:
+        return near, (there[0] + first, there[1] + first)
+    return best, (at[0], at[1])
+
+
 def _tells(piece: NDArray[np.float32]) -> bool:
-    """Whether a piece has enough lines, and in more than one direction, to say where it lies."""
-    if piece.mean() < 0.01:
+    """Whether a piece has enough lines, in more than one direction and not all in one corner, to say where it lies."""
+    half = len(piece) // 2
+    halves = slice(half), slice(half, None)
+    quarters = [piece[rows, columns].mean() for rows in halves for columns in halves]
+    if piece.mean() < 0.01 or sorted(quarters)[1] < 0.002:  # the tip of a line that reaches in
         return False
     dx, dy = cv2.Sobel(piece, cv2.CV_32F, 1, 0), cv2.Sobel(piece, cv2.CV_32F, 0, 1)
     spread = np.linalg.eigvalsh(np.array([[(dx * dx).sum(), (dx * dy).sum()], [(dx * dy).sum(), (dy * dy).sum()]]))
@@ -167,13 +183,19 @@ def _rest(found: NDArray[np.float32], piece: NDArray[np.float32]) -> Floats:
     return np.asarray(np.clip(shift, -1.0, 1.0), np.float64)
 
 
+def _read(lettering: str) -> str:
+    """Lettering as it is read, without the marks of indices; the report has no others."""
+    return re.sub(r"[_^{}]", "", lettering)
+
+
 def _is(element: dict[str, Any], mark: Mark) -> bool:
     """Whether an element of the report is this mark of the record."""
     if (element["step"], element["position"]) != (mark.step, mark.position) or not mark.step:
         return False
     if mark.kind == "text":
-        return bool(element["kind"] == "text" and element["name"] in (mark.string, mark.name))
-    names = ("", mark.name, f"{mark.name}({mark.position})") if mark.name else (element["name"],)
+        return bool(element["kind"] == "text" and _read(mark.string) in element["name"])
+    name = _read(mark.name)
+    names = ("", name, f"{name}({mark.position})") if name else (element["name"],)
     kinds = {"fill": ("line",), "circle": ("circle", "arc"), "polyline": ("curve", "line")}.get(mark.kind, (mark.kind,))
     # a view without a title is called by its module in the record, by a name in the report
     return (element["view"] == mark.view or "." in mark.view) and element["name"] in names and element["kind"] in kinds

@@ -24,8 +24,8 @@ from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
 NOT_READ = marked(
-    "Not read, so not judged: what lettering says (numbers in tables, letters, the title block), heads of arrows, dots, and "
-    "whatever has less than 6 mm of line."
+    "Not read, so not judged: what lettering says (numbers in tables, letters, the title block), heads of arrows among other "
+    "lines, dots, and whatever has less than 6 mm of line."
 )
 NUMBERS_READ = marked(
     "Read otherwise is only a hint: look there. Not told: a lost comma or sign, and what is off by less than a twentieth. Not "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, isnan
 from typing import NamedTuple
 
@@ -73,6 +73,23 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Ph
         Whether the picture is not sharp: the tolerance is wider, and the ends of thin lines, which fade near others, are not
         judged.
     """
+    return _with_head(_line(t, pencil, uncertainty, soft))
+
+
+def _with_head(f: PhotoFinding) -> PhotoFinding:
+    """What was found of an arrow, and of its head."""
+    e, head = f.element, f.trace.head
+    if head == "reversed":
+        return replace(f, verdict="red", deviation=e.length, what=tell("the arrow points the other way"))
+    if head == "absent":
+        no_head = tell("no arrow head here")
+        what = no_head if f.verdict == "green" else f"{f.what}; {no_head}"
+        return replace(f, verdict="amber" if f.verdict == "green" else f.verdict, what=what, at=complex(e.fills[0][0]))
+    return f
+
+
+def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
+    """Judge what was found of a line or of lettering, heads aside."""
     e, tolerance = t.element, pencil + uncertainty + (SOFT_TOLERANCE if soft else 0.0)
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":

@@ -13,6 +13,8 @@ from tmm_sheets.drawing.marks import Points
 SHORTEST = 8.0  # mm of line whose ends are looked for
 Status = Literal["measured", "shared", "missing", "dense", "lettering", "absent lettering", "small", "hidden"]
 
+Head = Literal["unknown", "there", "absent", "reversed"]
+
 
 def open_line(e: Element) -> bool:
     """Whether an element has ends to look for."""
@@ -34,6 +36,7 @@ class Trace:
     ends : how far the line runs beyond its beginning and its end, mm; negative when it stops short, nan when unknown
     covered : share of it that has ink
     at : its line as it was found, mm
+    head : of an arrow: "there", "absent", "reversed": at its other end; "unknown" also when it has none or several
     """
 
     element: Element
@@ -45,6 +48,7 @@ class Trace:
     ends: tuple[float, float] = (np.nan, np.nan)
     covered: float = 0.0
     at: Points | None = None
+    head: Head = "unknown"
 
 
 class ExtraInk(NamedTuple):

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
+from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.displacement import displaced
 from tmm_sheets.compare.photo.extra_ink import extra_ink
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
@@ -76,9 +77,12 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
-    ended = with_ends(open_lines, ink, owners, _places_of_lettering(elements, ink), pale)
+    words = _places_of_lettering(elements, ink)
+    ended = with_ends(open_lines, ink, owners, words, pale)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
-    out = {t.element.number: t for t in (*found, *ended)} | _presence(small, found, ink, pale) | out_of_sight
+    lines = {t.element.number: t for t in (*found, *ended)}
+    headed = with_heads(list(lines.values()), ink, owners, words, hidden)
+    out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     for e in elements:  # a hand may have written here
         if e.kind == "text":
             fill(left, grown(e.points, 0.8 * e.height + 1.0), 0)

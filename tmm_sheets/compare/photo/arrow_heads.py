@@ -1,0 +1,131 @@
+"""Whether an arrow has its head, or has it at its other end.
+
+A head is wider than its line, whatever its shape: near the tip there is more ink across the line than along its middle, or as much
+when there is no head. Where others are drawn beside the line, letters may stand or the sheet is hidden, nothing can be told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.hidden import Mask, at
+from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.photo.sheet_map import Floats
+from tmm_sheets.compare.photo.traces import Head, Trace
+from tmm_sheets.drawing.styles import line_type
+
+LEAST = 2.4
+"""mm; shorter heads are not looked for."""
+BACK = np.arange(0.6, 5.2, 0.2)
+"""mm from the tip backwards at which ink is measured."""
+SHAFT = 1.0
+"""mm behind a head, and from the other end, beyond which a line has no head any more."""
+SHORTEST = 4.0
+"""mm of a vector behind its head by which the line's own ink is known."""
+ASIDE = np.arange(0.0, 1.4, 0.15)
+"""mm to either side at which it is sampled; ink counts up to :data:`WIDEST`."""
+WIDEST = 1.1
+BESIDE = 0.22
+"""mm from the edge of the line beyond which nothing of others may be: what runs along under it, a helper line, is no matter."""
+WINDOW = 5
+"""Stations of which the mean is taken, 1 mm."""
+BARE, INKED = 1.25, 1.5
+"""Ink as a multiple of the line's own up to which there is no head, and from which on there is one."""
+ENOUGH, SOME = 0.6, 6
+"""Least share of stations that must be seen for a head to be missed; least number for the line's own ink to be known."""
+
+
+@dataclass(frozen=True)
+class _Paper:
+    """The rectified picture, who is drawn where, places of lettering (255 there), and where the sheet does not show."""
+
+    ink: Any
+    owners: Owners
+    words: Any
+    hidden: Mask
+
+    def beside(self, e: Element, start: complex, along: Floats, way: complex, side: int) -> Floats:
+        """Ink across one side of a line at places ``along`` mm from ``start``, nan where it cannot be told."""
+        places = start + way * (along[:, None] + side * 1j * ASIDE)
+        outside = line_type(e.style).width / 2 + BESIDE < ASIDE
+        taken = self.owners.others(e.number, places[:, outside]) | (sample(self.words, pixels(places[:, outside])) > 100)
+        dark = sample(self.ink, pixels(places))[:, ASIDE < WIDEST].astype(np.float64).sum(1)
+        return np.where(taken.any(1) | at(places[:, 0], self.hidden), np.nan, dark)
+
+    def widening(self, e: Element, tip: complex, other: complex) -> Floats:
+        """Ink about a line at :data:`BACK` mm from its tip as a multiple of the line's own, nan where it cannot be told."""
+        length = abs(other - tip)
+        way, behind = (other - tip) / length, _length(e) + SHAFT
+        shaft = np.linspace(behind, max(length - behind, behind + 0.5 * SHORTEST), 40)
+        out = []
+        for side in (1, -1):
+            own = self.beside(e, tip, shaft, way, side)
+            seen = own[~np.isnan(own)]
+            usual = float(np.median(seen)) if len(seen) >= SOME else 0.0
+            out.append(self.beside(e, tip, BACK, way, side) / usual if usual > 0 else np.full(len(BACK), np.nan))
+        one, two = out
+        return np.where(np.isnan(one), two, np.where(np.isnan(two), one, (one + two) / 2))
+
+
+def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
+    """Look for the heads of arrows.
+
+    Parameters
+    ----------
+    traces
+        All; those of lines that are no vectors, or were not found, are left as they are.
+    ink
+        The rectified picture.
+    owners
+        Who is drawn where.
+    words
+        A picture of the places of lettering, 255 there.
+    hidden
+        Where the sheet does not show.
+
+    Returns
+    -------
+    The traces in the same order, with ``head``.
+    """
+    paper = _Paper(ink, owners, words, hidden)
+    return [replace(t, head=_head(t, paper)) if _wanted(t) else t for t in traces]
+
+
+def _wanted(t: Trace) -> bool:
+    """Whether it is a vector that was found, long enough for its head to be told from it."""
+    e = t.element
+    if t.status not in ("measured", "shared") or t.at is None or e.style != "vector" or e.kind != "line" or len(e.fills) != 1:
+        return False
+    return bool(_length(e) >= LEAST and e.length > _length(e) + SHORTEST and abs(e.fills[0][0] - e.points[-1]) < 0.1)
+
+
+def _length(e: Element) -> float:
+    """Length of the head of an arrow, mm."""
+    return float(abs(e.fills[0][0] - e.fills[0][1:].mean()))
+
+
+def _head(t: Trace, paper: _Paper) -> Head:
+    """What there is of a head at the tip, and at the other end when there is none."""
+    assert t.at is not None
+    way = (t.at[1] - t.at[0]) / abs(t.at[1] - t.at[0])
+    beyond = [0.0 if np.isnan(by) else by for by in t.ends]
+    begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
+    here = paper.widening(t.element, tip, begin)
+    most = _most(here)
+    if most >= INKED:
+        return "there"
+    if not most <= BARE or float((~np.isnan(here)).mean()) < ENOUGH:
+        return "unknown"
+    return "reversed" if _most(paper.widening(t.element, begin, tip)) >= INKED else "absent"
+
+
+def _most(widening: Floats) -> float:
+    """The largest mean of neighbouring stations, nan without any."""
+    means = np.convolve(widening, np.full(WINDOW, 1 / WINDOW), "valid")
+    return float(np.nanmax(means)) if not np.isnan(means).all() else float("nan")
