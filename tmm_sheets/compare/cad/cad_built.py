@@ -7,16 +7,16 @@ with the plan built so: its lines are found, though not in their places.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
-from tmm_sheets.compare.cad.view_search import FoundView, find_changed, unused
+from tmm_sheets.compare.cad.view_search import SURE, FoundView, Search, unused
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -32,6 +32,7 @@ from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.compare.cad.layout import Layout
     from tmm_sheets.project import Project
 
 AT_POINT = 0.03
@@ -52,6 +53,10 @@ SHOWS = 1.0
 """How far a point must be moved for a mistake to show, mm of our sheet."""
 FARTHEST = 250.0
 """A point is sought among the tips of lines no farther than this from its place, mm."""
+MISTAKES = 2
+"""So many mistakes are looked for in views that are not found."""
+PAPER = 3000.0
+"""A plan that would be wider than this, mm of our sheet, is on nobody's paper: lines of it are nearly parallel."""
 
 
 @dataclass(frozen=True)
@@ -81,10 +86,6 @@ class _Drawn:
     vectors: tuple[Element, ...]
     steps: Mapping[complex, Step]
 
-    def moved(self, value: Mapping[Step, complex]) -> dict[complex, complex]:
-        """Places of its points, and where they come to lie."""
-        return {z: complex(self.frame(value[s])) for z, s in self.steps.items() if s in value}
-
 
 @dataclass(frozen=True)
 class _Found:
@@ -96,8 +97,12 @@ class _Found:
 
 
 def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing],
-                    outcome: CadOutcome) -> dict[ElementView, tuple[BuiltPlan, Mapping[complex, complex]]]:
-    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet."""
+                    outcome: CadOutcome, made: Sequence[Hypothesis] = ()) -> dict[
+                        ElementView, tuple[BuiltPlan, Mapping[complex, complex]]]:
+    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
+
+    ``made`` are mistakes of the sheet that are known already.
+    """
     plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
     errors = Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
     wrong: dict[ElementView, list[CadFinding]] = {}
@@ -105,7 +110,7 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
         if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red":
             wrong.setdefault(f.element.view, []).append(f)
     out = {}
-    told_before: list[Hypothesis] = []
+    told_before = list(made)
     shown = {view: drawn for view in wrong if (drawn := _drawn(known, plans, view)) is not None}
     order = list(plans)
     for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
@@ -122,31 +127,80 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
     return out
 
 
-def lost_views(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing]) -> dict[
-        ElementView, FoundView]:
-    """Views of a layout of its own that were not found because their plans were built on a mistake, and where they are."""
+def lost_views(project: Project, known: KnownSheet, space: DrawingSpace, places: Layout) -> tuple[
+        dict[ElementView, FoundView], list[Hypothesis]]:
+    """Views of a layout of its own that are not found whole because of mistakes: where they are, and the mistakes.
+
+    One mistake leads on from plan to plan: the one with which most of all these views has ink was made, then the one that
+    together with it explains most of what is left.
+    """
     plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
     errors = Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
-    free = space.lines
-    for view, move in moves.items():
-        points = lines([move(e.points) for e in known.elements if e.view == view and e.kind not in ("text", "hatch", "fill")])
-        free = unused(free, points.points(1.0))
-    out: dict[ElementView, FoundView] = {}
-    views = list(dict.fromkeys(e.view for e in known.elements if e.view not in moves))
+    views = dict.fromkeys(e.view for e in known.elements if places.share.get(e.view, 0.0) < SURE or e.view not in places.moves)
     shown = {view: drawn for view in views if (drawn := _drawn(known, plans, view)) is not None}
-    order = list(plans)
-    for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
+    sound = {v: move for v, move in places.moves.items() if v not in shown}
+    free = space.lines
+    for view, move in sound.items():
+        points = lines([move(e.points) for e in known.elements if e.view == view and e.kind not in ("text", "hatch", "fill")])
+        free = unused(free, points.points(1.0), 1.2)
+    made: list[Hypothesis] = []
+    out: dict[ElementView, FoundView] = {}
+    while shown and len(free.a) and len(made) < MISTAKES:
         left = set(np.unique(free.owner).tolist())
-        strokes = [s for k, s in enumerate(space.strokes) if k in left]
-        if not strokes:
+        search = Search(known.elements, list(shown), [s for k, s in enumerate(space.strokes) if k in left], free,
+                        space.writings, sound)
+        best = _explaining_most(shown, errors, search, {v: places.share[v] for v in shown if v in places.moves}, made)
+        if best is None:
             break
-        changed = [points for _, points in _mistakes(drawn, errors, ())]
-        every = ((lambda e, points=points: rebuilt(e, points)) for points in changed)
-        found = find_changed(view, known.elements, every, strokes, free, space.writings, {**moves, **{
-            v: one.placing for v, one in out.items()}})
-        if found is not None:
-            out[view] = found
-    return out
+        h, found = best
+        made.append(h)
+        out |= found
+        for view, one in found.items():
+            drawn = shown.pop(view)
+            new = _moved(drawn, replay(errors, [c for m in made for c in m.changes]))
+            free = unused(free, lines([one.placing(_between(e.points, new)) for e in drawn.vectors]).points(1.0), 1.2)
+    return out, made
+
+
+def _explaining_most(shown: Mapping[ElementView, _Drawn], errors: Errors, search: Search, usual: Mapping[ElementView, float],
+                     made: Sequence[Hypothesis]) -> tuple[Hypothesis, dict[ElementView, FoundView]] | None:
+    """The mistake with which, after those made already, most ink of some views is explained, and where these are then.
+
+    ``usual`` is the share of those views that has ink without it.
+    """
+    main = {view: search.main[view] for view in shown}
+    known: dict[tuple[ElementView, bytes], FoundView | None] = {}
+    tried: list[tuple[float, Hypothesis, dict[ElementView, FoundView]]] = []
+    for h in _possible(shown.values(), errors):
+        value = replay(errors, [c for m in (*made, h) for c in m.changes])
+        found = {}
+        gain = 0.0
+        for view, drawn in shown.items():
+            new = _moved(drawn, value)
+            if not new:
+                continue
+            key = view, np.round(list(new.values()), 1).tobytes()
+            if key not in known:
+                known[key] = search.changed(view, [rebuilt(e, new) for e in main[view]])
+            one, before = known[key], usual.get(view, 0.0)
+            if one is not None and one.share > before + GAIN:
+                found[view] = one
+                gain += (one.share - before) * sum(e.length for e in drawn.vectors)
+        if found:
+            tried.append((gain, h, found))
+    most = max((gain for gain, _, _ in tried), default=0.0)
+    return next(((h, found) for gain, h, found in tried if gain >= AS_GOOD * most), None)
+
+
+def _possible(shown: Iterable[_Drawn], errors: Errors) -> list[Hypothesis]:
+    """Mistakes that can be made in some plans and in what they come from, the more usual kinds first, each once."""
+    found: dict[tuple[object, ...], Hypothesis] = {}
+    for drawn in shown:
+        before = list(ordered(drawn.steps.values(), lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
+        for h in hypotheses(before, drawn.k, drawn.plan.labels):
+            found.setdefault((h.words, id(h.step), h.at, h.other), h)
+    kinds = get_args(Kind)
+    return sorted(found.values(), key=lambda h: kinds.index(h.kind))
 
 
 def rebuilt(e: Element, points: Mapping[complex, complex]) -> Element:
@@ -255,10 +309,8 @@ def _explained(drawn: _Drawn, errors: Errors, space: DrawingSpace, move: Placing
 
 def _mistakes(drawn: _Drawn, errors: Errors, told: Sequence[Hypothesis]) -> Iterator[tuple[Hypothesis, dict[complex, complex]]]:
     """Where mistakes take the points of a plan: those known already first, then the more usual kinds."""
-    before = list(ordered(drawn.steps.values(), lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
-    kinds = get_args(Kind)
-    for h in (*told, *sorted(hypotheses(before, drawn.k, drawn.plan.labels), key=lambda h: kinds.index(h.kind))):
-        points = _replayed(drawn, errors, h.changes)
+    for h in (*told, *_possible([drawn], errors)):
+        points = _moved(drawn, replay(errors, h.changes))
         if points:
             yield h, points
 
@@ -275,7 +327,7 @@ def _points_off(drawn: _Drawn, errors: Errors, space: DrawingSpace, move: Placin
             off = abs(at - z)
             if SHOWS < off < FARTHEST:
                 by = _in_plan(drawn.frame, at) - _in_plan(drawn.frame, z)
-                points = _replayed(drawn, errors, (Change(step, displaced(by), drawn.k),))
+                points = _moved(drawn, replay(errors, (Change(step, displaced(by), drawn.k),)))
                 if points:
                     said = tell("point {point} lies {distance} mm off; what follows from it is drawn from there")
                     yield points, said.format(point=letter_of(step), distance=millimetres(off * move.scale))
@@ -288,17 +340,15 @@ def _in_plan(frame: PlacedFrame, z: complex) -> complex:
     return complex(w.real * frame.mu[0], w.imag * frame.mu[1])
 
 
-def _replayed(drawn: _Drawn, errors: Errors, changes: Sequence[Change]) -> dict[complex, complex]:
-    """Where the points of a plan come to lie; nothing where none moves or one cannot be built."""
+def _moved(drawn: _Drawn, value: Callable[[Step], Any]) -> dict[complex, complex]:
+    """Where the points of a plan come to lie in a construction drawn again; nothing where none moves or one cannot be built."""
+    new: dict[complex, complex] = {}
     with np.errstate(all="ignore"):
-        value = replay(errors, changes)
-        new: dict[complex, complex] = {}
         for z, step in drawn.steps.items():
             made = np.asarray(value(step))
             new[z] = complex(drawn.frame(complex(made[drawn.k] if made.ndim else made)))
-    if not all(np.isfinite(w) for w in new.values()) or max((abs(w - z) for z, w in new.items()), default=0.0) < SHOWS:
-        return {}
-    return new
+    far = np.abs([w - z for z, w in new.items()])
+    return new if len(far) and (far <= PAPER).all() and far.max() >= SHOWS else {}  # NaN is on no paper either
 
 
 def _share(drawn: _Drawn, theirs: KnownLines, move: Placing, points: Mapping[complex, complex]) -> float:
