@@ -7,7 +7,7 @@ with the plan built so: its lines are found, though not in their places.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -16,7 +16,7 @@ import numpy as np
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
-from tmm_sheets.compare.cad.view_search import SURE, FoundView, Search, unused
+from tmm_sheets.compare.cad.view_search import FEW_LINES, SURE, FoundView, Search, unused
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -49,6 +49,8 @@ GAIN = 0.12
 """By how much that must be more than has ink in its place."""
 AS_GOOD = 0.97
 """Share of the best explanation with which a more usual mistake is as good."""
+EQUAL = 0.02
+"""Difference of shares of ink that tells nothing."""
 SHOWS = 1.0
 """How far a point must be moved for a mistake to show, mm of our sheet."""
 FARTHEST = 250.0
@@ -129,67 +131,94 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
 
 def lost_views(project: Project, known: KnownSheet, space: DrawingSpace, places: Layout) -> tuple[
         dict[ElementView, FoundView], list[Hypothesis]]:
-    """Views of a layout of its own that are not found whole because of mistakes: where they are, and the mistakes.
+    """Views of a layout of its own that are not found as they should be because of mistakes: where they are, and the mistakes.
 
     One mistake leads on from plan to plan: the one with which most of all these views has ink was made, then the one that
-    together with it explains most of what is left.
+    together with it explains most of what is left. All plans that follow from it are sought as they do.
     """
-    plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
-    errors = Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
-    views = dict.fromkeys(e.view for e in known.elements if places.share.get(e.view, 0.0) < SURE or e.view not in places.moves)
-    shown = {view: drawn for view in views if (drawn := _drawn(known, plans, view)) is not None}
-    sound = {v: move for v, move in places.moves.items() if v not in shown}
-    free = space.lines
-    for view, move in sound.items():
-        points = lines([move(e.points) for e in known.elements if e.view == view and e.kind not in ("text", "hatch", "fill")])
-        free = unused(free, points.points(1.0), 1.2)
+    lost = _Lost(project, known, space, places)
     made: list[Hypothesis] = []
     out: dict[ElementView, FoundView] = {}
-    while shown and len(free.a) and len(made) < MISTAKES:
-        left = set(np.unique(free.owner).tolist())
-        search = Search(known.elements, list(shown), [s for k, s in enumerate(space.strokes) if k in left], free,
-                        space.writings, sound)
-        best = _explaining_most(shown, errors, search, {v: places.share[v] for v in shown if v in places.moves}, made)
-        if best is None:
-            break
-        h, found = best
+    while len(made) < MISTAKES and (h := lost.explaining_most(made)) is not None:
         made.append(h)
-        out |= found
-        for view, one in found.items():
-            drawn = shown.pop(view)
-            new = _moved(drawn, replay(errors, [c for m in made for c in m.changes]))
-            free = unused(free, lines([one.placing(_between(e.points, new)) for e in drawn.vectors]).points(1.0), 1.2)
+        out |= lost.following(made)
     return out, made
 
 
-def _explaining_most(shown: Mapping[ElementView, _Drawn], errors: Errors, search: Search, usual: Mapping[ElementView, float],
-                     made: Sequence[Hypothesis]) -> tuple[Hypothesis, dict[ElementView, FoundView]] | None:
-    """The mistake with which, after those made already, most ink of some views is explained, and where these are then.
+class _Lost:
+    """Plans of vectors on a sheet, with where they were found as they should be, and how well."""
 
-    ``usual`` is the share of those views that has ink without it.
-    """
-    main = {view: search.main[view] for view in shown}
-    known: dict[tuple[ElementView, bytes], FoundView | None] = {}
-    tried: list[tuple[float, Hypothesis, dict[ElementView, FoundView]]] = []
-    for h in _possible(shown.values(), errors):
-        value = replay(errors, [c for m in (*made, h) for c in m.changes])
-        found = {}
-        gain = 0.0
-        for view, drawn in shown.items():
-            new = _moved(drawn, value)
-            if not new:
-                continue
-            key = view, np.round(list(new.values()), 1).tobytes()
-            if key not in known:
-                known[key] = search.changed(view, [rebuilt(e, new) for e in main[view]])
-            one, before = known[key], usual.get(view, 0.0)
-            if one is not None and one.share > before + GAIN:
-                found[view] = one
-                gain += (one.share - before) * sum(e.length for e in drawn.vectors)
-        if found:
-            tried.append((gain, h, found))
-    most = max((gain for gain, _, _ in tried), default=0.0)
-    return next(((h, found) for gain, h, found in tried if gain >= AS_GOOD * most), None)
+    def __init__(self, project: Project, known: KnownSheet, space: DrawingSpace, places: Layout) -> None:
+        plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
+        self.errors = Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
+        self.known, self.space = known, space
+        self.moves, self.share = dict(places.moves), places.share
+        views = dict.fromkeys(e.view for e in known.elements)
+        self.shown = {view: drawn for view in views if (drawn := _drawn(known, plans, view)) is not None}
+        search = self._search(self.shown)
+        self.main = dict(search.main)
+        self.usual = {v: search.worth(v, FoundView(self.moves[v], places.share[v])) for v in self.shown if v in self.moves}
+        self.titled_otherwise = {v for v in self.usual if places.share[v] >= SURE and search.strange(v, self.moves[v])}
+        self.doubtful = [v for v in self.shown if self.usual.get(v, 0.0) < SURE]
+
+    def _search(self, views: Collection[ElementView]) -> Search:
+        """A search for some views in the ink that no other view has."""
+        free = self.space.lines
+        for view, move in self.moves.items():
+            if view not in views:
+                ink = [move(e.points) for e in self.known.elements if e.view == view and e.kind not in ("text", "hatch", "fill")]
+                free = unused(free, lines(ink).points(1.0), 1.2)
+        left = set(np.unique(free.owner).tolist())
+        strokes = [s for k, s in enumerate(self.space.strokes) if k in left]
+        others = {v: move for v, move in self.moves.items() if v not in views}
+        return Search(self.known.elements, list(views), strokes, free, self.space.writings, others)
+
+    def explaining_most(self, made: Sequence[Hypothesis]) -> Hypothesis | None:
+        """The mistake with which, besides those made already, most ink of the doubtful views is explained; None without."""
+        search = self._search(self.doubtful)
+        if not self.doubtful or not len(search.free.a):
+            return None
+        known: dict[tuple[ElementView, bytes], FoundView | None] = {}
+        tried: list[tuple[float, Hypothesis]] = []
+        for h in _possible([self.shown[v] for v in self.doubtful], self.errors):
+            value = replay(self.errors, [c for m in (*made, h) for c in m.changes])
+            gain, whole, factors = 0.0, False, set()
+            for view in self.doubtful:
+                if h.at is not None and view in self.titled_otherwise:
+                    continue  # all positions are mistaken for others, or none
+                new = _moved(self.shown[view], value)
+                if not new:
+                    continue
+                key = view, np.round(list(new.values()), 1).tobytes()
+                if key not in known:
+                    least = 1 if view in self.moves else FEW_LINES
+                    known[key] = search.changed(view, [rebuilt(e, new) for e in self.main[view]], least)
+                one, before = known[key], self.usual.get(view, 0.0)
+                more = search.worth(view, one) - before if one is not None else 0.0
+                if one is not None and more > GAIN:
+                    gain += more * sum(e.length for e in self.shown[view].vectors)
+                    whole |= view not in self.moves or one.share > self.share[view] + GAIN
+                    factors.add(view.mu if view not in self.titled_otherwise else view)
+            # A plan that is like ours at another scale is none that a mistake explains, several are.
+            if whole or len(factors) > 1:
+                tried.append((gain, h))
+        most = max((gain for gain, _ in tried), default=0.0)
+        return next((h for gain, h in tried if gain >= AS_GOOD * most), None)
+
+    def following(self, made: Sequence[Hypothesis]) -> dict[ElementView, FoundView]:
+        """The plans that follow from mistakes, as far as they are found so at least as well as without."""
+        value = replay(self.errors, [c for m in made for c in m.changes])
+        changed = {view: new for view, drawn in self.shown.items() if (new := _moved(drawn, value))}
+        search = self._search(changed)
+        out: dict[ElementView, FoundView] = {}
+        for view in sorted(changed, key=lambda v: (v not in self.doubtful, -sum(e.length for e in self.shown[v].vectors))):
+            one = search.changed(view, [rebuilt(e, changed[view]) for e in self.main[view]], 1)
+            if one is not None and search.worth(view, one) >= self.usual.get(view, 0.0) - EQUAL:
+                out[view] = one
+                self.moves[view] = one.placing
+                search.without(view, one.placing)
+        self.doubtful = [v for v in self.doubtful if v not in out]
+        return out
 
 
 def _possible(shown: Iterable[_Drawn], errors: Errors) -> list[Hypothesis]:
@@ -287,7 +316,10 @@ def _drawn(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) -> _
             z = complex(frame(value[k] if value.ndim else value))
             if np.isfinite(z) and np.abs(ends - z).min() < AT_POINT:
                 steps.setdefault(z, step)
-    return _Drawn(plan, frame, k, tuple(vectors), steps)
+    at = np.array(list(steps), dtype=complex)
+    both = sum(len(at) > 0 and all(np.abs(at - z).min() < AT_POINT for z in e.points) for e in vectors)
+    # Forces at the points of a mechanism are no plan: only one end of each is a point.
+    return _Drawn(plan, frame, k, tuple(vectors), steps) if both > len(vectors) / 2 else None
 
 
 def _explained(drawn: _Drawn, errors: Errors, space: DrawingSpace, move: Placing, before: Sequence[Hypothesis]) -> _Found | None:

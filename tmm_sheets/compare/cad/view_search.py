@@ -41,6 +41,10 @@ NEAR = 0.3
 """Distance from ink within which a point of ours counts as found, mm."""
 AS_DRAWN, SURE = 0.85, 0.97
 """Least share of a changed view that must be found, and share from which on a view is drawn as it should be."""
+ODD_SCALE, ODD_TITLE = 0.15, 0.25
+"""By how much less a view is worth at a place with a scale factor that nobody takes, or under the title of another one."""
+TITLE = 45.0
+"""How far from a view a title may be, mm."""
 AGREE = 0.5
 """Least share of the lines of a changed view, by length, that must tell the same place."""
 FEW_LINES = 3
@@ -125,13 +129,30 @@ class Search:
         self.free = theirs
         self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
 
-    def changed(self, v: ElementView, main: Iterable[Element]) -> FoundView | None:
-        """A view that is drawn with other main lines than ours, at a scale of its own; None where it is not found whole."""
+    def changed(self, v: ElementView, main: Iterable[Element], least: int = FEW_LINES) -> FoundView | None:
+        """A view that is drawn with other main lines than ours, at a scale of its own; None where it is not found whole.
+
+        ``least`` is the number of lines by which it is known.
+        """
         self.main[v] = [e for e in main if e.length > 0.01]
         z = lines([e.points for e in self.main[v]]).points(1.0)
         self.points[v] = z[:: max(len(z) // MOST, 1)]
-        found = (FoundView(one.placing, one.share) for one in self.tries(0, v, None, FEW_LINES, 0, AGREE))
-        return max((one for one in found if one.share > AS_DRAWN), key=lambda one: one.share, default=None)
+        tries = [one for one in self.tries(0, v, None, least, 0, AGREE) if one.share > AS_DRAWN]
+        found = [(self.worth(v, FoundView(one.placing, one.share)) - one.less, one) for one in tries]
+        best = max(found, key=lambda x: x[0], default=None)
+        return None if best is None else FoundView(best[1].placing, best[1].share)
+
+    def worth(self, v: ElementView, found: FoundView) -> float:
+        """How well a view is there: the share that has ink, less under another's title or with a scale factor nobody takes."""
+        odd = v.mu is not None and not handy(found.placing)
+        return found.share - ODD_SCALE * odd - ODD_TITLE * self.strange(v, found.placing)
+
+    def strange(self, v: ElementView, placing: Placing) -> bool:
+        """Whether there is the title of another such view, with another number, and none of its own."""
+        box = Box.around(placing(self.points[v]))
+        own = _tokens(v.name)
+        near = [said for said, at in self.titles if box.contains(at, TITLE)]
+        return not any(_common(own, said) > 0.3 for said in near) and any(_namesakes(own, said) for said in near)
 
     def without(self, v: ElementView, placing: Placing) -> None:
         """Keep the ink of a view from the others."""
@@ -190,8 +211,7 @@ class Search:
         read, titled = self._read(v, placing), self._titled(v, placing)
         known_scale = self.scales.get(v.mu)
         same = known_scale is not None and abs(placing.scale / known_scale - 1) < 0.01
-        handy = min(abs(placing.scale / r - 1) for r in SCALES) < 0.004
-        witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy
+        witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy(placing)
         if least > 1 and not bends and lines_met < least:
             return None
         enough = lines_met >= 2 or bends or (lines_met == 1 and read + titled > (0.3 if same else 0.5))
@@ -212,7 +232,12 @@ class Search:
         """How much the most similar title near a place has in common with the view's own, 0 .. 1."""
         box = Box.around(placing(self.points[v]))
         own = _tokens(v.name)
-        return max((_common(own, said) for said, at in self.titles if box.contains(at, 45.0)), default=0.0)
+        return max((_common(own, said) for said, at in self.titles if box.contains(at, TITLE)), default=0.0)
+
+
+def handy(placing: Placing) -> bool:
+    """Whether one may have drawn at that scale: its ratio to ours is one of handy scale factors."""
+    return min(abs(placing.scale / r - 1) for r in SCALES) < 0.004
 
 
 def _some(points: Points) -> Points:
@@ -231,6 +256,12 @@ def _common(own: frozenset[str], said: frozenset[str]) -> float:
     if not own or (numbers and theirs and not numbers & theirs):
         return 0.0
     return len(own & said) / len(own | said)
+
+
+def _namesakes(own: frozenset[str], said: frozenset[str]) -> bool:
+    """Whether two titles differ in their numbers only."""
+    (a, n), (b, m) = (({w[:3] for w in words if not w.isdigit()}, {w for w in words if w.isdigit()}) for words in (own, said))
+    return bool(n and m and not n & m and len(a & b) > 0.6 * len(a | b))
 
 
 def _of_sheet(elements: Sequence[Element]) -> _Shapes:
