@@ -97,9 +97,10 @@ def others_left_out(state: Comparison) -> None:
 
 
 def _other_words(state: Comparison, n: int) -> bool:
-    """Whether a title is put in words of its own, with the numbers of ours."""
+    """Whether a title is put in words of its own: it may say less than ours, but no other number."""
     e, finding = state.elements[n], state.found[n]
-    return e.kind == "text" and not e.step and finding.says is not None and _numbers(finding.says) in ((), _numbers(e.text))
+    ours = iter(_numbers(e.text))
+    return e.kind == "text" and not e.step and finding.says is not None and all(x in ours for x in _numbers(finding.says))
 
 
 def _numbers(text: str) -> tuple[str, ...]:

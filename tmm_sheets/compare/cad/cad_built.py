@@ -7,16 +7,16 @@ with the plan built so: its lines are found, though not in their places.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
-from tmm_sheets.compare.cad.view_search import FoundView, find_changed, unused
+from tmm_sheets.compare.cad.view_search import FEW_LINES, SURE, FoundView, Search, unused
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -32,6 +32,7 @@ from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.compare.cad.layout import Layout
     from tmm_sheets.project import Project
 
 AT_POINT = 0.03
@@ -48,10 +49,16 @@ GAIN = 0.12
 """By how much that must be more than has ink in its place."""
 AS_GOOD = 0.97
 """Share of the best explanation with which a more usual mistake is as good."""
+EQUAL = 0.02
+"""Difference of shares of ink that tells nothing."""
 SHOWS = 1.0
 """How far a point must be moved for a mistake to show, mm of our sheet."""
 FARTHEST = 250.0
 """A point is sought among the tips of lines no farther than this from its place, mm."""
+MISTAKES = 2
+"""So many mistakes are looked for in views that are not found."""
+PAPER = 3000.0
+"""A plan that would be wider than this, mm of our sheet, is on nobody's paper: lines of it are nearly parallel."""
 
 
 @dataclass(frozen=True)
@@ -81,10 +88,6 @@ class _Drawn:
     vectors: tuple[Element, ...]
     steps: Mapping[complex, Step]
 
-    def moved(self, value: Mapping[Step, complex]) -> dict[complex, complex]:
-        """Places of its points, and where they come to lie."""
-        return {z: complex(self.frame(value[s])) for z, s in self.steps.items() if s in value}
-
 
 @dataclass(frozen=True)
 class _Found:
@@ -96,8 +99,12 @@ class _Found:
 
 
 def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing],
-                    outcome: CadOutcome) -> dict[ElementView, tuple[BuiltPlan, Mapping[complex, complex]]]:
-    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet."""
+                    outcome: CadOutcome, made: Sequence[Hypothesis] = ()) -> dict[
+                        ElementView, tuple[BuiltPlan, Mapping[complex, complex]]]:
+    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
+
+    ``made`` are mistakes of the sheet that are known already.
+    """
     plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
     errors = Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
     wrong: dict[ElementView, list[CadFinding]] = {}
@@ -105,7 +112,7 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
         if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red":
             wrong.setdefault(f.element.view, []).append(f)
     out = {}
-    told_before: list[Hypothesis] = []
+    told_before = list(made)
     shown = {view: drawn for view in wrong if (drawn := _drawn(known, plans, view)) is not None}
     order = list(plans)
     for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
@@ -122,31 +129,107 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
     return out
 
 
-def lost_views(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing]) -> dict[
-        ElementView, FoundView]:
-    """Views of a layout of its own that were not found because their plans were built on a mistake, and where they are."""
-    plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
-    errors = Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
-    free = space.lines
-    for view, move in moves.items():
-        points = lines([move(e.points) for e in known.elements if e.view == view and e.kind not in ("text", "hatch", "fill")])
-        free = unused(free, points.points(1.0))
+def lost_views(project: Project, known: KnownSheet, space: DrawingSpace, places: Layout) -> tuple[
+        dict[ElementView, FoundView], list[Hypothesis]]:
+    """Views of a layout of its own that are not found as they should be because of mistakes: where they are, and the mistakes.
+
+    One mistake leads on from plan to plan: the one with which most of all these views has ink was made, then the one that
+    together with it explains most of what is left. All plans that follow from it are sought as they do.
+    """
+    lost = _Lost(project, known, space, places)
+    made: list[Hypothesis] = []
     out: dict[ElementView, FoundView] = {}
-    views = list(dict.fromkeys(e.view for e in known.elements if e.view not in moves))
-    shown = {view: drawn for view in views if (drawn := _drawn(known, plans, view)) is not None}
-    order = list(plans)
-    for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
+    while len(made) < MISTAKES and (h := lost.explaining_most(made)) is not None:
+        made.append(h)
+        out |= lost.following(made)
+    return out, made
+
+
+class _Lost:
+    """Plans of vectors on a sheet, with where they were found as they should be, and how well."""
+
+    def __init__(self, project: Project, known: KnownSheet, space: DrawingSpace, places: Layout) -> None:
+        plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
+        self.errors = Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
+        self.known, self.space = known, space
+        self.moves, self.share = dict(places.moves), places.share
+        views = dict.fromkeys(e.view for e in known.elements)
+        self.shown = {view: drawn for view in views if (drawn := _drawn(known, plans, view)) is not None}
+        search = self._search(self.shown)
+        self.main = dict(search.main)
+        self.usual = {v: search.worth(v, FoundView(self.moves[v], places.share[v])) for v in self.shown if v in self.moves}
+        self.titled_otherwise = {v for v in self.usual if places.share[v] >= SURE and search.strange(v, self.moves[v])}
+        self.doubtful = [v for v in self.shown if self.usual.get(v, 0.0) < SURE]
+
+    def _search(self, views: Collection[ElementView]) -> Search:
+        """A search for some views in the ink that no other view has."""
+        free = self.space.lines
+        for view, move in self.moves.items():
+            if view not in views:
+                ink = [move(e.points) for e in self.known.elements if e.view == view and e.kind not in ("text", "hatch", "fill")]
+                free = unused(free, lines(ink).points(1.0), 1.2)
         left = set(np.unique(free.owner).tolist())
-        strokes = [s for k, s in enumerate(space.strokes) if k in left]
-        if not strokes:
-            break
-        changed = [points for _, points in _mistakes(drawn, errors, ())]
-        every = ((lambda e, points=points: rebuilt(e, points)) for points in changed)
-        found = find_changed(view, known.elements, every, strokes, free, space.writings, {**moves, **{
-            v: one.placing for v, one in out.items()}})
-        if found is not None:
-            out[view] = found
-    return out
+        strokes = [s for k, s in enumerate(self.space.strokes) if k in left]
+        others = {v: move for v, move in self.moves.items() if v not in views}
+        return Search(self.known.elements, list(views), strokes, free, self.space.writings, others)
+
+    def explaining_most(self, made: Sequence[Hypothesis]) -> Hypothesis | None:
+        """The mistake with which, besides those made already, most ink of the doubtful views is explained; None without."""
+        search = self._search(self.doubtful)
+        if not self.doubtful or not len(search.free.a):
+            return None
+        known: dict[tuple[ElementView, bytes], FoundView | None] = {}
+        tried: list[tuple[float, Hypothesis]] = []
+        for h in _possible([self.shown[v] for v in self.doubtful], self.errors):
+            value = replay(self.errors, [c for m in (*made, h) for c in m.changes])
+            gain, whole, factors = 0.0, False, set()
+            for view in self.doubtful:
+                if h.at is not None and view in self.titled_otherwise:
+                    continue  # all positions are mistaken for others, or none
+                new = _moved(self.shown[view], value)
+                if not new:
+                    continue
+                key = view, np.round(list(new.values()), 1).tobytes()
+                if key not in known:
+                    least = 1 if view in self.moves else FEW_LINES
+                    known[key] = search.changed(view, [rebuilt(e, new) for e in self.main[view]], least)
+                one, before = known[key], self.usual.get(view, 0.0)
+                more = search.worth(view, one) - before if one is not None else 0.0
+                if one is not None and more > GAIN:
+                    gain += more * sum(e.length for e in self.shown[view].vectors)
+                    whole |= view not in self.moves or one.share > self.share[view] + GAIN
+                    factors.add(view.mu if view not in self.titled_otherwise else view)
+            # A plan that is like ours at another scale is none that a mistake explains, several are.
+            if whole or len(factors) > 1:
+                tried.append((gain, h))
+        most = max((gain for gain, _ in tried), default=0.0)
+        return next((h for gain, h in tried if gain >= AS_GOOD * most), None)
+
+    def following(self, made: Sequence[Hypothesis]) -> dict[ElementView, FoundView]:
+        """The plans that follow from mistakes, as far as they are found so at least as well as without."""
+        value = replay(self.errors, [c for m in made for c in m.changes])
+        changed = {view: new for view, drawn in self.shown.items() if (new := _moved(drawn, value))}
+        search = self._search(changed)
+        out: dict[ElementView, FoundView] = {}
+        for view in sorted(changed, key=lambda v: (v not in self.doubtful, -sum(e.length for e in self.shown[v].vectors))):
+            one = search.changed(view, [rebuilt(e, changed[view]) for e in self.main[view]], 1)
+            if one is not None and search.worth(view, one) >= self.usual.get(view, 0.0) - EQUAL:
+                out[view] = one
+                self.moves[view] = one.placing
+                search.without(view, one.placing)
+        self.doubtful = [v for v in self.doubtful if v not in out]
+        return out
+
+
+def _possible(shown: Iterable[_Drawn], errors: Errors) -> list[Hypothesis]:
+    """Mistakes that can be made in some plans and in what they come from, the more usual kinds first, each once."""
+    found: dict[tuple[object, ...], Hypothesis] = {}
+    for drawn in shown:
+        before = list(ordered(drawn.steps.values(), lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
+        for h in hypotheses(before, drawn.k, drawn.plan.labels):
+            found.setdefault((h.words, id(h.step), h.at, h.other), h)
+    kinds = get_args(Kind)
+    return sorted(found.values(), key=lambda h: kinds.index(h.kind))
 
 
 def rebuilt(e: Element, points: Mapping[complex, complex]) -> Element:
@@ -233,7 +316,10 @@ def _drawn(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) -> _
             z = complex(frame(value[k] if value.ndim else value))
             if np.isfinite(z) and np.abs(ends - z).min() < AT_POINT:
                 steps.setdefault(z, step)
-    return _Drawn(plan, frame, k, tuple(vectors), steps)
+    at = np.array(list(steps), dtype=complex)
+    both = sum(len(at) > 0 and all(np.abs(at - z).min() < AT_POINT for z in e.points) for e in vectors)
+    # Forces at the points of a mechanism are no plan: only one end of each is a point.
+    return _Drawn(plan, frame, k, tuple(vectors), steps) if both > len(vectors) / 2 else None
 
 
 def _explained(drawn: _Drawn, errors: Errors, space: DrawingSpace, move: Placing, before: Sequence[Hypothesis]) -> _Found | None:
@@ -255,10 +341,8 @@ def _explained(drawn: _Drawn, errors: Errors, space: DrawingSpace, move: Placing
 
 def _mistakes(drawn: _Drawn, errors: Errors, told: Sequence[Hypothesis]) -> Iterator[tuple[Hypothesis, dict[complex, complex]]]:
     """Where mistakes take the points of a plan: those known already first, then the more usual kinds."""
-    before = list(ordered(drawn.steps.values(), lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
-    kinds = get_args(Kind)
-    for h in (*told, *sorted(hypotheses(before, drawn.k, drawn.plan.labels), key=lambda h: kinds.index(h.kind))):
-        points = _replayed(drawn, errors, h.changes)
+    for h in (*told, *_possible([drawn], errors)):
+        points = _moved(drawn, replay(errors, h.changes))
         if points:
             yield h, points
 
@@ -275,7 +359,7 @@ def _points_off(drawn: _Drawn, errors: Errors, space: DrawingSpace, move: Placin
             off = abs(at - z)
             if SHOWS < off < FARTHEST:
                 by = _in_plan(drawn.frame, at) - _in_plan(drawn.frame, z)
-                points = _replayed(drawn, errors, (Change(step, displaced(by), drawn.k),))
+                points = _moved(drawn, replay(errors, (Change(step, displaced(by), drawn.k),)))
                 if points:
                     said = tell("point {point} lies {distance} mm off; what follows from it is drawn from there")
                     yield points, said.format(point=letter_of(step), distance=millimetres(off * move.scale))
@@ -288,17 +372,15 @@ def _in_plan(frame: PlacedFrame, z: complex) -> complex:
     return complex(w.real * frame.mu[0], w.imag * frame.mu[1])
 
 
-def _replayed(drawn: _Drawn, errors: Errors, changes: Sequence[Change]) -> dict[complex, complex]:
-    """Where the points of a plan come to lie; nothing where none moves or one cannot be built."""
+def _moved(drawn: _Drawn, value: Callable[[Step], Any]) -> dict[complex, complex]:
+    """Where the points of a plan come to lie in a construction drawn again; nothing where none moves or one cannot be built."""
+    new: dict[complex, complex] = {}
     with np.errstate(all="ignore"):
-        value = replay(errors, changes)
-        new: dict[complex, complex] = {}
         for z, step in drawn.steps.items():
             made = np.asarray(value(step))
             new[z] = complex(drawn.frame(complex(made[drawn.k] if made.ndim else made)))
-    if not all(np.isfinite(w) for w in new.values()) or max((abs(w - z) for z, w in new.items()), default=0.0) < SHOWS:
-        return {}
-    return new
+    far = np.abs([w - z for z, w in new.items()])
+    return new if len(far) and (far <= PAPER).all() and far.max() >= SHOWS else {}  # NaN is on no paper either
 
 
 def _share(drawn: _Drawn, theirs: KnownLines, move: Placing, points: Mapping[complex, complex]) -> float:

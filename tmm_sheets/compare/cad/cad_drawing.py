@@ -13,6 +13,7 @@ from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.matching import match
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import worst
@@ -88,13 +89,15 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     space = laid.space.placed(laid.placing)
     say(tell("placing the views"))
     places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say, laid.views)
+    made: list[Hypothesis] = []
     if laid.views:
-        places = places.with_more(cad_built.lost_views(project, laid.known, space, places.moves))
+        lost, made = cad_built.lost_views(project, laid.known, space, places)
+        places = places.with_more(lost)
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
     if not _of_this_sheet(outcome):
         _refuse(project, laid, outcome, ink, sheet, path)
     say(tell("looking for what was done wrong"))
-    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome)
+    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made)
     if built:
         outcome = _as_built(laid.known, space, places, built, pencil)
     notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)

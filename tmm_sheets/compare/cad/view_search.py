@@ -8,7 +8,7 @@ ink there that no other view has taken, which of its letters stand there, what t
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
@@ -40,7 +40,13 @@ ALIKE = 0.02
 NEAR = 0.3
 """Distance from ink within which a point of ours counts as found, mm."""
 AS_DRAWN, SURE = 0.85, 0.97
-"""Least share of a changed view that must be found, and share at which to stop."""
+"""Least share of a changed view that must be found, and share from which on a view is drawn as it should be."""
+ODD_SCALE, ODD_TITLE = 0.15, 0.25
+"""By how much less a view is worth at a place with a scale factor that nobody takes, or under the title of another one."""
+TITLE = 45.0
+"""How far from a view a title may be, mm."""
+AGREE = 0.5
+"""Least share of the lines of a changed view, by length, that must tell the same place."""
 FEW_LINES = 3
 """Least number of lines by which a changed view is known."""
 MANY_LINES = 4
@@ -101,32 +107,12 @@ def find(elements: Sequence[Element], views: Sequence[ElementView], strokes: Seq
     writings : its texts
     known : where other views of the sheet are
     """
-    return _Search(elements, views, strokes, theirs, writings, known).found()
+    return Search(elements, views, strokes, theirs, writings, known).found()
 
 
-def find_changed(view: ElementView, elements: Sequence[Element], changed: Iterable[Callable[[Element], Element]],
-                 strokes: Sequence[DrawnStroke], theirs: KnownLines, writings: Sequence[Writing],
-                 known: Mapping[ElementView, Placing]) -> FoundView | None:
-    """Seek a view that is not drawn as ours is: with each of some changes of its elements; None where it is not found whole.
+class Search:
+    """Views sought in what is free of a drawing; the arguments are those of :func:`find`."""
 
-    ``elements`` are those of the sheet, the rest as in :func:`find`.
-    """
-    search = _Search(elements, [view], strokes, theirs, writings, known)
-    if not search.views:
-        return None
-    usual = search.main[view]
-    best: FoundView | None = None
-    for change in changed:
-        search.redrawn(view, [change(e) for e in usual])
-        for one in search.tries(0, view, search.scales.get(view.mu), FEW_LINES, 0):
-            if one.share > max(AS_DRAWN, best.share if best is not None else 0.0):
-                best = FoundView(one.placing, one.share)
-        if best is not None and best.share > SURE:
-            return best
-    return best
-
-
-class _Search:
     def __init__(self, elements: Sequence[Element], views: Sequence[ElementView], strokes: Sequence[DrawnStroke],
                  theirs: KnownLines, writings: Sequence[Writing], known: Mapping[ElementView, Placing]) -> None:
         of = {v: [e for e in elements if e.view == v] for v in views}
@@ -143,11 +129,34 @@ class _Search:
         self.free = theirs
         self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
 
-    def redrawn(self, v: ElementView, main: list[Element]) -> None:
-        """Seek a view with other lines."""
+    def changed(self, v: ElementView, main: Iterable[Element], least: int = FEW_LINES) -> FoundView | None:
+        """A view that is drawn with other main lines than ours, at a scale of its own; None where it is not found whole.
+
+        ``least`` is the number of lines by which it is known.
+        """
         self.main[v] = [e for e in main if e.length > 0.01]
         z = lines([e.points for e in self.main[v]]).points(1.0)
         self.points[v] = z[:: max(len(z) // MOST, 1)]
+        tries = [one for one in self.tries(0, v, None, least, 0, AGREE) if one.share > AS_DRAWN]
+        found = [(self.worth(v, FoundView(one.placing, one.share)) - one.less, one) for one in tries]
+        best = max(found, key=lambda x: x[0], default=None)
+        return None if best is None else FoundView(best[1].placing, best[1].share)
+
+    def worth(self, v: ElementView, found: FoundView) -> float:
+        """How well a view is there: the share that has ink, less under another's title or with a scale factor nobody takes."""
+        odd = v.mu is not None and not handy(found.placing)
+        return found.share - ODD_SCALE * odd - ODD_TITLE * self.strange(v, found.placing)
+
+    def strange(self, v: ElementView, placing: Placing) -> bool:
+        """Whether there is the title of another such view, with another number, and none of its own."""
+        box = Box.around(placing(self.points[v]))
+        own = _tokens(v.name)
+        near = [said for said, at in self.titles if box.contains(at, TITLE)]
+        return not any(_common(own, said) > 0.3 for said in near) and any(_namesakes(own, said) for said in near)
+
+    def without(self, v: ElementView, placing: Placing) -> None:
+        """Keep the ink of a view from the others."""
+        self.free = unused(self.free, placing(self.points[v]))
 
     def found(self) -> dict[ElementView, FoundView]:
         """The views that are sure; those of few lines wait until others of their scale factor tell its scale."""
@@ -175,13 +184,13 @@ class _Search:
             out[v] = FoundView(best.placing, best.share)
             if v.mu is not None:
                 self.scales.setdefault(v.mu, best.placing.scale)
-            self.free = unused(self.free, best.placing(self.points[v]))
+            self.without(v, best.placing)
 
-    def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int) -> Iterator[_Try]:
-        """The places a view may be at, at a scale if that is known."""
+    def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int, agree: float = 0.0) -> Iterator[_Try]:
+        """The places a view may be at, at a scale if that is known, on which a share of its lines agrees."""
         seen: list[Placing] = []
         middle = complex(self.points[v].mean())
-        for placing in _voted(_of_sheet(self.main[v]), self.shapes, middle, scale):
+        for placing in _voted(_of_sheet(self.main[v]), self.shapes, middle, scale, agree):
             fitted = _fitted(self.points[v], self.free, placing, scale)
             if fitted is None or any(abs(fitted(middle) - p(middle)) < 1 and abs(fitted.scale / p.scale - 1) < 0.02 for p in seen):
                 continue
@@ -202,8 +211,7 @@ class _Search:
         read, titled = self._read(v, placing), self._titled(v, placing)
         known_scale = self.scales.get(v.mu)
         same = known_scale is not None and abs(placing.scale / known_scale - 1) < 0.01
-        handy = min(abs(placing.scale / r - 1) for r in SCALES) < 0.004
-        witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy
+        witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy(placing)
         if least > 1 and not bends and lines_met < least:
             return None
         enough = lines_met >= 2 or bends or (lines_met == 1 and read + titled > (0.3 if same else 0.5))
@@ -224,7 +232,12 @@ class _Search:
         """How much the most similar title near a place has in common with the view's own, 0 .. 1."""
         box = Box.around(placing(self.points[v]))
         own = _tokens(v.name)
-        return max((_common(own, said) for said, at in self.titles if box.contains(at, 45.0)), default=0.0)
+        return max((_common(own, said) for said, at in self.titles if box.contains(at, TITLE)), default=0.0)
+
+
+def handy(placing: Placing) -> bool:
+    """Whether one may have drawn at that scale: its ratio to ours is one of handy scale factors."""
+    return min(abs(placing.scale / r - 1) for r in SCALES) < 0.004
 
 
 def _some(points: Points) -> Points:
@@ -243,6 +256,12 @@ def _common(own: frozenset[str], said: frozenset[str]) -> float:
     if not own or (numbers and theirs and not numbers & theirs):
         return 0.0
     return len(own & said) / len(own | said)
+
+
+def _namesakes(own: frozenset[str], said: frozenset[str]) -> bool:
+    """Whether two titles differ in their numbers only."""
+    (a, n), (b, m) = (({w[:3] for w in words if not w.isdigit()}, {w for w in words if w.isdigit()}) for words in (own, said))
+    return bool(n and m and not n & m and len(a & b) > 0.6 * len(a | b))
 
 
 def _of_sheet(elements: Sequence[Element]) -> _Shapes:
@@ -274,8 +293,11 @@ def _shapes(found: Sequence[Points]) -> _Shapes:
                    np.array(weight))
 
 
-def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None) -> Iterator[Placing]:
-    """Placings, at a scale if that is known, by how many of our lines agree on them, the best first; ``about`` is the middle."""
+def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None, agree: float = 0.0) -> Iterator[Placing]:
+    """Placings, at a scale if that is known, by how many of our lines agree on them, the best first; ``about`` is the middle.
+
+    ``agree`` is the least share of our lines, by weight, that has to.
+    """
     if not len(ours.middle) or not len(theirs.middle):
         return
     ratio = np.abs(theirs.extent)[None, :] / np.abs(ours.extent)[:, None]
@@ -298,8 +320,9 @@ def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None) 
             cell = (int(half > 0), *key)
             votes.setdefault(cell, set()).add(int(i[n]))
             best.setdefault(cell, []).append(n)
-    order = sorted(votes, key=lambda cell: -float(ours.weight[list(votes[cell])].sum()))
-    for cell in order[: 4 * TRIED]:
+    weights = {cell: float(ours.weight[list(of)].sum()) for cell, of in votes.items()}
+    least = agree * float(ours.weight.sum())
+    for cell in sorted((cell for cell, weight in weights.items() if weight >= least), key=lambda cell: -weights[cell])[: 4 * TRIED]:
         rows = np.array(best[cell])
         # The longest line tells the scale best.
         n = int(rows[ours.weight[i[rows]].argmax()])
