@@ -195,7 +195,7 @@ def slipped(name: str, project: Project, known: KnownSheet, drawn: Drawn, number
         for v in drawn.places:
             at = {e.by.frame for e in drawn.elements if e.view == v and e.role == "vector" and e.by is not None and e.by.frame >= 0}
             frame = known.sheet.frames[min(at)] if len(at) == 1 else None
-            if frame is None or frame.plan == "positions" or frame.plan not in plans or frame.position not in plans[frame.plan].labels:
+            if frame is None or frame.plan == "positions" or frame.position not in getattr(plans.get(frame.plan), "labels", ()):
                 continue
             points = np.concatenate([e.points for e in drawn.elements if e.view == v and e.role == "vector"])
             moved_to = {}

@@ -256,7 +256,7 @@ def test_a_press_of_the_family_gets_two():
     shown = sheet.composed(Project(catalogue.read(name)), 1)
     told = " ".join(g.text for g in shown.groups if g.kind == "lettering")
     assert "В положениях 9, 10 засечку точки B нельзя провести точнее 1,4 мм: в положении 10 линии сходятся под углом 23°" in told
-    assert "В положениях 8–10 засечку точки C нельзя провести точнее 2,8 мм: в положении 9 линии сходятся под углом 15°" in told
+    assert "В положениях 8–10 засечку точки C нельзя провести точнее 2,7 мм: в положении 9 линии сходятся под углом 15°" in told
     assert shown.crowded == ()
 
 

@@ -22,6 +22,7 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE, ForcePlan, Load, Role, TangentialPart
+from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
@@ -106,6 +107,10 @@ class Kinetostatics:
     def tangential_part(self, link: str, at: str) -> Step | None:
         """Part of the reaction on a link in a hinge that a moment equation gave, N; None where the reaction is not split."""
         return next((part.vector for part in self.from_moments if (part.link, part.at) == (link, at)), None)
+
+    def about_special(self, point: Step) -> Step | None:
+        """The component that the moments of a whole group of class III about a special point give; None where they give none."""
+        return next((step for step in self.plan if step.rule is BY_MOMENTS and step.args[1] is point), None)
 
     def sum_about(self, point: Step, force: Step) -> Step | None:
         """The sum of moments about a point that takes a force; None when there is none."""

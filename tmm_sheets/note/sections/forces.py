@@ -10,7 +10,6 @@ import numpy as np
 
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
 from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, words
@@ -250,7 +249,7 @@ def _about_special_point(r: Reader, g: Any) -> Iterator[dict[str, Any]]:
     """Of a group of class III what the moments of all of it about Assur's special point give."""
     study = r.project.study
     for special in study.positions.special.values():
-        step = next((s for s in study.forces.plan if s.rule is BY_MOMENTS and s.args[1] is special.step), None)
+        step = study.forces.about_special(special.step)
         if step is None or special.third.link not in g.links:
             continue
         about, at = (complex(value_at(x, r.k)) for x in step.args[1:3])
