@@ -13,6 +13,7 @@ from tests.compare.students import PENCIL, READING, Hand, Plant
 from tests.compare.students import opened as measurables_of
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
+from tmm_sheets.compare.measured.explaining import covariance
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, read
 from tmm_sheets.compare.measured.measured_lengths import NAME
 from tmm_sheets.construction.step import value_at
@@ -212,6 +213,13 @@ def test_two_mistakes_in_one_plan(off):
     assert [j.entry.quantity for j in starts(of.values())] == ["|pa3|", "|bb5|"]
     assert [of[f"velocities/4/{name}"].follows.entry.quantity for name in ("pb", "ps3", "pb5")] == ["|pa3|"] * 3
     assert of["results/4/V_B5B"].follows.entry.quantity == "|bb5|"
+
+
+def test_a_very_sensitive_number_tells_of_one_direction_only():
+    """The inverse of 1 + n n' is 1 - n n'/(1 + n'n) (Sherman and Morrison): across n all stays as unknown as it was."""
+    n = np.array([3e9, 4e9])
+    truth = np.array([[16, -12], [-12, 9]]) / 25
+    np.testing.assert_allclose(covariance(n[None, :], np.eye(2)), truth, atol=1e-6)
 
 
 def test_a_module_is_no_mass(shaper):

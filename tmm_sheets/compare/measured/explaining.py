@@ -331,7 +331,7 @@ class Sheet:
                 break
             score = float(np.sum(_loss(aims)) - np.sum(_loss(aims - shares)) - np.sum((usual @ x) ** 2))
             if score > best.score:
-                best = Mistake(place, of, x, np.linalg.inv(rows.T @ rows + usual @ usual), score, mu)
+                best = Mistake(place, of, x, covariance(rows, usual), score, mu)
             weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
             step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
                                        np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
@@ -365,6 +365,15 @@ class Sheet:
     def _change(self, place: Place, x: Floats) -> Change:
         step = self.steps[place]
         return Change(step, displaced(complex(*x)), place[1] if np.ndim(step.value) else None)
+
+
+def covariance(rows: Floats, usual: Floats) -> Floats:
+    """Covariance of a displacement that ``rows`` of tolerance one and what is ``usual`` tell; (2, 2).
+
+    The square of a very sensitive row would have no inverse in floating point.
+    """
+    inverse = np.linalg.pinv(np.concatenate((rows, usual)))
+    return np.asarray(inverse @ inverse.T)
 
 
 def _loss(r: Any) -> Any:
