@@ -1,24 +1,30 @@
 """A plain drawing with a layout of its own: its views are found, what it lacks is a remark, a plan built wrongly is named."""
 
 import random
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from tests.compare.cad_plants import Way, draw
-from tests.compare.own_layouts import Drawn, _rebuilt, is_there, replayed, taken
+from tests.compare.hypotheses import Slip
+from tests.compare.own_layouts import Drawn, follows, is_there, taken
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_drawing, cad_report, cad_story
+from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_report, cad_story
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.report_pages import page
+from tmm_sheets.construction.error import Errors
 from tmm_sheets.project import Project
 
 SHAPER = Project(read("lugansk/shaper"))
 KNOWN = known_sheet(SHAPER, 1)
 VIEWS = {e.view.name: e.view for e in KNOWN.elements}
 ACCELERATIONS, POSITIONS = VIEWS["План ускорений (положение 2)"], VIEWS["Планы положений механизма"]
-PLACES = {ACCELERATIONS: Placing(0.5 + 0j, -40 + 300j), POSITIONS: Placing(1 + 0j, 300 - 50j),
+FORCES = [VIEWS[f"План сил звена {n}"] for n in (1, 3)]
+PLACES = {ACCELERATIONS: Placing(0.5 + 0j, -40 + 300j), FORCES[0]: Placing(0.4 + 0j, 0j), FORCES[1]: Placing(0.4 + 0j, -700j),
+          POSITIONS: Placing(1 + 0j, 300 - 50j),
           VIEWS["План скоростей, положение 3"]: Placing(2 + 0j, 400 + 100j)}
 
 
@@ -27,10 +33,14 @@ def compared(tmp_path_factory):
     """The Coriolis vector laid off backwards, all that follows from it drawn from there; the other views are right."""
     rng = random.Random(2)
     drawn = Drawn([e for v in PLACES for e in taken(KNOWN, v, rng, True)], PLACES)
-    plan = SHAPER.plans["study"]["accelerations"]
-    frame = next(f for f in KNOWN.sheet.frames if f.plan == "accelerations")
-    new = {complex(frame(z)): complex(frame(w)) for z, w in replayed(plan, plan["k"], plan.labels.index("2"), -1)}
-    _rebuilt(drawn, ACCELERATIONS, new)
+    plans = {plan.name: plan for some in SHAPER.plans.values() for plan in (some or {}).values()}
+    mu = {f.plan: f.mu[0] for f in KNOWN.sheet.frames if f.plan in plans}
+    errors = Errors([(plans[name], mu[name]) for name in mu])
+    found = SimpleNamespace(plans=[(plans[name], name) for name in mu], errors=lambda *_: errors,
+                            scales={name: SimpleNamespace(mu=mu[name]) for name in mu})
+    plan = plans["accelerations"]
+    way = {plan["k"]: lambda a, made, k: a[0] - 2j * a[1] * (a[3] - a[2])}
+    assert follows(found, KNOWN, drawn, Slip("coriolis", "k", plan.labels.index("2"), way))
     path = tmp_path_factory.mktemp("own") / "plain.dxf"
     path.write_bytes(draw([moved(e, PLACES[e.view]) for e in drawn.elements], Way(), rng))
     return path, cad_drawing.examine(SHAPER, 1, path, None, 0.25), drawn
@@ -50,22 +60,31 @@ def test_what_is_right_is_not_accused(compared):
     bad = [f for f in found.outcome.findings if f.verdict in ("red", "amber") and f.element.view in PLACES]
     assert {f.element.number for f in bad} == drawn.wrong.keys()
     left_out = {(x.view, x.kind) for x in found.outcome.absent}
-    assert {(v, "construction") for v in PLACES} <= left_out
+    assert {(v, "construction") for v in PLACES.keys() - set(FORCES)} <= left_out  # a force polygon has none
     judged = [f for f in found.outcome.findings if f.element.view in PLACES and f.verdict is not None]
     assert {f.element.number for f in judged} <= there
 
 
 def test_the_plan_is_compared_as_it_was_built(compared):
     _, found, drawn = compared
-    (built,) = found.built.values()
-    assert list(found.built) == [ACCELERATIONS]
-    assert built.mistake.kind == "coriolis"
-    assert built.explains == built.of
+    assert found.built.keys() == {ACCELERATIONS, *FORCES}
+    assert {built.mistake.kind for built in found.built.values()} == {"coriolis"}
+    assert all(built.explains == built.of for built in found.built.values())
     wrong = [f for f in found.outcome.findings if f.element.number in drawn.wrong]
     assert {f.verdict for f in wrong} == {"red"}
     assert not any(f.missing for f in wrong)
     assert all("as follows from the mistake" in f.what for f in wrong)
     assert "laid off the other way" in cad_story.lines(found, cad_report.gone(found.outcome))[1]
+
+
+@pytest.mark.parametrize("far", [1e20, np.inf, np.nan])
+def test_a_plan_that_no_paper_holds_is_none(far):
+    """Nearly parallel lines meet anywhere."""
+    plans = {plan.name: plan for plan in SHAPER.plans["study"].values()}
+    drawn = cad_built._drawn(KNOWN, plans, ACCELERATIONS)
+    last = list(drawn.steps.values())[-1]
+    assert not cad_built._moved(drawn, lambda step: far if step is last else step.value)
+    assert cad_built._moved(drawn, lambda step: step.value + 1 if step is last else step.value)
 
 
 def test_the_report_as_a_page(compared):

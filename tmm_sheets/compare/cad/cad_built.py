@@ -176,7 +176,7 @@ class _Lost:
     def explaining_most(self, made: Sequence[Hypothesis]) -> Hypothesis | None:
         """The mistake with which, besides those made already, most ink of the doubtful views is explained; None without."""
         search = self._search(self.doubtful)
-        if not self.doubtful or not len(search.free.a):
+        if not self.doubtful or not search.enough():
             return None
         known: dict[tuple[ElementView, bytes], FoundView | None] = {}
         tried: list[tuple[float, Hypothesis]] = []

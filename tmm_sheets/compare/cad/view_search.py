@@ -45,8 +45,8 @@ ODD_SCALE, ODD_TITLE = 0.15, 0.25
 """By how much less a view is worth at a place with a scale factor that nobody takes, or under the title of another one."""
 TITLE = 45.0
 """How far from a view a title may be, mm."""
-AGREE = 0.5
-"""Least share of the lines of a changed view, by length, that must tell the same place."""
+AGREE = 0.7
+"""Least share of the lines of a changed view, by length, that must tell the same place, and of its points that must be near ink."""
 FEW_LINES = 3
 """Least number of lines by which a changed view is known."""
 MANY_LINES = 4
@@ -142,17 +142,22 @@ class Search:
         best = max(found, key=lambda x: x[0], default=None)
         return None if best is None else FoundView(best[1].placing, best[1].share)
 
+    def enough(self) -> bool:
+        """Whether there are lines enough for a changed view to be known by."""
+        return int((self.free.length > SHORTEST).sum()) >= FEW_LINES
+
     def worth(self, v: ElementView, found: FoundView) -> float:
         """How well a view is there: the share that has ink, less under another's title or with a scale factor nobody takes."""
         odd = v.mu is not None and not handy(found.placing)
         return found.share - ODD_SCALE * odd - ODD_TITLE * self.strange(v, found.placing)
 
     def strange(self, v: ElementView, placing: Placing) -> bool:
-        """Whether there is the title of another such view, with another number, and none of its own."""
+        """Whether the title over a place is that of another such view, with another number."""
         box = Box.around(placing(self.points[v]))
-        own = _tokens(v.name)
-        near = [said for said, at in self.titles if box.contains(at, TITLE)]
-        return not any(_common(own, said) > 0.3 for said in near) and any(_namesakes(own, said) for said in near)
+        own, over = _tokens(v.name), complex(box.centre.real, box.y1)
+        near = [(abs(at - over), said) for said, at in self.titles
+                if box.contains(at, TITLE) and (_common(own, said) > 0.3 or _namesakes(own, said))]
+        return bool(near) and _namesakes(own, min(near, key=lambda x: x[0])[1])
 
     def without(self, v: ElementView, placing: Placing) -> None:
         """Keep the ink of a view from the others."""
@@ -191,6 +196,8 @@ class Search:
         seen: list[Placing] = []
         middle = complex(self.points[v].mean())
         for placing in _voted(_of_sheet(self.main[v]), self.shapes, middle, scale, agree):
+            if agree and self.free.share(placing(self.points[v][::10]), 2.0) < agree:
+                continue
             fitted = _fitted(self.points[v], self.free, placing, scale)
             if fitted is None or any(abs(fitted(middle) - p(middle)) < 1 and abs(fitted.scale / p.scale - 1) < 0.02 for p in seen):
                 continue
