@@ -191,43 +191,8 @@ def slipped(name: str, project: Project, known: KnownSheet, drawn: Drawn, number
     rng = np.random.default_rng([number, 15])
     for _ in range(12):
         slip = KINDS[SLIPS[rng.integers(len(SLIPS))]](found, rng)
-<<<<<<< HEAD
-        if slip is None or not slip.ways:
-            continue
-        hand = Slipping(found, rng, (slip,))
-        hand.sigma = 0.0
-        shows = False
-        new = {}
-        for v in drawn.places:
-            at = {e.by.frame for e in drawn.elements if e.view == v and e.role == "vector" and e.by is not None and e.by.frame >= 0}
-            frame = known.sheet.frames[min(at)] if len(at) == 1 else None
-            if frame is None or frame.plan == "positions" or frame.position not in getattr(plans.get(frame.plan), "labels", ()):
-                continue
-            points = np.concatenate([e.points for e in drawn.elements if e.view == v and e.role == "vector"])
-            moved_to = {}
-            for s in plans[frame.plan]:
-                was, now = (np.asarray(x) for x in (s.value, hand.value(s)))
-                if was.dtype.kind == "c":
-                    k = plans[frame.plan].labels.index(frame.position)
-                    z, w = (complex(frame(complex(x[k] if x.ndim else x))) for x in (was, now))
-                    if np.isfinite(w) and np.abs(points - z).min() < 0.03:
-                        moved_to[z] = w
-            far = max((abs(z - w) for z, w in moved_to.items()), default=0.0) * drawn.places[v].scale
-            if far > 400:
-                break  # nobody has so much paper
-            shows |= far > 4
-            new[v] = (moved_to, far)
-        else:
-            if shows:
-                for v, (moved_to, far) in new.items():
-                    if far > 0.3:
-                        _rebuilt(drawn, v, moved_to)
-                        drawn.built[v] = str(slip)
-                return slip
-=======
         if slip is not None and slip.ways and follows(found, known, drawn, slip):
             return slip
->>>>>>> h15b
     return None
 
 
