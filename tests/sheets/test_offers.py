@@ -23,6 +23,10 @@ def canvas_with(*lines):
     return canvas
 
 
+def cells(canvas):
+    return offers._of_part(canvas, 0, FIELD, offers._closed(FIELD, []).shape)
+
+
 @pytest.mark.parametrize(("lines", "found"), [
     ([], True),
     ([(30 + 300j, 826 + 300j)], True),  # 285 mm over and under a line
@@ -30,7 +34,7 @@ def canvas_with(*lines):
     ([(30 + 10j, 826 + 580j)], True),  # beside a diagonal
 ], ids=["nothing", "line", "inside", "diagonal"])  # fmt: skip
 def test_a_place_is_clear_of_all_ink_and_outside_pictures(lines, found):
-    box = offers._place(offers._inked(canvas_with(*lines), FIELD, 0), [(200.0, 120.0)], FIELD)
+    box = offers._place(cells(canvas_with(*lines)), [(200.0, 120.0)], FIELD)
     assert (box is not None) is found
     if box is not None:
         assert FIELD.x0 <= box.x0 < box.x1 <= FIELD.x1
@@ -42,7 +46,7 @@ def test_a_place_is_clear_of_all_ink_and_outside_pictures(lines, found):
 
 def test_the_next_smaller_size_is_taken_and_none_that_does_not_fit():
     canvas = canvas_with((20 + 5j, 700 + 5j), (20 + 589j, 700 + 589j), (20 + 5j, 20 + 589j), (700 + 5j, 700 + 589j))
-    left = offers._inked(canvas, FIELD, 0)
+    left = cells(canvas)
     box = offers._place(left, [(200.0, 120.0), (100.0, 60.0)], FIELD)
     assert (box.width, box.height) == (100.0, 60.0)
     assert offers._place(left, [(200.0, 120.0)], FIELD) is None

@@ -8,7 +8,7 @@ from tmm_sheets.project import Project
 
 SHIPPED = [name for name in PROJECTS if name not in OWN]
 
-@pytest.mark.parametrize("name", [*SHIPPED, OWN[-1]])
+@pytest.mark.parametrize("name", [*SHIPPED, next(name for name in OWN if "visor" in name)])
 def test_every_printed_number_is_that_of_a_step(name):
     total, lost, false = check(Project(read(name)))
     assert total > 200

@@ -222,7 +222,7 @@ def _balance(project: Project, of: Friction, k: int) -> list[str]:
     study, crank = project.study, project.mechanism.crank
     loss = -float(of.total.at(k))
     lines = [tr("Approximations until the reactions stay: {count}").format(count=int(of.approximations)),
-             tr("Power of friction N_f = {power} W; on the input link M_f = {moment} N·m").format(
+             tr("Power of friction N_{{f}} = {power} W; on the input link M_{{f}} = {moment} N·m").format(
                  power=number(loss, 5), moment=number(abs(float(of.on_crank.at(k))), 4))]
     if study.driver is None:
         drive = float(study.balance["M"].at(k)) * crank.speed

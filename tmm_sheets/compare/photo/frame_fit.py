@@ -21,6 +21,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import marked, tell
 
 STATIONS = 240  # along each side
+WIDE = 2.0  # mm to both sides of the frame in which its blur is seen
 WANTED = marked(
     "the whole frame must be in the picture, flat and sharp, on a background that is not as light as the paper; the title block is "
     "form 1 or 2a of GOST 2.104 in the lower right corner"
@@ -69,7 +70,7 @@ def fit_frame(grey: Grey, m: Map) -> FrameFit:
     CannotBuild
         When more than one side has no line.
     """
-    for width in (2.5, 1.5, 2.0):
+    for width in (2.5, 1.5, WIDE):
         seen, profile, o = _seek(grey, m, width)
         m, scatter = fit_map(m, seen)
         use = seen.weight > 0
@@ -87,10 +88,13 @@ def frame_about(grey: Grey, m: Map, width: float) -> FrameFit:
     CannotBuild
         When more than one side has no line.
     """
-    seen, profile, o = _seek(grey, m, width)
+    seen, _, o = _seek(grey, m, width)
     use = seen.weight > 0
     scatter = max(1.4826 * float(np.median(np.abs(o[use] - np.median(o[use])))), 0.03)
-    return FrameFit(m, seen, scatter, _smear(profile[use], _offsets(width), o[use]))
+    # As far to both sides as in any fit: nearer by, a blurred line has no bare paper beside it and looks sharper than it is.
+    wide, profile, o = _seek(grey, m, WIDE)
+    use = wide.weight > 0
+    return FrameFit(m, seen, scatter, _smear(profile[use], _offsets(WIDE), o[use]))
 
 
 def sides_near(grey: Grey, m: Map, width: float) -> Seen:
