@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.project import Project
 
+_encoded = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode
 MOST = 72
 """Most positions that are told in words: as many as a sheet shows."""
 SCHEMA = 1
@@ -71,11 +72,11 @@ def as_json(found: dict[str, Any]) -> str:
 
 def _lines(value: Any, level: int) -> str:
     if value and level < 2 and isinstance(value, dict):
-        inner = (f"{json.dumps(k, ensure_ascii=False)}: {_lines(v, level + 1)}" for k, v in value.items())
+        inner = (f"{_encoded(k)}: {_lines(v, level + 1)}" for k, v in value.items())
         return "{\n" + ",\n".join(inner) + "\n}"
     if value and level < 4 and isinstance(value, list) and isinstance(value[0], dict):
         return "[\n" + ",\n".join(_sheet(v, level) for v in value) + "\n]"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return _encoded(value)
 
 
 def _sheet(value: dict[str, Any], level: int) -> str:

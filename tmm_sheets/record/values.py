@@ -24,7 +24,7 @@ def written(value: Any) -> Any:
     if array.dtype.kind not in "biufc":
         return None  # nothing that a record could hold
     if array.dtype.kind == "c":
-        array = np.stack((array.real, array.imag), -1)
+        array = np.ascontiguousarray(array, complex).view(float).reshape(*array.shape, 2)
     found = array.tolist()
     return found if array.dtype.kind in "biu" or np.isfinite(array).all() else _defined(found)
 
