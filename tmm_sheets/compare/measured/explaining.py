@@ -348,14 +348,15 @@ class Sheet:
     def helps(self, mistake: Mistake, i: int) -> bool:
         """True when a mistake explains most of the number it was looked for, and of another one that is not in order.
 
-        A little of much that other mistakes have spoilt explains nothing.
+        A little of much that other mistakes have spoilt explains nothing. Of what is off against the student's own numbers only
+        there is nothing to explain.
         """
         if np.hypot(*mistake.moved) < 2 * self.errors.pencil * mistake.mu:
             return False  # that is the pencil
         shares = self.shares(mistake.place, mistake.moved)
         mostly = {j for j, share in zip(self.by_place[mistake.place][0].tolist(), shares, strict=True)
                   if self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])}
-        return i in mostly and len(mostly) > 1
+        return bool(mostly - {i}) and (i in mostly or abs(self.left[i]) <= self.tolerance[i])
 
     def shares(self, place: Place, x: Floats) -> Floats:
         """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
