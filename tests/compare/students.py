@@ -136,7 +136,7 @@ class Hand:
             value = value * self.wrong[e.id].times + self.wrong[e.id].shift.real
         if e.kind == "result":
             return float(f"{value:.3g}") if e.calculated else value
-        return round(2 * value) / 2
+        return round(2 * value) / 2 if np.isfinite(value) else value  # what cannot be drawn with a mistake is not measured
 
     def computed(self, e: Measurable, written: Mapping[str, float]) -> float:
         """A result from the numbers written down before, where they suffice; else what is read off the drawing."""
