@@ -48,6 +48,28 @@ class SchemeViews:
     box: Box
     axis: float
     picture: Box
+    front: complex
+    top: float
+    bottom: float
+    side: float
+    width: float
+
+    def place(self, box: Box, key: str, title: str, above: float = 0.0) -> None:
+        """Find the scale and the places of the axial view, the picture of velocities beside it and the end view at the right.
+
+        They need ``top``, ``bottom`` and ``side`` (m) and ``width`` (mm); ``above`` is what else stands over the picture, mm.
+        """
+        inner = box.inset(0, 0, 0, 18)
+        beside = inner.width - self.width - NARROWEST - 24
+        self.mu = standard((self.top + self.bottom, inner.height - 16 - above), (2 * self.side, beside))
+        self.canvas.scales[key] = self.mu
+        self.box = self.canvas.title(box, title, ratio(self.mu))
+        spare = self.box.height - (self.top + self.bottom) / self.mu.mu
+        self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
+        self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
+        left = self.box.x0 + self.width + 12
+        right = self.front.real - self.side / self.mu.mu - 12
+        self.picture = Box(left, self.box.y0, right, self.box.y1 - above)
 
     def y(self, height: float) -> float:
         """Ordinate on the sheet of a height over the main axis."""
@@ -148,17 +170,7 @@ class _Scheme(SchemeViews):
         self.bottom = max(self.reach, two if self.before else one + 2 * two)
         self.side = max(self.reach, one, two)
         self.width = self.columns() * COLUMN + 2 * STUB
-        inner = box.inset(0, 0, 0, 18)
-        beside = inner.width - self.width - NARROWEST - 24
-        self.mu = standard((self.top + self.bottom, inner.height - 16), (2 * self.side, beside))
-        canvas.scales["reducer-scheme"] = self.mu
-        self.box = canvas.title(box, tr("Scheme of the reducer, picture of velocities and end view"), ratio(self.mu))
-        spare = self.box.height - (self.top + self.bottom) / self.mu.mu
-        self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
-        self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
-        left = self.box.x0 + self.width + 12
-        right = self.front.real - self.side / self.mu.mu - 12
-        self.picture = Box(left, self.box.y0, right, self.box.y1)
+        self.place(box, "reducer-scheme", tr("Scheme of the reducer, picture of velocities and end view"))
 
     def columns(self) -> int:
         """Columns of the axial view between the shafts that lead in and out."""

@@ -10,9 +10,8 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
-from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.gear_marks import ruled_table
-from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, NARROWEST, STUB, SchemeViews, plan_of_speeds
+from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, STUB, SchemeViews, plan_of_speeds
 from tmm_sheets.words import tr
 
 SLEEVE = 6.0
@@ -59,16 +58,7 @@ class _Scheme(SchemeViews):
         self.side = max(self.side, *(train.distance(m) + train.radius(m.planet, m) for m in train.meshes if m.carrier), 0.0)
         columns = len(train.meshes) + len({m.carrier for m in train.meshes if m.carrier})
         self.width = columns * COLUMN + 2 * STUB
-        inner = box.inset(0, 0, 0, 18)
-        beside = inner.width - self.width - NARROWEST - 24
-        self.mu = standard((self.top + self.bottom, inner.height - 30), (2 * self.side, beside))
-        canvas.scales["train-scheme"] = self.mu
-        self.box = canvas.title(box, tr("Scheme of the train, picture of velocities and end view"), ratio(self.mu))
-        spare = self.box.height - (self.top + self.bottom) / self.mu.mu
-        self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
-        self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
-        self.picture = Box(self.box.x0 + self.width + 12, self.box.y0, self.front.real - self.side / self.mu.mu - 12,
-                           self.box.y1 - 8)
+        self.place(box, "train-scheme", tr("Scheme of the train, picture of velocities and end view"), 8.0)
 
     def height(self, name: str) -> float:
         """Height of a wheel's axis over the main one, m."""
