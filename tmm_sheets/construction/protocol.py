@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
+from functools import lru_cache
 from math import degrees
 from typing import Any
 
@@ -99,9 +100,15 @@ _GREEK = {"alpha": "α", "phi": "φ", "psi": "ψ", "eps": "ε", "theta": "θ", "
 
 def letter_of(step: Step) -> str:
     """How a step is called in a sentence: its letter on the sheet without markup, or its name."""
-    return re.sub(r"\^(?=\{\*)|[{}]", "", step.symbol) if step.symbol else spoken(step.name)
+    return _unmarked(step.symbol) if step.symbol else spoken(step.name)
 
 
+@lru_cache(4096)  # said again at each position
+def _unmarked(symbol: str) -> str:
+    return re.sub(r"\^(?=\{\*)|[{}]", "", symbol)
+
+
+@lru_cache(4096)
 def spoken(name: str) -> str:
     """Name of a step as it stands on the sheet: Greek letters instead of their names."""
     return re.sub(r"^(alpha|phi|psi|eps|theta|rho)(?=_|\d|$)", lambda m: _GREEK[m[1]], name)

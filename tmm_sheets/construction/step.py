@@ -211,4 +211,4 @@ def value_of(x: Any) -> Any:
 def value_at(x: Any, k: int) -> Any:
     """Value of a step or of a given array at position ``k``; numbers are the same at every position."""
     value = value_of(x)
-    return value if np.ndim(value) == 0 else value[k]
+    return value if isinstance(value, float | complex | str) or np.ndim(value) == 0 else value[k]

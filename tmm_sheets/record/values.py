@@ -14,6 +14,8 @@ from tmm_sheets.construction.given import Given, Over
 
 def written(value: Any) -> Any:
     """A value for JSON."""
+    if isinstance(value, complex) and isfinite(value.real) and isfinite(value.imag):  # ends of helper lines: most of all values
+        return [value.real, value.imag]
     if isinstance(value, Curve):
         return {name: written(getattr(value, name)) for name in ("x", "y", "left", "right")} | {"law": value.law}
     if isinstance(value, tuple | list):
