@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from tests.record.printed import strangers
 from tests.record.replayer import Replay, number
 from tmm_sheets import catalogue, results
 from tmm_sheets.__main__ import run
@@ -182,3 +183,10 @@ def test_searches_are_counted(numbers):
     searched = sum(search.steps for search in project.searches)
     assert searched > 100
     assert drawn + searched == total
+
+
+def test_printed_numbers_are_those_of_steps():
+    """No view works a number out on its own."""
+    count, none = strangers("lugansk/engine")
+    assert count > 800
+    assert not none

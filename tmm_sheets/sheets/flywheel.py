@@ -419,11 +419,11 @@ def _words(canvas: Canvas, left: Box, lines: list[str]) -> None:
 
 def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
     left = canvas.title(box, tr("No flywheel is needed"))
-    there, delta = fw.J_first - fw.J_flywheel, fw.running(fw.J_running).delta
+    delta = fw.running(fw.J_running).delta
     held = tr("J_{{cr}} + J_r·u^2 = {there} kg·m^2;  needed {needed} kg·m^2") if fw.J_rotor else \
         tr("J_{{cr}} = {there} kg·m^2;  needed {needed} kg·m^2")
     lines = [tr("J_f = {J} kg·m^2 ≤ 0").format(J=number(fw.J_flywheel, 4)),
-             held.format(there=number(there, 4), needed=number(max(fw.J_first, 0.0), 4))]
+             held.format(there=number(fw.turning, 4), needed=number(max(fw.J_first, 0.0), 4))]
     if not np.isnan(delta):
         lines.append(tr("Without a flywheel δ = {found} {sign} {permitted}").format(
             found=number(delta, 4), sign="≤" if delta <= fw.permitted else ">", permitted=number(fw.permitted)))
@@ -547,7 +547,7 @@ def _converged(fw: Flywheel) -> str:
         if fw.needed and abs(fw.difference_percent) < 100 else \
         tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {apart} kg·m^2)")
     return said.format(J=_alike(fw)[1], difference=fixed(fw.difference_percent, 2),
-                       apart=number(fw.J_flywheel - fw.J_flywheel_converged, 3))
+                       apart=number(float(fw.limit_plan["ΔJ_м"].value), 3))
 
 
 def _sizes(fw: Flywheel) -> list[str]:

@@ -219,15 +219,13 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 def _balance(project: Project, of: Friction, k: int) -> list[str]:
     """Number of approximations, power of friction, and what the drive gives: the part that friction takes of it."""
     assert of.power_plan is not None
-    study, crank = project.study, project.mechanism.crank
-    loss = -float(of.total.at(k))
     lines = [tr("Approximations until the reactions stay: {count}").format(count=int(of.approximations)),
              tr("Power of friction N_{{f}} = {power} W; on the input link M_{{f}} = {moment} N·m").format(
-                 power=number(loss, 5), moment=number(abs(float(of.on_crank.at(k))), 4))]
-    if study.driver is None:
-        drive = float(study.balance["M"].at(k)) * crank.speed
+                 power=number(-float(of.total.at(k)), 5), moment=number(abs(float(of.on_crank.at(k))), 4))]
+    if project.study.driver is None:
+        drive, free = (float(power.at(k)) for power in project.study.drive(of.total))
         lines.append(tr("Power of the drive N = {drive} W; without friction {free} W").format(
-            drive=number(drive, 5), free=number(drive - loss, 5)))
+            drive=number(drive, 5), free=number(free, 5)))
     return lines
 
 

@@ -399,7 +399,7 @@ class _Detail:
         clearance = f"c^{{*}}m = {number(gear.clearance * gear.m * 1e3, 3)}"
         for low, high, text, side in (
             (way * (two.rw - two.rf), -(one.ra - one.rw), clearance, -h), (way * (two.rw - two.ra), one.rw - one.rf, clearance, h),
-            (way * (two.rw - two.r), one.rw - one.r, f"ym = {fixed(gear.y * gear.m * 1e3, 2)}", h),
+            (way * (two.rw - two.r), one.rw - one.r, f"ym = {fixed(gear.ym * 1e3, 2)}", h),
         ):
             if abs(high - low) < 1e-9:
                 continue
@@ -582,8 +582,6 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     gear = project.gear
     plan, pole = gear.engagement, int(np.argmin(np.abs(gear.sliding["K"].value)))
     drawn = [float(plan[f"eps{i}"].value) for i in (1, 2)]
-    mean = sum(drawn) / 2
-    difference = abs(mean - gear.eps_alpha) / gear.eps_alpha * 100
     entry, leave = ("A", "B") if gear.driver == 1 else ("B", "A")
     rows: list[tuple[str, ...]] = [
         (tr("Quantity"), tr("Symbol"), tr("Value")),
@@ -592,7 +590,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         (tr("Contact ratio {fraction}").format(fraction="φ_{α1}/τ_1"), "ε_α", fixed(drawn[0], 3)),
         (tr("Contact ratio {fraction}").format(fraction="φ_{α2}/τ_2"), "ε_α", fixed(drawn[1], 3)),
         (tr("Contact ratio by the formula"), "ε_α", fixed(gear.eps_alpha, 3)),
-        (tr("Difference, %"), "Δ", fixed(difference, 2)),
+        (tr("Difference, %"), "Δ", fixed(float(plan["Δeps"].value), 2)),
         (tr("Path of contact AB, mm"), "g_α", fixed(gear.g_alpha * 1e3, 2)),
         (tr("Base pitch, mm"), "p_b", fixed(gear.pb * 1e3, 2)),
         *((tr("Sliding at the dedendum of wheel {wheel} (point {point})").format(wheel=i, point=point), f"θ_{i}",

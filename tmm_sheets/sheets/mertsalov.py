@@ -256,7 +256,7 @@ def _inertia(fw: Mertsalov) -> list[str]:
                 length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), delta=number(fw.unevenness),
                 omega=fixed(fw.reduced.omega1, 3), first=first),
             tr("I_f = I_I − (I_{{cr}} + I_r·u^2) = {first} − {bare} = {flywheel} kg·m^2").format(
-                first=first, bare=number(fw.J_first - fw.J_flywheel, 4, fw.J_first), flywheel=number(fw.J_flywheel, 5))]
+                first=first, bare=number(fw.turning, 4, fw.J_first), flywheel=number(fw.J_flywheel, 5))]
 
 
 def _delta(fw: Mertsalov) -> list[str]:
@@ -264,7 +264,7 @@ def _delta(fw: Mertsalov) -> list[str]:
     first = number(fw.J_first, 5)
     found, limit = graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
     return [tr("I_I = I_f + (I_{{cr}} + I_r·u^2) = {flywheel} + {bare} = {first} kg·m^2").format(
-                flywheel=number(fw.J_flywheel, 5), bare=number(fw.J_first - fw.J_flywheel, 4, fw.J_first), first=first),
+                flywheel=number(fw.J_flywheel, 5), bare=number(fw.turning, 4, fw.J_first), first=first),
             tr("δ = |ab|·μ_T/(I_I·ω_1^2) = {length}·{mu}/({first}·{omega}^2) = {delta}").format(
                 length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), first=first, omega=fixed(fw.reduced.omega1, 3),
                 delta=found),

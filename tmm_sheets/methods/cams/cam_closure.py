@@ -69,6 +69,9 @@ RATIO = Rule("force by force of inertia", lambda s, dds, stroke, largest, factor
              ("ordinate", "ordinate", "length") + ("number",) * 6,
     "number", marked("Least ratio of the force of the spring to the force of inertia {name} = {value}."), unit="1", source=SOURCE)
 
+NEEDED = Rule("factor of the spring needed", lambda factor, least: factor / least, ("number", "number"), "number",
+              marked("The pair stays closed with F_max greater than {name} = {0}/{1} = {value} of Q_max."), unit="1", source=SOURCE)
+
 
 def _number(step: str, doc: str) -> property:
     return property(lambda self: float(self.plan[step].value), doc=doc)
@@ -99,16 +102,12 @@ class Spring:
     rate = _number("c", "Stiffness, N/m.")
     worst = _number("k_min", "Least ratio of spring force and force of inertia.")
     worst_phi = _number("φ_k", "Cam angle where it occurs, rad.")
+    needed_factor = _number("k_F", "Factor of the largest force from which on the pair stays closed, share of the preload kept.")
 
     @property
     def closed(self) -> bool:
         """True when the spring holds the pair together in every position."""
         return bool(self.worst > 1)
-
-    @property
-    def needed_factor(self) -> float:
-        """Factor of the largest force from which on the pair stays closed, the share of the preload kept."""
-        return float(self.factor / self.worst)
 
     def force(self, s: Any) -> Any:
         """Force at displacements of the law (m, or rad of a rocker), N."""
@@ -180,7 +179,8 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     _, x, p = min(((*_least(lambda x, p=p: ratio(x, p), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
     share = found_share(plan, exact.phases, p, x, "k", tr("the ratio F/Q where {symbol}'' < 0 is least").format(symbol=law.symbol))
     s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
-    plan.add("k_min", RATIO, s, dds, law.stroke, largest, factor, preload, moved, turning, way)
+    least = plan.add("k_min", RATIO, s, dds, law.stroke, largest, factor, preload, moved, turning, way)
+    plan.add("k_F", NEEDED, factor, least)
     return Spring(exact, plan, factor, preload, speed)
 
 

@@ -305,6 +305,8 @@ ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("nu
 RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maximum(-wheel, 0.0), ("number", "number"), "number",
                marked("All that turns in the finished machine, the input link included: {name} = {value} kg·m²."), unit="kg*m2")
 TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
+APART = Rule("difference of moments of inertia", lambda drawn, exact: drawn - exact, ("number", "number"), "number",
+             marked("The construction against the limit: {name} = {0} − {1} = {value} kg·m²."), beyond_paper=True, unit="kg*m2")
 DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"),
                   "number", marked("The construction against the limit: {name} = {value} %."), beyond_paper=True, unit="%")
 
@@ -850,7 +852,7 @@ class Flywheel(ABC):
 
     @cached_property
     def limit_plan(self) -> Plan:
-        """The same for vanishing intervals: ``J_I∞``, ``J_м∞``, and ``разность``, by how many per cent the drawn one is off.
+        """The same for vanishing intervals: ``J_I∞``, ``J_м∞``, and by how much the drawn one is off: ``ΔJ_м``, ``разность`` in %.
 
         Of a given flywheel ``δ∞``, and the difference of ``δ``.
         """
@@ -861,6 +863,7 @@ class Flywheel(ABC):
             plan.add("разность", DIFFERENCE, self.delta, found, symbol=tr("difference"))
             return plan
         flywheel = self._bare(plan, "J_м∞", self._first_converged(plan, excess), BARE_LIMIT, BARE_OF_ROTOR_LIMIT, tr("J_f∞"))
+        plan.add("ΔJ_м", APART, self.first_plan["J_м"], flywheel, symbol=tr("ΔJ_f"))
         plan.add("разность", DIFFERENCE, self.first_plan["J_м"], flywheel, symbol=tr("difference"))
         return plan
 
@@ -878,9 +881,16 @@ class Flywheel(ABC):
             return plan
         u: Any = motor.ratio and named(motor.ratio, "flywheel.motor.ratio", "u")
         u = u or plan.add("u", RATIO, named(motor.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), self.omega1)
-        plan.add("J_рот", ROTOR, named(motor.rotor_inertia, "flywheel.motor.rotor_inertia", tr("J_r"), "kg*m2"), u,
-                 symbol=tr("J_rotor"))
+        rotor = plan.add("J_рот", ROTOR, named(motor.rotor_inertia, "flywheel.motor.rotor_inertia", tr("J_r"), "kg*m2"), u,
+                         symbol=tr("J_rotor"))
+        plan.add("J_к", TOGETHER, self.reduced.crank, rotor)
         return plan
+
+    @property
+    def turning(self) -> float:
+        """Moment of inertia of what turns with the crank without any flywheel, kg m2."""
+        plan = self.rotor_plan
+        return float((plan["J_к"] if "J_к" in plan else self.reduced.crank).value)  # noqa: SIM401 - a plan has no get
 
     @property
     def J_first(self) -> float:
@@ -933,12 +943,11 @@ class Flywheel(ABC):
     @property
     def remark(self) -> str:
         """What is worth telling about the flywheel; nothing when one is needed, drawn and in the limit."""
-        there = self.J_first - self.J_flywheel
         if self.needed and self.J_flywheel_converged > 0:
             return ""
         if self.needed == (self.J_flywheel_converged > 0):
             return tell("no flywheel is needed: {there:.4g} kg m2 turn with the crank, {enough:.4g} are enough ({limit:.4g} in the "
-                        "limit of many positions)").format(there=there, enough=self.J_first, limit=self.J_first_converged)
+                        "limit of many positions)").format(there=self.turning, enough=self.J_first, limit=self.J_first_converged)
         said = (tell("the drawn construction needs a flywheel ({drawn:.4g} kg m2), in the limit of many positions none is needed "
                      "({limit:.4g} kg m2): the difference is the construction's error") if self.needed else
                 tell("the drawn construction needs no flywheel ({drawn:.4g} kg m2), in the limit of many positions one is needed "

@@ -129,6 +129,10 @@ ANGLE = Rule("measure an angle", _angle, ("point", "point", "point"), "angle",
              marked("Measure the angle {0}{1}{2}: {name} = {value}."))
 RATIO = Rule("ratio of angles", lambda a, b: a / b, ("angle", "angle"), "number",
              marked("Contact ratio {name} = {0} / {1} = {value}."), source="000, 6.3")
+MEAN = Rule("mean contact ratio", lambda a, b: (a + b) / 2, ("number", "number"), "number",
+            marked("Contact ratio by the drawing {name} = ({0} + {1})/2 = {value}."))
+OFF = Rule("contact ratio off", lambda drawn, exact: np.abs(drawn - exact) / exact * 100, ("number", "number"), "number",
+           marked("The drawing against the formula: {name} = {value} %."), unit="%")
 ROLLED = Rule(
     "profile in contact", _rolled, ("point", "point", "point", "point"), "point",
     marked("The profile that touches at {3} cuts the pitch circle with the centre {1} at point {name} (the arc of the base circle "
@@ -201,7 +205,8 @@ def engagement_plan(pair: PairGeometry) -> Plan:
 
     The direction ``N1N2`` runs from N1 through the pole. Steps: ``O1 O2 Pw``, circles ``rw1 r1 rb1 ra1 rf1`` and of wheel 2,
     ``N1 N2 A B``, ``alpha_w``, profiles in contact
-    at A and B cutting the working pitch circles in ``a1 b1 a2 b2``, angles ``phi1 phi2``, ratios ``eps1 eps2``.
+    at A and B cutting the working pitch circles in ``a1 b1 a2 b2``, angles ``phi1 phi2``, ratios ``eps1 eps2``,
+    their mean ``eps`` and by how many per cent it is off, ``Δeps``.
     """
     plan = Plan("gear-engagement", tr("Gear meshing"), "m")
     one = pair.wheels[0]
@@ -230,6 +235,8 @@ def engagement_plan(pair: PairGeometry) -> Plan:
                      symbol=f"{contact.lower()}_{i}")
         plan.add(f"phi{i}", ANGLE, plan[f"a{i}"], plan[f"O{i}"], plan[f"b{i}"], symbol=f"φ_{{α{i}}}")
         plan.add(f"eps{i}", RATIO, plan[f"phi{i}"], w.step("tau"), symbol="ε_α")
+    drawn = plan.add("eps", MEAN, plan["eps1"], plan["eps2"], symbol="ε_α")
+    plan.add("Δeps", OFF, drawn, pair.step("eps_alpha"), symbol="Δ")
     return plan
 
 

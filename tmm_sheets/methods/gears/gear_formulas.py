@@ -129,6 +129,8 @@ Y = formula("centre distance modification coefficient",
              lambda z1, z2, a, w: (z1 + z2) * np.sin((a + w) / 2) * np.sin((w - a) / 2) / np.cos(w), (N, N, A, A),
              marked("Centre distance modification coefficient y = (z_1 + z_2)(cos α/cos α_w − 1)/2: {name} = ({0} + {1}) × (cos "
                     "{2}/cos {3} − 1)/2 = {value}."), "")
+BETWEEN_PITCH = formula("distance of the pitch circles", lambda y, m: y * m, (N, N),
+                        marked("Distance between the pitch circles on the line of centres y·m: {name} = {0} × {1} = {value} mm."))
 DY = formula("addendum shortening coefficient", lambda x1, x2, y: x1 + x2 - y, (N, N, N),
               marked("Addendum shortening coefficient Δy = x_1 + x_2 − y: {name} = {0} + {1} − {2} = {value}."), "")
 PITCH_RADIUS = formula("pitch radius", lambda m, z: m * z / 2, (N, N),

@@ -98,7 +98,7 @@ class PairGeometry:
     """All values of GOST 16532 of a spur gear pair; raises :class:`CannotBuild` with all that forbids it."""
 
     alpha, clearance, alpha_w = _Reading("alpha"), _Reading("c"), _Reading("alpha_w")
-    m, a, a_w, p, pb, g_alpha = (_metres(k) for k in ("m", "a", "a_w", "p", "pb", "g_alpha"))
+    m, a, a_w, ym, p, pb, g_alpha = (_metres(k) for k in ("m", "a", "a_w", "ym", "p", "pb", "g_alpha"))
     y, dy, eps_alpha = _Reading("y"), _Reading("dy"), _Reading("eps_alpha")
 
     def __init__(self, data: GearData) -> None:

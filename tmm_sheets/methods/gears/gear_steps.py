@@ -150,6 +150,7 @@ def _quality(plan: Plan, first: Rules, second: Rules) -> None:
     pb = plan.add("pb", gf.BASE_PITCH, m, alpha, symbol="p_b")
     for i in "12":
         plan.add(f"rho_a{i}", gf.TIP_TANGENT, plan[f"ra{i}"], plan[f"rb{i}"], symbol=f"ρ_{{a{i}}}")
+    plan.add("ym", gf.BETWEEN_PITCH, plan["y"], m)
     line = plan.add("N1N2", gf.LINE, plan["a_w"], w, symbol="N_1N_2")
     g = plan.add("g_alpha", first.get(gf.ACTIVE, gf.ACTIVE), plan["rho_a1"], plan["rho_a2"], line, symbol="g_α")
     plan.add("eps_alpha", gf.CONTACT_RATIO, g, pb, symbol="ε_α")

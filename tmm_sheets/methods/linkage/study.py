@@ -167,6 +167,11 @@ class Study:
         plan.add("Δ", DIFFERENCE, by_statics, by_lever)
         return plan
 
+    def drive(self, loss: Step) -> tuple[Step, Step]:
+        """Power of the drive over the positions, W: ``N``, and ``N_0`` without the power ``loss`` of friction, not above zero."""
+        power = self.balance.aside("N", POWER_OF_DRIVE, self.balance["M"], self.mechanism.crank.speed)
+        return power, self.balance.aside("N_0", WITHOUT_FRICTION, power, loss)
+
     def mean_driving(self, course: Step, turned: Any) -> Step:
         """Mean moment of the crank over the cycle, N m: step ``M_д``, by trapezia from its values at angles ``turned``, rad."""
         width = np.diff(turned, prepend=turned[0], append=turned[-1])
@@ -176,6 +181,10 @@ class Study:
 
 ALONG_LINE = Rule("size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",
                   marked("Projection of the force {0} on the line of action: {value} N."), unit="N")
+POWER_OF_DRIVE = Rule("power of the drive", lambda m, omega: m * omega, ("number", "number"), "number",
+                      marked("Power of the drive {name} = {0}·{1} = {value} W."), unit="W")
+WITHOUT_FRICTION = Rule("power of the drive without friction", lambda power, loss: power + loss, ("number", "number"), "number",
+                        marked("Power of the drive without friction {name} = {0} + {1} = {value} W."), unit="W")
 MEAN = Rule("mean moment", weighted, ("number", "number"), "number",
             marked("Mean moment over the cycle {name} = {value} N·m."), unit="N*m")
 IN_SENSE = Rule("in the sense of rotation", lambda moment, sense: sense * moment, ("number", "number"), "number",
