@@ -274,6 +274,11 @@ def touched(j: Judged, plant: Plant, found: Measurables) -> bool:
     return any(s is step and (np.size(step.value) == 1 or plan.labels[k] == plant.label) for s, k, g in j.rows if g)
 
 
+def named(j: Judged, plant: Plant) -> bool:
+    """True for a number that tells of this very mistake."""
+    return (j.mistake is not None and j.mistake.step.name == plant.step) or j.entry.id == plant.entry
+
+
 @dataclass
 class Student:
     """One student: the mistakes, how they were seen, and whom else the verdict accuses."""
@@ -307,13 +312,12 @@ def student(project: str, number: int, seed: int = 1, kind: str = "", two: bool 
     judged = compared(found, rng, plants)
     begun = [j for j in judged if j.starts]
     mine = [[j for j in begun if touched(j, p, found)] for p in plants]
-    accused = {id(of[0]) for of in mine if of}
+    accused = {id(next((j for j in of if named(j, p)), of[0])) for p, of in zip(plants, mine, strict=True) if of}
     return Student(
         project, number, "+".join(kinds), plants,
         seen=all(any(j.verdict == "red" for j in judged if touched(j, p, found)) for p in plants),
         named=all(mine),
-        step=all(any((j.mistake is not None and j.mistake.step.name == p.step) or j.entry.id == p.entry for j in of)
-                 for p, of in zip(plants, mine, strict=True)),
+        step=all(any(named(j, p) for j in of) for p, of in zip(plants, mine, strict=True)),
         second=[j for j in judged if (j.starts or j.inconsistent or j.off_own) and id(j) not in accused
                 and not any(j.entry.id == p.entry for p in plants)])
 

@@ -80,11 +80,6 @@ def turned(by: float) -> str:
     return said.format(by=told(f"{abs(by):.2f}"))
 
 
-def too_large(by: float) -> str:
-    """An excess of a size, mm, in words."""
-    return (tell("{by} mm too large") if by > 0 else tell("{by} mm too small")).format(by=millimetres(by))
-
-
 def too_long(by: float) -> str:
     """An excess of a length, mm, in words."""
     return (tell("{by} mm too long") if by > 0 else tell("{by} mm too short")).format(by=millimetres(by))

@@ -151,12 +151,6 @@ def fitted(markup: str, room: float, height: float, least: float = 2.5) -> Lette
     return next((laid for size in reversed(sizes) if (laid := letter(markup, size)).width <= room), letter(markup, sizes[0]))
 
 
-def standard_size(most: float, least: float = 2.5) -> float:
-    """The greatest height of GOST 2.304 that is not above ``most``, but ``least`` at least."""
-    return max((size for size in SIZES if size <= most * (1 + 1e-9)), default=least) if most >= least else least
-
-
-
 class _Setter:
     """Sets markup from left to right; the state is the place where the next letter goes."""
 

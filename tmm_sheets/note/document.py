@@ -157,14 +157,6 @@ Block = Heading | Paragraph | Formula | Where | Table | Figure | Sheet | Content
 
 
 @dataclass(frozen=True)
-class Source:
-    """An entry of the literature, in order of citation."""
-
-    number: int
-    text: str
-
-
-@dataclass(frozen=True)
 class Frame:
     """Words of the stamps, forms 2 and 2a (GOST 2.104), by their fields; ``short``: not all pages have frame and stamp."""
 

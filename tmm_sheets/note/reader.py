@@ -384,19 +384,6 @@ class Reader:
 
     # --- tables
 
-    def row_table(
-        self, head: Sequence[Text], columns: Sequence[tuple[Sequence[float], str, str]], labels: Sequence[str], digits: int = DIGITS
-    ) -> tuple[tuple[Text, ...], ...]:
-        """A table with a row for each position: ``columns`` are values, the step they are of, and a unit that the head says."""
-        rows: list[tuple[Text, ...]] = [tuple(head)]
-        for i, label in enumerate(labels):
-            cells: list[Text] = [(label,)]
-            for values, step, _ in columns:
-                size = float(np.nanmax(np.abs(values))) if len(values) else 0.0
-                cells.append((self.number(float(values[i]), "", step, label, digits, size) if isfinite(values[i]) else "–",))
-            rows.append(tuple(cells))
-        return tuple(rows)
-
     def head(self, symbol: str, unit_: str = "") -> Text:
         """Head of a column: letters, unit."""
         node = letters(symbol)

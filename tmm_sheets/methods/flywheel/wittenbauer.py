@@ -93,11 +93,6 @@ class Wittenbauer(Flywheel):
         """Angles of the tangents psi_max and psi_min, rad."""
         return float(self.energy_mass_plan["ψ_max"].value), float(self.energy_mass_plan["ψ_min"].value)
 
-    @property
-    def J_added(self) -> float:
-        """What has to be added to the drawn J(phi): ab mu_E/(delta omega^2), kg m2."""
-        return float(self.first_plan["J_доб"].value)
-
     @cached_property
     def drawn_delta(self) -> Any:
         """Coefficient that the tangents belong to: the permitted one, or that whose tangents meet over a given flywheel's inertia.

@@ -10,12 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction import rules
-from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
-from tmm_sheets.methods.linkage.positions import Positions
-from tmm_sheets.methods.linkage.velocities import POLE, SIMILAR, Velocities, plan_name, turning
+from tmm_sheets.methods.linkage.velocities import POLE, MotionPolygon, Velocities, plan_name, turning
 from tmm_sheets.words import marked, tr
 
 NORMAL = Rule(
@@ -56,26 +53,17 @@ ANGULAR_ACCELERATION = Rule(
 
 
 @dataclass
-class Accelerations:
+class Accelerations(MotionPolygon):
     """Acceleration plan: ``points`` m/s2 from the pole for every point, ``epsilon`` rad/s2 of every link."""
 
-    positions: Positions
-    velocities: Velocities
-    plan: Plan
-    points: dict[str, Step] = field(default_factory=dict)
-    epsilon: dict[str, Step] = field(default_factory=dict)
-    reference: dict[str, tuple[str, str, Step, Step]] = field(default_factory=dict)
-    coincident: dict[str, Step] = field(default_factory=dict)
-    special: dict[str, Step] = field(default_factory=dict)
+    POLE, VECTOR, RATE, TURNING, SAME = "π", "a̅", "ε", ANGULAR_ACCELERATION, SAME
+
+    velocities: Velocities = field(kw_only=True)
 
     @property
-    def pole(self) -> Step:
-        """The pole π."""
-        return self.plan["π"]
-
-    def name(self, point: str) -> str:
-        """Free name on the plan for a point of the mechanism."""
-        return plan_name(self.plan, point)
+    def epsilon(self) -> dict[str, Step]:
+        """Angular acceleration of every link, rad/s2."""
+        return self.rates
 
     def guide(self, guide: str, at: str) -> tuple[Step, Step, str]:
         """Acceleration and velocity of the guide's point coinciding with ``at``, and the guide's link."""
@@ -85,16 +73,6 @@ class Accelerations:
             return self.pole, vel.pole, g.link
         assert isinstance(g.through, str)
         return self.on(g.link, g.through, at), vel.on(g.link, g.through, at), g.link
-
-    def on(self, link: str, through: str, at: str) -> Step:
-        """Acceleration of the point of a link that coincides with ``at``, from the link's point ``through``; drawn once."""
-        here = on_link(at, link)
-        if here not in self.coincident:
-            start = self.coincident.get(on_link(through, link), self.points[through])
-            if through == at:
-                return start
-            self.coincident[here] = self.rotated(here, start, link, through, at)
-        return self.coincident[here]
 
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
         """Acceleration of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
@@ -116,27 +94,6 @@ class Accelerations:
         self.plan.vector(f"a̅_{{{letters or big_b + big_q}}}^n", a, n)
         return n
 
-    def similar(self, point: str, q: Step, b: Step, big_q: str, big_b: str, name: str = "") -> Step:
-        """Acceleration of a point of a link by similarity, from those of two of its points; named after it, or otherwise."""
-        at = self.positions.place
-        return self.plan.add(self.name(name or point), SIMILAR, q, b, at(big_q), at(big_b), at(point))
-
-    def perpendicular(self, p: str, q: str) -> Step:
-        """Direction across the line of two points, drawn once."""
-        ray = self.positions.direction(p, q)
-        name = f"⟂{ray.name}"
-        return self.plan[name] if name in self.plan else self.plan.add(name, rules.TURN, ray)
-
-    def turning(self, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
-        """Angular acceleration of a link from the accelerations ``q`` and ``b`` of two of its points."""
-        z = self.positions.points
-        self.epsilon[link] = self.plan.add(f"ε{link}", ANGULAR_ACCELERATION, z[big_q], z[big_b], q, b)
-        self.reference[link] = (big_q, big_b, q, b)
-
-    def turns_with(self, link: str, other: str) -> None:
-        """Angular acceleration of a link that does not turn against another."""
-        self.epsilon[link] = self.plan.add(f"ε{link}", SAME, self.epsilon[other])
-
 
 def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") -> Accelerations:
     """Record the acceleration plans of all positions.
@@ -147,7 +104,7 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
     pos = vel.positions
     m = pos.mechanism
     plan = Plan(f"accelerations{pos.where}{where}", tr("Acceleration polygon"), "m/s2", pos.plan.labels, "π", pos.plan.search)
-    acc = Accelerations(pos, vel, plan)
+    acc = Accelerations(pos, plan, velocities=vel)
     pole = plan.add("π", POLE, 0j)
     for name in m.fixed:
         acc.points[name] = pole
@@ -169,11 +126,11 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
     plan.vector(f"a̅_{c.pin}", pole, b)
     acc.points[c.pin] = b
     acc.reference[c.link] = (c.pivot, c.pin, pole, b)
-    _further_points(acc, c.link)
+    acc.further_points(c.link)
     for g in m.groups:
         g.kind.acceleration(acc, g)
         for link in g.links:
-            _further_points(acc, link)
+            acc.further_points(link)
     _number_alike(plan)
     return acc
 
@@ -192,19 +149,3 @@ def _free(plan: Plan, letter: str) -> str:
     if letter not in plan:
         return letter
     return next(f"{letter}{i}" for i in range(2, 100) if f"{letter}{i}" not in plan)
-
-
-def _further_points(acc: Accelerations, link: str) -> None:
-    pos = acc.positions
-    for p in pos.mechanism.points:
-        if p.link != link or p.name in acc.points:
-            continue
-        if link in acc.reference:
-            big_q, big_b, q, b = acc.reference[link]
-            a = acc.plan.add(plan_name(acc.plan, p.name), SIMILAR, q, b, pos.points[big_q], pos.points[big_b], pos.points[p.name])
-        else:
-            start = acc.coincident.get(on_link(p.start, link), acc.points[p.start])
-            a = acc.plan.add(plan_name(acc.plan, p.name), RIGID, start, acc.velocities.omega[link], acc.epsilon[link],
-                             pos.points[p.start], pos.points[p.name])
-        acc.plan.vector(f"a̅_{p.name}", acc.pole, a)
-        acc.points[p.name] = a

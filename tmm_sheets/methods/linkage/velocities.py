@@ -6,7 +6,7 @@ Every value is a vector from the pole, complex, m/s. Source: manual 000, section
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -54,40 +54,38 @@ SAME = Rule("the same", lambda w: w, ("number",), "number", "{name} = {value}.",
 
 
 @dataclass
-class Velocities:
-    """Velocity plan: ``points`` m/s from the pole for every point of the mechanism, ``omega`` rad/s of every link.
+class MotionPolygon:
+    """What velocity and acceleration polygons have in common: vectors of points from the pole, rates of turning of links.
 
-    ``relative`` holds, for each group with a sliding pair, the coincident points on both sides of it.
+    ``reference`` holds two points of a link and their vectors, ``coincident`` the points of guides under those of the sliders,
+    ``special`` the singular points of groups of class III.
     """
+
+    POLE: ClassVar[str]
+    VECTOR: ClassVar[str]
+    RATE: ClassVar[str]
+    TURNING: ClassVar[Rule]
+    SAME: ClassVar[Rule]
 
     positions: Positions
     plan: Plan
     points: dict[str, Step] = field(default_factory=dict)
-    omega: dict[str, Step] = field(default_factory=dict)
+    rates: dict[str, Step] = field(default_factory=dict)
     reference: dict[str, tuple[str, str, Step, Step]] = field(default_factory=dict)
     coincident: dict[str, Step] = field(default_factory=dict)
     special: dict[str, Step] = field(default_factory=dict)
 
     @property
     def pole(self) -> Step:
-        """The pole p."""
-        return self.plan["p"]
+        """The pole."""
+        return self.plan[self.POLE]
 
     def name(self, point: str) -> str:
         """Free name on the plan for a point of the mechanism."""
         return plan_name(self.plan, point)
 
-    def guide(self, guide: str, at: str) -> tuple[Step, str]:
-        """Velocity of the guide's point that coincides with ``at``, and the guide's link; the pole for a fixed guide."""
-        m = self.positions.mechanism
-        g = m.guides[guide]
-        if g.link == m.frame:
-            return self.pole, g.link
-        assert isinstance(g.through, str)
-        return self.on(g.link, g.through, at), g.link
-
     def on(self, link: str, through: str, at: str) -> Step:
-        """Velocity of the point of a link that coincides with ``at``, from the link's point ``through``; drawn once."""
+        """Vector of the point of a link that coincides with ``at``, from the link's point ``through``; drawn once."""
         here = on_link(at, link)
         if here not in self.coincident:
             start = self.coincident.get(on_link(through, link), self.points[through])
@@ -97,12 +95,11 @@ class Velocities:
         return self.coincident[here]
 
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
-        """Velocity of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
-        z = self.positions.points
-        return self.plan.add(self.name(point), RIGID, start, self.omega[link], z[q], z[b])
+        """Vector of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
+        raise NotImplementedError
 
     def similar(self, point: str, q: Step, b: Step, big_q: str, big_b: str, name: str = "") -> Step:
-        """Velocity of a point of a link by similarity, from those of two of its points; named after it, or otherwise."""
+        """Vector of a point of a link by similarity, from those of two of its points; named after it, or otherwise."""
         at = self.positions.place
         return self.plan.add(self.name(name or point), SIMILAR, q, b, at(big_q), at(big_b), at(point))
 
@@ -113,14 +110,53 @@ class Velocities:
         return self.plan[name] if name in self.plan else self.plan.add(name, rules.TURN, ray)
 
     def turning(self, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
-        """Angular velocity of a link from the velocities ``q`` and ``b`` of two of its points."""
+        """Rate of turning of a link from the vectors ``q`` and ``b`` of two of its points."""
         z = self.positions.points
-        self.omega[link] = self.plan.add(f"ω{link}", ANGULAR_VELOCITY, z[big_q], z[big_b], q, b)
+        self.rates[link] = self.plan.add(f"{self.RATE}{link}", self.TURNING, z[big_q], z[big_b], q, b)
         self.reference[link] = (big_q, big_b, q, b)
 
     def turns_with(self, link: str, other: str) -> None:
-        """Angular velocity of a link that does not turn against another."""
-        self.omega[link] = self.plan.add(f"ω{link}", SAME, self.omega[other])
+        """Rate of turning of a link that does not turn against another."""
+        self.rates[link] = self.plan.add(f"{self.RATE}{link}", self.SAME, self.rates[other])
+
+    def further_points(self, link: str) -> None:
+        """Vectors of the points of a link that its group did not need: by similarity, or by turning round one of them."""
+        for p in self.positions.mechanism.points:
+            if p.link != link or p.name in self.points:
+                continue
+            if link in self.reference:
+                big_q, big_b, q, b = self.reference[link]
+                found = self.similar(p.name, q, b, big_q, big_b)
+            else:
+                start = self.coincident.get(on_link(p.start, link), self.points[p.start])
+                found = self.rotated(p.name, start, link, p.start, p.name)
+            self.plan.vector(f"{self.VECTOR}_{p.name}", self.pole, found)
+            self.points[p.name] = found
+
+
+class Velocities(MotionPolygon):
+    """Velocity plan: ``points`` m/s from the pole for every point of the mechanism, ``omega`` rad/s of every link."""
+
+    POLE, VECTOR, RATE, TURNING, SAME = "p", "V̅", "ω", ANGULAR_VELOCITY, SAME
+
+    @property
+    def omega(self) -> dict[str, Step]:
+        """Angular velocity of every link, rad/s."""
+        return self.rates
+
+    def guide(self, guide: str, at: str) -> tuple[Step, str]:
+        """Velocity of the guide's point that coincides with ``at``, and the guide's link; the pole for a fixed guide."""
+        m = self.positions.mechanism
+        g = m.guides[guide]
+        if g.link == m.frame:
+            return self.pole, g.link
+        assert isinstance(g.through, str)
+        return self.on(g.link, g.through, at), g.link
+
+    def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
+        """Velocity of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
+        z = self.positions.points
+        return self.plan.add(self.name(point), RIGID, start, self.omega[link], z[q], z[b])
 
 
 def plan_name(plan: Plan, point: str) -> str:
@@ -143,24 +179,9 @@ def velocity_plan(pos: Positions) -> Velocities:
     plan.vector(f"V̅_{c.pin}", pole, b)
     vel.points[c.pin] = b
     vel.reference[c.link] = (c.pivot, c.pin, pole, b)
-    _further_points(vel, c.link)
+    vel.further_points(c.link)
     for g in m.groups:
         g.kind.velocity(vel, g)
         for link in g.links:
-            _further_points(vel, link)
+            vel.further_points(link)
     return vel
-
-
-def _further_points(vel: Velocities, link: str) -> None:
-    pos = vel.positions
-    for p in pos.mechanism.points:
-        if p.link != link or p.name in vel.points:
-            continue
-        if link in vel.reference:
-            big_q, big_b, q, b = vel.reference[link]
-            v = vel.plan.add(plan_name(vel.plan, p.name), SIMILAR, q, b, pos.points[big_q], pos.points[big_b], pos.points[p.name])
-        else:
-            start = vel.coincident.get(on_link(p.start, link), vel.points[p.start])
-            v = vel.plan.add(plan_name(vel.plan, p.name), RIGID, start, vel.omega[link], pos.points[p.start], pos.points[p.name])
-        vel.plan.vector(f"V̅_{p.name}", vel.pole, v)
-        vel.points[p.name] = v
