@@ -174,9 +174,9 @@ def ciphers(count):
         count -= 1
 
 
-def test_the_load_of_500_presses_never_drives_the_slider():
+def test_the_load_of_200_presses_never_drives_the_slider():
     twice = 0
-    for code, p in ciphers(500):
+    for code, p in ciphers(200):
         force, speed = slider_load(p, TURN)
         power = (force * np.conj(speed)).real
         noise = 1e-9 * np.abs(force).max() * np.abs(speed).max()
@@ -185,7 +185,7 @@ def test_the_load_of_500_presses_never_drives_the_slider():
         way = p.cycle.strokes.length
         assert -power.mean() * 2 * pi / p.mechanism.crank.speed == pytest.approx(0.5 * 0.4 * way * 1e6, rel=2e-2), code
         twice += len(p.cycle.strokes.runs) > 2
-    assert 50 < twice < 200
+    assert 20 < twice < 80
 
 
 @pytest.mark.parametrize("code", ["05-ЭПС-731", "07-ЭПС-718", "00-ЭПС-409"])
