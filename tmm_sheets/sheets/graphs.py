@@ -135,9 +135,9 @@ def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) ->
         x, y = np.arange(room.x0 + 2.0, room.x1 - width, 4.0)[:, None], np.arange(room.y0, room.y1 - high, 2.0)[:, None]
         if not x.size or not y.size:
             continue
-        beside = np.maximum(np.maximum(x - points.real, points.real - x - width), 0.0)
-        apart = np.maximum(np.maximum(y - points.imag, points.imag - y - high), 0.0)
-        free = np.array([np.hypot(beside, above).min(axis=1) for above in apart])
+        beside = np.maximum(np.maximum(x - points.real, points.real - x - width), 0.0)**2
+        apart = np.maximum(np.maximum(y - points.imag, points.imag - y - high), 0.0)**2
+        free = np.sqrt([(beside + above).min(axis=1) for above in apart])
         row, column = np.unravel_index(np.argmax(free), free.shape)
         if free[row, column] >= 6.0:
             for i, line in enumerate(lines):
