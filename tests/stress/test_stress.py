@@ -5,7 +5,7 @@ from dataclasses import replace
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.methods.linkage import truth as fifty_digits
@@ -45,6 +45,7 @@ def test_rounding_is_all_there_is(worst):
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 2**32), st.integers(0, 10**6))
+@example(77, 3695)  # the measure itself lost digits: a triangle with next to no angle
 def test_any_seed(seed, case):
     _, values = run_case(seed, case)
     assert {name: value for name, value in values if not value <= BOUNDS[name][0]} == {}

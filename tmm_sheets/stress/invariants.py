@@ -187,7 +187,8 @@ def _triangle(s: State, g: StructuralGroup) -> Iterator[Residual]:
     """The sides of the triangle and the three legs, from the points alone."""
     assert isinstance(g, TriadGroup)
     first, second, third = (s.z[leg.corner] for leg in g.legs)
-    across = (g.sides[0] ** 2 + g.sides[1] ** 2 - 2 * g.sides[0] * g.sides[1] * np.cos(g.angle)) ** 0.5
+    # The law of cosines by the sine of half the angle: of sides nearly alike and an angle of next to nothing it keeps all digits.
+    across = np.hypot(g.sides[0] - g.sides[1], 2 * (g.sides[0] * g.sides[1]) ** 0.5 * np.sin(g.angle / 2))
     for side, length in ((second - first, g.sides[0]), (third - first, g.sides[1]), (third - second, across)):
         yield "link lengths", np.abs(np.abs(side) - length) / s.reach
     for leg in g.legs:
