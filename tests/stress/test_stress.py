@@ -204,7 +204,7 @@ SPOILT = {
     "arcsine on the right side": (rules, "RAY", arcsine_on_the_right_side, "closure on guides"),
     "side by the picture": (rules, "ARC_ARC", nearest, "assembly side"),
     "angular velocity turned round": (
-        velocities, "ANGULAR_VELOCITY", lambda *z: -velocities.turning(*z), "velocity closure"),
+        velocities.Velocities, "TURNING", lambda *z: -velocities.turning(*z), "velocity closure"),
     "inertia couple along epsilon": (forces, "COUPLE", lambda j, e: j * e, "power = change of energy"),
     "weight upwards": (forces, "WEIGHT", lambda m, g: 1j * m * g, "power = change of energy"),
     "arm of a couple on the lever": (zhukovsky, "COUPLE_FORCE", lambda m, x, y: 1j * m * ar.ray(x, y), "lever = kinetostatics"),
