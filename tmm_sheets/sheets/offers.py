@@ -36,7 +36,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
     A view ``module.function`` tells its sizes, from what it wants down to what it can do with, by ``module.function_sizes``; none
-    where it has nothing to show.
+    where it has nothing to show. By ``module.function_left`` it may tell the left edge that it would like best, mm.
     """
     taken = _closed(inside, closed)
     seen = 0
@@ -53,15 +53,19 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
         for k in range(seen, len(canvas.parts)):
             taken |= _of_part(canvas, k, inside, taken.shape)
         seen = len(canvas.parts)
-        box = _place(taken, wanted, inside)
+        left: Callable[..., float] | None = getattr(room, f"{function}_left", None)
+        box = _place(taken, wanted, inside, None if left is None else left(view.options))
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
             getattr(room, function)(project, canvas, box, view.options)
 
 
-def _place(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]], inside: Box) -> Box | None:
-    """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else."""
+def _place(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
+    """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else.
+
+    With the edge ``left``, mm, where there is room for that size with it.
+    """
     table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int64)
     table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1)
     for width, height in sizes:
@@ -71,6 +75,9 @@ def _place(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]], insid
                 continue
             free = np.argwhere(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny] == 0)
             if len(free):
+                if left is not None and len(aligned := free[free[:, 0] == round((left - apart - inside.x0) / CELL)]):
+                    j = int(np.median(aligned[:, 1]))
+                    return Box(left, inside.y0 + j * CELL + apart, left + width, inside.y0 + j * CELL + apart + height)
                 # In the middle of the room there is, if it is one; else at its beginning.
                 i, j = free[np.argmin(np.abs(free - np.median(free, axis=0)).sum(axis=1))]
                 corner = complex(inside.x0 + i * CELL + apart, inside.y0 + j * CELL + apart)

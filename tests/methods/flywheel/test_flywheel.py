@@ -230,7 +230,8 @@ def test_every_plan_speaks_and_can_be_built():
     for reduced in (truth.Shaper(), Cutting(), Engine()):
         plans = flywheel(reduced, DATA).plans
         diagrams = ["reduced-moment", "work", "driving-moment", "total-work", "reduced-inertia", "energy-mass"]
-        formulas = ["drive-power", "flywheel-inertia", "flywheel-limit", "flywheel-wheel", "crank-acceleration"]
+        formulas = ["drive-power", "flywheel-inertia", "flywheel-limit", "energy-mass-speed", "flywheel-wheel",
+                    "crank-acceleration"]
         assert [name for name in plans if "@" not in name and name != "reduction"] == [*diagrams, *formulas]
         for plan in plans.values():
             assert (plan.unit == "mm") == (plan.name in diagrams or plan.name.startswith(("abscissae@", "ordinates@", "slopes@")))

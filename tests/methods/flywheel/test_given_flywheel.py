@@ -40,14 +40,19 @@ def closed(crank=0.05):
     return work - work[-1] * PHI / PHI[-1], mass, -work[-1]
 
 
-def running(excess, mass, first):
-    """Non-uniformity of the steady running whose extremes have the mean OMEGA."""
+def speeds(excess, mass, first):
+    """Angular velocity at PHI in the steady running whose extremes have the mean OMEGA."""
     low, high = -excess.min(), 100 * (first + mass.max()) * OMEGA**2
     for _ in range(60):
         level = (low + high) / 2
         speed = np.sqrt(np.maximum(2 * (level + excess) / (first + mass), 0))
         low, high = (level, high) if speed.max() + speed.min() < 2 * OMEGA else (low, level)
-    return np.ptp(speed) / OMEGA
+    return speed
+
+
+def running(excess, mass, first):
+    """Non-uniformity of that running."""
+    return np.ptp(speeds(excess, mass, first)) / OMEGA
 
 
 @pytest.fixture(scope="module")
@@ -180,3 +185,21 @@ def test_what_cannot_be_asked(flywheel, said):
 def test_turns_are_whole():
     with pytest.raises(BadInput, match="turns"):
         pump({"cycle": {"turns": 0}})
+
+
+@pytest.mark.parametrize("inertia", [None, "40 kg m2", "4 kg m2"])
+def test_angular_velocity_by_the_energy_mass_diagram(truth, inertia):
+    """The diagram tells the running of a machine with the flywheel found or given: by the law of energy, to the drawing's error."""
+    f = pump(inertia=inertia, **{} if inertia else {"delta": 0.05, "density": "7300 kg/m3", "width_ratio": 0.2,
+                                                  "thickness_ratio": 0.1}).flywheel
+    plan = f.speed_plan
+    fast, slow = (float(plan[f"ω_{name}"].value) for name in ("max", "min"))
+    added = float((f.added if f.given else f.first_plan["J_доб"]).value)
+    exact = speeds(truth[0], truth[1], added)
+    assert (fast, slow) == pytest.approx((exact.max(), exact.min()), rel=0.05 * np.ptp(exact) / OMEGA)
+    found = plan["ω1"].value
+    assert np.abs(found - np.interp(f.reduced.phi, PHI, exact)).max() < 0.1 * np.ptp(exact)
+    assert np.ptp(found) > 0.8 * np.ptp(exact)
+    # Nothing lies beyond the tangents.
+    along = f.speed_curve(f.samples)
+    assert (along.max(), along.min()) == pytest.approx((fast, slow), rel=1e-4 * np.ptp(exact) / OMEGA)

@@ -7,10 +7,12 @@ from functools import cached_property
 from math import pi
 from typing import Any
 
+import numpy as np
+
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.methods.flywheel.energy_mass import (
     ConvergedWheel,
     Tangents,
@@ -23,10 +25,22 @@ from tmm_sheets.methods.flywheel.energy_mass import (
 )
 from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, TOGETHER, TOGETHER_LIMIT, DiagramSpace, Flywheel
 from tmm_sheets.methods.integration import Floats
-from tmm_sheets.words import tr
+from tmm_sheets.words import marked, tr
 
 TURN = 2 * pi
 """One turn of the crank, rad."""
+FASTEST = Rule("angular velocity at the upper tangent", lambda omega, delta: omega * (1 + delta / 2), ("number",) * 2, "number",
+               marked("At the upper tangent the angular velocity is {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} rad/s."),
+               unit="rad/s", source="000, 5.5")
+SLOWEST = Rule("angular velocity at the lower tangent", lambda omega, delta: omega * (1 - delta / 2), ("number",) * 2, "number",
+               marked("At the lower tangent the angular velocity is {name} = ω1·(1 − δ/2) = {0}·(1 − {1}/2) = {value} rad/s."),
+               unit="rad/s", source="000, 5.5")
+SPEED = Rule(
+    "angular velocity from the energy-mass diagram",
+    lambda e, a, j, mu_e, mu_j, added, fastest: np.sqrt((2 * mu_e * (e - np.imag(a)) + added * fastest**2) / (added + mu_j * j)),
+    ("ordinate", "point", "ordinate", "number", "number", "number", "number"), "number",
+    marked("Angular velocity of the input link by its energy over a, ω1² = [2μ_E(ΔE − a) + J·ω_max²]/(J + J(φ)): {name} = {value} "
+           "rad/s."), unit="rad/s")
 
 
 class Wittenbauer(Flywheel):
@@ -78,6 +92,37 @@ class Wittenbauer(Flywheel):
     def own_plans(self) -> tuple[Plan, ...]:
         """The energy-mass diagram."""
         return (self.energy_mass_plan,)
+
+    @cached_property
+    def speed_plan(self) -> Plan:
+        """The diagram read as the running of the machine with its flywheel: ``ω_max``, ``ω_min``, ``ω1`` at the positions, rad/s.
+
+        The tangents meet where neither energy nor inertia is left, so every point of the curve tells both in all; the height of the
+        upper tangent's intercept is the energy of what was added. Of a machine that needs no flywheel it tells nothing.
+        """
+        title = tr("Angular velocity of the input link by the energy-mass diagram")
+        plan = Plan(f"energy-mass-speed{self.where}", title, "", self.labels)
+        for name, rule in (("max", FASTEST), ("min", SLOWEST)):
+            plan.add(f"ω_{name}", rule, self.omega1, self.drawn_delta)
+        plan.add("ω1", SPEED, self.total_plan["ΔE"], self.energy_mass_plan["a"], self.inertia_plan["J"], *self._running(plan),
+                 symbol="ω_1")
+        return plan
+
+    def _running(self, plan: Plan) -> tuple[Any, ...]:
+        """Scale factors, what was added to the drawn inertia, the angular velocity at the upper tangent."""
+        added = self.added if self.given else self.first_plan["J_доб"]
+        return self.mu("energy"), self.mu("inertia"), added, plan["ω_max"]
+
+    def speed_curve(self, phi: Any) -> Floats:
+        """The same at any angles, rad/s."""
+        of = (value_of(a) for a in self._running(self.speed_plan))
+        return np.asarray(SPEED.compute(self.energy_curve(phi), self.energy_mass_plan["a"].value,
+                                        self.scales.inertia.mm(self.inertia(phi)), *of))
+
+    @property
+    def later_plans(self) -> tuple[Plan, ...]:
+        """The running of the machine, where this method is not there for comparison only."""
+        return (self.speed_plan,) if self.needed and not self.where else ()
 
     def energy_mass_curve(self, phi: Any) -> Any:
         """Point of the energy-mass curve, mm."""

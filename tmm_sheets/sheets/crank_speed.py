@@ -1,0 +1,64 @@
+"""Angular velocity of the input link over its angle, read off the energy-mass diagram: a view for room that a sheet has left.
+
+The option ``axis`` is the x of the ordinate axis of the other graphs, mm: beneath them its positions stand under theirs.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.scale import fit
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+from tmm_sheets.numbers import number
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import graphs
+from tmm_sheets.sheets.player import stage
+from tmm_sheets.words import tr
+
+SIZES = ((260.0, 120.0), (220.0, 105.0), (180.0, 90.0), (150.0, 80.0))
+LEFT, RIGHT, BELOW, ABOVE = 22.0, 14.0, 9.0, 14.0
+"""Room beside the axes for their signs and the names of the extremes, mm."""
+
+
+def graph_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
+    """Sizes from that of the sheet's other graphs down; none where no tangents are drawn or no flywheel is needed."""
+    fw = project.flywheel
+    if not isinstance(fw, Wittenbauer) or not fw.needed:
+        return ()
+    as_others = fw.scales.angle.mm(fw.reduced.period) + LEFT + RIGHT
+    return ((as_others, 145.0), (as_others, 120.0), *(size for size in SIZES if size[0] < as_others))
+
+
+def graph_left(options: dict[str, Any]) -> float:
+    """Left edge, mm, with which its axis stands under those of the other graphs."""
+    return float(options["axis"]) - LEFT
+
+
+def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Differences from the mean angular velocity over the turn of the crank, with the bounds at the tangents."""
+    fw = project.flywheel
+    assert isinstance(fw, Wittenbauer)
+    plan, mean = fw.speed_plan, fw.reduced.omega1
+    highest, lowest = (float(plan[f"ω_{name}"].value) for name in ("max", "min"))
+    x, wide = fw.scales.angle, box.width - LEFT - RIGHT
+    if x.mm(fw.reduced.period) > wide + 1e-6:
+        x = fit(x.symbol, x.unit, fw.reduced.period, wide)
+    room = box.height - 18.0 - BELOW - ABOVE
+    y = fit("μ_ω", tr("s^{−1}/mm"), highest - lowest, room)
+    left = canvas.title(box, tr("Graph of the angular velocity ω_1(φ_1)"), f"{y}, {x}")
+    high, low = y.mm(highest - mean), y.mm(lowest - mean)
+    g = graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
+    of = stage(canvas, plan, None, g.place(x.mu, y.mu))
+    length = x.mm(fw.reduced.period)
+    of.curve("ω1", g(x.mm(fw.samples) + 1j * y.mm(fw.speed_curve(fw.samples) - mean)))
+    pen = of.pen("ω1", "axis")
+    graphs.axes(pen, g, length, low, high, tr("{symbol}, s^{{−1}}").format(symbol="ω_1"))
+    graphs.numbers(pen, g, x.mm(fw.reduced.phi), fw.labels, plan["ω1"].value - mean)
+    canvas.text(g(-2.0) + 1.0j, f"ω_{{1{tr('m')}}}", 3.5, "right")
+    for name, level in (("max", high), ("min", low)):
+        pen = of.pen(f"ω_{name}", "axis")
+        pen.line(g(1j * level), g(length + 1j * level), "thin")
+        value = number(float(plan[f"ω_{name}"].value), 4)
+        pen.text(g(length + 1j * level) + (1.3j if level > 0 else -5.0j), f"ω_{{{name}}} = {value}", 3.5, "right")
