@@ -5,17 +5,19 @@ The option ``axis`` is the x of the ordinate axis of the other graphs, mm: benea
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import fit
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.numbers import number
-from tmm_sheets.project import Project
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.player import stage
 from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+    from tmm_sheets.project import Project
 
 SIZES = ((260.0, 120.0), (220.0, 105.0), (180.0, 90.0), (150.0, 80.0))
 LEFT, RIGHT, BELOW, ABOVE = 22.0, 14.0, 9.0, 14.0
@@ -25,7 +27,7 @@ LEFT, RIGHT, BELOW, ABOVE = 22.0, 14.0, 9.0, 14.0
 def graph_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
     """Sizes from that of the sheet's other graphs down; none where no tangents are drawn or no flywheel is needed."""
     fw = project.flywheel
-    if not isinstance(fw, Wittenbauer) or not fw.needed:
+    if fw.method != "wittenbauer" or not fw.needed:
         return ()
     as_others = fw.scales.angle.mm(fw.reduced.period) + LEFT + RIGHT
     return ((as_others, 145.0), (as_others, 120.0), *(size for size in SIZES if size[0] < as_others))
@@ -38,8 +40,7 @@ def graph_left(options: dict[str, Any]) -> float:
 
 def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Differences from the mean angular velocity over the turn of the crank, with the bounds at the tangents."""
-    fw = project.flywheel
-    assert isinstance(fw, Wittenbauer)
+    fw = cast("Wittenbauer", project.flywheel)
     plan, mean = fw.speed_plan, fw.reduced.omega1
     highest, lowest = (float(plan[f"ω_{name}"].value) for name in ("max", "min"))
     x, wide = fw.scales.angle, box.width - LEFT - RIGHT
