@@ -37,8 +37,8 @@ NEEDS = {
     "load_diagram": "positions", "synthesis": "positions", "kinetics": "forces", "moments": "forces", "friction": "forces",
     "details": "forces",
     "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
-    "flywheel": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear", "reducer": "reducer", "train": "train",
-    "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
+    "flywheel": "flywheel", "crank_speed": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear",
+    "reducer": "reducer", "train": "train", "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
 }
 """Parts of the results that views need, by module or by view."""
 

@@ -5,18 +5,18 @@ The option ``axis`` is the x of the ordinate axis of the other graphs, mm: benea
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import fit
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
-from tmm_sheets.sheets import graphs
+from tmm_sheets.sheets import flywheel, graphs
 from tmm_sheets.sheets.player import stage
-from tmm_sheets.words import tr
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
     from tmm_sheets.project import Project
 
 SIZES = ((260.0, 120.0), (220.0, 105.0), (180.0, 90.0), (150.0, 80.0))
@@ -40,7 +40,10 @@ def graph_left(options: dict[str, Any]) -> float:
 
 def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Differences from the mean angular velocity over the turn of the crank, with the bounds at the tangents."""
-    fw = cast("Wittenbauer", project.flywheel)
+    fw = flywheel.with_tangents(project)
+    if not fw.needed:
+        raise CannotBuild(tell("no flywheel is needed: the energy-mass diagram does not tell how the crank runs"),
+                          tell("leave the view crank_speed.graph out"))
     plan, mean = fw.speed_plan, fw.reduced.omega1
     highest, lowest = (float(plan[f"ω_{name}"].value) for name in ("max", "min"))
     x, wide = fw.scales.angle, box.width - LEFT - RIGHT

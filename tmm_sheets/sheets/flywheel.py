@@ -223,7 +223,7 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
 
 def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Sum of the works, which is the change of kinetic energy, at the scale of the energy-mass diagram."""
-    fw = _with_tangents(project)
+    fw = with_tangents(project)
     s = fw.scales
     ratio = s.work.mu / s.energy.mu
     graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{s.energy}")
@@ -275,7 +275,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
 
 def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Energy-mass curve by projection from the graphs of dE and J, its two tangents and the segment ab."""
-    fw = _with_tangents(project)
+    fw = with_tangents(project)
     s, plan = fw.scales, fw.energy_mass_plan
     canvas.of = plan.name
     energy = _energy_graph(fw, Box(*options["energy"]), {"axis": options["energy_axis"]})
@@ -473,7 +473,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
 
     With a given flywheel the coefficient of non-uniformity in place of the moment of inertia.
     """
-    fw = _with_tangents(project)
+    fw = with_tangents(project)
     psi = fw.psi
     slope = {name: float(fw.energy_mass_plan.asides[f"tg ψ_{name}"].value) for name in ("max", "min")}
     drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
@@ -580,7 +580,8 @@ def by_method(project: Any, method: str, hint: str) -> Any:
     return fw
 
 
-def _with_tangents(project: Any) -> Wittenbauer:
+def with_tangents(project: Any) -> Wittenbauer:
+    """The flywheel by the energy-mass diagram; CannotBuild for one by another method."""
     hint = tell("take the views of mertsalov in the arrangement of the sheet")
     return cast("Wittenbauer", by_method(project, "wittenbauer", hint))
 
