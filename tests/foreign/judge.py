@@ -33,6 +33,8 @@ WRONG = 2.0
 """A fit is wrong when it is off by more than this somewhere, mm."""
 CLEARLY = 0.06
 """By how much a farther place must fit better than one near the true one to be believed: lines of a table look alike."""
+GRAIN = 0.3
+"""Paper is paler than this, lines are darker."""
 VISIBLE = 1.5
 """Mistakes from this size on should be found, mm."""
 
@@ -168,8 +170,9 @@ def _tells(piece: NDArray[np.float32]) -> bool:
     """Whether a piece has enough lines, in more than one direction and not all in one corner, to say where it lies."""
     half = len(piece) // 2
     halves = slice(half), slice(half, None)
-    quarters = [piece[rows, columns].mean() for rows in halves for columns in halves]
-    if piece.mean() < 0.01 or sorted(quarters)[1] < 0.002:  # the tip of a line that reaches in
+    lines = np.where(piece > GRAIN, piece, 0)
+    quarters = [lines[rows, columns].mean() for rows in halves for columns in halves]
+    if lines.mean() < 0.01 or sorted(quarters)[1] < 0.002:  # the tip of a line that reaches in
         return False
     dx, dy = cv2.Sobel(piece, cv2.CV_32F, 1, 0), cv2.Sobel(piece, cv2.CV_32F, 0, 1)
     spread = np.linalg.eigvalsh(np.array([[(dx * dx).sum(), (dx * dy).sum()], [(dx * dy).sum(), (dy * dy).sum()]]))
