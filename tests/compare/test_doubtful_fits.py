@@ -11,6 +11,7 @@ from tests.compare.test_image import N, grey, known, rectified, shot
 from tmm_sheets.compare.elements import grown
 from tmm_sheets.compare.photo import rectification, tracing
 from tmm_sheets.compare.photo.frame_quads import homographies
+from tmm_sheets.compare.photo.hidden import at as hidden_at
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.photograph import Picture
 from tmm_sheets.compare.photo.refusal import refusal
@@ -71,6 +72,21 @@ def test_labels_that_stand_elsewhere_are_missed_in_their_places():
     fill(ink, grown(label.points, 1.0), 0)
     traces, _ = tracing.trace(known(), ink, found.hidden)
     assert [t.element.number for t in traces if t.status == "absent lettering"] == [label.number]
+
+
+def test_lines_washed_out_by_a_flash_are_hidden():
+    found = rectified()
+    lines = rectification.as_lines([e for e in known() if e.length < rectification.LONGEST])
+    place = max(lines.points, key=lambda z: int((abs(lines.points - z) < 15).sum()))
+    dim = (0.8 * grey()).astype(np.uint8)
+    spot = found.map.to_picture(np.array([place, place + 25]))
+    cv2.circle(dim, (int(spot[0].real), int(spot[0].imag)), int(abs(spot[1] - spot[0])), 255, -1)
+    ink = rectification.straighten(dim, found.map)
+    sides = rectification.ProfileLines(found.sides.sheet, found.sides.normals, lines.line[:0])
+    hidden = rectification.hidden_places(dim, found.map, ink, lines, sides, rectification.line_level(ink))
+    assert hidden_at(place, hidden)
+    far = lines.points[abs(lines.points - place) > 40]
+    assert hidden_at(far, hidden).mean() < hidden_at(far, found.hidden).mean() + 0.01
 
 
 def test_homographies_of_many_quadrilaterals():

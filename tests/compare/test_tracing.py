@@ -172,3 +172,28 @@ def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
     f = judge(found[0], 0.25, 0.15)
     assert (found[0].head, f.verdict) == (head, verdict)
     assert said in f.what
+
+
+def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
+    a, b = 300 + 300j, 330 + 320j
+    dot = Element(3, VIEW, "", "circle", b + 0.65 * np.exp(1j * np.linspace(0, 2 * np.pi, 40)), "thin", centre=b, radius=0.65,
+                  fills=(b + 0.65 * np.exp(1j * np.linspace(0, 2 * np.pi, 40)),))
+    known = [arrow(1, a, b), line(2, 2 * a - b, b, "thin"), dot]
+    ink = paper()
+    draw(ink, 2 * a - b, b, "thin")
+    corners = np.rint(16 * np.stack((dot.points.real * SCALE - 0.5, (594 - dot.points.imag) * SCALE - 0.5), 1)).astype(np.int32)
+    cv2.fillPoly(ink, [corners], 180, cv2.LINE_AA, 4)
+    found, _ = trace(known, ink)
+    assert (found[0].head, judge(found[0], 0.25, 0.15).what) == ("absent", "no arrow head here")
+
+
+@pytest.mark.parametrize(("letters", "status"), [("WMW", "lettering"), ("W", "part of lettering"), ("", "absent lettering")])
+def test_part_of_lettering_is_missed(letters, status):
+    word = Element(1, VIEW, "WMW", "text", np.array([300, 312, 312 + 4j, 300 + 4j]) + 300j, "text", text="WMW", height=4.0)
+    ink = paper()
+    for k in range(len(letters)):  # zigzags, 4 mm each
+        x = 300.3 + 4 * k
+        for one, other in ((0, 1 + 4j), (1 + 4j, 2), (2, 3 + 4j)):
+            draw(ink, x + one + 300j, x + other + 300j, "thin")
+    found, _ = trace([word], ink)
+    assert found[0].status == status

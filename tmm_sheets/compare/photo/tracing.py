@@ -29,11 +29,13 @@ from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.own_place import in_place, strips
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.stations import measurable, stations
-from tmm_sheets.compare.photo.traces import ExtraInk, Trace
+from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
 from tmm_sheets.compare.photo.wiping import fill, paint, wipe_found, wipe_small
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
+PARTLY, CLEAR = 0.45, 0.9
+"""Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
 BESIDE = 0.9  # mm about lines whose ink is theirs
 
@@ -153,7 +155,11 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     free = sample(others, places, nearest=True) == 0
     dark = (sample(ink, places) > level) & free
     shares = dark.sum(1) / np.maximum(free.sum(1), 1)
-    for e, share, seen in zip(words, shares.tolist(), free.mean(1).tolist(), strict=True):
+    shown, inked = ((part.reshape(-1, 24, 60).sum(1) >= rows) for part, rows in ((free, 8), (dark, 2)))
+    columns = (inked & shown).sum(1) / np.maximum(shown.sum(1), 1)
+    partly = (columns < PARTLY) & (shown.mean(1) > CLEAR)
+    for e, share, seen, part in zip(words, shares.tolist(), free.mean(1).tolist(), partly.tolist(), strict=True):
         there = share > WRITTEN or seen < OPEN
-        out[e.number] = Trace(e, "lettering" if there else "absent lettering", covered=share)
+        status: Status = "absent lettering" if not there else "part of lettering" if part and len(e.text) > 1 else "lettering"
+        out[e.number] = Trace(e, status, covered=share)
     return out
