@@ -197,3 +197,15 @@ def test_part_of_lettering_is_missed(letters, status):
             draw(ink, x + one + 300j, x + other + 300j, "thin")
     found, _ = trace([word], ink)
     assert found[0].status == status
+
+
+@pytest.mark.parametrize(("dark", "deviation"), [(60, 3.0), (170, 0.0)])
+def test_a_pale_trace_in_its_place_is_not_the_line_when_a_dark_one_lies_beside(dark, deviation):
+    known = [line(k + 1, 300 + 1j * (300 + 10 * k), 340 + 1j * (300 + 10 * k)) for k in range(4)]
+    ink = paper()
+    for e in known[1:]:
+        draw(ink, *e.points)
+    draw(ink, *known[0].points, dark=dark)  # rubbed out, or as dark as the others
+    draw(ink, *(known[0].points - 3j))
+    found, _ = trace(known, ink)
+    assert found[0].deviation == pytest.approx(deviation, abs=0.1)

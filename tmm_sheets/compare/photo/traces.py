@@ -36,6 +36,7 @@ class Trace:
     ends : how far the line runs beyond its beginning and its end, mm; negative when it stops short, nan when unknown
     covered : share of it that has ink
     at : its line as it was found, mm
+    darkness : of its line where it was found in its place; 0 where that is not known
     head : of an arrow: "there", "absent", "reversed": at its other end; "unknown" also when it has none or several
     """
 
@@ -48,6 +49,7 @@ class Trace:
     ends: tuple[float, float] = (np.nan, np.nan)
     covered: float = 0.0
     at: Points | None = None
+    darkness: float = 0.0
     head: Head = "unknown"
 
 

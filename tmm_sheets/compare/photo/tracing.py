@@ -20,7 +20,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.arrow_heads import with_heads
-from tmm_sheets.compare.photo.displacement import displaced
+from tmm_sheets.compare.photo.displacement import displaced, rather_elsewhere
 from tmm_sheets.compare.photo.extra_ink import extra_ink
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
 from tmm_sheets.compare.photo.ink_levels import ink_levels
@@ -37,6 +37,8 @@ WRITTEN = 0.06  # share of its place with ink from which on lettering counts as 
 PARTLY, CLEAR = 0.45, 0.9
 """Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
+PALE, GAPS = 0.6, 0.85
+"""Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
 BESIDE = 0.9  # mm about lines whose ink is theirs
 
 
@@ -78,6 +80,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         left[cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0] = 0
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
+    found = _doubted(found, ink, left, wiped, owners, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     words = _places_of_lettering(elements, ink)
     ended = with_ends(open_lines, ink, owners, words, pale)
@@ -121,6 +124,26 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
             wipe_found(wiped, t)
             wipe_found(left, t, 0)
     return found
+
+
+def _doubted(found: Sequence[Trace], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
+    """The traces; those of lines paler than others of their kind, or with gaps, are looked for elsewhere once more."""
+    styles: dict[str, list[float]] = {}
+    for t in found:
+        if t.darkness:
+            styles.setdefault(t.element.style, []).append(t.darkness)
+    usual = {style: float(np.median(values)) for style, values in styles.items()}
+    out = []
+    for t in found:
+        if t.darkness and (t.darkness < PALE * usual[t.element.style] or t.covered < GAPS):
+            better = rather_elsewhere(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
+            if better is not None and better.at is not None:
+                owners.add(t.element, better.at)
+                wipe_found(wiped, better)
+                wipe_found(left, better, 0)
+                t = better
+        out.append(t)
+    return out
 
 
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
