@@ -74,12 +74,14 @@ def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, own
     others = cv2.dilate(owners.others(t.element.number, near).astype(np.uint8), np.ones((1, BAND), np.uint8)) > 0
     own = (np.abs(offsets) <= BAND / 2 * STEP) & ~others  # wiped out for its own sake
     profile = smoothed(np.where(own, sample(ink, at), sample(left, at)))
-    found = _elsewhere(t.element, s, profile, ~own & (sample(wiped, at) > 100), offsets, level)
-    if found is None or found.covered < WHOLE:
+    unknown = ~own & (sample(wiped, at) > 100)
+    darker = _elsewhere(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
+    if darker is not None and darker.covered >= WHOLE:
+        return darker
+    fuller = _elsewhere(t.element, s, profile, unknown, offsets, level)
+    if fuller is None or fuller.covered < max(WHOLE, t.covered + FULLER) or fuller.darkness < t.darkness / DARKER:
         return None
-    darker = found.darkness > DARKER * t.darkness and found.covered > t.covered
-    fuller = found.darkness > t.darkness / DARKER and found.covered > t.covered + FULLER
-    return found if darker or fuller else None
+    return fuller
 
 
 def _about(e: Element, s: Stations) -> tuple[Floats, Any]:
