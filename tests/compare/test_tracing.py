@@ -209,3 +209,32 @@ def test_a_pale_trace_in_its_place_is_not_the_line_when_a_dark_one_lies_beside(d
     draw(ink, *(known[0].points - 3j))
     found, _ = trace(known, ink)
     assert found[0].deviation == pytest.approx(deviation, abs=0.1)
+
+
+def test_a_straight_stroke_beside_lettering_is_extra_and_a_letter_is_not():
+    word = Element(1, VIEW, "W", "text", np.array([300, 304, 304 + 5j, 300 + 5j]) + 300j, "text", text="W", height=5.0)
+    ink = paper()
+    for one, other in ((0, 1 + 5j), (1 + 5j, 2), (2, 3 + 5j)):  # the letter, 4 mm too low
+        draw(ink, 300.5 + 296j + one, 300.5 + 296j + other, "thin")
+    draw(ink, 298 + 308j, 310 + 306.5j, "thin")
+    _, extra = trace([word], ink)
+    assert [x.length for x in extra] == pytest.approx([12.1 + 1.0], abs=0.6)  # its blur, and coarse pixels
+
+
+def test_a_crease_is_not_extra():
+    ink = paper()
+    for x in (100, 220, 340, 460, 580):
+        draw(ink, x + 297j, x + 297.2j + 40, "thin")
+    draw(ink, 300 + 400j, 330 + 400j, "thin")
+    _, extra = trace([line(1, 300 + 100j, 330 + 100j)], ink)
+    assert [round(x.middle.imag) for x in extra] == [400]
+
+
+def test_what_shows_of_a_hidden_line_is_not_extra():
+    ink = paper()
+    draw(ink, 300 + 300j, 330 + 300j)
+    hidden = np.zeros((594, 841), bool)
+    hidden[280:310, 326:345] = True
+    known = [line(1, 300 + 300j, 340 + 300j)]
+    traces, extra = trace(known, ink, hidden)
+    assert (traces[0].status, extra) == ("hidden", [])

@@ -30,7 +30,7 @@ from tmm_sheets.compare.photo.own_place import in_place, strips
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.stations import measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
-from tmm_sheets.compare.photo.wiping import fill, paint, wipe_found, wipe_small
+from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
@@ -75,6 +75,11 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         wipe_small(wiped, e)
     for t in found:
         wipe_found(wiped, t)
+    for t in out_of_sight.values():  # what shows of it belongs to it
+        if measurable(t.element):
+            paint(wiped, t.element, t.element.points, ROOM)
+        else:
+            wipe_small(wiped, t.element)
     left = ink.copy()
     if hidden.any():
         left[cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0] = 0
@@ -90,8 +95,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     for e in elements:  # a hand may have written here
         if e.kind == "text":
-            fill(left, grown(e.points, 0.8 * e.height + 1.0), 0)
-    return [out[e.number] for e in elements], extra_ink(left, level)
+            fill(words, grown(e.points, 0.8 * e.height + 1.0))
+    return [out[e.number] for e in elements], extra_ink(left, level, words)
 
 
 def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
