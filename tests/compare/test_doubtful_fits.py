@@ -9,8 +9,9 @@ import pytest
 
 from tests.compare.test_image import N, grey, known, rectified, shot
 from tmm_sheets.compare.elements import grown
-from tmm_sheets.compare.photo import rectification, tracing
+from tmm_sheets.compare.photo import frame_quads, rectification, tracing
 from tmm_sheets.compare.photo.frame_quads import homographies
+from tmm_sheets.compare.photo.hidden import at as hidden_at
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.photograph import Picture
 from tmm_sheets.compare.photo.refusal import refusal
@@ -71,6 +72,40 @@ def test_labels_that_stand_elsewhere_are_missed_in_their_places():
     fill(ink, grown(label.points, 1.0), 0)
     traces, _ = tracing.trace(known(), ink, found.hidden)
     assert [t.element.number for t in traces if t.status == "absent lettering"] == [label.number]
+
+
+def test_lines_washed_out_by_a_flash_are_hidden():
+    found = rectified()
+    lines = rectification.as_lines([e for e in known() if e.length < rectification.LONGEST])
+    place = max(lines.points, key=lambda z: int((abs(lines.points - z) < 15).sum()))
+    dim = (0.8 * grey()).astype(np.uint8)
+    spot = found.map.to_picture(np.array([place, place + 25]))
+    cv2.circle(dim, (int(spot[0].real), int(spot[0].imag)), int(abs(spot[1] - spot[0])), 255, -1)
+    ink = rectification.straighten(dim, found.map)
+    sides = rectification.ProfileLines(found.sides.sheet, found.sides.normals, lines.line[:0])
+    hidden = rectification.hidden_places(dim, found.map, ink, lines, sides, rectification.line_level(ink))
+    assert hidden_at(place, hidden)
+    far = lines.points[abs(lines.points - place) > 40]
+    assert hidden_at(far, hidden).mean() < hidden_at(far, found.hidden).mean() + 0.01
+
+
+def test_only_in_a_flat_frame_seen_whole_lines_elsewhere_are_another_drawing():
+    check = replace(rectified().check, match=0.2)
+    assert check.framed
+    assert not replace(check, halves=14.5).framed  # waves
+    assert not replace(check, sides=np.array([1.0, 0.4, 1.0, 1.0])).framed  # a corner is outside the picture
+
+
+@pytest.mark.parametrize(("pitch", "share"), [(5.0, 0.0), (10.0, 1.0)])
+def test_a_frame_is_not_thrown_out_for_lines_on_both_sides_of_each(pitch, share):
+    # Level lines 5 mm apart tell nothing about a frame; 10 mm apart they tell all: none lies 5 mm beside another.
+    near = np.zeros((600, 850), np.uint8)
+    rows = np.arange(pitch, 594, pitch)
+    near[rows.astype(int)] = near[rows.astype(int) - 1] = 255
+    p = np.repeat(594 - rows[3:-3], 8) * 1j + np.tile(np.linspace(100, 700, 8), len(rows) - 6)
+    flipped = CORNERS.real + 1j * (594 - CORNERS.imag)
+    found = frame_quads._shares(near, flipped[None], p, np.full(len(p), 1j))
+    assert found == pytest.approx([share])
 
 
 def test_homographies_of_many_quadrilaterals():

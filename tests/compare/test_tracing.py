@@ -172,3 +172,69 @@ def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
     f = judge(found[0], 0.25, 0.15)
     assert (found[0].head, f.verdict) == (head, verdict)
     assert said in f.what
+
+
+def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
+    a, b = 300 + 300j, 330 + 320j
+    dot = Element(3, VIEW, "", "circle", b + 0.65 * np.exp(1j * np.linspace(0, 2 * np.pi, 40)), "thin", centre=b, radius=0.65,
+                  fills=(b + 0.65 * np.exp(1j * np.linspace(0, 2 * np.pi, 40)),))
+    known = [arrow(1, a, b), line(2, 2 * a - b, b, "thin"), dot]
+    ink = paper()
+    draw(ink, 2 * a - b, b, "thin")
+    corners = np.rint(16 * np.stack((dot.points.real * SCALE - 0.5, (594 - dot.points.imag) * SCALE - 0.5), 1)).astype(np.int32)
+    cv2.fillPoly(ink, [corners], 180, cv2.LINE_AA, 4)
+    found, _ = trace(known, ink)
+    assert (found[0].head, judge(found[0], 0.25, 0.15).what) == ("absent", "no arrow head here")
+
+
+@pytest.mark.parametrize(("letters", "status"), [("WMW", "lettering"), ("W", "part of lettering"), ("", "absent lettering")])
+def test_part_of_lettering_is_missed(letters, status):
+    word = Element(1, VIEW, "WMW", "text", np.array([300, 312, 312 + 4j, 300 + 4j]) + 300j, "text", text="WMW", height=4.0)
+    ink = paper()
+    for k in range(len(letters)):  # zigzags, 4 mm each
+        x = 300.3 + 4 * k
+        for one, other in ((0, 1 + 4j), (1 + 4j, 2), (2, 3 + 4j)):
+            draw(ink, x + one + 300j, x + other + 300j, "thin")
+    found, _ = trace([word], ink)
+    assert found[0].status == status
+
+
+@pytest.mark.parametrize(("dark", "deviation"), [(60, 3.0), (170, 0.0)])
+def test_a_pale_trace_in_its_place_is_not_the_line_when_a_dark_one_lies_beside(dark, deviation):
+    known = [line(k + 1, 300 + 1j * (300 + 10 * k), 340 + 1j * (300 + 10 * k)) for k in range(4)]
+    ink = paper()
+    for e in known[1:]:
+        draw(ink, *e.points)
+    draw(ink, *known[0].points, dark=dark)  # rubbed out, or as dark as the others
+    draw(ink, *(known[0].points - 3j))
+    found, _ = trace(known, ink)
+    assert found[0].deviation == pytest.approx(deviation, abs=0.1)
+
+
+def test_a_straight_stroke_beside_lettering_is_extra_and_a_letter_is_not():
+    word = Element(1, VIEW, "W", "text", np.array([300, 304, 304 + 5j, 300 + 5j]) + 300j, "text", text="W", height=5.0)
+    ink = paper()
+    for one, other in ((0, 1 + 5j), (1 + 5j, 2), (2, 3 + 5j)):  # the letter, 4 mm too low
+        draw(ink, 300.5 + 296j + one, 300.5 + 296j + other, "thin")
+    draw(ink, 298 + 308j, 310 + 306.5j, "thin")
+    _, extra = trace([word], ink)
+    assert [x.length for x in extra] == pytest.approx([12.1 + 1.0], abs=0.6)  # its blur, and coarse pixels
+
+
+def test_a_crease_is_not_extra():
+    ink = paper()
+    for x in (100, 220, 340, 460, 580):
+        draw(ink, x + 297j, x + 297.2j + 40, "thin")
+    draw(ink, 300 + 400j, 330 + 400j, "thin")
+    _, extra = trace([line(1, 300 + 100j, 330 + 100j)], ink)
+    assert [round(x.middle.imag) for x in extra] == [400]
+
+
+def test_what_shows_of_a_hidden_line_is_not_extra():
+    ink = paper()
+    draw(ink, 300 + 300j, 330 + 300j)
+    hidden = np.zeros((594, 841), bool)
+    hidden[280:310, 326:345] = True
+    known = [line(1, 300 + 300j, 340 + 300j)]
+    traces, extra = trace(known, ink, hidden)
+    assert (traces[0].status, extra) == ("hidden", [])

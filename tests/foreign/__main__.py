@@ -22,7 +22,7 @@ from typing import Any
 from tests.foreign import drawing, judge, scene
 
 Row = dict[str, Any]
-WORDS = ("red", "amber", "ink", "green", "not judged")
+WORDS = (*judge.FOUND, "green", "silent", "unjudged", "same")
 
 
 def _one(number: int, seed: int, only: tuple[str, ...], folder: Path, keep: bool, take: bool, most: float) -> Row | None:
@@ -47,8 +47,12 @@ def _cell(values: Iterable[float | None], form: str, how: Any) -> str:
 
 
 def _seen(row: Row) -> list[Row]:
-    """Mistakes that should be found: those that are large enough; digits are not read and stand only in the table of kinds."""
-    return [mistake for mistake in row["mistakes"] if mistake["size"] >= judge.VISIBLE and mistake["kind"] != "digits swapped"]
+    """Mistakes that should be found: large enough, and they show; digits are not read and stand only in the table of kinds."""
+    return [
+        mistake
+        for mistake in row["mistakes"]
+        if mistake["size"] >= judge.VISIBLE and mistake["kind"] != "digits swapped" and mistake["said"] != "same"
+    ]
 
 
 def _line(name: str, rows: list[Row]) -> str:
@@ -57,14 +61,14 @@ def _line(name: str, rows: list[Row]) -> str:
     judged = [row for row in rows if row["state"] == "judged"]
     sound, accused = sum(row["sound"] for row in judged), sum(row["false_red"] for row in judged)
     visible = [mistake for row in judged for mistake in _seen(row)]
-    missed = sum(mistake["said"] in ("green", "not judged") for mistake in visible)
+    missed, open_ = (sum(mistake["said"] in words for mistake in visible) for words in (("green", "silent"), ("unjudged",)))
     share = f"{100 * accused / sound:.2f}" if sound else "-"
     median = _cell((row["median"] for row in judged), ".3f", statistics.median)
     most, worst = (_cell((row[key] for row in judged), ".2f", max) for key in ("most", "worst"))
     seconds = _cell((row["seconds"] for row in rows), ".1f", statistics.median)
     return (
         f"{name:<12}{len(rows):>5}{states['refused']:>9}{states['wrong fit']:>7}{states['broken']:>8}{median:>9}{most:>8}{worst:>8}"
-        f"{share:>9}{missed:>6} of {len(visible):<4}{seconds:>7}"
+        f"{share:>9}{missed:>6} of {len(visible):<4}{open_:>5}{seconds:>7}"
     )
 
 
@@ -80,7 +84,8 @@ def table(rows: list[Row]) -> str:
         ("worst", 8),
         ("red, %", 9),
         ("missed", 9),
-        ("s", 11),
+        ("open", 9),
+        ("s", 7),
     )
     lines = [" " * 12 + "".join(f"{word:>{width}}" for word, width in head)]
     present = sorted({row["difficulty"] for row in rows}, key=scene.DIFFICULTIES.index)

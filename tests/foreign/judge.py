@@ -33,8 +33,14 @@ WRONG = 2.0
 """A fit is wrong when it is off by more than this somewhere, mm."""
 CLEARLY = 0.06
 """By how much a farther place must fit better than one near the true one to be believed: lines of a table look alike."""
+GRAIN = 0.3
+"""Paper is paler than this, lines are darker."""
+FOUND = ("red", "amber", "ink")
+"""What counts as found."""
 VISIBLE = 1.5
 """Mistakes from this size on should be found, mm."""
+HIDES, SHOWS = 0.6, 2.0
+"""A line hides another that is no farther off, mm; a mistake shows when so many mm of line are gone or new."""
 
 
 @dataclass
@@ -168,8 +174,9 @@ def _tells(piece: NDArray[np.float32]) -> bool:
     """Whether a piece has enough lines, in more than one direction and not all in one corner, to say where it lies."""
     half = len(piece) // 2
     halves = slice(half), slice(half, None)
-    quarters = [piece[rows, columns].mean() for rows in halves for columns in halves]
-    if piece.mean() < 0.01 or sorted(quarters)[1] < 0.002:  # the tip of a line that reaches in
+    lines = np.where(piece > GRAIN, piece, 0)
+    quarters = [lines[rows, columns].mean() for rows in halves for columns in halves]
+    if lines.mean() < 0.01 or sorted(quarters)[1] < 0.002:  # the tip of a line that reaches in
         return False
     dx, dy = cv2.Sobel(piece, cv2.CV_32F, 1, 0), cv2.Sobel(piece, cv2.CV_32F, 0, 1)
     spread = np.linalg.eigvalsh(np.array([[(dx * dx).sum(), (dx * dy).sum()], [(dx * dy).sum(), (dy * dy).sum()]]))
@@ -216,10 +223,39 @@ def _near(marks: list[Mark], lines: list[list[list[float]]]) -> list[Mark]:
     return excused
 
 
-def _sampled(path: Floats) -> Floats:
+def _sampled(path: Floats, step: float = 2.0) -> Floats:
     along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
-    where = np.linspace(0, along[-1], max(2, int(along[-1] / 2) + 1))
+    where = np.linspace(0, along[-1], max(2, int(along[-1] / step) + 1))
     return np.stack([np.interp(where, along, path[:, i]) for i in (0, 1)], axis=1)
+
+
+def changed(truth: dict[str, Any], marks: list[Mark]) -> list[float]:
+    """How much of each mistake shows, mm: lines that are gone or new, farther than HIDES from all others.
+
+    A line that was moved onto another, from where a twin of it stays, leaves the drawing as it should be.
+    """
+    named = {mark.id: mark for mark in marks}
+    was = [[path for mark in mistake["wrong"] for path in named[mark["id"]].paths()] for mistake in truth["mistakes"]]
+    now = [[np.array(line) for line in mistake["lines"][len(old) :]] for mistake, old in zip(truth["mistakes"], was, strict=True)]
+    wrong = {mark["id"] for mistake in truth["mistakes"] for mark in mistake["wrong"]}
+    sound = [_sampled(path, 0.25) for mark in marks if mark.id not in wrong for path in mark.paths()]
+    there = np.vstack([*sound, *(_sampled(path, 0.25) for paths in now for path in paths)])
+    right = np.vstack([*sound, *(_sampled(path, 0.25) for paths in was for path in paths)])
+    return [_alone(old, there) + _alone(new, right) for old, new in zip(was, now, strict=True)]
+
+
+def _alone(paths: list[Floats], others: Floats) -> float:
+    """How many mm of lines are farther than HIDES from others."""
+    if not paths:
+        return 0.0
+    step = 0.5
+    samples = np.vstack([_sampled(path, step) for path in paths])
+    low, high = samples.min(axis=0) - 2 * HIDES, samples.max(axis=0) + 2 * HIDES
+    near = others[((others > low) & (others < high)).all(axis=1)]
+    if not len(near):
+        return step * len(samples)
+    apart = [np.hypot(*(part[:, None] - near[None]).T).min(axis=0) for part in np.array_split(samples, len(samples) // 200 + 1)]
+    return float(step * (np.concatenate(apart) > HIDES).sum())
 
 
 def _pointed_at(mistake: dict[str, Any], extra: list[dict[str, float]]) -> bool:
@@ -232,17 +268,28 @@ def _pointed_at(mistake: dict[str, Any], extra: list[dict[str, float]]) -> bool:
     return False
 
 
+def _verdict(element: dict[str, Any]) -> str:
+    """What is said of an element: its colour, or that it cannot be judged."""
+    unjudged = element["status"] == "hidden" or element["said"].startswith("not measurable")
+    return "unjudged" if unjudged else str(element["verdict"])
+
+
 def _said(outcome: Outcome, report: dict[str, Any], truth: dict[str, Any], marks: list[Mark]) -> None:
-    """False reds among the sound elements; which mistakes were found: red, amber, or shown as ink that belongs to nothing."""
+    """False reds among the sound elements; which mistakes were found: red, amber, or shown as ink that belongs to nothing.
+
+    "unjudged" is what the report tells that it cannot judge, "silent" what it says nothing of, "same" a mistake that does not show.
+    """
     elements = report["elements"]
     named = {mark.id: mark for mark in marks}
     touched: list[Mark] = []
-    for mistake in truth["mistakes"]:
+    for mistake, shows in zip(truth["mistakes"], changed(truth, marks), strict=True):
         wrong = [named[mark["id"]] for mark in mistake["wrong"]]
-        said = [element["verdict"] for element in elements if any(_is(element, mark) for mark in wrong)]
-        found = next((verdict for verdict in ("red", "amber") if verdict in said), "green" if said else "not judged")
+        said = {_verdict(element) for element in elements if any(_is(element, mark) for mark in wrong)}
+        found = next((verdict for verdict in ("red", "amber", "green", "unjudged") if verdict in said), "silent")
         if found != "red" and _pointed_at(mistake, report["extra"]):
             found = "ink"
+        if found not in FOUND and shows < SHOWS:
+            found = "same"
         outcome.mistakes.append({"kind": mistake["kind"], "size": mistake["size"], "place": mistake["place"], "said": found})
         touched += wrong
     touched += _near(marks, [line for mistake in truth["mistakes"] for line in mistake["lines"]])

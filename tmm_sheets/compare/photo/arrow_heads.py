@@ -1,7 +1,7 @@
 """Whether an arrow has its head, or has it at its other end.
 
-A head is wider than its line, whatever its shape: near the tip there is more ink across the line than along its middle, or as much
-when there is no head. Where others are drawn beside the line, letters may stand or the sheet is hidden, nothing can be told.
+A head is wider than its line: near the tip there is more ink across the line than along its middle, or as much when there is no
+head. Where others are drawn beside the line, letters may stand or the sheet is hidden, nothing can be told.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from tmm_sheets.drawing.styles import line_type
 
 LEAST = 2.4
 """mm; shorter heads are not looked for."""
-BACK = np.arange(0.6, 5.2, 0.2)
-"""mm from the tip backwards at which ink is measured."""
+BACK = np.arange(1.2, 5.0, 0.2)
+"""mm from the tip backwards at which ink is measured; nearer to it a point is drawn as a dot."""
 SHAFT = 1.0
 """mm behind a head, and from the other end, beyond which a line has no head any more."""
 SHORTEST = 4.0
@@ -33,12 +33,13 @@ ASIDE = np.arange(0.0, 1.4, 0.15)
 WIDEST = 1.1
 BESIDE = 0.22
 """mm from the edge of the line beyond which nothing of others may be: what runs along under it, a helper line, is no matter."""
-WINDOW = 5
-"""Stations of which the mean is taken, 1 mm."""
-BARE, INKED = 1.25, 1.5
-"""Ink as a multiple of the line's own up to which there is no head, and from which on there is one."""
+BARE, INKED = 0.18, 0.4
+"""How much a line widens towards its end, as a share of what a head has by the drawing, up to which there is no head, and from
+which on there is one for sure. Pencilled and photographed heads have 0.6 in the middle, 99 of 100 more than 0.23."""
+SMALLER, SURE = 0.7, 0.7
+"""Size of a small head by that of the drawing, and what such a one needs to be one for sure."""
 ENOUGH, SOME = 0.6, 6
-"""Least share of stations that must be seen for a head to be missed; least number for the line's own ink to be known."""
+"""Least part of a head that must be seen for it to be judged; least number of stations for the line's own ink to be known."""
 
 
 @dataclass(frozen=True)
@@ -117,15 +118,29 @@ def _head(t: Trace, paper: _Paper) -> Head:
     beyond = [0.0 if np.isnan(by) else by for by in t.ends]
     begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
     here = paper.widening(t.element, tip, begin)
-    most = _most(here)
-    if most >= INKED:
+    if _is_head(t.element, here):
         return "there"
-    if not most <= BARE or float((~np.isnan(here)).mean()) < ENOUGH:
+    # Not even a small one.
+    if not (_share(t.element, here) <= BARE and _share(t.element, here, SMALLER) <= INKED):
         return "unknown"
-    return "reversed" if _most(paper.widening(t.element, begin, tip)) >= INKED else "absent"
+    return "reversed" if _is_head(t.element, paper.widening(t.element, begin, tip)) else "absent"
 
 
-def _most(widening: Floats) -> float:
-    """The largest mean of neighbouring stations, nan without any."""
-    means = np.convolve(widening, np.full(WINDOW, 1 / WINDOW), "valid")
-    return float(np.nanmax(means)) if not np.isnan(means).all() else float("nan")
+def _is_head(e: Element, widening: Floats) -> bool:
+    """Whether a line widens as by a head, or by a smaller one."""
+    return _share(e, widening) >= INKED or _share(e, widening, SMALLER) >= SURE
+
+
+def _share(e: Element, widening: Floats, size: float = 1.0) -> float:
+    """The widening of a line as a share of that by its head, by least squares; nan where too little of it is seen.
+
+    Of a head of another ``size`` there is the same near its tip, and nothing beyond.
+    """
+    corners = (e.fills[0] - e.fills[0][0]) / (e.points[0] - e.fills[0][0])
+    width = 2 * float(np.abs(corners.imag).max()) * abs(e.points[0] - e.fills[0][0]) * BACK / _length(e)
+    wanted = np.clip(np.where(size * _length(e) >= BACK, width / line_type(e.style).width, 0) - 1, 0, None)
+    seen = ~np.isnan(widening)
+    weight = float((wanted[seen] ** 2).sum())
+    if weight < ENOUGH * float((wanted**2).sum()) or not weight:
+        return float("nan")
+    return float(((widening[seen] - 1) * wanted[seen]).sum() / weight)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed
@@ -15,6 +17,12 @@ from tmm_sheets.compare.photo.traces import Trace
 FAR = 6.0  # mm from its place within which a displaced element is sought
 THERE = 0.8  # share of its ink in its own place from which on an element is not sought elsewhere
 TRIES = 500  # guesses from stations picked at random
+PLENTY = 40.0  # mm of a line by which it is known, however much of it is hidden
+WHOLE, DARKER, FULLER = 0.85, 1.25, 0.12
+"""Least share of an element's ink elsewhere, and how much darker or more complete it must be there, for it not to be believed in
+its own place."""
+BAND = 17
+"""Steps about a line in its own place where it was wiped out."""
 BARE, BARE_LENGTH = 0.35, 2.5
 """Share of an element without ink, and mm of that not hidden by others, beyond which it is missing."""
 
@@ -35,9 +43,7 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: f
     level
         Darkness of ink.
     """
-    reach = min(FAR, max(0.6 * e.length, 3.0))
-    offsets = np.arange(-reach, reach + STEP / 2, STEP)
-    at = pixels(s.points[:, None] + s.normals[:, None] * offsets)
+    offsets, at = _about(e, s)
     expected = expected_ink(e)
     about = np.abs(offsets) <= 0.5
     here = smoothed(sample(ink, at[:, about])) > level
@@ -54,6 +60,35 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: f
     if bare.mean() > BARE * expected and (bare & ~hidden).sum() * (e.length / len(bare)) > BARE_LENGTH:
         return Trace(e, "missing", covered=float(1 - bare.mean()))
     return Trace(e, "dense", covered=float(1 - bare.mean()), at=e.points)
+
+
+def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, owners: Owners, level: float) -> Trace | None:
+    """The trace of an element that is darker or more complete elsewhere than what was taken for it in its own place, or None.
+
+    ``t`` and ``s`` are its trace there and its stations, ``owners`` tells who is drawn where; the rest is as for :func:`displaced`.
+    """
+    import cv2
+
+    offsets, at = _about(t.element, s)
+    near = s.points[:, None] + s.normals[:, None] * offsets
+    others = cv2.dilate(owners.others(t.element.number, near).astype(np.uint8), np.ones((1, BAND), np.uint8)) > 0
+    own = (np.abs(offsets) <= BAND / 2 * STEP) & ~others  # wiped out for its own sake
+    profile = smoothed(np.where(own, sample(ink, at), sample(left, at)))
+    unknown = ~own & (sample(wiped, at) > 100)
+    darker = _elsewhere(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
+    if darker is not None and darker.covered >= WHOLE:
+        return darker
+    fuller = _elsewhere(t.element, s, profile, unknown, offsets, level)
+    if fuller is None or fuller.covered < max(WHOLE, t.covered + FULLER) or fuller.darkness < t.darkness / DARKER:
+        return None
+    return fuller
+
+
+def _about(e: Element, s: Stations) -> tuple[Floats, Any]:
+    """How far an element is sought to either side, mm, and the places there, pixels."""
+    reach = min(FAR, max(0.6 * e.length, 3.0))
+    offsets = np.arange(-reach, reach + STEP / 2, STEP)
+    return offsets, pixels(s.points[:, None] + s.normals[:, None] * offsets)
 
 
 def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float) -> Trace | None:
@@ -74,7 +109,8 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
     seen = ~unknown[row, column]
     hits = (hit[row, column] & seen).sum(1)
     share = hits / np.maximum(seen.sum(1), 1)
-    able = seen.sum(1) >= max(0.4 * n, min(4.0 / max(e.length / n, 0.1), n))
+    step = max(e.length / n, 0.1)
+    able = seen.sum(1) >= max(min(0.4 * n, PLENTY / step), min(4.0 / step, n))
     score = np.where(able, share - 0.01 * worst, -1.0)
     best = int(score.argmax())
     if score[best] <= 0 or share[best] <= ENOUGH * expected:
@@ -87,7 +123,8 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
             y = y + fit(base, close - base @ y, use, loose)
     if np.abs(base @ y).max() > reach + 0.5:
         return None
-    return measured(e, s, base @ y, np.ones(n, bool), float(share[best] / expected))
+    found = measured(e, s, base @ y, np.ones(n, bool), float(share[best] / expected))
+    return replace(found, darkness=float(np.median(strength[use])) if use.any() else 0.0)
 
 
 def _guesses(e: Element, s: Stations, base: Floats, dark: Any, offsets: Floats) -> Floats:
@@ -104,6 +141,7 @@ def _guesses(e: Element, s: Stations, base: Floats, dark: Any, offsets: Floats) 
         gx, gy = np.meshgrid(grid, grid)
         shifts = np.stack((gx.ravel(), gy.ravel()))
         guesses.append(np.linalg.lstsq(base, s.raw[:, :2] @ shifts, rcond=None)[0].T)
+        guesses.append(np.linalg.lstsq(base, s.raw[:, 3:] * grid, rcond=None)[0].T)
     rows = np.flatnonzero(dark.any(1))
     if len(rows) > k:
         rng = np.random.default_rng(e.number)

@@ -72,6 +72,11 @@ class FitCheck:
                 and int((self.sides >= SIDE).sum()) >= SIDES)
 
     @property
+    def framed(self) -> bool:
+        """Whether all of the frame is seen and lies flat: what is in it and does not match is another drawing, not badly fitted."""
+        return float(self.sides.min()) >= WHOLE and self.halves <= 2 * HALVES
+
+    @property
     def sound(self) -> bool:
         """Whether no better map need be sought."""
         smooth = self.halves <= HALVES or self.match >= CLOSE

@@ -145,7 +145,7 @@ def _ranked(ink: Any, lines: ProfileLines, level: float, quads: Points, wide: An
 
 
 def _shares(near: Any, quads: Points, p: Points, n: Points) -> Floats:
-    """Share of points with ink in each of some quadrilaterals, less that beside them."""
+    """Share of points with ink in each of some quadrilaterals, less that beside them: 0 where everything is full of lines."""
     h = homographies(quads)
 
     def placed(z: Points) -> Points:
@@ -157,7 +157,7 @@ def _shares(near: Any, quads: Points, p: Points, n: Points) -> Floats:
 
     on = np.any([hit(by) for by in (-ROOM, -ROOM / 2, 0.0, ROOM / 2, ROOM)], axis=0)
     off = hit(-BESIDE).astype(float) + hit(BESIDE)
-    return np.asarray(on.mean(1) - off.mean(1))
+    return np.asarray(on.mean(1) - off.mean(1) / 2)
 
 
 def homographies(quads: Points) -> Floats:

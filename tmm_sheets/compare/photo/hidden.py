@@ -2,6 +2,7 @@
 
 A place is hidden when its ground is not the paper's or the lines that belong there are not there, and that goes on to the frame:
 what hides a sheet reaches into it from outside. A shadow is no such thing (the lines are there), nor is a line that was left out.
+Where a flash has washed out the paper, lines that are not seen are hidden too.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ BARE, LEAST = 0.75, 5
 """Least share of the points of lines about a cell that must be bare for it to be hidden, and least number of them."""
 SEEN = 0.5
 """Share of points of lines in place from which on a darker or lighter ground hides nothing."""
+GLARE, PAPER_GREY = 252, 240
+"""Grey from which on the ground is washed out by a flash, where the paper as a whole is darker than the second number."""
 MARGIN = 5
 """mm by which hidden places are widened: edges cast shadows."""
 OFFSETS = np.arange(-1.5, 1.55, 0.1)
@@ -72,6 +75,9 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
         # The margin outside the frame is often in the shade of its own edge: only what reaches inside matters.
         if total[k] >= LEAST and seen[k] < SEEN * total[k]:
             out |= labels == k
+    if np.median(ground) < PAPER_GREY:
+        lost = ~there & (ground[row, column] >= GLARE)
+        out[row[lost], column[lost]] = True
     return cv2.dilate(out.astype(np.uint8), np.ones((2 * MARGIN + 1, 2 * MARGIN + 1), np.uint8)) > 0 if out.any() else out
 
 

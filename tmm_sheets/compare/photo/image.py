@@ -15,7 +15,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.photo import numbers_read, placed_views, rectification, tracing
-from tmm_sheets.compare.photo.fit_check import MATCH, SIDE, SIDES
+from tmm_sheets.compare.photo.fit_check import MATCH
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.photograph import Picture, read
@@ -137,7 +137,7 @@ def _other_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
                     "they belong, {share} % of sheet {best}'s are")
         raise CannotBuild(said.format(file=path, n=n, best=best, project=project_name, matched=matched, share=round(100 * share)),
                           hint=tell("try --sheet {n}").format(n=best))
-    if int((found.check.sides >= SIDE).sum()) < SIDES or found.match > UNLIKE:
+    if not found.check.framed or found.match > UNLIKE:
         return
     said = tell("{file} does not show a sheet of {project} as it is drawn here: only {matched} % of the lines of sheet {n} are "
                 "where "

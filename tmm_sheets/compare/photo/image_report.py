@@ -159,7 +159,7 @@ def _table(judged: _Judged) -> list[str]:
 
 def _tree(judged: _Judged) -> dict[str, Any]:
     """What JSON tells of the elements and of extra ink."""
-    told = ("measured", "shared", "missing", "dense", "absent lettering", "hidden")
+    told = ("measured", "shared", "missing", "dense", "part of lettering", "absent lettering", "hidden")
     measured = sum(f.trace.status == "measured" for f in judged.findings)
     return {
         "count": {**judged.count, "dense": judged.dense, "hidden": judged.hidden, "hidden_ends": judged.hidden_ends,

@@ -99,8 +99,9 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
         return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or tell(IN_REACH), worst.place, t, worst.allowed)
     if t.status == "missing":
         return PhotoFinding(e, "red", e.length, tell("missing"), middle, t, tolerance)
-    if t.status == "absent lettering":
-        return PhotoFinding(e, "amber", 0.0, tell("no lettering here"), complex(e.points.mean()), t, tolerance)
+    if t.status in ("absent lettering", "part of lettering"):
+        said = tell("no lettering here") if t.status == "absent lettering" else tell("part of the lettering is not here")
+        return PhotoFinding(e, "amber", 0.0, said, complex(e.points.mean()), t, tolerance)
     if t.status == "shared" and t.deviation <= tolerance:
         said = tell("within a pencil's reach, with others in one stroke")
         return PhotoFinding(e, "green", t.deviation, said, middle, t, tolerance)

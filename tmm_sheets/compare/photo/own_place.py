@@ -100,7 +100,7 @@ def in_place(strip: Strip, level: float) -> Trace | None:
         x = fit(base, o, use, 0.3)
         if _at_home(profile, base @ x):
             return Trace(e, "dense", covered=float(there.mean()), at=e.points)
-    t = measured(e, s, base @ x, free, float(share / expected))
+    t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])))
     if e.kind == "curve":
         t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
     return t

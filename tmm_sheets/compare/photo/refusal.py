@@ -22,6 +22,8 @@ DARK = 60.0
 """Grey level of the paper below which there was too little light."""
 PATTERNED = 0.02
 """Share of the picture beside the sheet, dark as lines are, beyond which the ground is patterned."""
+EDGE = 0.01
+"""Share of the picture's longer side within which its edge is."""
 OUT = 0.2
 """Share of a side outside the picture from which on that is what is wrong with it."""
 _HIDDEN = (
@@ -79,11 +81,12 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
 
 
 def _outside(m: Map, shape: tuple[int, ...], k: int) -> float:
-    """Share of a side of the frame that lies outside the picture."""
+    """Share of a side of the frame that lies outside the picture, or along its edge: there the rest of it was taken to be."""
     corners = FRAME.corners
     a, b = corners[k], corners[(k + 1) % 4]
     q = m.to_picture(a + np.linspace(0, 1, 50) * (b - a))
-    return float(((q.real < 0) | (q.imag < 0) | (q.real > shape[1] - 1) | (q.imag > shape[0] - 1)).mean())
+    edge = EDGE * max(shape)
+    return float(((q.real < edge) | (q.imag < edge) | (q.real > shape[1] - edge) | (q.imag > shape[0] - edge)).mean())
 
 
 def _patterned(grey: Any, m: Map) -> bool:

@@ -11,7 +11,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.drawing.marks import Points
 
 SHORTEST = 8.0  # mm of line whose ends are looked for
-Status = Literal["measured", "shared", "missing", "dense", "lettering", "absent lettering", "small", "hidden"]
+Status = Literal["measured", "shared", "missing", "dense", "lettering", "part of lettering", "absent lettering", "small", "hidden"]
 
 Head = Literal["unknown", "there", "absent", "reversed"]
 
@@ -28,7 +28,7 @@ class Trace:
     Attributes
     ----------
     status : "measured" by itself; "shared": in one stroke with others; "missing"; "dense": its ink cannot be told from others';
-        "lettering" or "absent lettering"; "small": not looked at; "hidden": it does not show in the picture
+        "lettering", "part of lettering" or "absent lettering"; "small": not looked at; "hidden": it does not show in the picture
     shift : of its middle, mm
     turn : rad, counter-clockwise
     growth : of the radius or half length, mm
@@ -36,6 +36,7 @@ class Trace:
     ends : how far the line runs beyond its beginning and its end, mm; negative when it stops short, nan when unknown
     covered : share of it that has ink
     at : its line as it was found, mm
+    darkness : of its line where it was found in its place; 0 where that is not known
     head : of an arrow: "there", "absent", "reversed": at its other end; "unknown" also when it has none or several
     """
 
@@ -48,6 +49,7 @@ class Trace:
     ends: tuple[float, float] = (np.nan, np.nan)
     covered: float = 0.0
     at: Points | None = None
+    darkness: float = 0.0
     head: Head = "unknown"
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.arrow_heads import with_heads
-from tmm_sheets.compare.photo.displacement import displaced
+from tmm_sheets.compare.photo.displacement import displaced, rather_elsewhere
 from tmm_sheets.compare.photo.extra_ink import extra_ink
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
 from tmm_sheets.compare.photo.ink_levels import ink_levels
@@ -29,12 +29,16 @@ from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.own_place import in_place, strips
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.stations import measurable, stations
-from tmm_sheets.compare.photo.traces import ExtraInk, Trace
-from tmm_sheets.compare.photo.wiping import fill, paint, wipe_found, wipe_small
+from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
+from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
+PARTLY, CLEAR = 0.45, 0.9
+"""Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
+PALE, GAPS = 0.6, 0.85
+"""Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
 BESIDE = 0.9  # mm about lines whose ink is theirs
 
 
@@ -71,11 +75,17 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         wipe_small(wiped, e)
     for t in found:
         wipe_found(wiped, t)
+    for t in out_of_sight.values():  # what shows of it belongs to it
+        if measurable(t.element):
+            paint(wiped, t.element, t.element.points, ROOM)
+        else:
+            wipe_small(wiped, t.element)
     left = ink.copy()
     if hidden.any():
         left[cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0] = 0
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
+    found = _doubted(found, ink, left, wiped, owners, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     words = _places_of_lettering(elements, ink)
     ended = with_ends(open_lines, ink, owners, words, pale)
@@ -85,8 +95,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     for e in elements:  # a hand may have written here
         if e.kind == "text":
-            fill(left, grown(e.points, 0.8 * e.height + 1.0), 0)
-    return [out[e.number] for e in elements], extra_ink(left, level)
+            fill(words, grown(e.points, 0.8 * e.height + 1.0))
+    return [out[e.number] for e in elements], extra_ink(left, level, words)
 
 
 def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
@@ -121,6 +131,26 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
     return found
 
 
+def _doubted(found: Sequence[Trace], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
+    """The traces; those of lines paler than others of their kind, or with gaps, are looked for elsewhere once more."""
+    styles: dict[str, list[float]] = {}
+    for t in found:
+        if t.darkness:
+            styles.setdefault(t.element.style, []).append(t.darkness)
+    usual = {style: float(np.median(values)) for style, values in styles.items()}
+    out = []
+    for t in found:
+        if t.darkness and (t.darkness < PALE * usual[t.element.style] or t.covered < GAPS):
+            better = rather_elsewhere(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
+            if better is not None and better.at is not None:
+                owners.add(t.element, better.at)
+                wipe_found(wiped, better)
+                wipe_found(left, better, 0)
+                t = better
+        out.append(t)
+    return out
+
+
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
     """A picture of where lettering belongs, 255 there."""
     out = np.zeros_like(ink)
@@ -153,7 +183,11 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     free = sample(others, places, nearest=True) == 0
     dark = (sample(ink, places) > level) & free
     shares = dark.sum(1) / np.maximum(free.sum(1), 1)
-    for e, share, seen in zip(words, shares.tolist(), free.mean(1).tolist(), strict=True):
+    shown, inked = ((part.reshape(-1, 24, 60).sum(1) >= rows) for part, rows in ((free, 8), (dark, 2)))
+    columns = (inked & shown).sum(1) / np.maximum(shown.sum(1), 1)
+    partly = (columns < PARTLY) & (shown.mean(1) > CLEAR)
+    for e, share, seen, part in zip(words, shares.tolist(), free.mean(1).tolist(), partly.tolist(), strict=True):
         there = share > WRITTEN or seen < OPEN
-        out[e.number] = Trace(e, "lettering" if there else "absent lettering", covered=share)
+        status: Status = "absent lettering" if not there else "part of lettering" if part and len(e.text) > 1 else "lettering"
+        out[e.number] = Trace(e, status, covered=share)
     return out
