@@ -82,7 +82,7 @@ def taken(known: KnownSheet, view: ElementView, rng: random.Random, letters: boo
         if e.view != view:
             continue
         if e.kind == "text":
-            if e.text == view.name:
+            if e.text == view.name or e.text.casefold() in view.name.casefold():  # of plans of one kind, the position only
                 out += [replace(e, text=said)] if (said := title(e.text, rng)) else []
             elif letters and e.step and len(e.text) < 4:
                 out.append(e)

@@ -45,12 +45,14 @@ WHOLE = 0.85
 """Share of a line that must have ink for the line to be drawn."""
 MOST = 0.8
 """Share of a plan, by length, that must have ink where a mistake leads, for the plan to be built on it."""
-GAIN = 0.12
-"""By how much that must be more than has ink in its place."""
+GAIN, OF_REST = 0.12, 0.6
+"""By how much that must be more than has ink in its place, or, where only short lines are wrong, by what share of what has none."""
 AS_GOOD = 0.97
 """Share of the best explanation with which a more usual mistake is as good."""
 EQUAL = 0.02
 """Difference of shares of ink that tells nothing."""
+WEIGHT = 25.0
+"""A longer vector tells no more than one of this length, mm of our sheet."""
 SHOWS = 1.0
 """How far a point must be moved for a mistake to show, mm of our sheet."""
 FARTHEST = 250.0
@@ -195,9 +197,9 @@ class _Lost:
                     known[key] = search.changed(view, [rebuilt(e, new) for e in self.main[view]], least)
                 one, before = known[key], self.usual.get(view, 0.0)
                 more = search.worth(view, one) - before if one is not None else 0.0
-                if one is not None and more > GAIN:
+                if one is not None and _explains(before, before + more):
                     gain += more * sum(e.length for e in self.shown[view].vectors)
-                    whole |= view not in self.moves or one.share > self.share[view] + GAIN
+                    whole |= view not in self.moves or _explains(self.share[view], one.share)
                     factors.add(view.mu if view not in self.titled_otherwise else view)
             # A plan that is like ours at another scale is none that a mistake explains, several are.
             if whole or len(factors) > 1:
@@ -219,6 +221,11 @@ class _Lost:
                 search.without(view, one.placing)
         self.doubtful = [v for v in self.doubtful if v not in out]
         return out
+
+
+def _explains(usual: float, now: float) -> bool:
+    """Whether a mistake explains a plan of which so much has ink in its place, and so much with the mistake."""
+    return now - usual > min(GAIN, max(EQUAL, OF_REST * (1 - usual)))
 
 
 def _possible(shown: Iterable[_Drawn], errors: Errors) -> list[Hypothesis]:
@@ -330,11 +337,11 @@ def _explained(drawn: _Drawn, errors: Errors, space: DrawingSpace, move: Placing
     usual = _share(drawn, space.lines, move, {z: z for z in drawn.steps})
     found = [_Found(_share(drawn, space.lines, move, points), points, h) for h, points in _mistakes(drawn, errors, before)]
     best = max((f.share for f in found), default=0.0)
-    if best < max(MOST, usual + GAIN):
+    if best < MOST or not _explains(usual, best):
         found += [_Found(_share(drawn, space.lines, move, points), points, said)
                   for points, said in _points_off(drawn, errors, space, move)]
         best = max((f.share for f in found), default=0.0)
-    if best < max(MOST, usual + GAIN):
+    if best < MOST or not _explains(usual, best):
         return None
     return next(f for f in found if f.share >= AS_GOOD * best)
 
@@ -390,8 +397,9 @@ def _share(drawn: _Drawn, theirs: KnownLines, move: Placing, points: Mapping[com
         line = _between(e.points, points)
         size = max(abs(line[1] - line[0]), e.length)
         if size > 1.0:  # a vector that shrinks to nothing is none that was drawn
-            whole += size
-            inked += size * (abs(line[1] - line[0]) > 1.0 and _inked(theirs, move, line) >= WHOLE)
+            weight = min(size, WEIGHT)
+            whole += weight
+            inked += weight * (abs(line[1] - line[0]) > 1.0 and _inked(theirs, move, line) >= WHOLE)
     return inked / whole if whole else 0.0
 
 

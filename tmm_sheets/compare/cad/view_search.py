@@ -137,7 +137,8 @@ class Search:
         self.main[v] = [e for e in main if e.length > 0.01]
         z = lines([e.points for e in self.main[v]]).points(1.0)
         self.points[v] = z[:: max(len(z) // MOST, 1)]
-        tries = [one for one in self.tries(0, v, None, least, 0, AGREE) if one.share > AS_DRAWN]
+        tries = [one for one in self.tries(0, v, None, least, 0, AGREE) if one.share > AS_DRAWN
+                 and (v.mu is None or handy(one.placing))]
         found = [(self.worth(v, FoundView(one.placing, one.share)) - one.less, one) for one in tries]
         best = max(found, key=lambda x: x[0], default=None)
         return None if best is None else FoundView(best[1].placing, best[1].share)
@@ -212,7 +213,7 @@ class Search:
         """A place with how sure it is; None where it may be chance."""
         points = placing(self.points[v])
         share = self.free.share(points, NEAR)
-        met = [e for e in self.main[v] if e.length > SHORTEST and self.free.share(placing(_some(e.points)), NEAR) > 0.8]
+        met = [e for e in self.main[v] if e.length * min(placing.scale, 1.0) > SHORTEST and self.free.share(placing(_some(e.points)), NEAR) > 0.8]
         lines_met = len({(round(e.middle.real), round(e.middle.imag)) for e in met})
         bends = any(e.kind in ("curve", "arc") for e in met)
         read, titled = self._read(v, placing), self._titled(v, placing)
@@ -268,7 +269,7 @@ def _common(own: frozenset[str], said: frozenset[str]) -> float:
 def _namesakes(own: frozenset[str], said: frozenset[str]) -> bool:
     """Whether two titles differ in their numbers only."""
     (a, n), (b, m) = (({w[:3] for w in words if not w.isdigit()}, {w for w in words if w.isdigit()}) for words in (own, said))
-    return bool(n and m and not n & m and len(a & b) > 0.6 * len(a | b))
+    return bool(n and m and not n & m and len(a & b) > 0.6 * min(len(a), len(b)))
 
 
 def _of_sheet(elements: Sequence[Element]) -> _Shapes:
