@@ -22,13 +22,13 @@ from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
-from tmm_sheets.compare.placing import Placing
+from tmm_sheets.compare.placing import Placing, shafts
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Step, ordered
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points
+from tmm_sheets.drawing.marks import Arc, Fill, PlacedFrame, Points
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -177,7 +177,8 @@ class _Lost:
 
     def explaining_most(self, made: Sequence[Hypothesis]) -> Hypothesis | None:
         """The mistake with which, besides those made already, most ink of the doubtful views is explained; None without."""
-        search = self._search(self.doubtful)
+        mistaken = {self.shown[v].plan for v in self.titled_otherwise}  # plans without a title are taken for one another too
+        search = self._search([v for v in self.shown if v in self.doubtful or self.shown[v].plan in mistaken])
         if not self.doubtful or not search.enough():
             return None
         known: dict[tuple[ElementView, bytes], FoundView | None] = {}
@@ -248,7 +249,8 @@ def rebuilt(e: Element, points: Mapping[complex, complex]) -> Element:
         turn = (new[1] - new[0]) / (e.points[1] - e.points[0])
         turn /= abs(turn)
         fills = tuple(_head(f, e.points, new, turn) for f in e.fills)
-        marks = tuple(_between_marks(m, e.points, new, turn) for m in e.marks)
+        heads = [m._replace(points=_head(np.asarray(m.points), e.points, new, turn)) if isinstance(m, Fill) else m for m in e.marks]
+        marks = shafts(e.marks, heads, e.points, new)
         return replace(e, points=new, fills=fills, marks=marks)
     at = e.centre if e.kind == "circle" else e.middle if e.kind == "text" and e.step else None
     near = min(points, key=lambda z: abs(z - at), default=None) if at is not None else None
@@ -257,19 +259,6 @@ def rebuilt(e: Element, points: Mapping[complex, complex]) -> Element:
     by = points[near] - near
     return replace(e, points=e.points + by, centre=e.centre + by, fills=tuple(f + by for f in e.fills),
                    marks=tuple(m._replace(centre=m.centre + by) if isinstance(m, Arc) else m for m in e.marks))
-
-
-def _between_marks(m: Mark, was: Points, now: Points, turn: complex) -> Mark:
-    """A shaft from the first end to the second, as far as it went; heads go with their ends."""
-    if isinstance(m, Line):
-        a, b = (complex(_near_end(z, was, now, turn)) for z in (m.a, m.b))
-        return m._replace(a=a, b=b)
-    return m._replace(points=_head(np.asarray(m.points), was, now, turn)) if isinstance(m, Fill) else m
-
-
-def _near_end(z: complex, was: Points, now: Points, turn: complex) -> complex:
-    k = int(np.abs(was - z).argmin())
-    return complex(now[k] + (z - was[k]) * turn)
 
 
 def as_built(finding: CadFinding, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:
@@ -409,7 +398,7 @@ def _inked(theirs: KnownLines, move: Placing, line: Points) -> float:
     size = abs(z[1] - z[0])
     if size < 0.5:
         return 1.0
-    some = sampled(z, max(size / 40, 0.5))[0]
+    some = sampled(z, max(size / 40, 0.25))[0][1:-1]  # at its ends other lines begin
     _, unit, found = theirs.nearest(some, NEAR)
     along = (z[1] - z[0]) / size
     return float((found & (np.abs((unit * np.conj(along)).imag) < 0.1)).mean())
