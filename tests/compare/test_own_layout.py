@@ -105,6 +105,18 @@ def test_a_title_of_another_position_may_be_the_position_alone(title, other):
     assert view_search._namesakes(own, view_search._tokens(title)) == other
 
 
+def test_the_picture_shows_the_exact_plan_and_what_was_built(compared):
+    _, found, _ = compared
+    picture = next(m.picture for m in cad_story.mistakes(found, cad_report.gone(found.outcome)) if m.where == ACCELERATIONS.name)
+    vectors = [e for e in KNOWN.elements if e.view == ACCELERATIONS and e.role == "vector" and e.kind == "line"]
+    for e in vectors:
+        exact = found.places.moves[ACCELERATIONS](e.points)
+        assert any(len(z) == 2 and np.allclose(z, exact) for z in picture.ours), e.name
+    last = next(e for e in vectors if e.name == "π–d5")
+    drawn = next(f for f in found.outcome.findings if f.element.number == last.number).element
+    assert any(len(z) == 2 and np.allclose(z, drawn.points) for z in picture.wrong)
+
+
 def test_the_report_as_a_page(compared):
     path, found, _ = compared
     story = cad_story.story("shaper", path, found, 0.25)
