@@ -82,7 +82,7 @@ def taken(known: KnownSheet, view: ElementView, rng: random.Random, letters: boo
         if e.view != view:
             continue
         if e.kind == "text":
-            if e.text == view.name:
+            if e.text == view.name or e.text.casefold() in view.name.casefold():  # of plans of one kind, the position only
                 out += [replace(e, text=said)] if (said := title(e.text, rng)) else []
             elif letters and e.step and len(e.text) < 4:
                 out.append(e)
@@ -428,12 +428,14 @@ def judge(project: Project, name: str, n: int, path: Path, drawn: Drawn, known: 
         count["slips that nothing shows"] += 1
     elif drawn.slip is not None:
         shown = {v for v in drawn.built if v in there}
-        said = [b.mistake for v, b in found.built.items() if v in shown and not isinstance(b.mistake, str)]
+        told = {v: b.mistake for v, b in found.built.items() if not isinstance(b.mistake, str)}
+        said = [h for v, h in told.items() if v in shown]
         exact = any(h.kind == drawn.slip.kind and h.step.path in {s.path for s in drawn.slip.ways} for h in said)
         count["slips"] += 1
         count["named"] += exact
         alike = not exact and any(draws_alike(project, known, h, drawn) for h in said)
         count["named as what draws the same"] += alike
+        count["named wrongly"] += bool(told) and not exact and not alike
         if not exact:
             out.append(f"{'alike' if alike else 'not named'}: {drawn.slip}; said {[h.said() for h in said]}; lost "
                        f"{[v.name for v in drawn.built if v not in there]}")

@@ -66,7 +66,32 @@ def test_table_and_marks(folder, tmp_path):
     assert "which sheet" in found["Four"]["files"][0]["refused"]
     assert report.tree["most_made"] == [{"mistake": "point b3 lies … mm off", "students": 3}]
     assert "Four, picture.jpg" in report.text
-    assert set(report.files) == {"Five/sound.html", "One/sheet 1.html", "Three/Three.html", "Two/two.html"}
+    assert set(report.files) == {"Five/sound.dxf.html", "One/sheet 1.dxf.html", "Three/Three.dxf.html", "Two/two.dxf.html"}
+
+
+def test_files_of_all_kinds(folder, tmp_path):
+    """Files of one name are told apart; nobody who handed in something else, or nothing, is lost."""
+    for name in ("One/sheet 1.csv", "One/again/sheet 1.dxf", "Шесть и семь/план.cdw", ".git/x.dxf", "notes.txt"):
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(b"")
+    (folder / "Empty").mkdir()
+
+    def numbers(project, sheet, path):
+        starts = [{"id": "a/2/b", "why": "5 instead of 4", "kind": None}, {"id": "c", "why": "the other way", "kind": "sense"}]
+        return Report("", {"numbers": [], "starts": starts})
+
+    opened = type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()
+    report = group.compare(folder, "own", lambda name: opened, {"drawing": drawing, "numbers": numbers}, scheme(tmp_path),
+                           lambda what: None)
+    found = {s["student"]: s for s in report.tree["students"]}
+    assert found.keys() == {"Empty", "Five", "Four", "One", "Three", "Two", "Шесть и семь"}
+    assert [f["file"] for f in found["One"]["files"]] == ["again/sheet 1.dxf", "sheet 1.csv", "sheet 1.dxf"]
+    assert {f"One/{f['file']}.html" for f in found["One"]["files"]} < report.files.keys()
+    assert found["One"]["mistakes"][1:3] == ["a/2/b: 5 instead of 4", "the other way"]
+    assert (found["Empty"]["mark"], found["Empty"]["files"]) == (None, [])
+    assert "Empty: no file" in report.text
+    assert "Шесть и семь, план.cdw: such a file is not compared" in report.text
 
 
 def test_the_wrong_student(folder, tmp_path):

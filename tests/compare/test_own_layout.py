@@ -10,12 +10,13 @@ from tests.compare.cad_plants import Way, draw
 from tests.compare.hypotheses import Slip
 from tests.compare.own_layouts import Drawn, follows, is_there, taken
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_report, cad_story
+from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_report, cad_story, view_search
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.construction.error import Errors
+from tmm_sheets.drawing.marks import Line
 from tmm_sheets.project import Project
 
 SHAPER = Project(read("lugansk/shaper"))
@@ -85,6 +86,35 @@ def test_a_plan_that_no_paper_holds_is_none(far):
     last = list(drawn.steps.values())[-1]
     assert not cad_built._moved(drawn, lambda step: far if step is last else step.value)
     assert cad_built._moved(drawn, lambda step: step.value + 1 if step is last else step.value)
+
+
+@pytest.mark.parametrize("times", [0.5, 2.0])
+def test_an_arrow_keeps_its_head_in_a_view_of_another_scale(times):
+    """Its shaft ends as far from the tip as on the sheet."""
+    e = max((e for e in KNOWN.elements if e.view == ACCELERATIONS and e.role == "vector" and e.arrow), key=lambda e: e.length)
+    (shaft,), (now,) = ([m for m in some.marks if isinstance(m, Line)] for some in (e, moved(e, Placing(times + 0j, 7 + 3j))))
+    head = e.length - abs(shaft.b - shaft.a)
+    assert head > 1
+    assert abs(now.b - now.a) == pytest.approx(times * e.length - head)
+
+
+@pytest.mark.parametrize(("title", "other"), [("Положение 9", True), ("ПЛАН СКОРОСТЕЙ ПОЛ. 9", True), ("Положение 3", False),
+                                              ("План сил звена 9", False)])
+def test_a_title_of_another_position_may_be_the_position_alone(title, other):
+    own = view_search._tokens("План скоростей, положение 3")
+    assert view_search._namesakes(own, view_search._tokens(title)) == other
+
+
+def test_the_picture_shows_the_exact_plan_and_what_was_built(compared):
+    _, found, _ = compared
+    picture = next(m.picture for m in cad_story.mistakes(found, cad_report.gone(found.outcome)) if m.where == ACCELERATIONS.name)
+    vectors = [e for e in KNOWN.elements if e.view == ACCELERATIONS and e.role == "vector" and e.kind == "line"]
+    for e in vectors:
+        exact = found.places.moves[ACCELERATIONS](e.points)
+        assert any(len(z) == 2 and np.allclose(z, exact) for z in picture.ours), e.name
+    last = next(e for e in vectors if e.name == "π–d5")
+    drawn = next(f for f in found.outcome.findings if f.element.number == last.number).element
+    assert any(len(z) == 2 and np.allclose(z, drawn.points) for z in picture.wrong)
 
 
 def test_the_report_as_a_page(compared):

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 DRAWINGS, NUMBERS, PICTURES = (".dxf",), (".csv",), (".jpg", ".jpeg", ".png", ".pdf")
 """Endings of the names of what is compared."""
+COMPARED = (*DRAWINGS, *NUMBERS, *PICTURES)
 PROJECTS = "projects.toml"
 SHEET = re.compile(r"(?:sheet|лист|аркуш)[\s_-]*(\d+)", re.IGNORECASE)
 """How a file says of which sheet it is."""
@@ -104,21 +105,25 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], by_kin
         files = []
         for path in paths:
             say(f"{name}: {path.name}")
-            files.append(_judged(path, own, project_of, by_kind))
+            files.append(_judged(path, _within(folder, path), own, project_of, by_kind))
         students.append(Student(name, own, tuple(files)))
     return _report(folder, students, scheme)
 
 
 def _works(folder: Path) -> dict[str, list[Path]]:
-    """Files to compare by student, both in the order of their names."""
+    """Files by student, both in the order of their names; a folder without any is that of a student who handed in nothing."""
     if not folder.is_dir():
         raise BadInput(Problem(tell("is no folder"), str(folder)))
     found: dict[str, list[Path]] = {}
     for path in sorted(folder.rglob("*")):
-        if path.is_file() and path.suffix.lower() in (*DRAWINGS, *NUMBERS, *PICTURES):
-            inside = path.relative_to(folder)
+        inside = path.relative_to(folder)
+        if any(part.startswith((".", "__")) for part in inside.parts):
+            continue  # what operating systems leave in folders and archives
+        if path.is_dir() and len(inside.parts) == 1:
+            found.setdefault(path.name, [])
+        elif path.is_file() and (len(inside.parts) > 1 or path.suffix.lower() in COMPARED):
             found.setdefault(inside.parts[0] if len(inside.parts) > 1 else path.stem, []).append(path)
-    if not found:
+    if not any(path.suffix.lower() in COMPARED for paths in found.values() for path in paths):
         raise BadInput(Problem(tell("has nothing to compare"), str(folder),
                                hint=tell("put each student's drawings (.dxf), measured numbers (.csv) and photographs (.jpg, .png, "
                                          ".pdf) into a folder of the student's name in it")))
@@ -147,13 +152,22 @@ def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:
     return data
 
 
-def _judged(path: Path, name: str, opened: Callable[[str], Project], by_kind: Mapping[str, Callable[..., Report]]) -> Judgement:
+def _within(folder: Path, path: Path) -> str:
+    """A file's name as it is told: with its folders below the student's."""
+    inside = path.relative_to(folder).parts
+    return "/".join(inside[1:] or inside)
+
+
+def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project],
+            by_kind: Mapping[str, Callable[..., Report]]) -> Judgement:
     """One file; what cannot be judged is told, and the rest goes on."""
     try:
         project = opened(name)
         said = SHEET.search(path.stem)
         sheet = int(said[1]) if said else None
         suffix = path.suffix.lower()
+        if suffix not in COMPARED:
+            raise BadInput(tell("such a file is not compared"), tell("save it as .dxf, .csv, .jpg, .png or .pdf"))
         kind = "drawing" if suffix in DRAWINGS else "numbers" if suffix in NUMBERS else "picture"
         if kind == "picture" and sheet is None:
             if len(sheet_numbers(project, None)) > 1:
@@ -161,9 +175,9 @@ def _judged(path: Path, name: str, opened: Callable[[str], Project], by_kind: Ma
             sheet = 1
         report = by_kind[kind](project, sheet, path)
     except (BadInput, CannotBuild) as e:
-        return Judgement(path.name, {"unjudged": 1}, refused=str(e).replace(f"{path}: ", ""))
+        return Judgement(file, {"unjudged": 1}, refused=re.sub(rf"^{re.escape(str(path))}:\s*", "", str(e), flags=re.MULTILINE))
     faults, mistakes = _faults(report.tree)
-    return Judgement(path.name, faults, mistakes, report=report)
+    return Judgement(file, faults, mistakes, report=report)
 
 
 def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
@@ -172,7 +186,8 @@ def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
         starts = tree["starts"]
         left = [n for n in tree["numbers"] if n["follows"] is None and not n["starts"]]
         count = Counter(n["verdict"] for n in left)
-        return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, tuple(s["why"] for s in starts)
+        return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, tuple(
+            s["why"] if s["kind"] else f"{s['id']}: {s['why']}" for s in starts)
     built = {b["view"]: b["what"] for b in tree.get("built", ())}
     missing = set(tree.get("summary", {}).get("missing_views", ()))
     count = Counter(e["verdict"] for e in tree["elements"] if e["view"] not in built and e["view"] not in missing)
@@ -188,10 +203,11 @@ def _report(folder: Path, students: Sequence[Student], scheme: Scheme | None) ->
     said = tell("{student}, {file}: {why}")
     refused = [said.format(student=s.name, file=f.file, why="; ".join(map(str.strip, f.refused.splitlines())))
                for s in students for f in s.files if f.refused]
+    refused += [tell("{student}: no file").format(student=s.name) for s in students if not s.files]
     title = tell("Group: {folder}").format(folder=folder.resolve().name)
     about = tell_n("{n} student", "{n} students", len(students)).format(n=len(students))
     story = Story(title, (about,), (), tuple(tables), tuple(refused))
-    pages = {f"{s.name}/{Path(f.file).stem}.html": page(f.report, ".html", s.name) for s in students for f in s.files
+    pages = {f"{s.name}/{f.file}.html": page(f.report, ".html", s.name) for s in students for f in s.files
              if f.report is not None}
     return Report(_text(story), _tree(students, scheme), pages, (), story)
 

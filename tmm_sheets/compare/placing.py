@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -86,11 +87,31 @@ def moved(e: Element, by: Placing) -> Element:
         if e.role != "dimension":
             by, size = by.unscaled(e.middle), 1.0
         e = replace(e, kind="hatch", pieces=e.pieces or (e.points,))
+    marks = tuple(_moved_mark(mark, by) for mark in e.marks)
+    if by.scaled and e.arrow and e.kind == "line":
+        marks = shafts(e.marks, marks, e.points, by(e.points))
     return replace(
         e, points=by(e.points), centre=complex(by(e.centre)), radius=e.radius * size, start=e.start + angle, end=e.end + angle,
         height=e.height * size, angle=e.angle + angle, fills=tuple(_head(f, by) for f in e.fills),
-        pieces=tuple(by(p) for p in e.pieces), marks=tuple(_moved_mark(mark, by) for mark in e.marks),
+        pieces=tuple(by(p) for p in e.pieces), marks=marks,
     )  # fmt: skip
+
+
+def shafts(marks: Iterable[Mark], moved: Iterable[Mark], was: Points, now: Points) -> tuple[Mark, ...]:
+    """The moved marks of a line between two points, its shafts as far short of the ends as they were: heads keep their size."""
+    along = now[-1] - now[0]
+    turn = along / (was[-1] - was[0]) * abs(was[-1] - was[0]) / abs(along)
+
+    def end(z: complex) -> complex:
+        k = 0 if abs(z - was[0]) < abs(z - was[-1]) else -1
+        return complex(now[k] + (z - was[k]) * turn)
+
+    def shaft(m: Line) -> Line:
+        a, b = end(m.a), end(m.b)
+        backwards = ((b - a) * np.conj((m.b - m.a) * turn)).real <= 0  # there is no room for the head
+        return m._replace(a=complex(now[0]), b=complex(now[-1])) if backwards else m._replace(a=a, b=b)
+
+    return tuple(shaft(m) if isinstance(m, Line) else other for m, other in zip(marks, moved, strict=True))
 
 
 def symbol(e: Element) -> bool:

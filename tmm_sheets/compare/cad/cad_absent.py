@@ -19,6 +19,7 @@ from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import overlaps
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.placing import HINGE
+from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell, tell_n
 
 FEW = 0.35
@@ -134,12 +135,18 @@ def _own_ink(state: Comparison, numbers: Sequence[int]) -> Iterator[tuple[int, f
     asked = [n for n in numbers if state.paths[n] and n not in state.found
              and kind_of(state.elements[n]) not in ("", "text", "hatch", "point")]
     others = {kind: lines([p for n in numbers if kind_of(state.elements[n]) in {"", "point", "axis"} - {kind}
-                           for p in state.paths[n]]) for kind in {kind_of(state.elements[n]) for n in asked}}
+                           for p in _up_to_tips(state, n)]) for kind in {kind_of(state.elements[n]) for n in asked}}
     for n in asked:
         z = np.concatenate([sampled(p, 0.5)[0] for p in state.paths[n]])
         z = z[_clear(others[kind_of(state.elements[n])], z)]
         if len(z) >= 2:
             yield n, _along(state, n, z)
+
+
+def _up_to_tips(state: Comparison, n: int) -> Sequence[Points]:
+    """The lines of an element, those of an arrow through its heads."""
+    e = state.elements[n]
+    return [e.points] if e.kind == "line" and e.arrow else state.paths[n]
 
 
 def _clear(paths: KnownLines, z: npt.NDArray[np.complex128]) -> npt.NDArray[np.bool_]:

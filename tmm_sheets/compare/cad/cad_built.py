@@ -22,13 +22,13 @@ from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
-from tmm_sheets.compare.placing import Placing
+from tmm_sheets.compare.placing import Placing, shafts
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Step, ordered
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points
+from tmm_sheets.drawing.marks import Arc, Fill, PlacedFrame, Points
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -45,12 +45,14 @@ WHOLE = 0.85
 """Share of a line that must have ink for the line to be drawn."""
 MOST = 0.8
 """Share of a plan, by length, that must have ink where a mistake leads, for the plan to be built on it."""
-GAIN = 0.12
-"""By how much that must be more than has ink in its place."""
+GAIN, OF_REST = 0.12, 0.6
+"""By how much that must be more than has ink in its place, or, where only short lines are wrong, by what share of what has none."""
 AS_GOOD = 0.97
 """Share of the best explanation with which a more usual mistake is as good."""
 EQUAL = 0.02
 """Difference of shares of ink that tells nothing."""
+WEIGHT = 25.0
+"""A longer vector tells no more than one of this length, mm of our sheet."""
 SHOWS = 1.0
 """How far a point must be moved for a mistake to show, mm of our sheet."""
 FARTHEST = 250.0
@@ -175,7 +177,8 @@ class _Lost:
 
     def explaining_most(self, made: Sequence[Hypothesis]) -> Hypothesis | None:
         """The mistake with which, besides those made already, most ink of the doubtful views is explained; None without."""
-        search = self._search(self.doubtful)
+        mistaken = {self.shown[v].plan for v in self.titled_otherwise}  # plans without a title are taken for one another too
+        search = self._search([v for v in self.shown if v in self.doubtful or self.shown[v].plan in mistaken])
         if not self.doubtful or not search.enough():
             return None
         known: dict[tuple[ElementView, bytes], FoundView | None] = {}
@@ -195,9 +198,9 @@ class _Lost:
                     known[key] = search.changed(view, [rebuilt(e, new) for e in self.main[view]], least)
                 one, before = known[key], self.usual.get(view, 0.0)
                 more = search.worth(view, one) - before if one is not None else 0.0
-                if one is not None and more > GAIN:
+                if one is not None and _explains(before, before + more):
                     gain += more * sum(e.length for e in self.shown[view].vectors)
-                    whole |= view not in self.moves or one.share > self.share[view] + GAIN
+                    whole |= view not in self.moves or _explains(self.share[view], one.share)
                     factors.add(view.mu if view not in self.titled_otherwise else view)
             # A plan that is like ours at another scale is none that a mistake explains, several are.
             if whole or len(factors) > 1:
@@ -221,6 +224,11 @@ class _Lost:
         return out
 
 
+def _explains(usual: float, now: float) -> bool:
+    """Whether a mistake explains a plan of which so much has ink in its place, and so much with the mistake."""
+    return now - usual > min(GAIN, max(EQUAL, OF_REST * (1 - usual)))
+
+
 def _possible(shown: Iterable[_Drawn], errors: Errors) -> list[Hypothesis]:
     """Mistakes that can be made in some plans and in what they come from, the more usual kinds first, each once."""
     found: dict[tuple[object, ...], Hypothesis] = {}
@@ -241,7 +249,8 @@ def rebuilt(e: Element, points: Mapping[complex, complex]) -> Element:
         turn = (new[1] - new[0]) / (e.points[1] - e.points[0])
         turn /= abs(turn)
         fills = tuple(_head(f, e.points, new, turn) for f in e.fills)
-        marks = tuple(_between_marks(m, e.points, new, turn) for m in e.marks)
+        heads = [m._replace(points=_head(np.asarray(m.points), e.points, new, turn)) if isinstance(m, Fill) else m for m in e.marks]
+        marks = shafts(e.marks, heads, e.points, new)
         return replace(e, points=new, fills=fills, marks=marks)
     at = e.centre if e.kind == "circle" else e.middle if e.kind == "text" and e.step else None
     near = min(points, key=lambda z: abs(z - at), default=None) if at is not None else None
@@ -250,19 +259,6 @@ def rebuilt(e: Element, points: Mapping[complex, complex]) -> Element:
     by = points[near] - near
     return replace(e, points=e.points + by, centre=e.centre + by, fills=tuple(f + by for f in e.fills),
                    marks=tuple(m._replace(centre=m.centre + by) if isinstance(m, Arc) else m for m in e.marks))
-
-
-def _between_marks(m: Mark, was: Points, now: Points, turn: complex) -> Mark:
-    """A shaft from the first end to the second, as far as it went; heads go with their ends."""
-    if isinstance(m, Line):
-        a, b = (complex(_near_end(z, was, now, turn)) for z in (m.a, m.b))
-        return m._replace(a=a, b=b)
-    return m._replace(points=_head(np.asarray(m.points), was, now, turn)) if isinstance(m, Fill) else m
-
-
-def _near_end(z: complex, was: Points, now: Points, turn: complex) -> complex:
-    k = int(np.abs(was - z).argmin())
-    return complex(now[k] + (z - was[k]) * turn)
 
 
 def as_built(finding: CadFinding, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:
@@ -330,11 +326,11 @@ def _explained(drawn: _Drawn, errors: Errors, space: DrawingSpace, move: Placing
     usual = _share(drawn, space.lines, move, {z: z for z in drawn.steps})
     found = [_Found(_share(drawn, space.lines, move, points), points, h) for h, points in _mistakes(drawn, errors, before)]
     best = max((f.share for f in found), default=0.0)
-    if best < max(MOST, usual + GAIN):
+    if best < MOST or not _explains(usual, best):
         found += [_Found(_share(drawn, space.lines, move, points), points, said)
                   for points, said in _points_off(drawn, errors, space, move)]
         best = max((f.share for f in found), default=0.0)
-    if best < max(MOST, usual + GAIN):
+    if best < MOST or not _explains(usual, best):
         return None
     return next(f for f in found if f.share >= AS_GOOD * best)
 
@@ -390,8 +386,9 @@ def _share(drawn: _Drawn, theirs: KnownLines, move: Placing, points: Mapping[com
         line = _between(e.points, points)
         size = max(abs(line[1] - line[0]), e.length)
         if size > 1.0:  # a vector that shrinks to nothing is none that was drawn
-            whole += size
-            inked += size * (abs(line[1] - line[0]) > 1.0 and _inked(theirs, move, line) >= WHOLE)
+            weight = min(size, WEIGHT)
+            whole += weight
+            inked += weight * (abs(line[1] - line[0]) > 1.0 and _inked(theirs, move, line) >= WHOLE)
     return inked / whole if whole else 0.0
 
 
@@ -401,7 +398,7 @@ def _inked(theirs: KnownLines, move: Placing, line: Points) -> float:
     size = abs(z[1] - z[0])
     if size < 0.5:
         return 1.0
-    some = sampled(z, max(size / 40, 0.5))[0]
+    some = sampled(z, max(size / 40, 0.25))[0][1:-1]  # at its ends other lines begin
     _, unit, found = theirs.nearest(some, NEAR)
     along = (z[1] - z[0]) / size
     return float((found & (np.abs((unit * np.conj(along)).imag) < 0.1)).mean())

@@ -49,7 +49,7 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
         [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
     looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
-    exact = [p for f in outcome.findings for p in drawn(f.element)]
+    exact = [p for e in found.exact for p in drawn(e)]
     files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, marked, looks)
     name = project.variant.project.name
     said = "\n".join([*cad_story.lines(found, gone), cad_report.text(name, path, found, pencil)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -13,8 +14,9 @@ from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.laying import Laid
 from tmm_sheets.compare.cad.layout import Layout
-from tmm_sheets.compare.elements import ElementView
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called, origin, place, table, worst
+from tmm_sheets.compare.placing import moved
 from tmm_sheets.compare.report import said_verdict
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
@@ -45,6 +47,11 @@ class Examined:
     outcome: CadOutcome
     notes: tuple[str, ...]
     built: Mapping[ElementView, Built] = field(default_factory=dict)
+
+    @cached_property
+    def exact(self) -> tuple[Element, ...]:
+        """What the findings are on as it should be, where the drawing has its view; the findings have it as it was built."""
+        return tuple(moved(e, self.places.moves[e.view]) if e.view in self.places.moves else e for e in self.laid.known.elements)
 
 
 class Built(Protocol):

@@ -64,10 +64,11 @@ def _counted(bad: Sequence[CadFinding]) -> str:
 
 def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding]) -> Picture | None:
     """The view: ours where the drawing has it, theirs, what is wrong in it."""
-    ours = tuple(p for f in found.outcome.findings if f.element.view == view and not f.absent for p in drawn(f.element))
+    ours = tuple(p for f, e in zip(found.outcome.findings, found.exact, strict=True) if e.view == view and not f.absent
+                 for p in drawn(e))
     entities = {k for f in bad for k in f.entities}
     wrong = [s.points for s in found.space.strokes if s.entity in entities]
-    wrong += [p for f in bad if f.missing for p in drawn(f.element)]
+    wrong += [p for f in bad if f.missing or view in found.built for p in drawn(f.element)]
     lines = [f for f in bad if f.element.kind != "text"]
     if not lines:
         return None

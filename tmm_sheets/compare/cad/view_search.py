@@ -47,6 +47,8 @@ TITLE = 45.0
 """How far from a view a title may be, mm."""
 AGREE = 0.7
 """Least share of the lines of a changed view, by length, that must tell the same place, and of its points that must be near ink."""
+CALLED = 0.5
+"""Share of its letters that stand there, with the likeness of its title, that tells a view of a line or two."""
 FEW_LINES = 3
 """Least number of lines by which a changed view is known."""
 MANY_LINES = 4
@@ -132,19 +134,22 @@ class Search:
     def changed(self, v: ElementView, main: Iterable[Element], least: int = FEW_LINES) -> FoundView | None:
         """A view that is drawn with other main lines than ours, at a scale of its own; None where it is not found whole.
 
-        ``least`` is the number of lines by which it is known.
+        ``least`` is the number of lines by which it is known, if not by its title and letters.
         """
         self.main[v] = [e for e in main if e.length > 0.01]
         z = lines([e.points for e in self.main[v]]).points(1.0)
         self.points[v] = z[:: max(len(z) // MOST, 1)]
-        tries = [one for one in self.tries(0, v, None, least, 0, AGREE) if one.share > AS_DRAWN]
+        few = _distinct(e for e in self.main[v] if e.length > SHORTEST) < least
+        tries = [one for one in self.tries(0, v, None, 1, 0, AGREE) if one.share > AS_DRAWN
+                 and (v.mu is None or handy(one.placing))
+                 and not (few and self._read(v, one.placing) + self._titled(v, one.placing) < CALLED)]
         found = [(self.worth(v, FoundView(one.placing, one.share)) - one.less, one) for one in tries]
         best = max(found, key=lambda x: x[0], default=None)
         return None if best is None else FoundView(best[1].placing, best[1].share)
 
     def enough(self) -> bool:
-        """Whether there are lines enough for a changed view to be known by."""
-        return int((self.free.length > SHORTEST).sum()) >= FEW_LINES
+        """Whether there are lines for a changed view to be known by."""
+        return bool((self.free.length > SHORTEST).any())
 
     def worth(self, v: ElementView, found: FoundView) -> float:
         """How well a view is there: the share that has ink, less under another's title or with a scale factor nobody takes."""
@@ -212,8 +217,9 @@ class Search:
         """A place with how sure it is; None where it may be chance."""
         points = placing(self.points[v])
         share = self.free.share(points, NEAR)
-        met = [e for e in self.main[v] if e.length > SHORTEST and self.free.share(placing(_some(e.points)), NEAR) > 0.8]
-        lines_met = len({(round(e.middle.real), round(e.middle.imag)) for e in met})
+        met = [e for e in self.main[v] if e.length * min(placing.scale, 1.0) > SHORTEST
+               and self.free.share(placing(_some(e.points)), NEAR) > 0.8]
+        lines_met = _distinct(met)
         bends = any(e.kind in ("curve", "arc") for e in met)
         read, titled = self._read(v, placing), self._titled(v, placing)
         known_scale = self.scales.get(v.mu)
@@ -221,7 +227,7 @@ class Search:
         witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy(placing)
         if least > 1 and not bends and lines_met < least:
             return None
-        enough = lines_met >= 2 or bends or (lines_met == 1 and read + titled > (0.3 if same else 0.5))
+        enough = lines_met >= 2 or bends or (lines_met == 1 and read + titled > (0.3 if same else CALLED))
         if not enough or share < 0.35 or share + witness < 0.75:
             return None
         size = max(float(np.abs(points - points[0]).max()), 1.0)
@@ -240,6 +246,11 @@ class Search:
         box = Box.around(placing(self.points[v]))
         own = _tokens(v.name)
         return max((_common(own, said) for said, at in self.titles if box.contains(at, TITLE)), default=0.0)
+
+
+def _distinct(elements: Iterable[Element]) -> int:
+    """The number of lines that do not lie upon one another."""
+    return len({(round(e.middle.real), round(e.middle.imag)) for e in elements})
 
 
 def handy(placing: Placing) -> bool:
@@ -268,7 +279,7 @@ def _common(own: frozenset[str], said: frozenset[str]) -> float:
 def _namesakes(own: frozenset[str], said: frozenset[str]) -> bool:
     """Whether two titles differ in their numbers only."""
     (a, n), (b, m) = (({w[:3] for w in words if not w.isdigit()}, {w for w in words if w.isdigit()}) for words in (own, said))
-    return bool(n and m and not n & m and len(a & b) > 0.6 * len(a | b))
+    return bool(n and m and not n & m and len(a & b) > 0.6 * min(len(a), len(b)))
 
 
 def _of_sheet(elements: Sequence[Element]) -> _Shapes:
