@@ -7,7 +7,7 @@ from math import pi
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted
+from tmm_sheets.drawing.lettering import fitted, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
@@ -43,6 +43,39 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     for k, text in enumerate(train.warnings):
         said = f"{text[0].upper()}{text[1:]}."
         canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 6 - 6 * k), 0.0, said)
+
+
+def willis(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The equation of Willis of every mesh, in letters and in numbers; multiplied out, for a planet may rest on its carrier."""
+    train = project.train
+    lines = [line for m in train.meshes for line in _equation(train, m)]
+    left = canvas.title(box, tr("Willis equations of the meshes (n in rpm)"))
+    step = min(left.height / len(lines), 14.0)
+    height = size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5)
+    canvas.lines(complex(box.x0, left.y1 - step), lines, step, height)
+
+
+def _equation(train: Any, m: Any) -> tuple[str, str]:
+    """z_c(n_c - n_H) = -+z_p(n_p - n_H) of a mesh, outer or inner; without a carrier n_H is none."""
+    plan = train.kinematics
+    c, p, h = m.central, m.planet, m.carrier
+    sign = "−" if m.sign > 0 else ""
+    # In brackets a number in the equation is what its letter is: with its sign.
+    turns = {name: _signed(float(plan[f"n{name}"].value)) for name in (c, p, h) if name}
+    teeth = {name: str(int(plan[f"z{name}"].value)) for name in (c, p)}
+
+    def side(z: dict[str, str], n: dict[str, str], name: str) -> str:
+        return f"{z[name]}·({n[name]} − {n[h]})" if h else f"{z[name]}·{n[name]}"
+
+    letters = {name: f"n_{{{name}}}" for name in (c, p, h) if name}
+    signs = {name: f"z_{{{name}}}" for name in (c, p)}
+    return (f"{c}–{p}:  {side(signs, letters, c)} = {sign}{side(signs, letters, p)}",
+            f"{side(teeth, turns, c)} = {sign}{side(teeth, turns, p)}")
+
+
+def _signed(value: float) -> str:
+    text = number(value)
+    return f"({text})" if value < 0 else text
 
 
 class _Scheme(SchemeViews):

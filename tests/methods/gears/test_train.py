@@ -5,6 +5,7 @@ from fractions import Fraction
 import pytest
 
 from tests.project_files import project, read
+from tmm_sheets.drawing.marks import Text
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.sheets.sheet import composed
 
@@ -136,3 +137,15 @@ def test_sheet(case):
     p = project(train(*CASES[case]))
     assert p.sheets == ("train",)
     assert composed(p, 1).crowded == ()
+
+
+@pytest.mark.parametrize("case", ["two inputs", "ring drives", "all turn as one", "two stages and a pair"])
+def test_equations_in_numbers(case):
+    """Both sides of every equation on the sheet, worked out as they are written, are the same number."""
+    sheet = composed(project(train(*CASES[case])), 1)
+    written = [m.text for m in sheet.drawing.marks if isinstance(m, Text) and m.of == "train.willis" and "=" in m.text]
+    numbers = [text for text in written if not set("zn").intersection(text)]
+    assert len(numbers) == len(CASES[case][1]) == len(written) - len(numbers)
+    for text in numbers:
+        left, right = (eval(side.replace("·", "*").replace("−", "-").replace(",", ".")) for side in text.split("="))
+        assert left == pytest.approx(right, rel=2e-3, abs=1e-9)
