@@ -184,6 +184,34 @@ def test_delta_is_recovered_by_integrating_the_equation_of_motion(shaper):
 # --- the construction ------------------------------------------------------------------------------------------------
 
 
+def test_the_running_by_the_energy_mass_diagram(shaper):
+    """Force times path, squares of velocities and the energy at the upper contact, in closed form: omega at every position."""
+    fw = flywheel(truth.Shaper(120), DATA)
+    _, added, (upper, _) = exact()
+    start, omega = truth.START, truth.OMEGA
+    dead = np.arccos(-truth.AB / truth.AC)
+    first, last = -dead - start, dead - start
+
+    def path(phi):
+        return truth.CD * float(truth.rocker(phi + start, mpmath)[0])
+
+    mean = truth.F5 * (path(last) - path(first)) / (2 * pi)
+
+    def energy(phi):
+        return mean * phi - truth.F5 * (path(min(max(phi, first), last)) - path(first))
+
+    def mass(phi):
+        return added + float(truth.inertia(phi + start, mpmath))
+
+    level = mass(upper) * (omega * (1 + DATA.delta / 2)) ** 2 / 2 - energy(upper)
+    there = [np.sqrt(2 * (level + energy(phi)) / mass(phi)) for phi in fw.reduced.phi]
+    drawn = fw.speed_plan["ω1"].value
+    assert np.max(np.abs(drawn - there)) < 2e-3 * DATA.delta * omega
+    assert fw.speed_curve(fw.reduced.phi) == pytest.approx(drawn, rel=1e-6)
+    for of in (fw, shaper):
+        assert np.ptp(of.speed_curve(of.samples)) == pytest.approx(DATA.delta * omega, rel=1e-4)  # both tangents touch
+
+
 def test_cycle_closes_and_the_constant_moment_is_the_mean(shaper):
     assert shaper.delta_E[0] == 0
     assert shaper.delta_E[-1] == pytest.approx(0, abs=1e-12)
