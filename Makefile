@@ -16,7 +16,7 @@ $(OUT)/sheet1.pdf: $(VENV)/.installed $(SOURCES)
 	$(BIN)/tmm-sheets build $(PROJECT) -o $(OUT)
 
 test: lint types  ## everything the tests prove: ruff, mypy, pytest
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
 lint: $(VENV)/.tested  ## style of the code (ruff)
 	$(BIN)/ruff check .

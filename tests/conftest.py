@@ -5,3 +5,19 @@ import os
 os.environ["LANGUAGE"] = "en"  # messages are compared in the language of the code, wherever the tests run
 # Programs that tests start keep their byte code: the next one begins sooner.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+
+LONGEST = (
+    "output/test_batch", "compare/test_cad", "test_cli", "compare/test_languages", "compare/test_students", "test_docs",
+    "sheets/test_user_projects", "record/test_record", "compare/test_measured_manuals", "test_texts", "compare/test_image",
+    "compare/test_doubtful_fits", "compare/test_own_layout", "methods/linkage/test_strokes", "sheets/test_languages",
+    "sheets/test_no_flywheel", "sheets/test_places", "compare/test_measured", "sheets/test_plan_scales", "test_words_protocol",
+    "foreign/test_foreign", "task/families/test_transport", "stress/test_stress", "note/test_content", "test_missing_parts",
+)
+"""Files that take longest, the longest first (processor time, 2026-11-22): begun last they would leave one worker alone."""
+
+
+def pytest_collection_modifyitems(items):
+    """Long files first; all others as they were found."""
+    rank = {f"tests/{name}.py": i for i, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: rank.get(item.nodeid.partition("::")[0], len(rank)))
