@@ -240,7 +240,7 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
 
 def _enlarged(ratio: float) -> str:
     """What the ordinates are against those of the graph of works."""
-    said = tr("Ordinates enlarged {times}") if ratio > 1 else tr("Ordinates reduced {times}")
+    said = tr("Ordinates ΔE enlarged {times}") if ratio > 1 else tr("Ordinates ΔE reduced {times}")
     return said.format(times=times(max(ratio, 1 / ratio)))
 
 
