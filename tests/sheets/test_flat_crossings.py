@@ -307,3 +307,13 @@ def test_condition_in_the_results(capsys):
     assert run(["solve", NEAR, "--json", "-", "--part", "velocities", "--positions", "7"]) == 0
     tree = json.loads(capsys.readouterr().out)
     assert [(k, len(v)) for k, v in tree["condition"].items()] == [("velocities", 7)]
+
+
+def test_the_position_advised_is_better(monkeypatch):
+    """The loom's point d: 2.6 mm at the nearest steep position, 1.9 where it is warned of."""
+    seen = []
+    find = flat_crossings.find
+    monkeypatch.setattr(flat_crossings, "find", lambda *a, **k: [seen.append(flat) or flat for flat in find(*a, **k)])
+    sheet.composed(Project(catalogue.read("loom")), 1)
+    assert [flat.step.name for flat in seen] == ["d"]
+    assert all(flat.better_mm < flat.mm for flat in seen)

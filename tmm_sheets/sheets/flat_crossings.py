@@ -8,7 +8,7 @@ crossing tells, nothing else is computed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from math import asin, degrees
 from typing import TYPE_CHECKING, Any
@@ -71,9 +71,10 @@ def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, A
         bad = tuple(i for i in places if steep[i] > FLAT and not mm[i] <= COARSE)
         if bad:
             worst = max(bad, key=lambda i: (_analysed(project, i), np.nan_to_num(mm[i], nan=np.inf)))
-            better = _better(project, worst)
             size = kinematic_frames.plan_extent(plan, worst)
             hopeless = not scales[plan.name].real(mm[worst]) < 0.5 * max(size.width, size.height)
+            # Lines that meet steeper, but are longer, may gain nothing.
+            better = _better(project, worst, [k for k in range(len(mm)) if hopeless or mm[k] < mm[worst]])
             found.append(Flat(plan, plan[name], bad, worst, None if hopeless else float(mm[worst]), asin(1 / float(steep[worst])),
                               better, float("nan") if better is None else float(mm[better])))
     return found
@@ -104,8 +105,8 @@ def _errors(project: Project, plan: Plan, scales: dict[str, Any]) -> Errors:
     return Errors([*((before[name], scale.mu) for name, scale in known.items()), (plan, scales[plan.name].mu)])
 
 
-def _better(project: Project, i: int) -> int | None:
-    """The nearest of the drawn positions on the same stroke where every crossing is steep, the steeper of two.
+def _better(project: Project, i: int, among: Collection[int]) -> int | None:
+    """The nearest of the drawn positions ``among`` some on the same stroke where every crossing is steep, the steeper of two.
 
     Plans of accelerations and forces cross the same lines as those of velocities.
     """
@@ -119,7 +120,7 @@ def _better(project: Project, i: int) -> int | None:
         n = abs(order.index(k) - at)
         return min(n, len(order) - n)
 
-    fit = [k for k in order if flattest[k] < STEEP and stroke[k] == stroke[i]]
+    fit = [k for k in order if k in among and flattest[k] < STEEP and stroke[k] == stroke[i]]
     return min(fit, key=lambda k: (away(k), flattest[k]), default=None)
 
 
