@@ -135,7 +135,7 @@ def test_nothing_is_computed_before_it_is_read():
 
 def test_warnings_name_interference_and_slow_simple_stages():
     texts = reducer(cases.column("crusher", 0)).warnings
-    assert texts == ("интерференция в паре 3–4: без смещения нет ни одного венца",)
+    assert texts == ("интерференция в паре 3–4: без смещения её не устраняет никакое число зубьев венца",)
     texts = reducer(cases.column("diesel", 3)).warnings
     assert texts[0] == "передаточное отношение простой ступени меньше 1,2"
     assert reducer(cases.column("press", 0)).warnings == ()
