@@ -187,7 +187,7 @@ def test_turns_are_whole():
         pump({"cycle": {"turns": 0}})
 
 
-@pytest.mark.parametrize("inertia", [None, "40 kg m2", "4 kg m2"])
+@pytest.mark.parametrize("inertia", [None, "400 kg m2", "40 kg m2", "4 kg m2", "1.6 kg m2"])
 def test_angular_velocity_by_the_energy_mass_diagram(truth, inertia):
     """The diagram tells the running of a machine with the flywheel found or given: by the law of energy, to the drawing's error."""
     f = pump(inertia=inertia, **{} if inertia else {"delta": 0.05, "density": "7300 kg/m3", "width_ratio": 0.2,

@@ -25,7 +25,7 @@ from tmm_sheets.construction.step import Rule, Step, Told
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, highest, limit_segment
 from tmm_sheets.methods.flywheel.flywheel import FROM_PAPER, OF_EXCESS, OF_SEGMENT, PLOT, DiagramSpace, Flywheel
 from tmm_sheets.methods.flywheel.running import Running
-from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+from tmm_sheets.methods.flywheel.wittenbauer import FASTEST, SLOWEST, Wittenbauer
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
 from tmm_sheets.words import marked, tr
 
@@ -55,10 +55,6 @@ ANGULAR_SPEED = Rule("angular velocity from its graph", lambda y, mu, mean: mean
 EXTREME_SPEED = Rule("angular velocity at an extreme", lambda at, axis, mu, mean: mean + mu * (np.imag(at) - np.imag(axis)),
                      ("point", "point", "number", "number"), "number",
                      marked("At {0} the angular velocity is {name} = {3} + {2}·y = {value} rad/s."), unit="rad/s")
-HIGHEST = Rule("highest angular velocity permitted", lambda omega, delta: omega * (1 + delta / 2), ("number", "number"), "number",
-               marked("Permitted: {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} rad/s."), unit="rad/s")
-LOWEST = Rule("lowest angular velocity permitted", lambda omega, delta: omega * (1 - delta / 2), ("number", "number"), "number",
-              marked("Permitted: {name} = ω1·(1 − δ/2) = {0}·(1 − {1}/2) = {value} rad/s."), unit="rad/s")
 FOUND = Rule("found by the exact running", lambda w: w, ("number",), "number",
              marked("Exact running by the law of energy gives {name} = {value} rad/s."), unit="rad/s", beyond_paper=True)
 NON_UNIFORMITY = Rule("non-uniformity of a running", lambda fast, slow: (fast - slow) / ((fast + slow) / 2), ("number", "number"),
@@ -152,8 +148,11 @@ class Mertsalov(Flywheel):
         plan.add("ω1", ANGULAR_SPEED, y, mu, self.omega1)
         for name in ("max", "min"):
             plan.add(f"ω_{name}", EXTREME_SPEED, energy[f"M_{name}"], axis, mu, self.omega1)
-        for name, rule in () if self.given else (("max", HIGHEST), ("min", LOWEST)):
-            plan.add(f"[ω_{name}]", rule, self.omega1, self.permitted)
+        if not self.given:
+            plan.add("[ω_max]", FASTEST, self.omega1, self.permitted,
+                     say=tr("Permitted: {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} rad/s."))
+            plan.add("[ω_min]", SLOWEST, self.omega1, self.permitted,
+                     say=tr("Permitted: {name} = ω1·(1 − δ/2) = {0}·(1 − {1}/2) = {value} rad/s."))
         return plan
 
     @property
