@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from cmath import isfinite
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from math import degrees
@@ -114,6 +115,8 @@ def spoken(name: str) -> str:
     return re.sub(r"^(alpha|phi|psi|eps|theta|rho)(?=_|\d|$)", lambda m: _GREEK[m[1]], name)
 
 
+_MEASURED = frozenset(("length", "ordinate", "vector", "force", "angle", "inclination", "number"))
+"""Kinds of which a value is said; a point or a direction is where it is drawn."""
 _OPERAND = re.compile(r"(?<=[·/×+−])( ?)(\{\d\})|(\{\d\})(?=²)")
 """An argument behind an arithmetic sign or squared: a negative one stands in parentheses there."""
 
@@ -127,15 +130,19 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "m
     # where an angle is laid off.
     args, drawn = () if step.rule.compute is take else step.args, step.rule.gives in ("point", "direction")
     shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(args, step.rule.takes, strict=False)]
-    exact = _exact_angle(step, k)
-    of_sort = 100.0 if step.rule.unit == "%" else sizes.at(step, k)
-    value = exact or _said(value_at(step, k), step.rule.gives, to_mm, unit, of_sort)
+    value = _exact_angle(step, k)
+    if not value and step.rule.gives in _MEASURED:
+        of_sort = 100.0 if step.rule.unit == "%" else sizes.at(step, k)
+        value = _said(value_at(step, k), step.rule.gives, to_mm, unit, of_sort)
 
     def operand(m: re.Match[str]) -> str:
         space, field = m[1] or "", m[2] or m[3]
         return f"{space}({field})" if shown[int(field[1:-1])].startswith("−") else m[0]
 
-    return _OPERAND.sub(operand, _wording(step, shown)).format(*shown, name=letter_of(step), value=value)
+    wording = _wording(step, shown)
+    if any(said.startswith("−") for said in shown):
+        wording = _OPERAND.sub(operand, wording)
+    return wording.format(*shown, name=letter_of(step), value=value)
 
 
 def _wording(step: Step, shown: list[str]) -> str:
@@ -171,9 +178,9 @@ def _exact_angle(arg: Any, k: int) -> str:
 
 def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of_sort: float) -> str:
     """A value with its unit; ``of_sort`` is the size of its sort, in the unit of the plan."""
-    if np.ndim(value) or (isinstance(value, complex | np.complexfloating) and kind in ("point", "direction")):
+    if kind not in _MEASURED or np.ndim(value):
         return ""
-    if kind in ("length", "ordinate", "vector", "force", "angle", "inclination", "number") and not np.isfinite(value):
+    if not isfinite(value):
         return "—" if np.isnan(value) else "−∞" if np.real(value) < 0 else "∞"
     if kind in ("length", "ordinate", "vector"):
         real = to_mm(float(value) if kind == "ordinate" else abs(value))
@@ -184,4 +191,4 @@ def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of
         return f"{fixed(degrees(value) % 360, 1)}°"
     if kind == "inclination":
         return f"{fixed(degrees(value), 1)}°"
-    return number(float(np.real(value)), kind=of_sort) if kind == "number" else ""
+    return number(float(np.real(value)), kind=of_sort)

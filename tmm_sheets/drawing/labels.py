@@ -182,6 +182,7 @@ class _Places:
         blocked = grid.under(grid.heavy, clear) > 0
         blocked |= (sides[:2] < grid.inside[:2]).any(axis=0) | (sides[2:] > grid.inside[2:]).any(axis=0)
         b = grid.boxes
+        b = b[(b[:, 2] > x0.min()) & (b[:, 0] < x1.max()) & (b[:, 3] > y0.min()) & (b[:, 1] < y1.max())]  # few are so near
         if len(b):
             beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
             blocked |= (beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])).any(axis=1)

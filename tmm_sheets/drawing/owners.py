@@ -185,13 +185,13 @@ def _distance(a: Any, b: Any, p: complex) -> Floats:
     """Distances of a point to segments."""
     d = b - a
     length2 = np.maximum(np.abs(d) ** 2, 1e-18)
-    t = np.clip(((p - a) * np.conj(d)).real / length2, 0.0, 1.0)
+    t = np.minimum(np.maximum(((p - a) * np.conj(d)).real / length2, 0.0), 1.0)
     return np.asarray(np.abs(a + t * d - p))
 
 
 def _to_line(p: Any, a: complex, b: complex) -> Floats:
     """Distances of points to one segment."""
-    t = np.clip(((p - a) * np.conj(b - a)).real / abs(b - a) ** 2, 0.0, 1.0)
+    t = np.minimum(np.maximum(((p - a) * np.conj(b - a)).real / abs(b - a) ** 2, 0.0), 1.0)
     return np.asarray(np.abs(a + t * (b - a) - p))
 
 
@@ -200,9 +200,9 @@ def _to_box(a: Any, b: Any, box: Box) -> tuple[Floats, Any, Any]:
     corners = np.array([complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)])
     d = b - a
     length2 = np.maximum(d.real**2 + d.imag**2, 1e-18)
-    t = np.clip(((corners[:, None] - a) * np.conj(d)).real / length2, 0.0, 1.0)
+    t = np.minimum(np.maximum(((corners[:, None] - a) * np.conj(d)).real / length2, 0.0), 1.0)
     on = np.concatenate((a + t * d, [a, b]))
-    at = np.clip(on.real, box.x0, box.x1) + 1j * np.clip(on.imag, box.y0, box.y1)
+    at = np.minimum(np.maximum(on.real, box.x0), box.x1) + 1j * np.minimum(np.maximum(on.imag, box.y0), box.y1)
     gaps = np.abs(on - at)
     best = np.argmin(gaps, axis=0)
     k = np.arange(len(a))

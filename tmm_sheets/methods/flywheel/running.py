@@ -50,14 +50,15 @@ class Energy:
         self.mean = self.work.total / (borders[-1] - borders[0])
         self.inertia = inertia
         self.samples = np.unique(np.concatenate((np.linspace(borders[0], borders[-1], 721), borders)))
-        self.sampled = self._at(self.samples)
-
-    def _at(self, phi: Floats) -> tuple[Floats, Floats]:
-        return np.asarray(self.work(phi) - self.mean * (phi - self.samples[0])), np.asarray(self.inertia(phi))
+        self._known: dict[bytes, tuple[Floats, Floats]] = {}
 
     def __call__(self, phi: Floats) -> tuple[Floats, Floats]:
         """Excess of work since the first border, J, and moment of inertia, kg m2; shape of ``phi``."""
-        return self.sampled if phi is self.samples else self._at(phi)
+        # Extremes of one machine with several flywheels lie side by side: the same angles are asked for again and again.
+        key = phi.tobytes()
+        if key not in self._known:
+            self._known[key] = (np.asarray(self.work(phi) - self.mean * (phi - self.samples[0])), np.asarray(self.inertia(phi)))
+        return self._known[key]
 
 
 def steady(energy: Energy, first: float, omega: float) -> Running:
