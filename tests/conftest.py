@@ -2,6 +2,12 @@
 
 import os
 
+from hypothesis import settings
+
+# A busy machine is no mistake of the program: time is measured by benchmarks, never by tests.
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
+
 os.environ["LANGUAGE"] = "en"  # messages are compared in the language of the code, wherever the tests run
 # Programs that tests start keep their byte code: the next one begins sooner.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -5,7 +5,7 @@ from decimal import Decimal, localcontext
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tmm_sheets.construction.limit_angles import PI, Cosine, angle_of, cos_sin, direction, split, two_sum
@@ -57,7 +57,6 @@ def test_two_doubles_keep_thirty_digits():
     assert abs(Decimal(high) + Decimal(low) - PI) < Decimal("1e-32")
 
 
-@settings(deadline=None)
 @given(st.floats(-3, 3), st.floats(0.1, 3), st.floats(-4, 4), st.floats(-16, 0), st.sampled_from((1, -1)),
        st.sampled_from((0, 1, -1000, 1000000)))
 def test_relative_error_at_any_gap(a, b, start, exponent, side, turns):

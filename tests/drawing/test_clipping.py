@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import LineString, box
 
@@ -21,7 +21,6 @@ def length_inside(points):
 
 
 @given(point, st.floats(0.1, 12))
-@settings(deadline=None)
 def test_arcs(centre, radius):
     t = np.linspace(0, 2 * np.pi, 20001)
     found = arcs_inside(PLACE, centre, radius)
@@ -39,7 +38,6 @@ def test_whole_circle_and_none():
 
 
 @given(point, point)
-@settings(deadline=None)
 def test_segment(a, b):
     part = segment_inside(PLACE, a, b)
     if part is None:
@@ -49,7 +47,6 @@ def test_segment(a, b):
 
 
 @given(st.lists(point, min_size=2, max_size=8, unique=True))
-@settings(deadline=None)
 def test_polyline(points):
     parts = polyline_inside(PLACE, np.array(points))
     inside = [length_inside(pair) for pair in pairwise(points)]

@@ -35,7 +35,7 @@ def smallest(some):
 
 
 @given(paths)
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_without_doubles_draws_all_of_it_once(some):
     got = list(smallest(without_doubles(some)))
     assert len(got) == len(set(got))
@@ -43,7 +43,7 @@ def test_without_doubles_draws_all_of_it_once(some):
 
 
 @given(paths)
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_joined_paths_begin_and_end_only_where_they_must(some):
     """An open path begins and ends where an odd number of lines meet, one at each such place (Euler); the rest is closed."""
     single = list(without_doubles(some))
@@ -90,7 +90,7 @@ def test_order_of_a_few_is_near_the_best():
 
 
 @given(st.lists(corner, min_size=3, max_size=5, unique=True), st.sampled_from([0.2, 0.3, 0.5]))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_passes_cover_a_thick_bent_line(corners, pen):
     points = np.array(corners) @ [1, 1j]
     band = inked([points], 1.0)

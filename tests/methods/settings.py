@@ -16,5 +16,5 @@ kinds_alone = pytest.mark.parametrize("kinds", ALONE, ids=lambda kinds: str(kind
 
 def tried(kinds):
     """As many draws of a kind as of the chains it leads, so that all kinds are tried alike."""
-    return settings(max_examples=20 if len(kinds) == 1 else 5, deadline=None, phases=[Phase.explicit, Phase.generate, Phase.shrink],
+    return settings(max_examples=20 if len(kinds) == 1 else 5, phases=[Phase.explicit, Phase.generate, Phase.shrink],
                     suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])

@@ -177,7 +177,7 @@ def test_protocol_says_every_step_in_millimetres():
     assert any("S_16" in s and "хорду" in s for s in said)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.floats(20, 170), st.floats(0, 60), st.floats(20, 120), st.floats(1, 120), st.sampled_from(sorted(LAWS)))
 def test_any_phases_fill_their_place(rise, dwell, fall, stroke, name):
     law = law_of(cam_data(rise=rise, upper_dwell=dwell, fall=fall, stroke=stroke, law=name))

@@ -276,7 +276,7 @@ def test_unknown_method():
 # --- scales ------------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(1e-3, 1e4), st.floats(1e-6, 1e3), st.integers(8, 24))
 def test_scales_are_handy_and_fit_for_any_size(strength, mass, positions):
     @dataclass(frozen=True)
@@ -303,7 +303,7 @@ def test_scales_are_handy_and_fit_for_any_size(strength, mass, positions):
     assert np.ptp(f.energy_curve(f.samples)) <= 1.03 * space.energy
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(0.01, 0.2), st.floats(1, 100), st.floats(5, 100), st.floats(0.1, 50), st.floats(0.001, 0.5))
 def test_results_do_not_depend_on_the_scales(mu_phi, mu_m, pole, mu_e, mu_j):
     scales = FlywheelScales(Scale("", mu_phi, ""), Scale("", 1.0, ""), Scale("", mu_m, ""), Scale("", mu_m * mu_phi * pole, ""),

@@ -144,7 +144,7 @@ def test_exact_running_with_the_exact_flywheel_has_the_given_delta(fw):
     assert running.slowest == pytest.approx(truth.OMEGA * 0.98, rel=1e-13)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.floats(30, 1e4))
 def test_running_is_the_energy_integral(first):
     """Brute force on another machine: 20,000 angles, the work of its constant force in closed form."""

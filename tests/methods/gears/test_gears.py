@@ -133,7 +133,6 @@ def test_printed_involute_table():
 
 
 @given(st.floats(min_value=1e-3, max_value=1.5))
-@settings(deadline=None)
 def test_inverse_involute(angle):
     with mpmath.workdps(40):
         value = involute(angle)
@@ -395,7 +394,7 @@ def test_least_shift_of_the_manual_is_accepted():
     driver=st.sampled_from((1, 2)),
     sense=st.sampled_from(("clockwise", "counter-clockwise")),
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_builds_or_refuses(z, x, driver, sense):
     """Whatever the tooth numbers and shifts: a whole drawing or a refusal, never garbage."""
     try:

@@ -55,7 +55,6 @@ def solved(name, z, driver):
 
 
 @given(ANY)
-@settings(deadline=None)
 def test_ratio_is_that_of_the_velocities(case):
     name, z = case
     inner = inner_ratio(SIGNS[name], z)
@@ -87,7 +86,6 @@ def balanced(inner, driver, eta0):
 
 
 @given(ANY, st.floats(0.9, 0.999))
-@settings(deadline=None)
 def test_efficiency_is_that_of_the_power_balance(case, eta0):
     name, z = case
     inner = inner_ratio(SIGNS[name], z)
@@ -117,7 +115,7 @@ def fits_by_placing(signs, z, count):
 
 
 @given(st.sampled_from(sorted(SIGNS)).flatmap(lambda name: st.tuples(st.just(name), stages(name, 8, 26))), st.integers(2, 6))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_assembly_is_necessary_and_sufficient(case, count):
     name, z = case
     assert bool(assembles(SIGNS[name], z, count)) == fits_by_placing(SIGNS[name], z, count)

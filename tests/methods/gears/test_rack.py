@@ -206,7 +206,7 @@ def fine(gear, w):
     x=st.tuples(st.floats(-0.5, 1.0), st.floats(-0.5, 1.0)),
     basic=st.sampled_from(((1.0, 0.25), (1.0, 0.2), (0.8, 0.2), (0.8, 0.25))),
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @example(z=(21, 22), x=(-0.25, -0.25), basic=(1.0, 0.25))
 def test_builds_or_refuses(z, x, basic):
     """Whatever the tooth numbers and shifts: teeth that mesh without sharing area, or a refusal."""

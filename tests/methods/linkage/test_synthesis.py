@@ -49,7 +49,7 @@ def test_engine_of_the_manual():
     assert s.lengths == {"H": pytest.approx(0.108, rel=1e-15), "l_AB": 0.054, "l_BC": 0.192, "l_BS": 0.054}
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.floats(1.02, 4), st.floats(0.01, 5), st.floats(0.01, 5))
 def test_quick_return_against_closed_forms(k, stroke, distance):
     s = quick_return(k, stroke, distance)
@@ -60,7 +60,7 @@ def test_quick_return_against_closed_forms(k, stroke, distance):
     assert s.lengths == s.exact
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.floats(1.1, 2.5), st.floats(0.1, 0.6), st.floats(0.1, 0.6))
 def test_the_mechanism_has_the_conditions(k, stroke, distance):
     """Without rounding: its dead positions give K, and the ram its stroke."""
