@@ -14,8 +14,10 @@ from tmm_sheets import catalogue
 from tmm_sheets.backends import pdf, png
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.photo import frame_fit, frame_search, image, rectification, tracing
+from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.photograph import Picture, read
+from tmm_sheets.compare.report_pages import page
 from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
@@ -89,6 +91,28 @@ def test_planted_errors_are_found_and_nothing_else():
     assert circle.growth == pytest.approx(2.5, abs=0.3)
     # A line that is moved farther than it can be told from others leaves ink behind; nothing else does.
     assert len(extra) <= 4
+    shows_what_is_off_on_the_ink(image_report("shaper", N, Path("photo.jpg"), rectified(), traces, extra, 0.25, ()), guilty)
+
+
+def shows_what_is_off_on_the_ink(report, guilty):
+    """Each view with something red has its picture: a piece of the photograph round all of it."""
+    red = {e.number: e for e in known() if e.number in guilty}
+    shown = {m.where: m.picture for m in report.story.mistakes if m.verdict == "red"}
+    assert shown.keys() == {e.view.name for e in red.values()}
+    for e in red.values():
+        picture = shown[e.view.name]
+        assert picture.photo.box == picture.box
+        assert picture.box.contains(e.middle)
+        ink = cv2.imdecode(np.frombuffer(picture.photo.png, np.uint8), cv2.IMREAD_GRAYSCALE)
+        assert ink.shape[1] / ink.shape[0] == pytest.approx(picture.box.width / picture.box.height, rel=0.02)
+        assert 0 < np.mean(ink < 128) < 0.5
+    assert page(report, ".html", "").count(b"<image ") == len(report.story.mistakes)
+    import pypdfium2
+
+    document = pypdfium2.PdfDocument(page(report, ".pdf", ""))
+    images = [i for p in document for i in p.get_objects(filter=[pypdfium2.raw.FPDF_PAGEOBJ_IMAGE])]
+    assert len(images) == len(report.story.mistakes)
+    document.close()
 
 
 @cache

@@ -4,6 +4,7 @@ import csv
 import json
 import re
 from dataclasses import replace
+from html import unescape
 
 import numpy as np
 import pytest
@@ -283,9 +284,9 @@ def test_a_filled_file_is_not_overwritten(cam, capsys):
 
 def test_measured(cam, tmp_path, capsys):
     """Table, summary, notes and JSON."""
-    path, target = tmp_path / "m.csv", tmp_path / "m.json"
+    path, target, page = tmp_path / "m.csv", tmp_path / "m.json", tmp_path / "m.html"
     path.write_text("id\tизмерено\nresults/r0\t99999\nresults/rho_min\t5 cm\n", encoding="utf-8")
-    assert run(["compare", "lugansk/cam_flat", "--measured", str(path), "--json", str(target)]) == 0
+    assert run(["compare", "lugansk/cam_flat", "--measured", str(path), "--json", str(target), "--report", str(page)]) == 0
     out = capsys.readouterr()
     assert re.search(r"^! +r0 .*red, START", out.out, re.MULTILINE)
     assert "2 numbers: " in out.out
@@ -296,6 +297,10 @@ def test_measured(cam, tmp_path, capsys):
     assert tree["starts"][0]["id"] in ("results/r0", "results/rho_min")
     assert tree["starts"][0]["off_mm"] is None
     assert tree["numbers"][0]["exact"] > 0
+    # What is told on the terminal is told on the page, each number in a row of a table.
+    told = unescape(page.read_text(encoding="utf-8"))
+    assert tree["starts"][0]["why"] in told
+    assert all(f"<td>{n['quantity']}</td>" in told for n in tree["numbers"])
 
 
 @pytest.mark.parametrize(("text", "message"), [

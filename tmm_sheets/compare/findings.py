@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.numbers import told
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import marked, tell, tell_n
 
 SHOWN = 60
 """Most rows of a table in the terminal; the JSON has all."""
@@ -43,6 +43,15 @@ def worst(findings: Iterable[Found]) -> list[Found]:
     """The findings that are not green, red first, the worst first."""
     bad = (f for f in findings if f.verdict in ("red", "amber"))
     return sorted(bad, key=lambda f: (f.verdict != "red", -f.share, f.element.number))
+
+
+def counted(bad: Sequence[Finding]) -> str:
+    """How many lines and how many texts are wrong."""
+    lines = sum(f.element.kind != "text" for f in bad)
+    said = [tell_n("{n} line is wrong", "{n} lines are wrong", lines).format(n=lines)] if lines else []
+    texts = len(bad) - lines
+    said += [tell_n("{n} text is wrong", "{n} texts are wrong", texts).format(n=texts)] if texts else []
+    return ", ".join(said)
 
 
 _KINDS = {

@@ -12,13 +12,25 @@ from tmm_sheets.drawing.marks import Points
 
 
 @dataclass(frozen=True)
+class Photo:
+    """A rectangle of a photographed sheet, mm, seen from straight above, as PNG."""
+
+    box: Box
+    png: bytes
+
+
+@dataclass(frozen=True)
 class Picture:
-    """A part of a sheet, mm, y up: our lines, theirs, those that are wrong, and places with their numbers."""
+    """A part of a sheet, mm, y up: our lines, theirs, those that are wrong, and places with their numbers.
+
+    ``photo`` shows theirs where they are no lines.
+    """
 
     ours: tuple[Points, ...]
     theirs: tuple[Points, ...]
     wrong: tuple[Points, ...] = ()
     places: tuple[tuple[complex, float, str], ...] = ()
+    photo: Photo | None = None
 
     @property
     def box(self) -> Box:

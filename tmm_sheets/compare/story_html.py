@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Iterator
 from html import escape
 
@@ -91,5 +92,10 @@ def _picture(p: Picture) -> str:
         if one.leader is not None:
             marks += path((np.array(one.leader),), WRONG, 0.6)
         marks += f'<text x="{x(one.at):.1f}" y="{y(one.at):.1f}" font-size="13" fill="{WRONG}">{escape(one.text)}</text>'
-    return (f'<svg width="{wide:.0f}" height="{high:.0f}" viewBox="0 0 {wide:.1f} {high:.1f}" role="img">'
+    photo = ""
+    if p.photo is not None:
+        b = p.photo.box
+        photo = (f'<image x="{x(complex(b.x0, 0)):.1f}" y="{y(complex(0, b.y1)):.1f}" width="{b.width * scale:.1f}"'
+                 f' height="{b.height * scale:.1f}" href="data:image/png;base64,{b64encode(p.photo.png).decode("ascii")}"/>')
+    return (f'<svg width="{wide:.0f}" height="{high:.0f}" viewBox="0 0 {wide:.1f} {high:.1f}" role="img">{photo}'
             f"{path(p.theirs, THEIRS, 1.6)}{path(p.ours, OURS, 0.9)}{path(p.wrong, WRONG, 2.0)}{marks}</svg>")

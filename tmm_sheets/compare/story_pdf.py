@@ -7,7 +7,7 @@ from html import escape
 from io import BytesIO
 from typing import Any
 
-from reportlab.graphics.shapes import Circle, Drawing, PolyLine, String
+from reportlab.graphics.shapes import Circle, Drawing, Image, PolyLine, String
 from reportlab.lib import colors
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
@@ -120,6 +120,11 @@ def _picture(p: Picture) -> Drawing:
             if len(flat) >= 4:
                 drawing.add(PolyLine(flat, strokeColor=colors.HexColor(colour), strokeWidth=width))
 
+    if p.photo is not None:
+        from PIL import Image as Pixels
+
+        b = p.photo.box
+        drawing.add(Image(*at(complex(b.x0, b.y0)), b.width * scale, b.height * scale, Pixels.open(BytesIO(p.photo.png))))
     draw(p.theirs, THEIRS, 1.1)
     draw(p.ours, OURS, 0.6)
     draw(p.wrong, WRONG, 1.4)

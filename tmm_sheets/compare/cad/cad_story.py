@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.compare.cad import cad_absent, cad_report
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.elements import ElementView, drawn
-from tmm_sheets.compare.findings import called, worst
+from tmm_sheets.compare.findings import called, counted, worst
 from tmm_sheets.compare.story import Mistake, Picture, Story, Table, clipped
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell, tell_n
@@ -44,7 +44,7 @@ def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
     """What is wrong in a view, its picture beside it."""
     red = sum(f.verdict == "red" for f in bad)
     built = found.built.get(view)
-    what = built.said() if built is not None else _counted(bad)
+    what = built.said() if built is not None else counted(bad)
     details = [tell("no. {number}, {element}: {what}").format(number=f.element.number, element=called(f.element), what=f.what)
                for f in bad[:SHOWN]]
     if len(bad) > SHOWN:
@@ -52,14 +52,6 @@ def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
     if built is not None:
         details = [built.explained(), *details]
     return Mistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad))
-
-
-def _counted(bad: Sequence[CadFinding]) -> str:
-    lines = sum(f.element.kind != "text" for f in bad)
-    said = [tell_n("{n} line is wrong", "{n} lines are wrong", lines).format(n=lines)] if lines else []
-    texts = len(bad) - lines
-    said += [tell_n("{n} text is wrong", "{n} texts are wrong", texts).format(n=texts)] if texts else []
-    return ", ".join(said)
 
 
 def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding]) -> Picture | None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import groupby
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.compare import story
 from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
@@ -59,7 +61,10 @@ def compare(project: Project, path: Path, pencil: float, reading: float, say: Ca
     filled = measured_file.read(path, name, found)
     say(tell("errors"))
     judged = judge(filled, found, pencil, reading)
-    return Report(_text(judged, filled), _tree(name, judged, filled, pencil, reading), notes=(*found.notes, *filled.notes))
+    notes = (*found.notes, *filled.notes)
+    title = tell("{project}: {file}").format(project=name, file=path.name)
+    return Report(_text(judged, filled), _tree(name, judged, filled, pencil, reading), notes=notes,
+                  story=_story(title, judged, filled, notes))
 
 
 # --- text ------------------------------------------------------------------------------------------------------------------
@@ -135,34 +140,61 @@ def _name(j: Judged) -> str:
     return f"{place}{j.entry.quantity}"
 
 
+def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes: tuple[str, ...]) -> story.Story:
+    """The report as it is read: the mistakes, the numbers plan by plan."""
+    tables = tuple(story.Table(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some))
+                   for of, some in groupby(judged, lambda j: j.entry.title))
+    return story.Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged)), tables)
+
+
 def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
-    follow = [j for j in judged if j.follows is not None]
-    own = [j for j in judged if j.follows is None]
-    count = {v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")}
+    lines = [_counted(judged, filled)]
+    for i, m in enumerate(_mistakes(judged), 1):
+        lines += [f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details)]
+    return [*lines, *_advice(judged)]
+
+
+def _own(judged: list[Judged]) -> dict[str, int]:
+    """How many numbers got each verdict, of those that follow from no mistake."""
+    return {v: sum(j.verdict == v for j in judged if j.follows is None) for v in ("green", "amber", "red")}
+
+
+def _counted(judged: list[Judged], filled: measured_file.Filled) -> str:
     said = tell_n("{n} number: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
                   "left empty",
                   "{n} numbers: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
                   "left empty",
                   len(judged))
-    lines = [said.format(n=len(judged), **count, follow=len(follow), empty=filled.empty)]
-    starts = sorted((j for j in judged if j.starts), key=lambda j: j.order)
-    for i, j in enumerate(starts[:MOST], 1):
-        after = [f for f in follow if f.follows is j]
-        lines.append(f"{i}. {j.entry.title}, {_name(j)}: {_what(j)}")
+    return said.format(n=len(judged), **_own(judged), follow=sum(j.follows is not None for j in judged), empty=filled.empty)
+
+
+def _starts(judged: list[Judged]) -> list[Judged]:
+    """The mistakes, in the order of drawing."""
+    return sorted((j for j in judged if j.starts), key=lambda j: j.order)
+
+
+def _mistakes(judged: list[Judged]) -> Iterator[story.Mistake]:
+    for j in _starts(judged)[:MOST]:
+        details = []
+        after = [f for f in judged if f.follows is j]
         if j.mistake is not None:
             with on_paper(reader()):
-                lines.append(f"   {_sentence(j.mistake)}")
+                details.append(_sentence(j.mistake))
         if after:
             some = ", ".join(_name(f) for f in after[:6]) + (" ..." if len(after) > 6 else "")
             said = tell_n("{n} follows from it: {numbers}", "{n} follow from it: {numbers}", len(after))
-            lines.append(f"   {said.format(n=len(after), numbers=some)}")
-    if len(starts) > MOST:
-        lines.append(tell("So many mistakes: was another variant drawn, or with other scale factors than stated?"))
-    elif starts:
-        lines.append(tell("Mend the first one first: what follows from it is right as soon as that is."))
-    elif not count["amber"]:
-        lines.append(tell("All within a pencil's reach."))
-    return lines
+            details.append(said.format(n=len(after), numbers=some))
+        yield story.Mistake(f"{j.entry.title}, {_name(j)}", _what(j), j.verdict, tuple(details))
+
+
+def _advice(judged: list[Judged]) -> list[str]:
+    """What to do now."""
+    starts = len(_starts(judged))
+    if starts > MOST:
+        return [tell("So many mistakes: was another variant drawn, or with other scale factors than stated?")]
+    if starts:
+        return [tell("Mend the first one first: what follows from it is right as soon as that is.")]
+    return [] if _own(judged)["amber"] else [tell("All within a pencil's reach.")]
 
 
 def _what(j: Judged) -> str:

@@ -14,15 +14,17 @@ import numpy as np
 
 from tmm_sheets.compare.elements import dashed
 from tmm_sheets.compare.findings import called, origin, table, worst
-from tmm_sheets.compare.photo import overlay
+from tmm_sheets.compare.photo import image_story, overlay
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding, judge
 from tmm_sheets.compare.photo.numbers_read import Readings
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.report import Report, said_verdict
+from tmm_sheets.compare.story import Story, Table
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
+HEAD = (marked("No."), "", marked("mm"), marked("Element"), marked("View"), marked("What"))
 NOT_READ = marked(
     "Not read, so not judged: what lettering says (numbers in tables, letters, the title block), heads of arrows among other "
     "lines, dots, and whatever has less than 6 mm of line."
@@ -87,21 +89,22 @@ def image_report(
         "Sheet {sheet} of {project}, {file}: {n} elements judged, {green} within a pencil's reach, {amber} up to twice that, "
         "{red} beyond",
         sum(count.values()))
-    lines = [
-        said.format(sheet=n, project=name, file=path.name, n=sum(count.values()), **count),
-        _hidden(judged),
-        _tolerance(pencil, found.uncertainty, soft),
-        *_table(judged),
-        "", *([_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]),
-    ]
+    summary = said.format(sheet=n, project=name, file=path.name, n=sum(count.values()), **count)
+    tolerance, head, rows = _tolerance(pencil, found.uncertainty, soft), tuple(map(tell, HEAD)), _rows(judged)
+    unread = [_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]
+    lines = [summary, "; ".join(_hidden(judged)), tolerance, *(["", *table(head, rows)] if rows else []), "", *unread]
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
         "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged), "notes": list(notes),
         **({"numbers": readings.tree} if readings else {}),
     }  # fmt: skip
-    drawn = _overlays(found, judged, tell("{project}: sheet {n}, {file}").format(project=name, n=n, file=path.name))
-    files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in drawn.items()}
-    return Report("\n".join(lines), tree, files, notes)
+    title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
+    files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in _overlays(found, judged, title).items()}
+    *hidden, extra_places = _hidden(judged)
+    tables = (Table(tell("Everything that is off"), head, tuple(rows)),) if rows else ()
+    story = Story(title, (summary, extra_places, tolerance, *notes), image_story.mistakes(found, judged.findings, judged.bad),
+                  tables, (*hidden, *unread))
+    return Report("\n".join(lines), tree, files, notes, story)
 
 
 def _read_otherwise(f: PhotoFinding, readings: Readings) -> PhotoFinding:
@@ -120,11 +123,11 @@ def _read(readings: Readings) -> str:
     return said.format(n=readings.asked, otherwise=len(readings.otherwise), unread=readings.unread)
 
 
-def _hidden(judged: _Judged) -> str:
-    """What could not be measured, and what is too much."""
+def _hidden(judged: _Judged) -> list[str]:
+    """What could not be measured; at last what is too much."""
     hidden = tell_n("{n} element is hidden in the picture or lies outside it",
                     "{n} elements are hidden in the picture or lie outside it", judged.hidden)
-    return "; ".join((
+    return [
         *([hidden.format(n=judged.hidden)] if judged.hidden else []),
         tell_n("{n} element is too near to others to be measured", "{n} elements are too near to others to be measured",
                judged.dense).format(n=judged.dense),
@@ -133,7 +136,7 @@ def _hidden(judged: _Judged) -> str:
                judged.hidden_ends).format(n=judged.hidden_ends),
         tell_n("{n} place with ink that is not on the sheet", "{n} places with ink that is not on the sheet",
                len(judged.extra)).format(n=len(judged.extra)),
-    ))
+    ]
 
 
 def _tolerance(pencil: float, uncertainty: float, soft: float) -> str:
@@ -145,16 +148,15 @@ def _tolerance(pencil: float, uncertainty: float, soft: float) -> str:
     return said.format(**{part: told(f"{size:.2f}") for part, size in sizes.items()})
 
 
-def _table(judged: _Judged) -> list[str]:
-    """The lines of the table of what is off, after an empty one; none when nothing is."""
-    rows = [(str(k), said_verdict(f.verdict), told(f"{f.deviation:.1f}") if f.deviation else "", called(f.element),
-             f.element.view.name, f.what) for k, f in enumerate(judged.bad, 1)]
+def _rows(judged: _Judged) -> list[tuple[str, ...]]:
+    """The rows of the table of what is off."""
     where = tell("{width} x {height} mm about x = {x}, y = {y}")
-    rows += [(str(k), said_verdict("amber"), f"{x.length:.0f}", tell("extra ink"), "", where.format(
+    of_elements = ((str(k), said_verdict(f.verdict), told(f"{f.deviation:.1f}") if f.deviation else "", called(f.element),
+                    f.element.view.name, f.what) for k, f in enumerate(judged.bad, 1))
+    of_ink = ((str(k), said_verdict("amber"), f"{x.length:.0f}", tell("extra ink"), "", where.format(
         width=f"{x.width:.0f}", height=f"{x.height:.0f}", x=f"{x.middle.real:.0f}", y=f"{x.middle.imag:.0f}"))
-        for k, x in judged.numbered_extra()]
-    head = (tell("No."), "", tell("mm"), tell("Element"), tell("View"), tell("What"))
-    return ["", *table(head, rows)] if rows else []
+        for k, x in judged.numbered_extra())
+    return [*of_elements, *of_ink]
 
 
 def _tree(judged: _Judged) -> dict[str, Any]:
@@ -172,20 +174,13 @@ def _tree(judged: _Judged) -> dict[str, Any]:
 
 def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]:
     """The overlays by the suffix of their files."""
-    flags = [overlay.Flag(k, str(f.verdict), f.at, _shown(f.trace)) for k, f in enumerate(judged.bad, 1)]
+    flags = [overlay.Flag(k, str(f.verdict), f.at, image_story.shown(f)) for k, f in enumerate(judged.bad, 1)]
     flags += [overlay.Flag(k, "amber", x.middle, np.zeros(0, complex)) for k, x in judged.numbered_extra()]
     exact = [p for f in judged.findings if f.element.kind != "text" for p in dashed(f.element)]
     with ThreadPoolExecutor(1) as aside:  # half of the time goes into packing, which runs beside Python
         drawn = aside.submit(overlay.png, found.ink, found.level, exact, flags)
         page = overlay.pdf(found.ink, found.level, exact, flags, title)
         return {"png": drawn.result(), "pdf": page}
-
-
-def _shown(t: Trace) -> Any:
-    """The line to be drawn as wrong: where the hand has it, else where it ought to be."""
-    if t.element.kind in ("text", "hatch"):
-        return np.append(t.element.points, t.element.points[:1])
-    return t.at if t.at is not None else t.element.points
 
 
 def _row(f: PhotoFinding) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.wiping import fixed
 from tmm_sheets.drawing.marks import Points
@@ -51,6 +52,20 @@ def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag]) 
         place = (int(x / 16 + 0.75 * CIRCLE * PNG_SCALE), int(y / 16 - 0.75 * CIRCLE * PNG_SCALE))
         cv2.putText(picture, str(f.number), place, cv2.FONT_HERSHEY_SIMPLEX, 0.9, colour, 2, cv2.LINE_AA)
     done, data = cv2.imencode(".png", picture)
+    assert done
+    return bytes(data.tobytes())
+
+
+def piece(ink: Any, level: float, box: Box, scale: float) -> bytes:
+    """A rectangle of the sheet, mm, as PNG of ``scale`` pixels per mm; parts beyond the sheet are left out."""
+    import cv2
+
+    of = ink.shape[1] / PAPER.width
+    rows = slice(max(round((PAPER.height - box.y1) * of), 0), round((PAPER.height - box.y0) * of))
+    part = _clean(ink[rows, max(round(box.x0 * of), 0) : round(box.x1 * of)], level)
+    if scale < of:
+        part = cv2.resize(part, None, fx=scale / of, fy=scale / of, interpolation=cv2.INTER_AREA)
+    done, data = cv2.imencode(".png", 255 - np.minimum(1.6 * part, 255).astype(np.uint8))
     assert done
     return bytes(data.tobytes())
 
