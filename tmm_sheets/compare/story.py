@@ -53,11 +53,12 @@ class Mistake:
 
 @dataclass(frozen=True)
 class Table:
-    """A table with a heading; columns are as wide as their texts need."""
+    """A table with a heading; columns are as wide as their texts need. ``verdicts`` of its rows, if they have any, colour them."""
 
     title: str
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+    verdicts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Iterator
 from html import escape
+from itertools import zip_longest
 
 import numpy as np
 
@@ -24,6 +25,7 @@ article.amber { border-color: #e58a00; } article div { flex: 1 1 22rem; } articl
 article .where { color: #555; } svg { background: #fff; border: 1px solid #ddd; flex: 0 1 auto; max-width: 100%; height: auto; }
 .scroll { overflow-x: auto; } table { border-collapse: collapse; margin: .4rem 0; font-size: .88rem; }
 th, td { border: 1px solid #ccc; padding: .15rem .5rem; text-align: left; vertical-align: top; } th { background: #eee; }
+tr.red td { background: #fde4e4; } tr.amber td { background: #fff3dc; }
 .key span { display: inline-block; width: 1.6em; height: 0; border-top: 3px solid; vertical-align: middle; margin: 0 .3em 0 1em; }
 @media print { article { break-inside: avoid; } }
 """
@@ -66,7 +68,8 @@ def _mistake(m: Mistake) -> str:
 
 def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(c)}</th>" for c in table.head)
-    rows = "\n".join("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in row) + "</tr>" for row in table.rows)
+    rows = "\n".join((f'<tr class="{verdict}">' if verdict else "<tr>") + "".join(f"<td>{escape(c)}</td>" for c in row) + "</tr>"
+                     for row, verdict in zip_longest(table.rows, table.verdicts))
     return (f"<h2>{escape(table.title)}</h2>\n<div class=\"scroll\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n"
             "</tbody></table></div>")
 

@@ -32,6 +32,8 @@ WHERE = ParagraphStyle("where", parent=TEXT, textColor=colors.HexColor("#555555"
 MARGIN = 15 * mm
 WIDE, HIGH = A4[0] - 2 * MARGIN, 95 * mm
 """Largest size of a picture."""
+TINTS = {"red": colors.HexColor("#fde4e4"), "amber": colors.HexColor("#fff3dc")}
+"""Backgrounds of rows."""
 SIDES = {"red": colors.HexColor(WRONG), "amber": colors.HexColor("#e58a00"), "green": colors.HexColor(OURS)}
 
 
@@ -99,7 +101,9 @@ def _table(table: Table) -> Any:
                  default=0.0) + 9 for k in range(len(table.head))]
     spare = max(WIDE - sum(words), 0.0)
     widths = [w + spare * n / sum(longest) for w, n in zip(words, longest, strict=True)]
+    tinted = [("BACKGROUND", (0, k), (-1, k), TINTS[verdict]) for k, verdict in enumerate(table.verdicts, 1) if verdict in TINTS]
     return LongTable(cells, colWidths=widths, repeatRows=1, style=TableStyle([
+        *tinted,
         ("GRID", (0, 0), (-1, -1), 0.3, colors.grey), ("BACKGROUND", (0, 0), (-1, 0), colors.whitesmoke),
         ("VALIGN", (0, 0), (-1, -1), "TOP"), ("LEFTPADDING", (0, 0), (-1, -1), 3), ("RIGHTPADDING", (0, 0), (-1, -1), 3),
         ("TOPPADDING", (0, 0), (-1, -1), 1.5), ("BOTTOMPADDING", (0, 0), (-1, -1), 2.5)]))

@@ -142,8 +142,8 @@ def _name(j: Judged) -> str:
 
 def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes: tuple[str, ...]) -> story.Story:
     """The report as it is read: the mistakes, the numbers plan by plan."""
-    tables = tuple(story.Table(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some))
-                   for of, some in groupby(judged, lambda j: j.entry.title))
+    tables = tuple(story.Table(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some), tuple(j.verdict for j in some))
+                   for of, some in ((of, list(some)) for of, some in groupby(judged, lambda j: j.entry.title)))
     return story.Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged)), tables)
 
 

@@ -101,7 +101,8 @@ def image_report(
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
     files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in _overlays(found, judged, title).items()}
     *hidden, extra_places = _hidden(judged)
-    tables = (Table(tell("Everything that is off"), head, tuple(rows)),) if rows else ()
+    verdicts = [str(f.verdict) for f in judged.bad] + ["amber"] * len(judged.extra)
+    tables = (Table(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
     story = Story(title, (summary, extra_places, tolerance, *notes), image_story.mistakes(found, judged.findings, judged.bad),
                   tables, (*hidden, *unread))
     return Report("\n".join(lines), tree, files, notes, story)
