@@ -19,6 +19,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
+from tmm_sheets.sheets.kinetics import balancing_sign
 from tmm_sheets.sheets.linkage import indexed, shapes
 from tmm_sheets.words import marked, tell, tr
 
@@ -165,8 +166,24 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
     mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None else \
         project.study.mean_driving(course, every)
-    moment = DiagramQuantity("graph-M", indexed(tr("Mb")), tr("N·m"), (Curve("", step, every, values, at),))
-    _graph(project, canvas, left, angle, moment, level=(tr("M_d"), float(mean.value)))
+    sign = balancing_sign(project)
+    moment = DiagramQuantity("graph-M", sign, tr("N·m"), (Curve("", step, every, values, at),))
+    # Where the balancing moment is called as the driving one is, the constant one is its mean.
+    name = tr("M_d") if indexed(tr("M_d").replace("_", "")) != sign else tr("M_{dm}")
+    _graph(project, canvas, left, angle, moment, level=(name, float(mean.value)))
+
+
+def balancing_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> tuple[tuple[float, float], ...]:
+    """Sizes that the graph can do with, mm; none for a crank that is driven by a force."""
+    return ((280.0, 110.0), (240.0, 96.0), (200.0, 84.0), (170.0, 76.0)) if project.driver is None else ()
+
+
+def balancing_table_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> list[tuple[float, float]]:
+    """Places that the table can do with, mm; none for a crank that is driven by a force."""
+    if project.driver is not None:
+        return []
+    rows = (len(project.cycle.labels) + 1) // 2 + 1
+    return [(width, 11.0 + row * rows) for width, row in ((170.0, 7.5), (150.0, 6.0), (130.0, 5.0))]
 
 
 def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
