@@ -10,7 +10,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import moments, offers, position_tables
+from tmm_sheets.sheets import diagrams, moments, offers, position_tables, train
 from tmm_sheets.sheets.sheet import composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
@@ -110,3 +110,29 @@ def test_what_is_offered_is_drawn_where_there_is_room():
     assert "moments.equations" in drawn
     assert sheet.leaving == ()
     assert sheet.crowded == ()
+
+
+def test_points_of_a_train_run_as_the_wheel_they_are_on_turns():
+    """Omega r of the wheels with axes that stand, and of the carrier: 2, 3, H and 5 of the hoist in turn; 5 by Willis, by hand."""
+    p = Project(read("tests/projects/hoist.toml"))
+    canvas = Canvas()
+    canvas.scales[p.train.velocities.name] = Scale("μ_V", 0.06, "(m/s)/mm")
+    _, *rows = train._points(p, canvas)
+    carrier = -960 * 18 / 54
+    ring = carrier + (-400 - carrier) * (-24 / 84)
+    for (_, distance, measured, speed), turns in zip(rows, (carrier, -400, carrier, ring), strict=True):
+        expected = turns * np.pi / 30 * float(distance.replace(",", ".")) * 1e-3
+        assert float(speed.replace("−", "-").replace(",", ".")) == pytest.approx(expected, rel=2e-4)
+        assert float(measured.split("= ")[1].replace(",", ".")) == pytest.approx(abs(expected) / 0.06, abs=0.051)
+
+
+def test_the_curve_of_the_power_of_friction_meets_the_numbers_of_the_positions():
+    """Where nothing jumps; and friction takes power everywhere."""
+    p = Project(read("tests/projects/pump.toml"))
+    every = diagrams.over_cycle(p)
+    assert np.all(np.diff(every) > 0)
+    course = p.study_at(every, tuple("" for _ in every)).forces.friction.total.value
+    smooth = [i for i, t in enumerate(p.cycle.turned) if t > 0 and min(abs(t - b) for b in p.reduced.breaks) > 1e-3]
+    at = p.study.forces.friction.total.value[smooth]
+    assert np.interp(np.asarray(p.cycle.turned)[smooth], every, course) == pytest.approx(at, rel=2e-2)
+    assert course.max() < 0
