@@ -10,7 +10,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import diagrams, moments, offers, position_tables, train
+from tmm_sheets.sheets import diagrams, moments, offers, position_tables, reducer
 from tmm_sheets.sheets.sheet import composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
@@ -117,7 +117,7 @@ def test_points_of_a_train_run_as_the_wheel_they_are_on_turns():
     p = Project(read("tests/projects/hoist.toml"))
     canvas = Canvas()
     canvas.scales[p.train.velocities.name] = Scale("μ_V", 0.06, "(m/s)/mm")
-    _, *rows = train._points(p, canvas)
+    _, *rows = reducer.rows_of_points(p.train, canvas)
     carrier = -960 * 18 / 54
     ring = carrier + (-400 - carrier) * (-24 / 84)
     for (_, distance, measured, speed), turns in zip(rows, (carrier, -400, carrier, ring), strict=True):

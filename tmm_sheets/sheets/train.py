@@ -6,14 +6,12 @@ from cmath import rect
 from math import pi
 from typing import Any
 
-from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
-from tmm_sheets.numbers import fixed, number
+from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
-from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, STUB, SchemeViews, plan_of_speeds
+from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, STUB, SchemeViews, plan_of_speeds, sizes_of_points, table_of_points
 from tmm_sheets.words import tr
 
 SLEEVE = 6.0
@@ -49,29 +47,12 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
 
 def points_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table of points can do with, mm."""
-    rows = len(_points(project, canvas))
-    return [(width, 11.0 + row * rows) for width, row in ((180.0, 8.0), (150.0, 7.0), (120.0, 7.0))]
+    return sizes_of_points(project.train, canvas)
 
 
 def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
-    rows = _points(project, canvas)
-    left = canvas.title(box, tr("Velocities of the points"))
-    row = left.height / len(rows)
-    widths = widened([0.16 * box.width, 0.28 * box.width, 0.28 * box.width, 0.28 * box.width], rows, 3.5)
-    canvas.table(complex(box.x0, left.y1), widths, rows, row, 3.5)
-
-
-def _points(project: Any, canvas: Canvas) -> list[list[str]]:
-    plan = project.train.velocities
-    mu: Scale = canvas.scales[plan.name]
-    rows = [[tr("Point"), tr("Distance from the axis, mm"), tr("Segment of the picture, mm"), tr("V, m/s")]]
-    for end in plan:
-        if end.name.islower() and end.rule.gives == "point" and end.name.upper() in plan:
-            at = complex(end.value)
-            name = end.name.upper()
-            rows.append([name, number(1e3 * at.imag), f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}", number(at.real)])
-    return rows
+    table_of_points(project.train, canvas, box)
 
 
 def sizes_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
