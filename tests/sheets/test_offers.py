@@ -10,7 +10,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import diagrams, moments, offers, position_tables, reducer
+from tmm_sheets.sheets import diagrams, hodograph, moments, offers, position_tables, reducer
 from tmm_sheets.sheets.sheet import composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
@@ -136,3 +136,15 @@ def test_the_curve_of_the_power_of_friction_meets_the_numbers_of_the_positions()
     at = p.study.forces.friction.total.value[smooth]
     assert np.interp(np.asarray(p.cycle.turned)[smooth], every, course) == pytest.approx(at, rel=2e-2)
     assert course.max() < 0
+
+
+@pytest.mark.parametrize("name", ["loom", "transport/press@07-ЭПС-718"])
+def test_a_hodograph_is_closed_and_balances_the_crank(name):
+    """At each position the reaction of the frame is opposite to all else on the crank; over a cycle it comes back."""
+    p = Project(read(name))
+    _, step, course = hodograph._reaction(p)
+    size = np.abs(course).max()
+    crank = p.mechanism.crank
+    others = sum(load.vector.value for load in p.study.forces.loads[crank.link] if load.vector is not step)
+    assert np.abs(np.broadcast_to(step.value + others, (len(p.cycle.labels),))).max() < 1e-9 * size
+    assert abs(course[0] - course[-1]) < 1e-3 * size

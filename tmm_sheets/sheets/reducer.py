@@ -451,7 +451,8 @@ def rows_of_points(of: Any, canvas: Canvas) -> list[list[str]]:
         name = end.name.upper()
         if end.name.islower() and end.rule.gives == "point" and name in plan:
             at = complex(end.value)
-            rows.append([name, number(1e3 * abs(at.imag)), f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}", number(at.real)])
+            measured = f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}"
+            rows.append([name, number(1e3 * abs(at.imag)), measured, number(at.real)])
     return rows
 
 

@@ -9,7 +9,7 @@ from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Line, Text
 
-FAR = 16.0
+FAR = 40.0
 """Distance of a title from its view from which on it comes lower, mm."""
 NEAR = 9.0
 """Distance it then has, mm."""
