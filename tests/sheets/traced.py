@@ -25,7 +25,8 @@ from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.sheet import Composed, every
 
 ROOMS = {
-    "linkage": ("kinematics", "false_positions", "kinetics", "friction", "diagrams", "load_diagram", "synthesis", "given_position"),
+    "linkage": ("kinematics", "false_positions", "kinetics", "friction", "diagrams", "load_diagram", "synthesis", "given_position",
+                "hodograph"),
     "flywheel": ("flywheel", "mertsalov"),
     "gears": ("gear", "rack", "reducer"),
     "cams": ("cam", "cam_profile", "cam_zone"),

@@ -64,7 +64,7 @@ class Part(NamedTuple):
     """A view, or a titled part of one: its marks are those from ``first`` to where the next part begins.
 
     ``draw`` is the view's name in the arrangement, ``title`` what stands over it on the sheet (lettering markup, may be empty);
-    ``scales`` is how many scale factors were chosen before.
+    ``scales`` is how many scale factors were chosen before. ``headed`` is the first mark after a title that is drawn, else 0.
     """
 
     first: int
@@ -72,6 +72,7 @@ class Part(NamedTuple):
     title: str
     box: Box
     scales: int = 0
+    headed: int = 0
 
 
 class MarkGroup(NamedTuple):
@@ -305,6 +306,7 @@ class Canvas:
         if factor:
             y -= 8.0
             self.text(complex(x, y), factor, size_for([factor], box.width - 2.0, 5.0), "centre")
+        self.parts[-1] = self.parts[-1]._replace(headed=len(self.marks))
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 
     @in_role("dimension")

@@ -255,7 +255,7 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
 def radii_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table of radii can do with, mm."""
     rows = len(_radii(project.cam))
-    return [(width, 11.0 + row * rows) for width, row in ((96.0, 7.0), (84.0, 6.4), (76.0, 5.6), (70.0, 4.6))]
+    return [(width, 11.0 + row * rows) for width, row in ((112.0, 8.0), (96.0, 7.0), (84.0, 6.4), (76.0, 5.6), (70.0, 4.6))]
 
 
 def radii(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -264,7 +264,7 @@ def radii(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     rows = _radii(cam)
     canvas.of = cam.inversion.plan.name
     inside = canvas.title(box.inset(0, 0, 0, 2), tr("Radii of the profile"))
-    row = min(inside.height / len(rows), 7.0)
+    row = min(inside.height / len(rows), 8.0)
     height = size_in(row)
     widths = widened([0.16 * box.width, *[0.84 * box.width / (len(rows[0]) - 1)] * (len(rows[0]) - 1)], rows, height)
     canvas.table(complex(box.x0, inside.y1), widths, rows, row, height)

@@ -146,6 +146,10 @@ def _measured(name: str, segment: str, value: float, scale: str, mu: float) -> s
         name=name, segment=segment, scale=scale, length=fixed(value / mu, 2), factor=number(mu), value=fixed(value * 1e3, 3))
 
 
+DEEP = 0.9
+"""Greatest depth to which the zone of a rocker is drawn, in lengths of its arm."""
+
+
 @for_cams
 def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Positions of the rocker with the segments AB psi', rays under the permitted pressure angle, allowed zone, r0 and l0."""
@@ -168,6 +172,7 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
         return handy(max((x1 - x0) / room.width, (y1 - low) / room.height)), low
 
     mu, low = min(fitted(share) for share in (0.4, 0.3, 0.2, 0.12))
+    low = min(low, max(y1 - mu * room.height, apex.imag - DEEP * cam.arm))  # what height is left shows more of the zone
     scale = Scale("μ_l", mu, tr("m/mm"))
     canvas.scales[z.plan.name] = scale
     canvas.title(box, tr("Main dimensions of the cam"), f"{scale}")

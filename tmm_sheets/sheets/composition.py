@@ -257,7 +257,7 @@ def _force_plan(project: Project, fp: Any, k: int) -> Need:
     half = " + ".join(parts[:(len(parts) + 1) // 2]) + " +"
     asked = sum(side[3] for side in sides) + sum(not any(seg.symbol == side[0] for side in fp.sides) for seg in fp.plan.segments)
     wide = max(78.0, letter(half, 2.5).width + 8.0, OF_VALUE * asked + 6.0)
-    return Need((real.width, real.height), (left + right, below + above), (wide, 56.0))
+    return Need((real.width, real.height), (left + right, below + above), (wide, 56.0), finest=kinetic_frames.finest(fp, k))
 
 
 OF_VALUE = 24.0
@@ -268,7 +268,7 @@ def _crank(project: Project, view: View) -> Node:
     k = project.force_index
     share = float(view.options.get("scheme", 0.5))
     reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
-    scheme = _reaching(view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0))
+    scheme = replace(_reaching(view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0)), finest=kinetic_frames.finest_crank(project))
     plan = _force_plan(project, project.study.forces.plans[project.mechanism.crank.link], k)
     return _parted(view.box, share, scheme, [plan])
 

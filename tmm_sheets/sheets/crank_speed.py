@@ -60,7 +60,7 @@ def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     pen = of.pen("ω1", "axis")
     graphs.axes(pen, g, length, low, high, tr("{symbol}, s^{{−1}}").format(symbol="ω_1"))
     graphs.numbers(pen, g, x.mm(fw.reduced.phi), fw.labels, plan["ω1"].value - mean)
-    canvas.text(g(-2.0) + 1.0j, f"ω_{{1{tr('m')}}}", 3.5, "right")
+    canvas.text(g(-2.0) + 1.0j, tr("ω_{1m}"), 3.5, "right")
     for name, level in (("max", high), ("min", low)):
         pen = of.pen(f"ω_{name}", "axis")
         pen.line(g(1j * level), g(length + 1j * level), "thin")

@@ -19,6 +19,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
+from tmm_sheets.sheets.kinetics import balancing_sign
 from tmm_sheets.sheets.linkage import indexed, shapes
 from tmm_sheets.words import marked, tell, tr
 
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 TITLED = 74.0
 """Width of the title of the table of motion, mm."""
+GRAPH_SIZES = (280.0, 110.0), (240.0, 96.0), (200.0, 84.0), (170.0, 76.0)
+"""Sizes of a single graph over the cycle for room that a sheet has left, mm."""
 _LEFT, _RIGHT = 24.0, 12.0
 """Room beside the angle axis for the sign of the ordinate and for the arrow."""
 
@@ -152,12 +155,7 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     """Balancing moment over the whole cycle by kinetostatics, positive in the sense of rotation; its mean drives the machine."""
     if project.driver is not None:
         raise CannotBuild(*map(tell, _NO_MOMENT))
-    edges = [0.0, *(b for b in project.reduced.breaks if 0 < b < project.cycle.period), project.cycle.period]
-    turned = project.motion.turned
-    # At a dead point the load is switched: the curve has two ends there, a hair to both sides.
-    pieces = [np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
-              for a, b in pairwise(edges)]
-    every = np.concatenate(pieces)
+    every = over_cycle(project)
     step, course = project.study.balance["M"], project.study_at(every, tuple("" for _ in every)).balance["M"]
     values, at = _row(course, every), _row(step, project.cycle.turned)
     angle = _angle(project, box)
@@ -165,8 +163,38 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
     mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None else \
         project.study.mean_driving(course, every)
-    moment = DiagramQuantity("graph-M", indexed(tr("Mb")), tr("N·m"), (Curve("", step, every, values, at),))
-    _graph(project, canvas, left, angle, moment, level=(tr("M_d"), float(mean.value)))
+    sign = balancing_sign(project)
+    moment = DiagramQuantity("graph-M", sign, tr("N·m"), (Curve("", step, every, values, at),))
+    # Where the balancing moment is called as the driving one is, the constant one is its mean.
+    name = tr("M_d") if indexed(tr("M_d").replace("_", "")) != sign else tr("M_{dm}")
+    _graph(project, canvas, left, angle, moment, level=(name, float(mean.value)))
+
+
+def over_cycle(project: Project) -> Any:
+    """Angles of the whole cycle, rad; at a dead point, where the load is switched, two: a curve has two ends there."""
+    edges = [0.0, *(b for b in project.reduced.breaks if 0 < b < project.cycle.period), project.cycle.period]
+    turned = project.motion.turned
+    return np.concatenate([np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
+                           for a, b in pairwise(edges)])
+
+
+def single(project: Project, canvas: Canvas, box: Box, title: str, quantity: DiagramQuantity) -> None:
+    """One graph over the cycle under its title."""
+    angle = _angle(project, box)
+    _graph(project, canvas, canvas.title(box, title, str(angle)), angle, quantity)
+
+
+def balancing_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> tuple[tuple[float, float], ...]:
+    """Sizes that the graph can do with, mm; none for a crank that is driven by a force."""
+    return GRAPH_SIZES if project.driver is None else ()
+
+
+def balancing_table_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> list[tuple[float, float]]:
+    """Places that the table can do with, mm; none for a crank that is driven by a force."""
+    if project.driver is not None:
+        return []
+    rows = (len(project.cycle.labels) + 1) // 2 + 1
+    return [(width, 11.0 + row * rows) for width, row in ((170.0, 7.5), (150.0, 6.0), (130.0, 5.0))]
 
 
 def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:

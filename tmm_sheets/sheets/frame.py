@@ -134,19 +134,30 @@ def proportion(scale: Scale) -> str:
     return f"{number(1 / real)}:1" if real <= 1 else f"1:{number(real)}"
 
 
-def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, points: Any, offsets: Any, box: Box) -> Frame:
-    """Smallest handy scale factor with which everything fits the place; its middle comes to the place's middle.
+OVER = 8.0
+"""Room over what does not fill the height of its place, mm."""
+
+
+def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, points: Any, offsets: Any, box: Box,
+              finest: float = 0.0) -> Frame:
+    """Smallest handy scale factor with which everything fits the place; its middle comes to the place's, but not far from the top.
 
     ``points`` are in the plan's unit, ``offsets`` reach from each of them in millimetres of paper whatever the scale
-    (arrows, blocks, labels).
+    (arrows, blocks, labels). ``finest`` is the least scale factor that is of use.
     """
     z, d = np.ravel(np.asarray(points, dtype=complex)), np.ravel(np.asarray(offsets, dtype=complex))
     need = max(needed(z.real, d.real, box.width), needed(z.imag, d.imag, box.height))
     if not need > 0:  # a single point has no scale of its own: that of the position plans will do
         plans = canvas.scales.get("positions")
         need = plans.mu if plans is not None else 1.0
-    scale = pick(project, canvas, name, symbol, unit, need)
-    return Frame(scale, box.centre - extent([scale.mm(z) + d]).centre)
+    scale = pick(project, canvas, name, symbol, unit, need if name in project.variant.scales else max(need, finest))
+    drawn = extent([scale.mm(z) + d])
+    return Frame(scale, box.centre - drawn.centre + raised(box, drawn.height))
+
+
+def raised(box: Box, height: float) -> complex:
+    """Way up from the middle of a place for what is so high: near its title, what is left is in one piece for others."""
+    return 1j * max((box.height - height) / 2 - OVER, 0.0)
 
 
 def needed(x: Any, offset: Any, room: float) -> float:

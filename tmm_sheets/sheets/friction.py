@@ -18,7 +18,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets import graphs, kinetics, linkage
+from tmm_sheets.sheets import diagrams, graphs, kinetics, linkage
 from tmm_sheets.sheets.frame import Frame, fit_frame, ratio, standard
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr
@@ -247,3 +247,21 @@ def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     height = size_in(row)
     widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
     canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
+
+
+def power_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
+    """Sizes that the graph of the power of friction can do with, mm; none without friction."""
+    return diagrams.GRAPH_SIZES if project.study.forces.friction is not None else ()
+
+
+def power(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Power of friction in all pairs over the whole cycle."""
+    every, step = diagrams.over_cycle(project), _friction(project).total
+    course = project.study_at(every, tuple("" for _ in every)).forces.friction
+    assert course is not None
+    values = [np.broadcast_to(np.real(of.total.value), np.shape(at)) for of, at in
+              ((course, every), (_friction(project), project.cycle.turned))]
+    sign, unit = tr("N_f, W").split(", ")
+    curve = diagrams.Curve("", step, every, *values)
+    diagrams.single(project, canvas, box, tr("Power of friction in the pairs"),
+                    diagrams.DiagramQuantity("graph-N", sign, unit, (curve,)))

@@ -521,6 +521,19 @@ def _theta(s: Stage, gear: Any, lowest: float, way: int) -> None:
         s.canvas.label(complex(s.frame(points[0].real + 0.6j * points[0].imag)), f"θ_{i}", away=way * onward, height=5, gap=3)
 
 
+def sliding_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
+    """Sizes that the graphs can do with, mm."""
+    return (210.0, 200.0), (190.0, 150.0)
+
+
+def sliding_table_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Sizes that the table can do with, mm; none without the graphs whose ordinates it holds."""
+    if "gear-sliding" not in canvas.scales:
+        return []
+    wide = 24.0 + 14.0 * len(project.gear.sliding.labels)
+    return [(wide + 10.0, 52.0), (wide, 46.0)]
+
+
 def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ordinates of the speeds and specific sliding at the divisions of N1N2."""
     plan = project.gear.sliding

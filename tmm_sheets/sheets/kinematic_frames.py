@@ -13,7 +13,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import indicator, linkage
-from tmm_sheets.sheets.frame import Frame, ScaleBook, extent, fit_frame, pick
+from tmm_sheets.sheets.frame import Frame, ScaleBook, extent, fit_frame, pick, raised
 from tmm_sheets.words import tell, tell_n, tr
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ SMALLEST = 10.0
 """Size from which on the largest of the velocity plans can be read, mm."""
 LONGEST = 100.0
 """Longest vector of a velocity plan that is of use, mm: what room is left is for others."""
+SPARE = 20.0
+"""Largest height between rows of velocity plans beside what they need, mm."""
 BEYOND = 10.0
 """A velocity plan so many times as large as usual would leave nothing to see of the others."""
 ACCELERATIONS = 9.0, 8.0, 9.0, 24.0
@@ -137,10 +139,10 @@ class VelocityLayout:
     every: int
 
     def places(self) -> Iterator[tuple[tuple[int, str], Box, Box, float]]:
-        """Index and label of each plan, its extent, its place, and the height left over there, mm; what is left is shared out."""
+        """Index and label of each plan, its extent, its place, and the height left over there, mm; not all that is left."""
         rows = [slice(i, i + self.per_row) for i in range(0, len(self.shown), self.per_row)]
         heights = [max(s.height for s in self.spans[row]) / self.scale.mu + HEAD for row in rows]
-        spare = (self.inside.height - sum(heights)) / self.rows
+        spare = min((self.inside.height - sum(heights)) / self.rows, SPARE)
         y = self.inside.y1
         for row, height in zip(rows, heights, strict=True):
             widths = [s.width / self.scale.mu + MARGIN for s in self.spans[row]]
@@ -240,4 +242,4 @@ def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
     inside = box.inset(*ACCELERATIONS)
     need = max(real.width / inside.width, real.height / inside.height)
     scale = pick(project, canvas, "accelerations", "μ_a", tr("(m/s²)/mm"), need)
-    return Frame(scale, inside.centre - scale.mm(real.centre))
+    return Frame(scale, inside.centre - scale.mm(real.centre) + raised(inside, scale.mm(real.height)))

@@ -241,6 +241,24 @@ AROUND = (12.0, 19.0, 12.0, 24.0)
 """Room round a force polygon at its left, below (equation and values), right and above (title and scale factor), mm."""
 
 
+LONGEST = 220.0
+"""Longest side of a force polygon that is of use, mm: what room is left is for others."""
+LONGEST_CRANK = 120.0
+"""Longest arm of the initial link on its scheme that is of use, mm."""
+
+
+def finest(fp: ForcePlan, k: int) -> float:
+    """Scale factor of a force plan, N/mm, at which its longest side is as long as is of use."""
+    return max((abs(complex(head.at(k)) - complex(tail.at(k))) for _, tail, head, _ in fp.sides), default=0.0) / LONGEST
+
+
+def finest_crank(project: Project) -> float:
+    """Scale factor of the initial link's scheme, m/mm, at which its longest arm is as long as is of use."""
+    k, pos = project.force_index, project.study.positions
+    pivot = complex(pos.points[project.mechanism.crank.pivot].at(k))
+    return max(abs(complex(pos.points[name].at(k)) - pivot) for name in linkage.crank_pins(pos)) / LONGEST_CRANK
+
+
 def acting_sides(fp: ForcePlan, k: int, force_size: float) -> list[tuple[str, Step, Step, bool]]:
     """Sides of a force polygon that are forces at all beside ``force_size``, N."""
     return [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), force_size)]

@@ -34,6 +34,8 @@ from tmm_sheets.sheets.kinetic_frames import (
     clear,
     couples_of,
     crank_scheme,
+    finest,
+    finest_crank,
     hinge_of,
     lever_scheme,
     on_crank,
@@ -58,6 +60,8 @@ if TYPE_CHECKING:
 BAR = "\u0305"
 GAP = 4.0
 """Distance of groups that share a place, mm."""
+ROOM = 6.0
+"""Room for labels between a force polygon and its equation, mm."""
 STACKED = 90.0
 """Height from which on the plans of a group stand one over another, mm; in lower places side by side."""
 
@@ -165,7 +169,8 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
         s.dot(point, 0.9, "main")
         s.letters(point, linkage.indexed(point.name), gap=1.5)
     draw_forces(s, shown)
-    _from_moments(project, canvas, box, g, k, frame.scale)
+    low = min((frame(z) + d).imag for z, d in zip(*around, strict=True)) - SCHEME[1]
+    _from_moments(project, canvas, box._replace(y0=max(box.y0, low)), g, k, frame.scale)
     for c in couples:
         _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
     _link_couples(project, s, drawn)
@@ -264,7 +269,8 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     if not sides:
         _fitted(canvas, canvas.title(box, fp.plan.title).centre, tr("There are no forces in this position"), 3.5, box.width - 4.0)
         return
-    frame = fit_frame(project, canvas, fp.plan.name, "μ_F", tr("N/mm"), list(points.values()), [0j] * len(points), inside)
+    frame = fit_frame(project, canvas, fp.plan.name, "μ_F", tr("N/mm"), list(points.values()), [0j] * len(points), inside,
+                      finest(fp, k))
     canvas.title(box, fp.plan.title, str(frame.scale))
     flat_crossings.warn(project, canvas, box, fp.plan)
     s = stage(canvas, fp.plan, k, frame)
@@ -277,12 +283,14 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())))
-    _equation(canvas, complex(box.centre.real, box.y0 + 9.5), terms(sides), box.width - 4.0)
+    # Equation and values close under a polygon that does not fill the height of its place.
+    low = max(box.y0, min(frame(z).imag for z in points.values()) - AROUND[1] - ROOM)
+    _equation(canvas, complex(box.centre.real, low + 9.5), terms(sides), box.width - 4.0)
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
                                                  value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
              for sign, tail, head in asked]
-    _fitted(canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(found), 3.5, box.width - 4.0)
+    _fitted(canvas, complex(box.centre.real, low + 3.0), "; ".join(found), 3.5, box.width - 4.0)
 
 
 def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
@@ -329,7 +337,8 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
     shown = on_crank(project, k)
     away = clear(pivot, ends, shown)
-    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", tr("m/mm"), *crank_scheme(project, k, shown), left.inset(*CRANK))
+    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", tr("m/mm"), *crank_scheme(project, k, shown), left.inset(*CRANK),
+                      finest_crank(project))
     canvas.title(left, tr("Input link"), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if driver is not None and pos.contact is not None:  # pitch circle of the wheel on the shaft, and its pitch point

@@ -1,4 +1,4 @@
-"""View of the moment equations of the force study in letters and in numbers, with the arms they take."""
+"""Views of the moment equations of the force study, in letters and in numbers: of the groups and of Zhukovsky's lever."""
 
 from __future__ import annotations
 
@@ -51,6 +51,63 @@ def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     height = size_for(lines, box.width, 3.5)
     step = min(STEP, (left.y1 - box.y0) / len(lines))
     canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+
+
+def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the equation of the lever can do with, mm; none before the lever is drawn."""
+    if "lever" not in canvas.scales or not _on_lever(project)[1]:
+        return []
+    sizes = (220.0, 3.5, STEP), (160.0, 3.5, STEP), (160.0, 3.5, 6.0), (120.0, 3.5, 6.0), (100.0, 2.5, 5.0)
+    return [(width + 6.0, 12.0 + step * len(_of_lever(project, canvas, width, height))) for width, height, step in sizes]
+
+
+def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Sum of the moments about the pole of Zhukovsky's lever, arms in mm of the drawing, and the balancing force it gives."""
+    lines, height = _of_lever(project, canvas, box.width - 6.0, 3.5), 3.5
+    if 12.0 + 6.0 * len(lines) > box.height + 1e-6:
+        lines, height = _of_lever(project, canvas, box.width - 6.0, 2.5), 2.5
+    canvas.of = "moments"
+    left = canvas.title(box, tr("Equation of moments of the lever"))
+    step = min(STEP, (left.y1 - box.y0) / len(lines))
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+
+
+def _on_lever(project: Project) -> tuple[Term, list[Term]]:
+    """Moment of the balancing force about the pole and those of the others, forces in N, arms as velocities, m/s."""
+    k, lv, forces = project.force_index, project.study.lever, project.study.forces
+    found = []
+    for hung in lv.hung:
+        force, arm = abs(complex(hung.force.at(k))), float(hung.arm.at(k))
+        sign = hung.symbol.replace(BAR, "")
+        arm = arm if np.isfinite(arm) else 0.0  # a force of nothing has none
+        found.append(Term(f"{sign}·h_{{{re.sub('F_|[_{}]', '', sign)}}}", 1.0 if arm > 0 else -1.0, (force, abs(arm))))
+    largest = max(abs(complex(step.at(k))) for step in lv.velocities.points.values())
+    sizes = forces.force_size(k), largest
+    return found[-1], [term for term in found[:-1] if not any(map(is_zero, term.values, sizes))]
+
+
+def _of_lever(project: Project, canvas: Canvas, width: float, height: float) -> list[str]:
+    """Lines of the lever's equation, broken between its terms."""
+    own, terms = _on_lever(project)
+    mu, size = canvas.scales["lever"].mu, project.study.forces.force_size(project.force_index)
+    measured = [term._replace(values=(term.values[0], term.values[1] / mu)) for term in terms]
+    force, _ = own.letters.split("·")
+    asked = tr("{force} = |{sum}|/{length} = {value} N").format(
+        force=force, sum=_sum(measured, numbers=True), length=number(own.values[1] / mu), value=number(own.values[0], 5, size))
+    return [line for text in (tr("ΣM_{centre} = {sum} = 0").format(centre="p", sum=_sum([own, *terms])), asked)
+            for line in _broken(text, width, height)]
+
+
+def _broken(text: str, width: float, height: float) -> Iterator[str]:
+    """A sum on several lines, each but the first beginning with the sign of its first term."""
+    line = ""
+    for part in re.split(r" (?=[+−] )", text):
+        longer = f"{line} {part}" if line else part
+        if line and letter(longer, height).width > width:
+            yield line
+            longer = part
+        line = longer
+    yield line
 
 
 def _lines(project: Project) -> Iterator[str]:

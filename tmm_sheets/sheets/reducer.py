@@ -13,6 +13,7 @@ from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.gear_marks import ruled_table, spread
@@ -116,10 +117,12 @@ class SchemeViews:
         zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
         # As large as the title, if the picture's part of the place is wide enough.
         laid = fitted(str(mu), self.picture.width, 5.0)
-        c.put(laid, complex((self.picture.x0 + self.picture.x1 - laid.width) / 2, self.picture.y1 - 3.0), 0.0, str(mu))
+        bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
+        # Over the picture, and clear of the scale factor under the title of the views.
+        level = min(self.picture.y1 - 8.0, self.y(top) + 12.0)
+        c.put(laid, complex((self.picture.x0 + self.picture.x1 - laid.width) / 2, level), 0.0, str(mu))
 
         s = placed(c, plan, complex(zero, self.axis), (mu.mu, self.mu.mu))
-        bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
         s.line("O", complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis", "axis")
         self.heights(s, [name for name in ends if name[0].isupper()])
         self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
@@ -414,6 +417,43 @@ def plan_of_speeds(reducer: Any, canvas: Canvas, box: Box, part: str) -> None:
         s.dot(link, 0.8, "main")
         s.line(link, end, complex(x, y + 7), "thin", "text")
         canvas.text(complex(x, y + 9), f"n_{{{_link(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
+
+
+def points_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of points can do with, mm."""
+    return sizes_of_points(project.reducer, canvas)
+
+
+def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
+    table_of_points(project.reducer, canvas, box)
+
+
+def sizes_of_points(of: Any, canvas: Canvas) -> list[tuple[float, float]]:
+    """The same of a reducer or a train."""
+    rows = len(rows_of_points(of, canvas))
+    return [(width, 11.0 + row * rows) for width, row in ((180.0, 8.0), (150.0, 7.0), (120.0, 7.0))]
+
+
+def table_of_points(of: Any, canvas: Canvas, box: Box) -> None:
+    """The same of a reducer or a train."""
+    rows = rows_of_points(of, canvas)
+    left = canvas.title(box, tr("Velocities of the points"))
+    widths = widened([0.16 * box.width, 0.28 * box.width, 0.28 * box.width, 0.28 * box.width], rows, 3.5)
+    canvas.table(complex(box.x0, left.y1), widths, rows, left.height / len(rows), 3.5)
+
+
+def rows_of_points(of: Any, canvas: Canvas) -> list[list[str]]:
+    """Heading and a row for each point whose velocity the picture has."""
+    plan, mu = of.velocities, canvas.scales[of.velocities.name]
+    rows = [[tr("Point"), tr("Distance from the axis, mm"), tr("Segment of the picture, mm"), tr("V, m/s")]]
+    for end in plan:
+        name = end.name.upper()
+        if end.name.islower() and end.rule.gives == "point" and name in plan:
+            at = complex(end.value)
+            measured = f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}"
+            rows.append([name, number(1e3 * abs(at.imag)), measured, number(at.real)])
+    return rows
 
 
 def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

@@ -21,7 +21,7 @@ from tmm_sheets.drawing.marks import Drawing, PlacedFrame, View
 from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
-from tmm_sheets.sheets import places
+from tmm_sheets.sheets import places, titles
 from tmm_sheets.sheets.composition import DESIGNATION, arranged
 from tmm_sheets.words import marked, of_file, tell, tr
 
@@ -148,6 +148,7 @@ def composed(project: Project, n: int) -> Composed:
         canvas.of = view.draw
         canvas.begin(view.box, "", view.draw)
         _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
+    titles.lower(canvas)
     if plan.offers:
         from tmm_sheets.sheets import offers
 

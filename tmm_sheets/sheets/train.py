@@ -7,11 +7,11 @@ from math import pi
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted, size_for
+from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
-from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, STUB, SchemeViews, plan_of_speeds
+from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, STUB, SchemeViews, plan_of_speeds, sizes_of_points, table_of_points
 from tmm_sheets.words import tr
 
 SLEEVE = 6.0
@@ -43,6 +43,50 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     for k, text in enumerate(train.warnings):
         said = f"{text[0].upper()}{text[1:]}."
         canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 6 - 6 * k), 0.0, said)
+
+
+def points_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of points can do with, mm."""
+    return sizes_of_points(project.train, canvas)
+
+
+def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
+    table_of_points(project.train, canvas, box)
+
+
+def sizes_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the dimensions can do with, mm."""
+    lines = _sizes(project)
+    return [(max(letter(line, 3.5).width for line in lines) + 6.0, 12.0 + step * len(lines)) for step in (8.0, 7.0)]
+
+
+def sizes(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Pitch diameters and distances of axes in letters and in numbers."""
+    lines = _sizes(project)
+    left = canvas.title(box, tr("Dimensions of the train, mm"))
+    step = min(8.0, left.height / len(lines))
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, 3.5)
+
+
+def _sizes(project: Any) -> list[str]:
+    """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the central wheels."""
+    train = project.train
+    plan = train.kinematics
+    m, lines, shown = float(plan["m"].value), list[str](), set[str]()
+    for mesh in train.meshes:
+        c, p, sign = mesh.central, mesh.planet, "+" if mesh.sign > 0 else "−"
+        z = {name: int(plan[f"z{name}"].value) for name in (c, p)}
+        diameter = plan[f"d{c}-{p}"]
+        if not mesh.carrier or mesh.carrier not in shown:  # all planets of a carrier run at one distance
+            shown.add(mesh.carrier)
+            lines.append(f"a_{{{c}–{p}}} = m·(z_{{{c}}} {sign} z_{{{p}}})/2 = {number(m)}·({z[c]} {sign} {z[p]})/2 = "
+                         f"{number(1e3 * train.distance(mesh))}")
+        # Where wheels of another sum of teeth run at the same distance the circles are not those of the module.
+        rolled = float(diameter.value)
+        of_module = f"m·z_{{{c}}} = {number(m)}·{z[c]} = " if abs(rolled - m * z[c]) < 1e-9 * rolled else ""
+        lines.append(f"d_{{{c}}} = {of_module}{number(rolled)}")
+    return lines
 
 
 def willis(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
