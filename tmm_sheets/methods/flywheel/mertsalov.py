@@ -194,7 +194,7 @@ class Mertsalov(Flywheel):
         return self.given_plan["J_I"]
 
     def _excess(self, plan: Plan) -> Step:
-        work = Quadrature(self.reduced.moment, self.edges, 8, whole=self._limit_row)
+        work = Quadrature(self.reduced.moment, self.edges, self.limit.panels, whole=self._limit_row)
         mean, half = work.total / self.reduced.period, self.reduced.omega1**2 / 2
 
         def first(phi: Floats) -> Floats:
