@@ -65,8 +65,8 @@ def _columns(project: Project, options: graphs.Options) -> list[tuple[DiagramQua
 def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Kinematic diagrams of the outputs, one graph under another.
 
-    Points have S, V, a along their straight path, links psi, omega, epsilon; both count from position 0 and are positive in
-    the sense in which the motion begins there.
+    Points have S, V, a along their straight path, links psi, omega, epsilon; both count from position 0. Those of points are
+    positive in the sense in which the motion begins there, those of links counter-clockwise, as in every table.
     """
     columns = _columns(project, options)
     if not columns:
