@@ -8,8 +8,9 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import moments, offers
+from tmm_sheets.sheets import kinetics, moments, offers
 from tmm_sheets.sheets.sheet import composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
@@ -59,10 +60,11 @@ def test_equations_of_moments_hold_in_the_numbers_written(name):
     p = Project(read(name))
     checked = 0
     for line in moments._lines(p):
-        found = re.search(r"\|(.*)\|(?:/([\d,]+))? = ([\d,]+)", line)
+        found = re.search(r"(?:\|(.*)\|/([\d,]+)|^M[^=]* = ([^=]+)) = −?([\d,]+)", line)
         if found is None:
             continue
-        total, arm, value = found.groups()
+        part, arm, whole, value = found.groups()
+        total = part or whole
         value, arm = float(value.replace(",", ".")), float((arm or "1").replace(",", "."))
         terms = [part.replace(" ", "") for part in re.split(r"(?=[+−])", total) if part.strip()]
         signs = [-1 if t[0] == "−" else 1 for t in terms]
@@ -72,6 +74,31 @@ def test_equations_of_moments_hold_in_the_numbers_written(name):
         assert abs(abs(sum(numbers)) / arm - value) < 1e-3 * max(map(abs, numbers)) / arm + 1e-9, line
         checked += 1
     assert checked >= 2
+
+
+@pytest.mark.parametrize("name", ["sixbar/8:3", "lugansk/shaper", "transport/crusher@12-СДМ-1908"])
+def test_equation_of_the_lever_holds_in_the_numbers_written(name):
+    """Forces in N and arms in mm about the pole give what drives the crank by kinetostatics, to the digits that are written."""
+    p = Project(read(name))
+    canvas = Canvas()
+    kinetics.lever(p, canvas, Box(25.0, 9.0, 280.0, 290.0), {})
+    lines = moments._lever_lines(p, canvas, 1e6, 3.5, {})
+    total, arm, value = re.search(r"\((.*)\)/([\d,]+) = ([−\d,]+) Н", lines[1]).groups()
+    value, arm = (float(x.replace(",", ".").replace("−", "-")) for x in (value, arm))
+    terms = [part.replace(" ", "") for part in re.split(r"(?=[+−])", total) if part.strip()]
+    factors = [[float(x.replace(",", ".")) for x in t.strip("+−").split("·")] for t in terms]
+    found = sum((-1 if t[0] == "−" else 1) * np.prod(each) for t, each in zip(terms, factors, strict=True)) / arm
+    rounded = sum(force * (0.06 + 5e-4 * length) for force, length in factors) / arm + 0.06 / arm * abs(value)
+    assert abs(found - value) < rounded
+    k = p.force_index
+    if p.driver is None:
+        # Positive in the sense of rotation, as in the table of results and in the equation of the crank.
+        by_statics = float(p.study.forces.balancing.at(k)) * p.mechanism.crank.sense
+        assert value * p.mechanism.crank.length == pytest.approx(by_statics, rel=1e-3)
+        for said in (lines[2], list(moments._lines(p))[-1]):
+            assert f" = {number(by_statics, 5)} Н·м («+» — по ω_1)" in said
+    else:
+        assert value == pytest.approx(abs(complex(p.study.forces.balancing.at(k))), rel=1e-3)
 
 
 def test_what_is_offered_is_drawn_where_there_is_room():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import pi
@@ -31,9 +30,11 @@ from tmm_sheets.sheets.kinetic_frames import (
     Shown,
     acting_sides,
     arrows,
+    balancing_sign,
     clear,
     couples_of,
     crank_scheme,
+    flat,
     hinge_of,
     lever_scheme,
     on_crank,
@@ -236,13 +237,15 @@ def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
 def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
     seen, centre = list[complex](), s.frame(about)
-    busy = [centre, *points, *(s.frame(force.at) for force in shown), *(s.frame(force.foot(about)) for force in shown)]
+    feet = [s.frame(force.foot(about)) for force in shown]
+    busy = [centre, *points, *(s.frame(force.at) for force in shown), *feet]
     for force in sorted(shown, key=lambda force: -abs(force.vector)):  # forces on one line share the arm of the largest
         tail, foot = s.frame(force.at), s.frame(force.foot(about))
         if abs(foot - centre) < 1.5 or not force.whole or any(abs(foot - f) < 0.6 for f in seen):
             continue
         seen.append(foot)
-        letters = re.sub("F_|[_{}]", "", force.symbol.replace(BAR, ""))
+        letters = flat(force.symbol)
+        same = [flat(other.symbol) for other, f in zip(shown, feet, strict=True) if other.whole and abs(foot - f) < 0.6]
         pen = s.pen(force.arm, "construction", f"h{letters}")
         if abs(foot - tail) > 0.5:
             pen.ray_line(tail, foot, "thin", 2.0)
@@ -250,7 +253,7 @@ def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable
         pen.dot(foot, 0.35, "thin")
         places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
         at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-        pen.label(at, f"h_{{{letters}}}", 1j * (foot - centre), 2.5, 0.8)
+        pen.label(at, " = ".join(f"h_{{{name}}}" for name in dict.fromkeys([letters, *same])), 1j * (foot - centre), 2.5, 0.8)
         busy.append(at)
 
 
@@ -361,7 +364,7 @@ def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: comp
             _turning(s, s.at(hinge), 6.0, -away if s.at(hinge) == at else away, couple)
         said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
     if said and project.driver is None and forces.balancing is not None:
-        moment = number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))
+        moment = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
         said.append(tr("{quantity} = {value} N·m").format(quantity=balancing_sign(project), value=moment))
     if said:
         _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
@@ -414,16 +417,10 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
         (clean(float(study.balance[name].at(k)), kind) for name in ("M", "M_р"))
     unit = tr("N") if force else tr("N·m")
     difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
-    rows = [[tr("Balancing force") if force else tr("Balancing moment"), tr("Value")],
+    heading = tr("Balancing force") if force else tr("Balancing moment (“+”: in the sense of ω_1)")
+    rows = [[heading, tr("Value")],
             [tr("Force analysis: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(kinetic, 2)],
             [tr("Zhukovsky lever: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(hung, 2)],
             [tr("Difference, %"), number(difference, 2, 100.0)]]
     row = min(box.height / len(rows), 9.0)
     canvas.table(complex(box.x0, box.y1), widened([box.width * 0.66, box.width * 0.34], rows, 3.5), rows, row, 3.5)
-
-
-def balancing_sign(project: Project) -> str:
-    """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" is what one without has."""
-    return linkage.indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
-
-
