@@ -10,8 +10,8 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinetics, moments, offers
-from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets import kinetics, linkage, moments, offers
+from tmm_sheets.sheets.sheet import _code, composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
 
@@ -99,6 +99,24 @@ def test_equation_of_the_lever_holds_in_the_numbers_written(name):
             assert f" = {number(by_statics, 5)} Н·м («+» — по ω_1)" in said
     else:
         assert value == pytest.approx(abs(complex(p.study.forces.balancing.at(k))), rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["sixbar/3:2", "loom"])
+def test_every_vertex_of_the_lever_has_its_letters(name):
+    p = Project(read(name))
+    canvas = Canvas()
+    kinetics.lever(p, canvas, Box(25.0, 9.0, 280.0, 290.0), {})
+    said = {text for label in canvas.labels for text in label.text.split(", ") if text.endswith("′") and "F" not in text}
+    plan = p.study.velocities.plan
+    ends = {step.name for seg in plan.segments for step in (seg.tail, seg.head)} - {plan.pole}
+    assert said >= {f"{linkage.indexed(end)}′" for end in ends}
+
+
+@pytest.mark.parametrize(("name", "codes"), [("lugansk/shaper", "1234"), ("screen", "123"), ("lugansk/cam_flat", "4")])
+def test_designations_of_a_project_rise(name, codes):
+    """The codes of the arrangements where these rise, else the sheets' numbers: the screen's two kinds of sheet 2 are no two D2."""
+    p = Project(read(name))
+    assert [_code(p, n) for n in range(1, len(p.sheets) + 1)] == [f"Д{code}" for code in codes]
 
 
 def test_what_is_offered_is_drawn_where_there_is_room():

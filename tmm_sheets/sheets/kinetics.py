@@ -388,7 +388,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     s = stage(canvas, lv.plan, k, frame)
     s.dot("p", 0.9)
     s.letters("p", "p", gap=1.2)
-    _turned_letters(s, lv.points)
+    _turned_letters(s, turned, lv.points)
     if lv.contact is not None and project.driver is not None:
         play(s, [lv.contact], "axis")
         s.letters(lv.contact, "f′", gap=1.2)
@@ -396,13 +396,21 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     draw_forces(s, shown)
 
 
-def _turned_letters(s: Stage, points: Mapping[str, Step]) -> None:
-    """Dots of the turned plan's points and their letters with a prime; those of one place together."""
-    names = list(points)
-    for same in together([s.at(step) for step in points.values()], 0.5):
-        first = points[names[same[0]]]
-        s.dot(first)
-        s.letters(first, ", ".join(f"{linkage.indexed(names[i])}′" for i in same), s.at(first) - s.frame(0j), gap=1.2)
+def _turned_letters(s: Stage, turned: Stage, points: Mapping[str, Step]) -> None:
+    """Dots of the turned plan's points and their letters with a prime; those of one place together.
+
+    ``points`` are those that forces hang on; the other vertices are those of the velocity plan itself, which is ``turned``.
+    """
+    vertices = [step for seg in turned.plan.segments for step in (seg.tail, seg.head) if step.name != turned.plan.pole]
+    every = {name: (s, step) for name, step in points.items()}
+    every |= {step.name: (turned, step) for step in vertices if step.name not in points}
+    names = list(every)
+    for same in together([on.at(step) for on, step in every.values()], 0.5):
+        here, first = every[names[same[0]]]
+        at = here.at(first)
+        here.dot(first)
+        text = ", ".join(f"{linkage.indexed(names[i])}′" for i in same)
+        here.letters(first, text, at - s.frame(0j), gap=1.2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
