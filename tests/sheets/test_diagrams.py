@@ -62,7 +62,20 @@ def test_rocker_has_its_angle():
     ((phi, value),) = curves(drawn(Project(read("sixbar/8:1"))), "graph-psi")
     r, l2, a = 0.129, 0.516, 0.4
     s = r * np.sin(phi) + np.sqrt(l2**2 - (r * np.cos(phi)) ** 2) - np.sqrt(l2**2 - r**2)
-    assert np.max(np.abs(value - np.arctan(s / a))) < 1e-12
+    assert np.max(np.abs(value + np.arctan(s / a))) < 1e-12  # a slider to the right under the pivot: clockwise
+
+
+def test_a_link_turns_in_the_same_sense_in_every_table():
+    """The screen's rocker begins clockwise: its angle goes below the axis, as its angular velocity does in the other tables."""
+    project = Project(read("screen"))
+    ((phi, value),) = curves(drawn(project, of=["3"]), "graph-psi")
+    u = np.asarray(project.study.positions.directions["3"].value)
+    assert value[5] < 0
+    assert np.max(np.abs(np.exp(1j * np.interp(project.cycle.turned, phi, value)) - u / u[0])) < 1e-9
+    study = project.study
+    _, omega, epsilon = project.motion.link("3").at_positions
+    assert np.array_equal(omega.value, study.velocities.omega["3"].value)
+    assert np.array_equal(epsilon.value, study.accelerations.epsilon["3"].value)
 
 
 def test_two_outputs_share_the_graphs():

@@ -9,9 +9,10 @@ from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import diagrams, hodograph, moments, offers, position_tables, reducer
-from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets import diagrams, hodograph, kinetics, linkage, moments, offers, position_tables, reducer
+from tmm_sheets.sheets.sheet import _code, composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
 
@@ -62,10 +63,11 @@ def test_equations_of_moments_hold_in_the_numbers_written(name):
 
 def worked_out(line):
     """The value a line ends with, once its numbers have been worked out; None for one in letters."""
-    found = re.search(r"\|(.*)\|(?:/([\d,]+))? = ([\d,]+)", line)
+    found = re.search(r"(?:\|(.*)\|/([\d,]+)|^M[^=]* = ([^=]+)) = −?([\d,]+)", line)
     if found is None:
         return None
-    total, arm, value = found.groups()
+    part, arm, whole, value = found.groups()
+    total = part or whole
     value, arm = float(value.replace(",", ".")), float((arm or "1").replace(",", "."))
     terms = [part.replace(" ", "") for part in re.split(r"(?=[+−])", total) if part.strip()]
     signs = [-1 if t[0] == "−" else 1 for t in terms]
@@ -74,17 +76,6 @@ def worked_out(line):
     # Four digits of every factor: half a unit of the last of each.
     assert abs(abs(sum(numbers)) / arm - value) < 1e-3 * max(map(abs, numbers)) / arm + 1e-9, line
     return value
-
-
-@pytest.mark.parametrize("name", ["press", "lugansk/engine", "lugansk/shaper", "loom", "sixbar/7:5"])
-def test_the_lever_s_equation_gives_the_balancing_force_of_the_force_analysis(name):
-    """Its numbers, worked out, give the force that the reactions give without it, through another sum."""
-    p = Project(read(name))
-    canvas = Canvas()
-    canvas.scales["lever"] = Scale("μ_V", 0.01, "(m/s)/mm")
-    value = worked_out(" ".join(moments._of_lever(p, canvas, 120.0, 3.5)))
-    arm = 1.0 if p.driver is not None else p.mechanism.crank.length
-    assert value * arm == pytest.approx(abs(complex(p.study.forces.balancing.at(p.force_index))), rel=2e-4)
 
 
 @pytest.mark.parametrize("name", ["screen", "transport/crusher@12-СДМ-1908"])
@@ -101,6 +92,49 @@ def test_tables_over_positions_hold_what_equilibrium_and_kinematics_demand(name)
             at = [np.asarray(p.study_at(turned + step * 1e-4, p.cycle.labels).positions.points[head[3:-1]].value)
                   for step in (-1, 0, 1)]
             assert np.abs(at[0] - 2 * at[1] + at[2]) / h**2 == pytest.approx(values, rel=1e-4, abs=1e-3 * values.max())
+
+
+@pytest.mark.parametrize("name", ["sixbar/8:3", "lugansk/shaper", "transport/crusher@12-СДМ-1908"])
+def test_equation_of_the_lever_holds_in_the_numbers_written(name):
+    """Forces in N and arms in mm about the pole give what drives the crank by kinetostatics, to the digits that are written."""
+    p = Project(read(name))
+    canvas = Canvas()
+    kinetics.lever(p, canvas, Box(25.0, 9.0, 280.0, 290.0), {})
+    lines = moments._lever_lines(p, canvas, 1e6, 3.5, {})
+    total, arm, value = re.search(r"\((.*)\)/([\d,]+) = ([−\d,]+) Н", lines[1]).groups()
+    value, arm = (float(x.replace(",", ".").replace("−", "-")) for x in (value, arm))
+    terms = [part.replace(" ", "") for part in re.split(r"(?=[+−])", total) if part.strip()]
+    factors = [[float(x.replace(",", ".")) for x in t.strip("+−").split("·")] for t in terms]
+    found = sum((-1 if t[0] == "−" else 1) * np.prod(each) for t, each in zip(terms, factors, strict=True)) / arm
+    rounded = sum(force * (0.06 + 5e-4 * length) for force, length in factors) / arm + 0.06 / arm * abs(value)
+    assert abs(found - value) < rounded
+    k = p.force_index
+    if p.driver is None:
+        # Positive in the sense of rotation, as in the table of results and in the equation of the crank.
+        by_statics = float(p.study.forces.balancing.at(k)) * p.mechanism.crank.sense
+        assert value * p.mechanism.crank.length == pytest.approx(by_statics, rel=1e-3)
+        for said in (lines[2], list(moments._lines(p))[-1]):
+            assert f" = {number(by_statics, 5)} Н·м («+» — по ω_1)" in said
+    else:
+        assert value == pytest.approx(abs(complex(p.study.forces.balancing.at(k))), rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["sixbar/3:2", "loom"])
+def test_every_vertex_of_the_lever_has_its_letters(name):
+    p = Project(read(name))
+    canvas = Canvas()
+    kinetics.lever(p, canvas, Box(25.0, 9.0, 280.0, 290.0), {})
+    said = {text for label in canvas.labels for text in label.text.split(", ") if text.endswith("′") and "F" not in text}
+    plan = p.study.velocities.plan
+    ends = {step.name for seg in plan.segments for step in (seg.tail, seg.head)} - {plan.pole}
+    assert said >= {f"{linkage.indexed(end)}′" for end in ends}
+
+
+@pytest.mark.parametrize(("name", "codes"), [("lugansk/shaper", "1234"), ("screen", "123"), ("lugansk/cam_flat", "4")])
+def test_designations_of_a_project_rise(name, codes):
+    """The codes of the arrangements where these rise, else the sheets' numbers: the screen's two kinds of sheet 2 are no two D2."""
+    p = Project(read(name))
+    assert [_code(p, n) for n in range(1, len(p.sheets) + 1)] == [f"Д{code}" for code in codes]
 
 
 def test_what_is_offered_is_drawn_where_there_is_room():

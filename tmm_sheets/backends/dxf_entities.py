@@ -41,7 +41,7 @@ def entity(mark: Line | Arc | Polyline | Fill, handle: int, owner: str, layer: s
     """A mark as an entity; ``dashed``: of a line type with a pattern, ``solid``: continuous whatever its layer says."""
     plain = "6\nContinuous\n" if solid else ""
     if isinstance(mark, Line):
-        return f"0\nLINE\n5\n{handle:X}\n{head('AcDbLine', owner, layer, plain)}{place(10, mark.a)}{place(11, mark.b)}"
+        return f"0\nLINE\n5\n{handle:X}\n{head('AcDbLine', owner, layer, plain)}{flat(10, mark.a)}{flat(11, mark.b)}"
     if isinstance(mark, Arc):
         whole = mark.end - mark.start > 2 * pi - 1e-9
         text = (f"0\n{'CIRCLE' if whole else 'ARC'}\n5\n{handle:X}\n{head('AcDbCircle', owner, layer, plain)}"

@@ -19,7 +19,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
-from tmm_sheets.sheets.kinetics import balancing_sign
+from tmm_sheets.sheets.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage import indexed, shapes
 from tmm_sheets.words import marked, tell, tr
 
@@ -68,8 +68,8 @@ def _columns(project: Project, options: graphs.Options) -> list[tuple[DiagramQua
 def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Kinematic diagrams of the outputs, one graph under another.
 
-    Points have S, V, a along their straight path, links psi, omega, epsilon; both count from position 0 and are positive in
-    the sense in which the motion begins there.
+    Points have S, V, a along their straight path, links psi, omega, epsilon; both count from position 0. Those of points are
+    positive in the sense in which the motion begins there, those of links counter-clockwise, as in every table.
     """
     columns = _columns(project, options)
     if not columns:

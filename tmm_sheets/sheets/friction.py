@@ -18,8 +18,9 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets import diagrams, graphs, kinetics, linkage
+from tmm_sheets.sheets import diagrams, graphs, linkage
 from tmm_sheets.sheets.frame import Frame, fit_frame, ratio, standard
+from tmm_sheets.sheets.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr
 
@@ -234,7 +235,7 @@ def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     of, study = _friction(project), project.study
     n, forces = len(study.labels), study.forces
     assert forces.balancing is not None
-    drive, sign = np.abs(np.broadcast_to(forces.balancing.value, (n,))), kinetics.balancing_sign(project)
+    drive, sign = np.abs(np.broadcast_to(forces.balancing.value, (n,))), balancing_sign(project)
     columns = [(tr("F_{{{index}}}, N").format(index=index), np.abs(np.broadcast_to(forces.reactions[f"F{index}"].value, (n,))))
                for index in of.pairs]
     columns.append((f"|{sign}|, {tr('N·m') if study.driver is None else tr('N')}", drive))

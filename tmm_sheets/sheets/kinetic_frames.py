@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from tmm_sheets.construction.plan import symbol
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import extent
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -181,8 +183,19 @@ def crank_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[com
 def on_lever(project: Project, k: int) -> list[Shown]:
     """Forces hung on Zhukovsky's lever."""
     lv = project.study.lever
-    return acting((Shown(h.symbol, complex(h.at.at(k)), complex(h.force.at(k)), h.force, h.arm) for h in lv.hung),
-                  project.study.forces.force_size(k))
+    balanced = None if project.driver is not None else lv.hung[-1]
+    return acting((Shown(f"F̅_{{{flat(balancing_sign(project))}}}" if h is balanced else h.symbol, complex(h.at.at(k)),
+                         complex(h.force.at(k)), h.force, h.arm) for h in lv.hung), project.study.forces.force_size(k))
+
+
+def balancing_sign(project: Project) -> str:
+    """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" is what one without has."""
+    return linkage.indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
+
+
+def flat(sign: str) -> str:
+    """The letters of a sign on one line, as they stand in the index of another."""
+    return re.sub("F_|[_{}]", "", sign.replace(BAR, ""))
 
 
 def lever_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[complex], list[complex]]:

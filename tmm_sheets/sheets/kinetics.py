@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import pi
@@ -31,11 +30,13 @@ from tmm_sheets.sheets.kinetic_frames import (
     Shown,
     acting_sides,
     arrows,
+    balancing_sign,
     clear,
     couples_of,
     crank_scheme,
     finest,
     finest_crank,
+    flat,
     hinge_of,
     lever_scheme,
     on_crank,
@@ -241,13 +242,15 @@ def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
 def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
     seen, centre = list[complex](), s.frame(about)
-    busy = [centre, *points, *(s.frame(force.at) for force in shown), *(s.frame(force.foot(about)) for force in shown)]
+    feet = [s.frame(force.foot(about)) for force in shown]
+    busy = [centre, *points, *(s.frame(force.at) for force in shown), *feet]
     for force in sorted(shown, key=lambda force: -abs(force.vector)):  # forces on one line share the arm of the largest
         tail, foot = s.frame(force.at), s.frame(force.foot(about))
         if abs(foot - centre) < 1.5 or not force.whole or any(abs(foot - f) < 0.6 for f in seen):
             continue
         seen.append(foot)
-        letters = re.sub("F_|[_{}]", "", force.symbol.replace(BAR, ""))
+        letters = flat(force.symbol)
+        same = [flat(other.symbol) for other, f in zip(shown, feet, strict=True) if other.whole and abs(foot - f) < 0.6]
         pen = s.pen(force.arm, "construction", f"h{letters}")
         if abs(foot - tail) > 0.5:
             pen.ray_line(tail, foot, "thin", 2.0)
@@ -255,7 +258,7 @@ def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable
         pen.dot(foot, 0.35, "thin")
         places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
         at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-        pen.label(at, f"h_{{{letters}}}", 1j * (foot - centre), 2.5, 0.8)
+        pen.label(at, " = ".join(f"h_{{{name}}}" for name in dict.fromkeys([letters, *same])), 1j * (foot - centre), 2.5, 0.8)
         busy.append(at)
 
 
@@ -370,7 +373,7 @@ def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: comp
             _turning(s, s.at(hinge), 6.0, -away if s.at(hinge) == at else away, couple)
         said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
     if said and project.driver is None and forces.balancing is not None:
-        moment = number(abs(float(forces.balancing.at(k))), 5, forces.moment_size(k))
+        moment = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
         said.append(tr("{quantity} = {value} N·m").format(quantity=balancing_sign(project), value=moment))
     if said:
         _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
@@ -394,7 +397,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     s = stage(canvas, lv.plan, k, frame)
     s.dot("p", 0.9)
     s.letters("p", "p", gap=1.2)
-    _turned_letters(s, lv.points)
+    _turned_letters(s, turned, lv.points)
     if lv.contact is not None and project.driver is not None:
         play(s, [lv.contact], "axis")
         s.letters(lv.contact, "f′", gap=1.2)
@@ -402,13 +405,21 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     draw_forces(s, shown)
 
 
-def _turned_letters(s: Stage, points: Mapping[str, Step]) -> None:
-    """Dots of the turned plan's points and their letters with a prime; those of one place together."""
-    names = list(points)
-    for same in together([s.at(step) for step in points.values()], 0.5):
-        first = points[names[same[0]]]
-        s.dot(first)
-        s.letters(first, ", ".join(f"{linkage.indexed(names[i])}′" for i in same), s.at(first) - s.frame(0j), gap=1.2)
+def _turned_letters(s: Stage, turned: Stage, points: Mapping[str, Step]) -> None:
+    """Dots of the turned plan's points and their letters with a prime; those of one place together.
+
+    ``points`` are those that forces hang on; the other vertices are those of the velocity plan itself, which is ``turned``.
+    """
+    vertices = [step for seg in turned.plan.segments for step in (seg.tail, seg.head) if step.name != turned.plan.pole]
+    every = {name: (s, step) for name, step in points.items()}
+    every |= {step.name: (turned, step) for step in vertices if step.name not in points}
+    names = list(every)
+    for same in together([on.at(step) for on, step in every.values()], 0.5):
+        here, first = every[names[same[0]]]
+        at = here.at(first)
+        here.dot(first)
+        text = ", ".join(f"{linkage.indexed(names[i])}′" for i in same)
+        here.letters(first, text, at - s.frame(0j), gap=1.2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -423,16 +434,10 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
         (clean(float(study.balance[name].at(k)), kind) for name in ("M", "M_р"))
     unit = tr("N") if force else tr("N·m")
     difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
-    rows = [[tr("Balancing force") if force else tr("Balancing moment"), tr("Value")],
+    heading = tr("Balancing force") if force else tr("Balancing moment (“+”: in the sense of ω_1)")
+    rows = [[heading, tr("Value")],
             [tr("Force analysis: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(kinetic, 2)],
             [tr("Zhukovsky lever: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(hung, 2)],
             [tr("Difference, %"), number(difference, 2, 100.0)]]
     row = min(box.height / len(rows), 9.0)
     canvas.table(complex(box.x0, box.y1), widened([box.width * 0.66, box.width * 0.34], rows, 3.5), rows, row, 3.5)
-
-
-def balancing_sign(project: Project) -> str:
-    """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" is what one without has."""
-    return linkage.indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
-
-

@@ -230,7 +230,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
             slope=number(slope, kind=size([plan["dJ/dφ"].value], k))),
         tr("M = M_{constant} + M_{varying} = {moment} N·m;  {held} + {sign} = {inertia} kg·m^2").format(
             constant=constant, varying=varying, moment=fixed(moment, 1), held=held, sign=sign, inertia=fixed(inertia, 2)),
-        tr("ε_1 = (M − ω_1^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
+        tr("ε_1 = (M − ω_{{1m}}^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
             sign=sign, held=held, epsilon=fixed(epsilon, 3)),
         *_motor(fw), *flywheel.power(fw), *flywheel.disagreement(fw), *_size(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))

@@ -15,6 +15,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import is_zero, number
+from tmm_sheets.sheets.kinetic_frames import balancing_sign, flat, on_lever
 from tmm_sheets.sheets.linkage import indexed
 from tmm_sheets.words import tr
 
@@ -53,63 +54,6 @@ def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
 
 
-def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the equation of the lever can do with, mm; none before the lever is drawn."""
-    if "lever" not in canvas.scales or not _on_lever(project)[1]:
-        return []
-    sizes = (220.0, 3.5, STEP), (160.0, 3.5, STEP), (160.0, 3.5, 6.0), (120.0, 3.5, 6.0), (100.0, 2.5, 5.0)
-    return [(width + 6.0, 12.0 + step * len(_of_lever(project, canvas, width, height))) for width, height, step in sizes]
-
-
-def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Sum of the moments about the pole of Zhukovsky's lever, arms in mm of the drawing, and the balancing force it gives."""
-    lines, height = _of_lever(project, canvas, box.width - 6.0, 3.5), 3.5
-    if 12.0 + 6.0 * len(lines) > box.height + 1e-6:
-        lines, height = _of_lever(project, canvas, box.width - 6.0, 2.5), 2.5
-    canvas.of = "moments"
-    left = canvas.title(box, tr("Equation of moments of the lever"))
-    step = min(STEP, (left.y1 - box.y0) / len(lines))
-    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
-
-
-def _on_lever(project: Project) -> tuple[Term, list[Term]]:
-    """Moment of the balancing force about the pole and those of the others, forces in N, arms as velocities, m/s."""
-    k, lv, forces = project.force_index, project.study.lever, project.study.forces
-    found = []
-    for hung in lv.hung:
-        force, arm = abs(complex(hung.force.at(k))), float(hung.arm.at(k))
-        sign = hung.symbol.replace(BAR, "")
-        arm = arm if np.isfinite(arm) else 0.0  # a force of nothing has none
-        found.append(Term(f"{sign}·h_{{{re.sub('F_|[_{}]', '', sign)}}}", 1.0 if arm > 0 else -1.0, (force, abs(arm))))
-    largest = max(abs(complex(step.at(k))) for step in lv.velocities.points.values())
-    sizes = forces.force_size(k), largest
-    return found[-1], [term for term in found[:-1] if not any(map(is_zero, term.values, sizes))]
-
-
-def _of_lever(project: Project, canvas: Canvas, width: float, height: float) -> list[str]:
-    """Lines of the lever's equation, broken between its terms."""
-    own, terms = _on_lever(project)
-    mu, size = canvas.scales["lever"].mu, project.study.forces.force_size(project.force_index)
-    measured = [term._replace(values=(term.values[0], term.values[1] / mu)) for term in terms]
-    force, _ = own.letters.split("·")
-    asked = tr("{force} = |{sum}|/{length} = {value} N").format(
-        force=force, sum=_sum(measured, numbers=True), length=number(own.values[1] / mu), value=number(own.values[0], 5, size))
-    return [line for text in (tr("ΣM_{centre} = {sum} = 0").format(centre="p", sum=_sum([own, *terms])), asked)
-            for line in _broken(text, width, height)]
-
-
-def _broken(text: str, width: float, height: float) -> Iterator[str]:
-    """A sum on several lines, each but the first beginning with the sign of its first term."""
-    line = ""
-    for part in re.split(r" (?=[+−] )", text):
-        longer = f"{line} {part}" if line else part
-        if line and letter(longer, height).width > width:
-            yield line
-            longer = part
-        line = longer
-    yield line
-
-
 def _lines(project: Project) -> Iterator[str]:
     k, forces, pos = project.force_index, project.study.forces, project.study.positions
     for part in forces.from_moments:
@@ -132,12 +76,89 @@ def _lines(project: Project) -> Iterator[str]:
         total = forces.balancing.args[0]
         terms = list(_terms(project, total)) if np.isfinite(total.at(k)) else []
         if terms:
-            name = indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
-            turning = -1.0 if float(total.at(k)) > 0 else 1.0
+            # Taken to act in the sense of rotation: where it comes out negative it acts against it.
+            name, sense = balancing_sign(project), float(pos.mechanism.crank.sense)
             centre = indexed(pos.mechanism.crank.pivot)
-            yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(name, turning, ()), *terms]))
-            yield tr("{moment} = |{sum}| = {value} N·m").format(
-                moment=name, sum=_sum(terms, numbers=True), value=number(abs(float(total.at(k))), 5, forces.moment_size(k)))
+            yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(name, sense, ()), *terms]))
+            solved = [term._replace(sign=-sense * term.sign) for term in terms]
+            value = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
+            yield tr("{moment} = {sum} = {value} N·m (“+”: in the sense of ω_1)").format(
+                moment=name, sum=_sum(solved, numbers=True), value=value)
+
+
+def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the equation of the lever can do with, mm: none without the lever on the sheet."""
+    if "lever" not in canvas.scales:
+        return []
+    sizes = []
+    for width in (250.0, 190.0, 140.0, 110.0, 90.0):
+        for height, step in ((3.5, 6.0), (2.5, 5.0)):
+            lines = _lever_lines(project, canvas, width - 6.0, height, options)
+            sizes.append((max(letter(line, height).width for line in lines) + 6.0, 10.0 + step * len(lines)))
+    return sizes
+
+
+def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Sum of the moments about the pole of Zhukovsky's lever: letters, then numbers; arms in mm as they are drawn."""
+    canvas.of = "moments of the lever"
+    left = canvas.title(box, tr("Equation of the lever"))
+    for height, step in ((3.5, 6.0), (2.5, 5.0)):
+        lines = _lever_lines(project, canvas, box.width - 3.0, height, options)
+        if 10.0 + step * len(lines) <= box.height + 1e-6:
+            break
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+
+
+def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, options: dict[str, Any]) -> list[str]:
+    """Lines of the equation of the lever, broken before a sign where they would be wider than ``width``, mm.
+
+    ``letters`` = false gives them in numbers alone.
+    """
+    k, study, mm = project.force_index, project.study, canvas.scales["lever"].mm
+    least, own = study.forces.force_size(k) * project.mechanism.crank.speed, study.lever.hung[-1]
+    by_moment = project.driver is None
+    terms = []
+    for force in on_lever(project, k):
+        arm, size = float(force.arm.at(k)), abs(force.vector)
+        if force.step is not own.force and not is_zero(size * arm, least):
+            sign = force.symbol.replace(BAR, "")
+            terms.append(Term(f"{sign}·h_{{{flat(force.symbol)}}}", float(np.sign(arm)), (size, round(float(mm(abs(arm))), 1))))
+    name = flat(balancing_sign(project)) if by_moment else flat(own.symbol)
+    sign = f"F_{{{name}}}" if by_moment else own.symbol.replace(BAR, "")
+    arm, value = float(own.arm.at(k)), abs(complex(own.force.at(k)))
+    if by_moment:  # taken to act in the sense of rotation, like the moment that it stands for
+        moment, length = float(study.balance["M_р"].at(k)), project.mechanism.crank.length
+        arm, value = abs(complex(own.at.at(k))) * -1.0, moment / length
+    if not terms or not np.isfinite(arm):
+        return [tr("No force has a moment about the pole")]
+    turning = float(np.sign(arm))
+    own_term = Term(f"{sign}·h_{{{name}}}", turning, ())
+    h, found = number(round(float(mm(abs(arm))), 1)), number(value, 5, study.forces.force_size(k))
+    if options.get("letters", True):
+        solved = [term._replace(sign=-turning * term.sign) for term in terms]
+        said = [tr("ΣM_p = {sum} = 0").format(sum=_sum([own_term, *terms])),
+                tr("{force} = ({sum})/{arm} = {value} N").format(force=sign, sum=_sum(solved, numbers=True), arm=h, value=found)]
+    else:
+        first = _sum([own_term._replace(letters=f"{sign}·{h}")])
+        rest = _sum([Term("", 1.0, ()), *terms], numbers=True)
+        said = [tr("ΣM_p = {sum} = 0; {force} = {value} N").format(sum=first + rest, force=sign, value=found)]
+    if by_moment:
+        m = project.mechanism.crank
+        said.append(tr("{moment} = {force}·l_{{{crank}}} = {value} N·m (“+”: in the sense of ω_1)").format(
+            moment=balancing_sign(project), force=sign, crank=f"{m.pivot}{m.pin}",
+            value=number(moment, 5, study.forces.moment_size(k))))
+    return [line for text in said for line in _broken(text, width, height)]
+
+
+def _broken(text: str, width: float, height: float) -> list[str]:
+    """A formula in lines no wider than ``width``, mm, where its signs let it be broken."""
+    lines = [""]
+    for piece in re.split(r"(?= [+−=] )", text):
+        if lines[-1] and letter(lines[-1] + piece, height).width > width:
+            lines.append(piece.lstrip())
+        else:
+            lines[-1] += piece
+    return lines
 
 
 def _terms(project: Project, total: Step) -> Iterator[Term]:

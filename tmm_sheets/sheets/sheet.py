@@ -22,6 +22,7 @@ from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import places, titles
+from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composition import DESIGNATION, arranged
 from tmm_sheets.words import marked, of_file, tell, tr
 
@@ -132,7 +133,7 @@ def composed(project: Project, n: int) -> Composed:
     canvas.of = "title block"
     canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", "title block")
     fields = {
-        "designation": f"{of_file(block.designation)} {tr(plan.code)}".strip(),
+        "designation": f"{of_file(block.designation)} {_code(project, n)}".strip(),
         "title": tr(plan.title),
         "project": of_file(project.variant.project.title),
         "letter": of_file(block.letter),
@@ -168,6 +169,13 @@ def composed(project: Project, n: int) -> Composed:
     left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames))
+
+
+def _code(project: Project, n: int) -> str:
+    """Code of sheet ``n`` in the designations: its arrangement's, the sheet's number where these do not rise over the project."""
+    codes = [arrangement(name).code for name in project.sheets]
+    rising = all(int(a[1:]) < int(b[1:]) for a, b in pairwise(codes)) if all(code[1:].isdecimal() for code in codes) else False
+    return tr(codes[n - 1]) if rising else tr("D{number}").format(number=n)
 
 
 @cache

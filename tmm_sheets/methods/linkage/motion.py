@@ -43,12 +43,10 @@ INCLINATION = Rule("inclination of a rod", lambda u, along: np.arctan((u * np.co
 FIRST = Rule("first direction of a link", take, ("direction", "number"), "direction",
              marked("Measure the angle from the direction {name}."))
 ANGLE = Rule("angle turned from the beginning",
-             lambda u, start, turns, sign: sign * (np.arctan2(u.imag, u.real) + TURN * turns - np.arctan2(start.imag, start.real)),
-             ("direction", "direction", "number", "number"), "angle", marked("Angle turned by the link {name} = {value}."))
-OMEGA = Rule("angular velocity in the first sense", lambda w, sign: sign * w, ("number", "number"), "number",
-             marked("{name} = {value} s⁻¹."), unit="rad/s")
-EPSILON = Rule("angular acceleration in the first sense", lambda w, sign: sign * w, ("number", "number"), "number",
-               marked("{name} = {value} s⁻²."), unit="rad/s2")
+             lambda u, start, turns: np.arctan2(u.imag, u.real) + TURN * turns - np.arctan2(start.imag, start.real),
+             ("direction", "direction", "number"), "angle", marked("Angle turned by the link {name} = {value}."))
+OMEGA = Rule("angular velocity of a link", lambda w: w, ("number",), "number", marked("{name} = {value} s⁻¹."), unit="rad/s")
+EPSILON = Rule("angular acceleration of a link", lambda e: e, ("number",), "number", marked("{name} = {value} s⁻²."), unit="rad/s2")
 
 Three = tuple[Step, Step, Step]
 
@@ -125,15 +123,14 @@ class Motion:
         return self._known[name]
 
     def link(self, name: str) -> Output:
-        """Angle of a link from position 0 on, its angular velocity and acceleration, positive in the sense it begins with."""
+        """Angle of a link from position 0 on, its angular velocity and acceleration, positive counter-clockwise."""
         if name not in self._known:
             angle = np.angle(np.broadcast_to(self.between.positions.directions[name].value, self.turned.shape))
             swept = np.unwrap(angle)
-            sign = Given(_begins(swept - swept[0]), f"sense of link {name}", over="none", choice="sense in which the motion begins")
             at = self.study.turned
             here = np.angle(np.broadcast_to(self.study.positions.directions[name].value, at.shape))
             turns = (np.interp(at, self.turned, swept) - here, swept - angle)
-            self._known[name] = Output(*(_turning(plan, study, name, sign, np.round(k / TURN))
+            self._known[name] = Output(*(_turning(plan, study, name, np.round(k / TURN))
                                          for (plan, study), k in zip(self._both(), turns, strict=True)))
         return self._known[name]
 
@@ -149,13 +146,13 @@ def _along(plan: Plan, study: Study, name: str, u: Given) -> Three:
             plan.add(f"a_{name}", ACCELERATION, a, u, symbol=f"a_{{{name}}}"))
 
 
-def _turning(plan: Plan, study: Study, name: str, sign: Given, turns: Any) -> Three:
+def _turning(plan: Plan, study: Study, name: str, turns: Any) -> Three:
     u, omega, epsilon = study.positions.directions[name], study.velocities.omega[name], study.accelerations.epsilon[name]
     start = plan.add(f"{name}₀", FIRST, u, 0)
     whole = Given(turns, f"turns of link {name}", choice="whole turns, counted on from position 0")
-    return (plan.add(f"ψ_{name}", ANGLE, u, start, whole, sign, symbol=f"ψ_{{{name}}}"),
-            plan.add(f"ω_{name}", OMEGA, omega, sign, symbol=f"ω_{{{name}}}"),
-            plan.add(f"ε_{name}", EPSILON, epsilon, sign, symbol=f"ε_{{{name}}}"))
+    return (plan.add(f"ψ_{name}", ANGLE, u, start, whole, symbol=f"ψ_{{{name}}}"),
+            plan.add(f"ω_{name}", OMEGA, omega, symbol=f"ω_{{{name}}}"),
+            plan.add(f"ε_{name}", EPSILON, epsilon, symbol=f"ε_{{{name}}}"))
 
 
 def _path(name: str, way: Any) -> complex:
