@@ -10,6 +10,7 @@ from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.tracing import trace
+from tmm_sheets.drawing.marks import Text
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6
@@ -187,15 +188,30 @@ def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
     assert (found[0].head, judge(found[0], 0.25, 0.15).what) == ("absent", "no arrow head here")
 
 
-@pytest.mark.parametrize(("letters", "status"), [("WMW", "lettering"), ("W", "part of lettering"), ("", "absent lettering")])
-def test_part_of_lettering_is_missed(letters, status):
-    word = Element(1, VIEW, "WMW", "text", np.array([300, 312, 312 + 4j, 300 + 4j]) + 300j, "text", text="WMW", height=4.0)
+def word(*runs, bar=False):
+    """Lettering of W, M and V, its letters 4 mm high and about as wide, in runs; with a bar over it."""
+    at, text = 300 + 300j, "".join(runs)
+    marks = [Text(at + 4 * len("".join(runs[:k])), run, 4.0) for k, run in enumerate(runs)]
+    pieces = (np.array([at + 4.3j, at + 4 * len(text) + 4.3j]),) if bar else ()
+    corners = at + np.array([0, 4 * len(text), 4 * len(text) + 4j, 4j])
+    return Element(1, VIEW, text, "text", corners, "text", text=text, height=4.0, pieces=pieces, marks=tuple(marks))
+
+
+@pytest.mark.parametrize(("runs", "letters", "bar", "status"), [
+    (("WMW",), "WMW", False, "lettering"), (("WMW",), "W", False, "part of lettering"), (("WMW",), "", False, "absent lettering"),
+    (("WM", "M"), "WMM", True, "lettering"), (("WM", "M"), "WM", True, "part of lettering"), (("W", "M"), "", True, "absent lettering"),
+])
+def test_part_of_lettering_is_missed(runs, letters, bar, status):
+    """A run of letters is looked for by itself, and the bar over letters that stand elsewhere is no lettering."""
     ink = paper()
     for k in range(len(letters)):  # zigzags, 4 mm each
         x = 300.3 + 4 * k
         for one, other in ((0, 1 + 4j), (1 + 4j, 2), (2, 3 + 4j)):
             draw(ink, x + one + 300j, x + other + 300j, "thin")
-    found, _ = trace([word], ink)
+    known = word(*runs, bar=bar)
+    for a, b in known.pieces:
+        draw(ink, a, b, "thin")
+    found, _ = trace([known], ink)
     assert found[0].status == status
 
 
@@ -212,12 +228,11 @@ def test_a_pale_trace_in_its_place_is_not_the_line_when_a_dark_one_lies_beside(d
 
 
 def test_a_straight_stroke_beside_lettering_is_extra_and_a_letter_is_not():
-    word = Element(1, VIEW, "W", "text", np.array([300, 304, 304 + 5j, 300 + 5j]) + 300j, "text", text="W", height=5.0)
     ink = paper()
     for one, other in ((0, 1 + 5j), (1 + 5j, 2), (2, 3 + 5j)):  # the letter, 4 mm too low
         draw(ink, 300.5 + 296j + one, 300.5 + 296j + other, "thin")
     draw(ink, 298 + 308j, 310 + 306.5j, "thin")
-    _, extra = trace([word], ink)
+    _, extra = trace([word("W")], ink)
     assert [x.length for x in extra] == pytest.approx([12.1 + 1.0], abs=0.6)  # its blur, and coarse pixels
 
 

@@ -31,6 +31,8 @@ from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.stations import measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
 from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import Text
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
@@ -163,7 +165,8 @@ def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
 def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level: float) -> dict[int, Trace]:
     """Traces by number of what is not measured: whether there is any ink in the place of lettering; the rest is not looked at.
 
-    The ink of lines that run through the place does not count, nor does a place that they fill.
+    Each run of letters, a letter or its index, is looked for by itself. The ink of lines that run through its place does not
+    count, bars over letters among them, nor does a place that they fill.
     """
     out = {e.number: Trace(e, "small", covered=1.0) for e in small}
     words = [e for e in small if e.kind == "text"]
@@ -174,10 +177,10 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
         if t.at is not None:
             paint(others, t.element, t.at, BESIDE)
     for e in small:
-        if e.kind != "text":
-            paint(others, e, e.points, BESIDE)
+        paint(others, e, e.points, BESIDE)
+    runs = [(e.number, len(m.text), text_box(m)) for e in words for m in e.marks if isinstance(m, Text)]
     u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 60), np.linspace(0, 1, 24)))
-    corners = np.stack([grown(e.points, 0.3) for e in words])
+    corners = np.stack([grown(box, 0.3) for _, _, box in runs])
     a, b, _, d = corners.T[:, :, None]
     places = pixels(a + u * (b - a) + v * (d - a))
     free = sample(others, places, nearest=True) == 0
@@ -185,9 +188,12 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     shares = dark.sum(1) / np.maximum(free.sum(1), 1)
     shown, inked = ((part.reshape(-1, 24, 60).sum(1) >= rows) for part, rows in ((free, 8), (dark, 2)))
     columns = (inked & shown).sum(1) / np.maximum(shown.sum(1), 1)
-    partly = (columns < PARTLY) & (shown.mean(1) > CLEAR)
-    for e, share, seen, part in zip(words, shares.tolist(), free.mean(1).tolist(), partly.tolist(), strict=True):
-        there = share > WRITTEN or seen < OPEN
-        status: Status = "absent lettering" if not there else "part of lettering" if part and len(e.text) > 1 else "lettering"
-        out[e.number] = Trace(e, status, covered=share)
+    there = (shares > WRITTEN) | (free.mean(1) < OPEN)
+    clear = shown.mean(1) > CLEAR
+    gone = clear & (~there | ((columns < PARTLY) & (np.array([length for _, length, _ in runs]) > 1)))
+    of = np.array([number for number, _, _ in runs])
+    for e in words:
+        mine = of == e.number
+        status: Status = "absent lettering" if not there[mine].any() else "part of lettering" if gone[mine].any() else "lettering"
+        out[e.number] = Trace(e, status, covered=float(shares[mine].max()))
     return out
