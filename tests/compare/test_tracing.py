@@ -98,6 +98,18 @@ def test_lines_in_one_stroke_are_measured_together(off):
             assert t.deviation == pytest.approx(off, abs=0.15)
 
 
+@pytest.mark.parametrize(("by", "verdict"), [(0.0, "green"), (2.5, "amber"), (-4.0, "amber")])
+def test_a_line_that_left_its_stroke_is_seen_beside_it(by, verdict):
+    """A helper line turned about its beginning, from under a vector that is right, across another line."""
+    a, b = 250 + 300j, 280 + 300j
+    known = [line(1, a, b, "construction"), line(2, a, b, "vector"), line(3, 268 + 280j, 268 + 320j)]
+    found, _ = traced(known, [(a, b + 1j * by, "construction"), *((*e.points, e.style) for e in known[1:])])
+    assert judge(found[0], 0.25, 0.15).verdict == verdict
+    assert judge(found[2], 0.25, 0.15).verdict == "green"
+    if by:
+        assert found[0].turn * 30 == pytest.approx(by, abs=0.4)
+
+
 def test_a_line_among_others_that_has_ink_at_its_own_place_is_not_called_displaced():
     """A fan of lines a millimetre apart, blurred until the gaps are grey."""
     known = [line(k + 1, 300 + 1j * (300 + 0.9 * k), 380 + 1j * (300 + 0.9 * k), "thin") for k in range(8)]
@@ -175,6 +187,21 @@ def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
     assert said in f.what
 
 
+@pytest.mark.parametrize("theirs", [False, True])
+def test_a_head_at_the_other_end_tells_though_the_tip_is_hidden(theirs):
+    """Lines beside the tip hide it; where another arrow has its head at the other end, nothing is told."""
+    a, b = 300 + 300j, 330 + 300j
+    known = [arrow(1, a, b), line(2, b - 5 + 0.5j, b + 3 + 0.5j), line(3, b - 5 - 0.5j, b + 3 - 0.5j)]
+    if theirs:
+        known.append(arrow(4, b, a))
+    ink = paper()
+    for e in known:
+        draw(ink, *e.points, e.style)
+    fill_head(ink, a, np.pi)
+    found, _ = trace(known, ink)
+    assert (found[0].head == "reversed") == (not theirs)
+
+
 def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
     a, b = 300 + 300j, 330 + 320j
     dot = Element(3, VIEW, "", "circle", b + 0.65 * np.exp(1j * np.linspace(0, 2 * np.pi, 40)), "thin", centre=b, radius=0.65,
@@ -199,7 +226,8 @@ def word(*runs, bar=False):
 
 @pytest.mark.parametrize(("runs", "letters", "bar", "status"), [
     (("WMW",), "WMW", False, "lettering"), (("WMW",), "W", False, "part of lettering"), (("WMW",), "", False, "absent lettering"),
-    (("WM", "M"), "WMM", True, "lettering"), (("WM", "M"), "WM", True, "part of lettering"), (("W", "M"), "", True, "absent lettering"),
+    (("WM", "M"), "WMM", True, "lettering"), (("WM", "M"), "WM", True, "part of lettering"),
+    (("W", "M"), "", True, "absent lettering"),
 ])
 def test_part_of_lettering_is_missed(runs, letters, bar, status):
     """A run of letters is looked for by itself, and the bar over letters that stand elsewhere is no lettering."""

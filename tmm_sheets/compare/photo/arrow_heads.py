@@ -121,9 +121,12 @@ def _head(t: Trace, paper: _Paper) -> Head:
     if _is_head(t.element, here):
         return "there"
     # Not even a small one.
-    if not (_share(t.element, here) <= BARE and _share(t.element, here, SMALLER) <= INKED):
-        return "unknown"
-    return "reversed" if _is_head(t.element, paper.widening(t.element, begin, tip)) else "absent"
+    bare = _share(t.element, here) <= BARE and _share(t.element, here, SMALLER) <= INKED
+    there = paper.widening(t.element, begin, tip)
+    # Where nothing can be told of the tip, a whole head at the other end must show: others may have theirs there.
+    if _is_head(t.element, there) and (bare or not np.isnan(there[_length(t.element) >= BACK]).any()):
+        return "reversed"
+    return "absent" if bare else "unknown"
 
 
 def _is_head(e: Element, widening: Floats) -> bool:

@@ -20,7 +20,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.arrow_heads import with_heads
-from tmm_sheets.compare.photo.displacement import displaced, rather_elsewhere
+from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.extra_ink import extra_ink
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
 from tmm_sheets.compare.photo.ink_levels import ink_levels
@@ -33,6 +33,7 @@ from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
 from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.styles import line_type
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
@@ -41,6 +42,7 @@ PARTLY, CLEAR = 0.45, 0.9
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
 PALE, GAPS = 0.6, 0.85
 """Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
+CLOSE = 0.9  # mm by which a line drawn by hand and photographed is wider than its own width
 BESIDE = 0.9  # mm about lines whose ink is theirs
 
 
@@ -88,6 +90,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
     found = _doubted(found, ink, left, wiped, owners, pale)
+    found = _beside_strokes(found, small, ink, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     words = _places_of_lettering(elements, ink)
     ended = with_ends(open_lines, ink, owners, words, pale)
@@ -135,20 +138,45 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
 
 def _doubted(found: Sequence[Trace], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
     """The traces; those of lines paler than others of their kind, or with gaps, are looked for elsewhere once more."""
-    styles: dict[str, list[float]] = {}
-    for t in found:
-        if t.darkness:
-            styles.setdefault(t.element.style, []).append(t.darkness)
-    usual = {style: float(np.median(values)) for style, values in styles.items()}
+    usual = _usual(found)
     out = []
     for t in found:
-        if t.darkness and (t.darkness < PALE * usual[t.element.style] or t.covered < GAPS):
+        if t.darkness and (t.darkness < PALE * usual[line_type(t.element.style).width] or t.covered < GAPS):
             better = rather_elsewhere(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
             if better is not None and better.at is not None:
                 owners.add(t.element, better.at)
                 wipe_found(wiped, better)
                 wipe_found(left, better, 0)
                 t = better
+        out.append(t)
+    return out
+
+
+def _usual(found: Sequence[Trace]) -> dict[float, float]:
+    """How dark lines of each width usually are; those of one style may nearly all lie under others."""
+    widths: dict[float, list[float]] = {}
+    for t in found:
+        if t.darkness:
+            widths.setdefault(line_type(t.element.style).width, []).append(t.darkness)
+    return {width: float(np.median(values)) for width, values in widths.items()}
+
+
+def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, level: float) -> list[Trace]:
+    """The traces; of lines in one stroke with others it is seen whether a line like them lies beside the stroke."""
+    taken = np.zeros_like(ink)
+    for e in small:
+        wipe_small(taken, e)
+    for t in found:
+        if t.at is not None:
+            paint(taken, t.element, t.at, CLOSE)
+    usual = _usual(found)
+    out = []
+    for t in found:
+        if t.status == "shared" and t.element.kind == "line":
+            other = beside(t, stations(t.element, False), ink, taken, level)
+            # Paler lines were rubbed out, or are the edges of others.
+            if other is not None and other.darkness > PALE * usual.get(line_type(t.element.style).width, 0.0):
+                t = other
         out.append(t)
     return out
 
