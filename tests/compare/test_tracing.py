@@ -10,6 +10,7 @@ from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.tracing import trace
+from tmm_sheets.drawing.marks import Text
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6
@@ -97,6 +98,18 @@ def test_lines_in_one_stroke_are_measured_together(off):
             assert t.deviation == pytest.approx(off, abs=0.15)
 
 
+@pytest.mark.parametrize(("by", "verdict"), [(0.0, "green"), (2.5, "amber"), (-4.0, "amber")])
+def test_a_line_that_left_its_stroke_is_seen_beside_it(by, verdict):
+    """A helper line turned about its beginning, from under a vector that is right, across another line."""
+    a, b = 250 + 300j, 280 + 300j
+    known = [line(1, a, b, "construction"), line(2, a, b, "vector"), line(3, 268 + 280j, 268 + 320j)]
+    found, _ = traced(known, [(a, b + 1j * by, "construction"), *((*e.points, e.style) for e in known[1:])])
+    assert judge(found[0], 0.25, 0.15).verdict == verdict
+    assert judge(found[2], 0.25, 0.15).verdict == "green"
+    if by:
+        assert found[0].turn * 30 == pytest.approx(by, abs=0.4)
+
+
 def test_a_line_among_others_that_has_ink_at_its_own_place_is_not_called_displaced():
     """A fan of lines a millimetre apart, blurred until the gaps are grey."""
     known = [line(k + 1, 300 + 1j * (300 + 0.9 * k), 380 + 1j * (300 + 0.9 * k), "thin") for k in range(8)]
@@ -174,6 +187,21 @@ def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
     assert said in f.what
 
 
+@pytest.mark.parametrize("theirs", [False, True])
+def test_a_head_at_the_other_end_tells_though_the_tip_is_hidden(theirs):
+    """Lines beside the tip hide it; where another arrow has its head at the other end, nothing is told."""
+    a, b = 300 + 300j, 330 + 300j
+    known = [arrow(1, a, b), line(2, b - 5 + 0.5j, b + 3 + 0.5j), line(3, b - 5 - 0.5j, b + 3 - 0.5j)]
+    if theirs:
+        known.append(arrow(4, b, a))
+    ink = paper()
+    for e in known:
+        draw(ink, *e.points, e.style)
+    fill_head(ink, a, np.pi)
+    found, _ = trace(known, ink)
+    assert (found[0].head == "reversed") == (not theirs)
+
+
 def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
     a, b = 300 + 300j, 330 + 320j
     dot = Element(3, VIEW, "", "circle", b + 0.65 * np.exp(1j * np.linspace(0, 2 * np.pi, 40)), "thin", centre=b, radius=0.65,
@@ -187,15 +215,31 @@ def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
     assert (found[0].head, judge(found[0], 0.25, 0.15).what) == ("absent", "no arrow head here")
 
 
-@pytest.mark.parametrize(("letters", "status"), [("WMW", "lettering"), ("W", "part of lettering"), ("", "absent lettering")])
-def test_part_of_lettering_is_missed(letters, status):
-    word = Element(1, VIEW, "WMW", "text", np.array([300, 312, 312 + 4j, 300 + 4j]) + 300j, "text", text="WMW", height=4.0)
+def word(*runs, bar=False):
+    """Lettering of W, M and V, its letters 4 mm high and about as wide, in runs; with a bar over it."""
+    at, text = 300 + 300j, "".join(runs)
+    marks = [Text(at + 4 * len("".join(runs[:k])), run, 4.0) for k, run in enumerate(runs)]
+    pieces = (np.array([at + 4.3j, at + 4 * len(text) + 4.3j]),) if bar else ()
+    corners = at + np.array([0, 4 * len(text), 4 * len(text) + 4j, 4j])
+    return Element(1, VIEW, text, "text", corners, "text", text=text, height=4.0, pieces=pieces, marks=tuple(marks))
+
+
+@pytest.mark.parametrize(("runs", "letters", "bar", "status"), [
+    (("WMW",), "WMW", False, "lettering"), (("WMW",), "W", False, "part of lettering"), (("WMW",), "", False, "absent lettering"),
+    (("WM", "M"), "WMM", True, "lettering"), (("WM", "M"), "WM", True, "part of lettering"),
+    (("W", "M"), "", True, "absent lettering"),
+])
+def test_part_of_lettering_is_missed(runs, letters, bar, status):
+    """A run of letters is looked for by itself, and the bar over letters that stand elsewhere is no lettering."""
     ink = paper()
     for k in range(len(letters)):  # zigzags, 4 mm each
         x = 300.3 + 4 * k
         for one, other in ((0, 1 + 4j), (1 + 4j, 2), (2, 3 + 4j)):
             draw(ink, x + one + 300j, x + other + 300j, "thin")
-    found, _ = trace([word], ink)
+    known = word(*runs, bar=bar)
+    for a, b in known.pieces:
+        draw(ink, a, b, "thin")
+    found, _ = trace([known], ink)
     assert found[0].status == status
 
 
@@ -212,12 +256,11 @@ def test_a_pale_trace_in_its_place_is_not_the_line_when_a_dark_one_lies_beside(d
 
 
 def test_a_straight_stroke_beside_lettering_is_extra_and_a_letter_is_not():
-    word = Element(1, VIEW, "W", "text", np.array([300, 304, 304 + 5j, 300 + 5j]) + 300j, "text", text="W", height=5.0)
     ink = paper()
     for one, other in ((0, 1 + 5j), (1 + 5j, 2), (2, 3 + 5j)):  # the letter, 4 mm too low
         draw(ink, 300.5 + 296j + one, 300.5 + 296j + other, "thin")
     draw(ink, 298 + 308j, 310 + 306.5j, "thin")
-    _, extra = trace([word], ink)
+    _, extra = trace([word("W")], ink)
     assert [x.length for x in extra] == pytest.approx([12.1 + 1.0], abs=0.6)  # its blur, and coarse pixels
 
 

@@ -44,12 +44,13 @@ ENOUGH, SOME = 0.6, 6
 
 @dataclass(frozen=True)
 class _Paper:
-    """The rectified picture, who is drawn where, places of lettering (255 there), and where the sheet does not show."""
+    """The rectified picture, who is drawn where, places of lettering (255 there), where the sheet does not show, tips of arrows."""
 
     ink: Any
     owners: Owners
     words: Any
     hidden: Mask
+    tips: Sequence[complex]
 
     def beside(self, e: Element, start: complex, along: Floats, way: complex, side: int) -> Floats:
         """Ink across one side of a line at places ``along`` mm from ``start``, nan where it cannot be told."""
@@ -94,7 +95,7 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     -------
     The traces in the same order, with ``head``.
     """
-    paper = _Paper(ink, owners, words, hidden)
+    paper = _Paper(ink, owners, words, hidden, [complex(f[0]) for t in traces for f in t.element.fills])
     return [replace(t, head=_head(t, paper)) if _wanted(t) else t for t in traces]
 
 
@@ -121,9 +122,13 @@ def _head(t: Trace, paper: _Paper) -> Head:
     if _is_head(t.element, here):
         return "there"
     # Not even a small one.
-    if not (_share(t.element, here) <= BARE and _share(t.element, here, SMALLER) <= INKED):
-        return "unknown"
-    return "reversed" if _is_head(t.element, paper.widening(t.element, begin, tip)) else "absent"
+    bare = _share(t.element, here) <= BARE and _share(t.element, here, SMALLER) <= INKED
+    there = paper.widening(t.element, begin, tip)
+    # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
+    alone = not any(abs(z - begin) < _length(t.element) for z in paper.tips)
+    if _is_head(t.element, there) and (bare or alone):
+        return "reversed"
+    return "absent" if bare else "unknown"
 
 
 def _is_head(e: Element, widening: Floats) -> bool:

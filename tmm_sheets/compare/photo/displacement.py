@@ -11,7 +11,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed
+from tmm_sheets.compare.photo.stations import ENOUGH, LEAST, STEP, Stations, expected_ink, fit, measured, smoothed
 from tmm_sheets.compare.photo.traces import Trace
 
 FAR = 6.0  # mm from its place within which a displaced element is sought
@@ -21,6 +21,8 @@ PLENTY = 40.0  # mm of a line by which it is known, however much of it is hidden
 WHOLE, DARKER, FULLER = 0.85, 1.25, 0.12
 """Least share of an element's ink elsewhere, and how much darker or more complete it must be there, for it not to be believed in
 its own place."""
+BETWEEN = 0.6
+"""Darkness between a stroke and a line beside it, as a share of the line's, below which paper separates them."""
 BAND = 17
 """Steps about a line in its own place where it was wiped out."""
 BARE, BARE_LENGTH = 0.35, 2.5
@@ -82,6 +84,29 @@ def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, own
     if fuller is None or fuller.covered < max(WHOLE, t.covered + FULLER) or fuller.darkness < t.darkness / DARKER:
         return None
     return fuller
+
+
+def beside(t: Trace, s: Stations, ink: Any, taken: Any, level: float) -> Trace | None:
+    """The trace of a straight line that lies in one stroke with others, where ink of none has its whole length beside; or None.
+
+    ``taken`` is where what was found is drawn, 255 there; the rest is as for :func:`rather_elsewhere`.
+    """
+    offsets, at = _about(t.element, s)
+    profile, unknown = smoothed(sample(ink, at)), sample(taken, at) > 100
+    found = _elsewhere(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level)
+    if found is None or found.at is None or found.covered < WHOLE:
+        return None
+    # Apart from the stroke: paler between them, or it is the stroke's own edge.
+    begin, end = found.at - t.element.points
+    share = np.abs(s.points - t.element.points[0]) / t.element.length
+    way = ((begin + share * (end - begin)) * np.conj(s.normals)).real
+    row, column = np.arange(len(way)), np.clip(np.round((way - offsets[0]) / STEP).astype(int), 0, len(offsets) - 1)
+    inside = (np.abs(offsets) < np.abs(way)[:, None]) & (offsets * way[:, None] > 0)
+    dark = profile[row, column]
+    apart = (dark > level) & ~unknown[row, column] & (np.where(inside, profile, 255).min(1) < BETWEEN * dark)
+    # Lines that cross may hide as much of it again.
+    length = apart.sum() * t.element.length / len(way)
+    return replace(found, status="beside") if length >= LEAST / 2 and np.ptp(share[apart]) * t.element.length >= LEAST else None
 
 
 def _about(e: Element, s: Stations) -> tuple[Floats, Any]:

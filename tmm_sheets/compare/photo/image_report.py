@@ -49,7 +49,7 @@ class _Judged:
     @cached_property
     def count(self) -> dict[str, int]:
         """How many elements got each verdict, of those that could be judged."""
-        judged = [f for f in self.findings if f.trace.status in ("measured", "missing", "shared") and not f.unknown]
+        judged = [f for f in self.findings if f.trace.status in ("measured", "missing", "shared", "beside") and not f.unknown]
         return {v: sum(f.verdict == v for f in judged) for v in ("green", "amber", "red")}
 
     @cached_property
@@ -162,7 +162,7 @@ def _rows(judged: _Judged) -> list[tuple[str, ...]]:
 
 def _tree(judged: _Judged) -> dict[str, Any]:
     """What JSON tells of the elements and of extra ink."""
-    told = ("measured", "shared", "missing", "dense", "part of lettering", "absent lettering", "hidden")
+    told = ("measured", "shared", "beside", "missing", "dense", "part of lettering", "absent lettering", "hidden")
     measured = sum(f.trace.status == "measured" for f in judged.findings)
     return {
         "count": {**judged.count, "dense": judged.dense, "hidden": judged.hidden, "hidden_ends": judged.hidden_ends,
@@ -188,7 +188,7 @@ def _row(f: PhotoFinding) -> dict[str, Any]:
     """A finding for JSON, null where nothing was measured."""
     t = f.trace
     ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
-    measured = t.status in ("measured", "shared")
+    measured = t.status in ("measured", "shared", "beside")
     return origin(f.element) | {
         "status": t.status, "verdict": f.verdict, "said": f.what,
         "shift": [round(t.shift.real, 2), round(t.shift.imag, 2)] if measured else None,

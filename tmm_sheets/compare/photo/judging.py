@@ -97,6 +97,9 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
         worst = max(deviations, key=lambda d: d.share)
         said = "; ".join(d.said for d in deviations if d.said)
         return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or tell(IN_REACH), worst.place, t, worst.allowed)
+    if t.status == "beside":
+        said = tell("in one stroke with others, but a line like it lies beside: {how}")
+        return PhotoFinding(e, "amber", t.deviation, said.format(how=_similarity_in_words(t, tolerance)), middle, t, tolerance)
     if t.status == "missing":
         return PhotoFinding(e, "red", e.length, tell("missing"), middle, t, tolerance)
     if t.status in ("absent lettering", "part of lettering"):

@@ -20,7 +20,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.arrow_heads import with_heads
-from tmm_sheets.compare.photo.displacement import displaced, rather_elsewhere
+from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.extra_ink import extra_ink
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
 from tmm_sheets.compare.photo.ink_levels import ink_levels
@@ -31,6 +31,9 @@ from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.stations import measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
 from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.styles import line_type
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
@@ -39,6 +42,7 @@ PARTLY, CLEAR = 0.45, 0.9
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
 PALE, GAPS = 0.6, 0.85
 """Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
+CLOSE = 0.9  # mm by which a line drawn by hand and photographed is wider than its own width
 BESIDE = 0.9  # mm about lines whose ink is theirs
 
 
@@ -86,6 +90,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
     found = _doubted(found, ink, left, wiped, owners, pale)
+    found = _beside_strokes(found, small, ink, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     words = _places_of_lettering(elements, ink)
     ended = with_ends(open_lines, ink, owners, words, pale)
@@ -133,20 +138,45 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
 
 def _doubted(found: Sequence[Trace], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
     """The traces; those of lines paler than others of their kind, or with gaps, are looked for elsewhere once more."""
-    styles: dict[str, list[float]] = {}
-    for t in found:
-        if t.darkness:
-            styles.setdefault(t.element.style, []).append(t.darkness)
-    usual = {style: float(np.median(values)) for style, values in styles.items()}
+    usual = _usual(found)
     out = []
     for t in found:
-        if t.darkness and (t.darkness < PALE * usual[t.element.style] or t.covered < GAPS):
+        if t.darkness and (t.darkness < PALE * usual[line_type(t.element.style).width] or t.covered < GAPS):
             better = rather_elsewhere(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
             if better is not None and better.at is not None:
                 owners.add(t.element, better.at)
                 wipe_found(wiped, better)
                 wipe_found(left, better, 0)
                 t = better
+        out.append(t)
+    return out
+
+
+def _usual(found: Sequence[Trace]) -> dict[float, float]:
+    """How dark lines of each width usually are; those of one style may nearly all lie under others."""
+    widths: dict[float, list[float]] = {}
+    for t in found:
+        if t.darkness:
+            widths.setdefault(line_type(t.element.style).width, []).append(t.darkness)
+    return {width: float(np.median(values)) for width, values in widths.items()}
+
+
+def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, level: float) -> list[Trace]:
+    """The traces; of lines in one stroke with others it is seen whether a line like them lies beside the stroke."""
+    taken = np.zeros_like(ink)
+    for e in small:
+        wipe_small(taken, e)
+    for t in found:
+        if t.at is not None:
+            paint(taken, t.element, t.at, CLOSE)
+    usual = _usual(found)
+    out = []
+    for t in found:
+        if t.status == "shared" and t.element.kind == "line":
+            other = beside(t, stations(t.element, False), ink, taken, level)
+            # Paler lines were rubbed out, or are the edges of others.
+            if other is not None and other.darkness > PALE * usual.get(line_type(t.element.style).width, 0.0):
+                t = other
         out.append(t)
     return out
 
@@ -163,7 +193,8 @@ def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
 def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level: float) -> dict[int, Trace]:
     """Traces by number of what is not measured: whether there is any ink in the place of lettering; the rest is not looked at.
 
-    The ink of lines that run through the place does not count, nor does a place that they fill.
+    Each run of letters, a letter or its index, is looked for by itself. The ink of lines that run through its place does not
+    count, bars over letters among them, nor does a place that they fill.
     """
     out = {e.number: Trace(e, "small", covered=1.0) for e in small}
     words = [e for e in small if e.kind == "text"]
@@ -174,10 +205,10 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
         if t.at is not None:
             paint(others, t.element, t.at, BESIDE)
     for e in small:
-        if e.kind != "text":
-            paint(others, e, e.points, BESIDE)
+        paint(others, e, e.points, BESIDE)
+    runs = [(e.number, len(m.text), text_box(m)) for e in words for m in e.marks if isinstance(m, Text)]
     u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 60), np.linspace(0, 1, 24)))
-    corners = np.stack([grown(e.points, 0.3) for e in words])
+    corners = np.stack([grown(box, 0.3) for _, _, box in runs])
     a, b, _, d = corners.T[:, :, None]
     places = pixels(a + u * (b - a) + v * (d - a))
     free = sample(others, places, nearest=True) == 0
@@ -185,9 +216,12 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     shares = dark.sum(1) / np.maximum(free.sum(1), 1)
     shown, inked = ((part.reshape(-1, 24, 60).sum(1) >= rows) for part, rows in ((free, 8), (dark, 2)))
     columns = (inked & shown).sum(1) / np.maximum(shown.sum(1), 1)
-    partly = (columns < PARTLY) & (shown.mean(1) > CLEAR)
-    for e, share, seen, part in zip(words, shares.tolist(), free.mean(1).tolist(), partly.tolist(), strict=True):
-        there = share > WRITTEN or seen < OPEN
-        status: Status = "absent lettering" if not there else "part of lettering" if part and len(e.text) > 1 else "lettering"
-        out[e.number] = Trace(e, status, covered=share)
+    there = (shares > WRITTEN) | (free.mean(1) < OPEN)
+    clear = shown.mean(1) > CLEAR
+    gone = clear & (~there | ((columns < PARTLY) & (np.array([length for _, length, _ in runs]) > 1)))
+    of = np.array([number for number, _, _ in runs])
+    for e in words:
+        mine = of == e.number
+        status: Status = "absent lettering" if not there[mine].any() else "part of lettering" if gone[mine].any() else "lettering"
+        out[e.number] = Trace(e, status, covered=float(shares[mine].max()))
     return out

@@ -23,10 +23,10 @@ def fixed(p: Points, scale: float = SCALE) -> Any:
 
 
 def paint(picture: Any, e: Element, points: Points, margin: float, value: int = 255) -> None:
-    """Draw an element along ``points``, heads included, ``margin`` mm wider."""
+    """Draw an element along ``points``, heads included, ``margin`` mm wider; of lettering its bars and leaders."""
     import cv2
 
-    if e.kind == "hatch":
+    if e.kind in ("hatch", "text"):
         for p in e.pieces:
             cv2.polylines(picture, [fixed(p)], False, value, max(round((0.2 + margin) * SCALE), 1), cv2.LINE_8, 4)
         return
