@@ -282,6 +282,8 @@ class Student:
     number: int
     slips: tuple[Slip, ...]
     judged: list[Judged]
+    without: tuple[Mapping[str, float], ...]
+    """What the same hand measured without the first slip, without the second ..., by the numbers' ids."""
 
     def told(self, slip: Slip, first: bool = True) -> bool:
         """Whether a start tells this kind of mistake, in this step where it has one; ``first`` as the likeliest."""
@@ -290,8 +292,10 @@ class Student:
 
     @property
     def seen(self) -> bool:
-        """Whether a number is so far off that it can be told."""
-        return any(abs(j.deviation) > VISIBLE * j.tolerance or j.starts for j in self.judged)
+        """Whether each mistake puts a number so far off that it can be told, beside the other one too."""
+        return all(any(j.starts and len(self.slips) == 1 or abs(j.deviation) > VISIBLE * j.tolerance
+                       and abs(j.line.value - values.get(j.entry.id, np.inf)) > VISIBLE * j.tolerance for j in self.judged)
+                   for values in self.without)
 
     def __str__(self) -> str:
         said = [f"{j.entry.id} ({j.deviation / j.tolerance:+.1f}): "
@@ -314,7 +318,15 @@ def student(project: str, number: int, seed: int, kinds: tuple[str, ...], everyt
     asked = {name: e for name, e in found.entries.items() if e.main or everything}
     if any(name not in asked for slip in some for name in slip.rows):
         return None
-    return Student(project, number, some, judge(Slipping(found, rng, some).filled(asked), found, PENCIL, READING))
+    state = rng.bit_generator.state
+
+    def filled(slips: Sequence[Slip]) -> Filled:
+        """The same hand each time."""
+        rng.bit_generator.state = state
+        return Slipping(found, rng, slips).filled(asked)
+
+    without = tuple({line.entry.id: line.value for line in filled([s for s in some if s is not slip]).lines} for slip in some)
+    return Student(project, number, some, judge(filled(some), found, PENCIL, READING), without)
 
 
 def trial(project: str, count: int, first: int, seed: int, kind: str, mistakes: int, everything: bool) -> Iterator[Student]:
