@@ -293,8 +293,12 @@ class Student:
     @property
     def seen(self) -> bool:
         """Whether each mistake puts a number so far off that it can be told, beside the other one too."""
-        return all(any(j.starts and len(self.slips) == 1 or abs(j.deviation) > VISIBLE * j.tolerance
-                       and abs(j.line.value - values.get(j.entry.id, np.inf)) > VISIBLE * j.tolerance for j in self.judged)
+        def off(by: float, j: Judged) -> bool:
+            return abs(by) > VISIBLE * j.tolerance
+
+        if len(self.slips) == 1:
+            return any(off(j.deviation, j) or j.starts for j in self.judged)
+        return all(any(off(j.deviation, j) and off(j.line.value - values.get(j.entry.id, np.inf), j) for j in self.judged)
                    for values in self.without)
 
     def __str__(self) -> str:
