@@ -212,7 +212,7 @@ def force(found: Measurables, rng: np.random.Generator) -> Slip | None:
 def moment(found: Measurables, rng: np.random.Generator) -> Slip | None:
     """A term of a sum of moments with the other sign: twice that term less."""
     steps, k, label = _there(found, rng)
-    s = _pick(_ruled(steps, "sum of moments"), rng)
+    s = _pick([s for s in _ruled(steps, "sum of moments") if len(s.args) > 3], rng)
     if s is None:
         return None
     i = int(rng.integers((len(s.args) - 1) // 3))
