@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -139,9 +139,9 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
         said = [tr("ΣM_p = {sum} = 0").format(sum=_sum([own_term, *terms])),
                 tr("{force} = ({sum})/{arm} = {value} N").format(force=sign, sum=_sum(solved, numbers=True), arm=h, value=found)]
     else:
-        first = _sum([own_term._replace(letters=f"{sign}·{h}")])
-        rest = _sum([Term("", 1.0, ()), *terms], numbers=True)
-        said = [tr("ΣM_p = {sum} = 0; {force} = {value} N").format(sum=first + rest, force=sign, value=found)]
+        written = (own_term._replace(letters=f"{sign}·{h}"),
+                   *(term._replace(letters="·".join(map(number, term.values))) for term in terms))
+        said = [tr("ΣM_p = {sum} = 0; {force} = {value} N").format(sum=_sum(written), force=sign, value=found)]
     if by_moment:
         m = project.mechanism.crank
         said.append(tr("{moment} = {force}·l_{{{crank}}} = {value} N·m (“+”: in the sense of ω_1)").format(
@@ -178,7 +178,7 @@ def _terms(project: Project, total: Step) -> Iterator[Term]:
             yield Term(symbol(couple.symbol or couple.name).replace(BAR, ""), 1.0 if value > 0 else -1.0, (abs(value),))
 
 
-def _sum(terms: list[Term], numbers: bool = False) -> str:
+def _sum(terms: Sequence[Term], numbers: bool = False) -> str:
     """Terms with their signs, in letters or in numbers."""
     said = ""
     for n, term in enumerate(terms):
