@@ -93,7 +93,8 @@ def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> li
     sizes = []
     for width in (250.0, 190.0, 140.0, 110.0, 90.0):
         for height, step in ((3.5, 6.0), (2.5, 5.0)):
-            lines = _lever_lines(project, canvas, width - 6.0, height, options)
+            if not (lines := _lever_lines(project, canvas, width - 6.0, height, options)):
+                return []  # no force has a moment about the pole
             sizes.append((max(letter(line, height).width for line in lines) + 6.0, 10.0 + step * len(lines)))
     return sizes
 
@@ -122,7 +123,7 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
         arm, size = float(force.arm.at(k)), abs(force.vector)
         if force.step is not own.force and not is_zero(size * arm, least):
             sign = force.symbol.replace(BAR, "")
-            terms.append(Term(f"{sign}·h_{{{flat(force.symbol)}}}", float(np.sign(arm)), (size, round(float(mm(abs(arm))), 1))))
+            terms.append(Term(f"{sign}·h_{{{flat(force.symbol)}}}", float(np.sign(arm)), (size, float(mm(abs(arm))))))
     name = flat(balancing_sign(project)) if by_moment else flat(own.symbol)
     sign = f"F_{{{name}}}" if by_moment else own.symbol.replace(BAR, "")
     arm, value = float(own.arm.at(k)), abs(complex(own.force.at(k)))
@@ -130,10 +131,10 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
         moment, length = float(study.balance["M_р"].at(k)), project.mechanism.crank.length
         arm, value = abs(complex(own.at.at(k))) * -1.0, moment / length
     if not terms or not np.isfinite(arm):
-        return [tr("No force has a moment about the pole")]
+        return []
     turning = float(np.sign(arm))
     own_term = Term(f"{sign}·h_{{{name}}}", turning, ())
-    h, found = number(round(float(mm(abs(arm))), 1)), number(value, 5, study.forces.force_size(k))
+    h, found = number(float(mm(abs(arm)))), number(value, 5, study.forces.force_size(k))
     if options.get("letters", True):
         solved = [term._replace(sign=-turning * term.sign) for term in terms]
         said = [tr("ΣM_p = {sum} = 0").format(sum=_sum([own_term, *terms])),
