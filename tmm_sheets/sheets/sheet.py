@@ -22,12 +22,14 @@ from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import places
+from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composition import DESIGNATION, arranged
 from tmm_sheets.words import marked, of_file, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.arrangement import Arrangement
 
 WIDTH, HEIGHT = 841.0, 594.0
 """A1 landscape, mm."""
@@ -132,7 +134,7 @@ def composed(project: Project, n: int) -> Composed:
     canvas.of = "title block"
     canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", "title block")
     fields = {
-        "designation": f"{of_file(block.designation)} {tr(plan.code)}".strip(),
+        "designation": f"{of_file(block.designation)} {_code(project, plan, n)}".strip(),
         "title": tr(plan.title),
         "project": of_file(project.variant.project.title),
         "letter": of_file(block.letter),
@@ -167,6 +169,12 @@ def composed(project: Project, n: int) -> Composed:
     left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames))
+
+
+def _code(project: Project, plan: Arrangement, n: int) -> str:
+    """Code of sheet ``n``: that of its arrangement, or its number where those of the project would not rise from sheet to sheet."""
+    codes = [arrangement(name).code for name in project.sheets]
+    return tr(plan.code) if all(a < b for a, b in pairwise(codes)) else tr("D{n}").format(n=n)
 
 
 @cache
