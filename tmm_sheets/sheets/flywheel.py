@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 Options = dict[str, Any]
 CROWD = 4
 """So many intervals between two positions on an average are drawn, with their rays, as they are."""
+FELT = 0.02
+"""Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
 _BELOW = 7.0  # room of position numbers beside an axis
 
 
@@ -217,6 +219,9 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
                 index=varying, label=fw.labels[-1], work=fixed(float(fw.work[-1]), 1)),
             tr("by the area of the graph {work} J ({share} %)").format(
                 work=fixed(float(fw.work_converged[-1]), 1), share=share if share.startswith("−") else f"+{share}"))
+    if abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
+        far = tr("δ by them: {difference} % from n → ∞") if fw.given else tr("J_{{f}} by them: {difference} % from n → ∞")
+        note += (far.format(difference=f"{'+' if fw.difference_percent > 0 else ''}{fixed(fw.difference_percent, 2)}"),)
     graphs.note(canvas, Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high), note,
                 [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])])
 
@@ -564,7 +569,8 @@ def _sizes(fw: Flywheel) -> list[str]:
                "diameter": number(w.diameter, 5), "width": number(w.width, 4),
                "thickness": number(w.thickness) if w.form == "rim" else "",
                "mass": number(w.mass, 4), "speed": fixed(w.speed, 2)}
-    speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s")
+    speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else \
+        tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: the wheel is of steel")
     return [line.format(**numbers) for line in (*said, speed)]
 
 
