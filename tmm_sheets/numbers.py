@@ -7,6 +7,7 @@ column, or the terms it is a difference of) is nothing but that, and is written 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from decimal import ROUND_HALF_UP, Context, Decimal
 from math import degrees, floor, isfinite, log10
 from typing import Any
 
@@ -71,8 +72,18 @@ def rounded(x: float, digits: int = 4, kind: float = 0.0) -> str:
     """The same with the signs of a computer's number, for :func:`told`."""
     if is_zero(x, kind):
         return "0"
-    text = f"{x:.{max(digits - 1 - floor(log10(abs(x))), 0)}f}"
+    text = _half_up(x, max(digits - 1 - floor(log10(abs(x))), 0))
     return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def _half_up(x: float, decimals: int) -> str:
+    """Rounded as people round the number they read: a last 5 goes away from zero, where a computer goes to the even digit."""
+    if not isfinite(x):
+        return f"{x:.{decimals}f}"
+    return f"{Decimal(repr(float(x))).quantize(Decimal(1).scaleb(-decimals), ROUND_HALF_UP, _LONG):f}"
+
+
+_LONG = Context(prec=400)
 
 
 def fixed(x: float, decimals: int = 2) -> str:
@@ -82,7 +93,7 @@ def fixed(x: float, decimals: int = 2) -> str:
 
 def decimal(x: float, decimals: int = 2, sign: bool = False) -> str:
     """A number with a decimal point and a fixed number of decimals; never "-0". With ``sign`` positive ones have a plus."""
-    text = f"{x:.{decimals}f}"
+    text = _half_up(x, decimals)
     if isfinite(x) and float(text) == 0:
         return text.lstrip("-")
     return f"+{text}" if sign and x > 0 else text

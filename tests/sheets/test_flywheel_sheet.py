@@ -18,6 +18,9 @@ from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
+from tmm_sheets.project import Project
+from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.task import variant
 
 VIEWS = tomllib.loads((Path(__file__).parents[2] / "templates/sheets/flywheel.toml").read_text(encoding="utf-8"))["view"]
 FRAME = Box(20, 5, 836, 589)
@@ -166,3 +169,16 @@ def test_a_place_that_is_too_small_is_refused(name):
     with pytest.raises(CannotBuild, match=rf"view flywheel\.{name} needs \d+ mm more height"):
         getattr(import_module("tmm_sheets.sheets.flywheel"), name)(
             project(Shaper()), Canvas(), Box(x0, y0, x1, y0 + 25), view)
+
+
+def test_the_graph_of_excess_energy_is_never_a_line():
+    """Where the links' inertia decides (the screen's dE is 0.5 J beside 88 J), its own scale factor is printed."""
+    screen = Project(variant.read(Path(__file__).parents[2] / "variants" / "screen.toml"))
+    sheet = composed(screen, 3)
+    fw, path = screen.flywheel, screen.flywheel.total_plan["points"].path
+    curve = [m for m in sheet.drawing.marks if m.by and m.by.role == "curve" and m.by.step == path]
+    height = max(float(np.ptp(flat(m).imag)) for m in curve)
+    assert height > 20 > np.ptp(fw.energy_curve(fw.samples))
+    at_positions = 100 * (fw.delta_E.max() - fw.delta_E.min())  # mm at 0.01 J/mm; the curve between rises a little above them
+    assert at_positions <= height < 1.15 * at_positions
+    assert any(isinstance(m, Text) and "0,01 Дж/мм" in m.text for m in sheet.drawing.marks)

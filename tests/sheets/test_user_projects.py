@@ -92,3 +92,11 @@ def test_a_mechanism_without_forces_gets_its_kinematics():
 
 def test_one_group_alone():
     assert not composed(Project(read(*MASSLESS, MASS, MOMENT)), 1).crowded
+
+
+@pytest.mark.parametrize(("sheets", "codes"), [(["kinematics_forces", "friction", "engine_2"], ["Д1", "Д2", "Д3"]),
+                                               (["kinematics_forces", "engine_2", "friction"], ["Д1", "Д2", "Д5"])])
+def test_no_two_sheets_of_a_project_have_one_designation(sheets, codes):
+    given = variant.read(Path(__file__).parents[1] / "projects" / "pump.toml")
+    project = Project(given.model_copy(update={"project": given.project.model_copy(update={"sheets": sheets})}))
+    assert [composed(project, n).drawing.subject for n in (1, 2, 3)] == codes  # without a designation it is the code alone

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import times
+from tmm_sheets.construction.scale import fit, times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
@@ -27,6 +27,7 @@ from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
@@ -35,6 +36,12 @@ if TYPE_CHECKING:
 Options = dict[str, Any]
 CROWD = 4
 """So many intervals between two positions on an average are drawn, with their rays, as they are."""
+LEAST_SEEN = 8.0
+"""Height of the graph of dE at the scale of the energy-mass diagram below which it gets a scale of its own, mm."""
+ALONE = 60.0
+"""Greatest height of the graph then, mm."""
+FELT = 0.02
+"""Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
 _BELOW = 7.0  # room of position numbers beside an axis
 
 
@@ -213,10 +220,14 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
     drive.letters("K", "K", 1j if end.imag > 0 else -1j)
     share = fixed(100 * fw.work_error, 2)
-    note = (tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
-                index=varying, label=fw.labels[-1], work=fixed(float(fw.work[-1]), 1)),
-            tr("by the area of the graph {work} J ({share} %)").format(
-                work=fixed(float(fw.work_converged[-1]), 1), share=share if share.startswith("−") else f"+{share}"))
+    note: tuple[str, ...] = (
+        tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
+            index=varying, label=fw.labels[-1], work=fixed(float(fw.work[-1]), 1)),
+        tr("by the area of the graph {work} J ({share} %)").format(
+            work=fixed(float(fw.work_converged[-1]), 1), share=share if share.startswith("−") else f"+{share}"))
+    if abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
+        far = tr("δ by them: {difference} % from n → ∞") if fw.given else tr("J_{{f}} by them: {difference} % from n → ∞")
+        note += (far.format(difference=f"{'+' if fw.difference_percent > 0 else ''}{fixed(fw.difference_percent, 2)}"),)
     graphs.note(canvas, Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high), note,
                 [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])])
 
@@ -225,17 +236,31 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     """Sum of the works, which is the change of kinetic energy, at the scale of the energy-mass diagram."""
     fw = with_tangents(project)
     s = fw.scales
-    ratio = s.work.mu / s.energy.mu
-    graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{s.energy}")
+    scale = _excess_scale(fw)
+    ratio = s.work.mu / scale.mu
+    graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{scale}")
     if abs(ratio - 1) > 1e-9:
         canvas.note(box, _enlarged(ratio))
     canvas.of = fw.total_plan.name
-    g = _energy_graph(fw, box, options)
-    curve = s.angle.mm(fw.samples) + 1j * fw.energy_curve(fw.samples)
-    of = stage(canvas, fw.total_plan, None, g.place())
-    of.curve("points", g(curve))
+    larger = s.energy.mu / scale.mu
+    ordinates = larger * fw.energy_curve(fw.samples)
+    low, high = min(0.0, float(ordinates.min())), max(0.0, float(ordinates.max()))
+    g = _energy_graph(fw, box, options) if scale is s.energy else \
+        graphs.Graph(complex(options["axis"], box.y1 - graphs.HEAD - graphs.OVER - high - 4.0))
+    of = stage(canvas, fw.total_plan, None, g.place(1.0, 1 / larger))
+    of.curve("points", g(s.angle.mm(fw.samples) + 1j * ordinates))
     uprights(of, "points")
-    axes(fw, of, "points", g, curve.imag.min(), curve.imag.max(), tr("ΔE, J"), fw.total_plan["points"].value.imag)
+    axes(fw, of, "points", g, low, high, tr("ΔE, J"), fw.total_plan["points"].value.imag)
+
+
+def _excess_scale(fw: Wittenbauer) -> Scale:
+    """Scale factor of the graph of dE: that of the energy-mass diagram, or its own where it would be a line to that.
+
+    So it is where the links' inertia decides and dE is little beside what it swallows and gives back.
+    """
+    energy = fw.scales.energy
+    span = float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0)))
+    return energy if not 0 < span < LEAST_SEEN else fit("μ_{ΔE}", energy.unit, span * energy.mu, ALONE)
 
 
 def _enlarged(ratio: float) -> str:
@@ -276,8 +301,10 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
 def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Energy-mass curve by projection from the graphs of dE and J, its two tangents and the segment ab."""
     fw = with_tangents(project)
-    s, plan = fw.scales, fw.energy_mass_plan
+    s, plan, scale = fw.scales, fw.energy_mass_plan, _excess_scale(fw)
     canvas.of = plan.name
+    if scale is not s.energy:
+        canvas.note(box, _enlarged(scale.mu / s.energy.mu))
     energy = _energy_graph(fw, Box(*options["energy"]), {"axis": options["energy_axis"]})
     turned = _inertia_graph(fw, Box(*options["inertia"]), options)
     g = graphs.Graph(complex(options["axis"], energy.origin.imag))
@@ -293,7 +320,8 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     x, masses = s.angle.mm(fw.reduced.phi), fw.inertia_plan["points"].value
     for k, p in enumerate(points[:-1]):
         here = of.position(k)
-        for origin in (energy(complex(x[k], p.imag)), turned(masses[k])):  # produced to the graphs that they come from
+        # Produced to the graphs that they come from; a graph of another scale stands elsewhere.
+        for origin in (*([energy(complex(x[k], p.imag))] if scale is s.energy else []), turned(masses[k])):
             here.line("points", origin, g(p))
         here.dot("points", 0.7, "main")
     for near in together(points[:-1], 1.0):
@@ -568,7 +596,8 @@ def _sizes(fw: Flywheel) -> list[str]:
         numbers["speed"] = fixed(float(w.plan["V_об"].value), 2)
         speed = tr("A rim would have V = {speed} m/s ≥ 30 m/s: a disc is taken")
     else:
-        speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s")
+        speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else \
+            tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: the wheel is of steel")
     return [line.format(**numbers) for line in (*said, speed)]
 
 

@@ -466,6 +466,12 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         rows.append([str(i + 1), *(str(found[z].value) for z in names), fixed(found["u"].value, 3),
                      fixed(found["u_deviation"].value * 100, 2), fixed(found["eta"].value, 3)])
     inner = canvas.title(box, tr("Choice of the tooth numbers (1 is taken)"))
+    if len(reducer.sets) > 1:
+        by = tr("Chosen by: deviation |Δu| within {tiers} %, then the least height").format(
+            tiers=" / ".join(number(100 * t) for t in reducer.tiers))
+        laid = fitted(by, box.width, 3.5)
+        canvas.put(laid, complex(box.centre.real - laid.width / 2, inner.y1 - 3.5), 0.0, by)
+        inner = Box(inner.x0, inner.y0, inner.x1, inner.y1 - 6.0)
     wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
     widths = [w * box.width / sum(wide) for w in wide]
     canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(8.0, inner.height / len(rows)), height=3.5)

@@ -29,9 +29,14 @@ if TYPE_CHECKING:
     from tmm_sheets.task.schema import ReducerTable
 
 
+def tiers_of(data: ReducerTable) -> tuple[float, ...]:
+    """Steps of the deviation of the ratio, the first that has any sets decides: none beyond what is permitted."""
+    return *(t for t in TIERS if t < data.tolerance), data.tolerance
+
+
 def criterion_of(data: ReducerTable, sets: Sequence[ToothSet]) -> str:
     """By what the tooth numbers were chosen, and the sets that came next."""
-    tiers = ", ".join(number(100 * t) for t in (*TIERS, data.tolerance))
+    tiers = ", ".join(number(100 * t) for t in tiers_of(data))
     told = "; ".join(", ".join(f"{name} = {z}" for name, z in named_teeth(data, t).items()) for t in sets)
     return tr("among the sets that fulfil coaxiality, assembly and neighbourhood, the least height of the reducer in the first of "
               "the steps {tiers} % of the deviation of the ratio that has any sets; the best sets in order: {sets}"
@@ -62,6 +67,11 @@ class Reducer:
         self.driver: Driver = data.driver or self.scheme.drivers[0]
         self.chosen, *rest = sets
         self.runners_up = tuple(rest)
+
+    @property
+    def tiers(self) -> tuple[float, ...]:
+        """Steps of the deviation of the ratio by which the tooth numbers were chosen, as shares."""
+        return tiers_of(self.data)
 
     @property
     def plans(self) -> dict[str, Plan]:
