@@ -143,7 +143,7 @@ def _sliding(project: Project, canvas: Canvas, box: Box, frame: Frame, index: st
     of, k, pos = _friction(project), project.force_index, project.study.positions
     hinge = _hinge(of, index)
     s = stage(canvas, pos.plan, k, frame)
-    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(index, hinge), 3.5, "centre")
+    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(index, hinge, "′"), 3.5, "centre")
     centre, v, turn = s.at(hinge), complex(of.sliding[index].at(k)), float(of.deviations[index].at(k))
     normal = force * complex(np.exp(-1j * turn)) / abs(force) if force else 1j * v / abs(v) if v else 1j
     along = -1j * normal
@@ -166,8 +166,9 @@ def _sliding(project: Project, canvas: Canvas, box: Box, frame: Frame, index: st
         pen.label(tail + 12.0 * u, f"V̅_{{{index}}}", -normal, 3.5, 1.5)
 
 
-def _name(index: str, hinge: str) -> str:
-    return tr("Pair {hinge}, reaction F_{{{index}}}").format(hinge=linkage.indexed(hinge), index=index)
+def _name(index: str, hinge: str, mark: str = "") -> str:
+    """What a pair is called here and in the table: a sliding one by its point with a prime."""
+    return tr("Pair {hinge}, reaction F_{{{index}}}").format(hinge=f"{linkage.indexed(hinge)}{mark}", index=index)
 
 
 def _told(project: Project, of: Friction, index: str, force: complex, k: int) -> list[str]:
@@ -177,13 +178,15 @@ def _told(project: Project, of: Friction, index: str, force: complex, k: int) ->
         return [tr("F_{{{index}}} = {force} N").format(index=index, force=size), tr("its links do not move: no friction")]
     if index in of.moments:
         hinge = _hinge(of, index)
-        rho = 1e3 * float(of.radii[hinge].value)
-        return [tr("ρ_{{{hinge}}} = {rho} mm;  F_{{{index}}} = {force} N").format(
-                    hinge=hinge, rho=number(rho), index=index, force=size),
+        f, radius = (float(given) for given in of.radii[hinge].args)
+        return [tr("ρ_{{{hinge}}} = f·r = {f}·{radius} = {rho} mm;  F_{{{index}}} = {force} N").format(
+                    hinge=hinge, f=number(f), radius=number(1e3 * radius), rho=number(1e3 * float(of.radii[hinge].value)),
+                    index=index, force=size),
                 tr("M_{{f{index}}} = ρ·F = {moment} N·m").format(
                     index=index, moment=number(abs(float(np.real(of.moments[index].at(k)))), 4))]
     assert of.angle is not None
-    return [tr("φ = arctan f = {angle}°").format(angle=fixed(degrees(float(of.angle.value)), 2)),
+    return [tr("φ = arctan f = arctan {f} = {angle}°").format(
+                f=number(float(of.angle.args[0])), angle=fixed(degrees(float(of.angle.value)), 2)),
             tr("F_{{{index}}} = {force} N").format(index=index, force=size)]
 
 
@@ -196,7 +199,7 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """All pairs with friction: reaction, moment or deviation, relative velocity, power; their sum, and what the drive has."""
     of, k, study = _friction(project), project.force_index, project.study
     assert of.power_plan is not None
-    rows = [[tr("Pair"), tr("F, N"), tr("ρ, mm"), tr("M_f, N·m"), tr("ω, rad/s"), tr("φ, °"), tr("V, m/s"), tr("N_f, W")]]
+    rows = [[tr("Pair"), tr("F, N"), tr("ρ, mm"), tr("M_f, N·m"), tr("ω, s^{−1}"), tr("φ, °"), tr("V, m/s"), tr("N_f, W")]]
     for index in of.pairs:
         hinge, force = _hinge(of, index), number(abs(complex(study.forces.reactions[f"F{index}"].at(k))), 5)
         power = number(float(of.powers[index].at(k)), 4, float(abs(of.total.at(k))) or 1.0)

@@ -29,7 +29,6 @@ from tmm_sheets.words import marked, of_file, tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import Arrangement
 
 WIDTH, HEIGHT = 841.0, 594.0
 """A1 landscape, mm."""
