@@ -10,11 +10,11 @@ from tests.compare.simulation import Camera, projection
 from tmm_sheets import catalogue
 from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.photo import frame_search, rectification
+from tmm_sheets.compare.photo import frame_search, patches, profiles, rectification
 from tmm_sheets.compare.photo.frame_fit import initial_map
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
-from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, heights
+from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, Map, heights, homography
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -129,3 +129,21 @@ def test_waves_take_up_what_is_left_but_no_single_line():
     assert np.abs(finer.correction(GRID) - wrong.correction(GRID)).max() < 0.05
     edge = np.array([20 + 300j, 836 + 100j])
     assert finer.waved(edge).real == pytest.approx(0, abs=1e-12)
+
+
+def test_circles_are_not_taken_for_their_neighbours():
+    # Circles as of a gearing, 2.1 mm apart where it matters, lie 2.1 mm aside in the picture: each where the next one ought to be.
+    centre, angle = 250 + 300j, np.linspace(0, 2 * np.pi, 400)
+    rings = [centre + r * np.exp(1j * angle) for r in (60, 62.1, 64.2, 80, 82.1)]
+    rings += [centre + np.linspace(5, 90, 60) * np.exp(1j * turn) for turn in np.arange(0, 6, 0.4)]
+    picture = np.zeros((594 * 4, 841 * 4), np.uint8)
+    for ring in rings:
+        q = profiles.pixels(ring + 2.1, 4.0)
+        cv2.polylines(picture, [np.column_stack((q.real, q.imag)).round().astype(np.int32)], False, 200, 2, cv2.LINE_AA)
+    m = Map(0j, 1.0, homography(profiles.pixels(CORNERS, 4.0), CORNERS))
+    points = np.concatenate(rings)
+    lines = profiles.ProfileLines(points, np.ones(len(points), complex), np.repeat(np.arange(len(rings)), [len(r) for r in rings]))
+    seen = patches.patches(m, m, picture, lines, 4.0)
+    about = np.abs(seen.sheet - centre) < 90
+    assert about.sum() >= 10
+    assert np.abs(m.to_sheet(seen.picture) - seen.sheet - 2.1)[about].max() < 0.4

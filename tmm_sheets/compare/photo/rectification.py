@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search
+from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search, patches
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.hidden import Mask, hidden_places
@@ -50,6 +50,12 @@ TURNED = {
 COARSE = 4.0  # pixels per mm, enough for the correction
 COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2), (0.7, RELIEF + 1, 0.2))
 """Reach to either side of a line, mm; degree of the relief (above the highest: waves); distance that counts as far off, mm."""
+PATCHED = (2, 4, RELIEF)
+"""Degrees of the relief by which a map follows patches of the sheet, one after the other."""
+LEAST_PATCHES, OFF, PATCH = 6, 1.5, 1.0
+"""Least number of patches; mm one of them must be off for the map to follow them; mm that count as far off while it does."""
+PART = 120.0
+"""Side of a part of the sheet, mm."""
 BY_LINES = ((3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 2, 1.0), (2.5, 2, 1.0))
 """The same for the lines alone, from a map that is right in part of the sheet."""
 WHOLE = 0.98
@@ -218,8 +224,12 @@ class _Attempts:
         ink = straighten(self.grey, straight, COARSE)
         level, highest = line_level(ink), RELIEF if self.by_lines else 2
         m, sides = straight, frame.sides
+        start = self._by_patches(straight, sides, ink)
+        if start is not straight:
+            with suppress(CannotBuild):
+                sides = frame_fit.sides_near(self.grey, start, ABOUT)
         for _ in range(2):
-            better, _, match = refine(straight, sides, ink, self.lines, level, COARSE, highest)
+            better, _, match = refine(straight, sides, ink, self.lines, level, COARSE, highest, start=start)
             if match >= MATCH:
                 m = better
             check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
@@ -229,10 +239,24 @@ class _Attempts:
             sides = frame_fit.sides_near(self.grey, m, ABOUT)
         return _Attempt(found, frame._replace(sides=sides), m, check)
 
+    def _by_patches(self, straight: Map, sides: Seen, ink: Any) -> Map:
+        """Where to start when whole patches of the sheet are too far off for their lines to be told from their neighbours."""
+        m = straight
+        for degree in PATCHED if self.by_lines else ():
+            seen = patches.patches(m, straight, ink, self.lines, COARSE)
+            count = len(seen.weight) // 2
+            if count < LEAST_PATCHES or float(np.abs(m.to_sheet(seen.picture) - seen.sheet).max()) < OFF:
+                break
+            # As much as a fifth of the frame's points: what was taken for a side may be none.
+            own = sides._replace(weight=sides.weight * 0.2 * np.sqrt(2 * count / max((sides.weight**2).sum(), 1.0)))
+            m = fit_map(m, own, seen, degree, PATCH)[0]
+        return m
+
     def _without_frame(self, m: Map) -> Map:
         """The map by the lines of the drawing alone, from one that is right in part of the sheet."""
         ink = straighten(self.grey, m, COARSE)
-        return refine(m, NO_SIDES, ink, self.lines, line_level(ink), COARSE, RELIEF, BY_LINES)[0]
+        start = self._by_patches(m, NO_SIDES, ink)
+        return refine(m, NO_SIDES, ink, self.lines, line_level(ink), COARSE, RELIEF, BY_LINES, start)[0]
 
 
 def _remarks(path: Path, scale: float, smear: float, turned: int) -> tuple[str, ...]:
@@ -287,7 +311,7 @@ def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
 
 def refine(
     m: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float = SCALE, highest: int = RELIEF,
-    steps: Sequence[tuple[float, int, float]] = COARSE_TO_FINE,
+    steps: Sequence[tuple[float, int, float]] = COARSE_TO_FINE, start: Map | None = None,
 ) -> tuple[Map, float, float]:
     """Correct a map by lines seen in the picture that it straightened.
 
@@ -305,15 +329,19 @@ def refine(
         Degree of the relief; waves follow only with the full :data:`RELIEF`.
     steps
         See :data:`COARSE_TO_FINE`.
+    start
+        The map to be corrected, if not the one that straightened the picture.
 
     Returns
     -------
     The map, the robust scatter of the lines about it, mm, and the share of their points with ink within half a millimetre.
     """
-    # A line counts by its length up to some 30 mm.
-    weight = 1 / np.sqrt(np.maximum(np.bincount(lines.line), 8) / 8.0)[lines.line]
+    # A line counts by its length, up to some 30 mm in each part of the sheet: what it is alone to tell of is not to be drowned.
+    parts = (lines.points.real // PART).astype(int) + 100 * (lines.points.imag // PART).astype(int)
+    _, piece = np.unique(10000 * lines.line + parts, return_inverse=True)
+    weight = 1 / np.sqrt(np.maximum(np.bincount(piece), 8) / 8.0)[piece]
     sides = sides._replace(weight=0.5 * sides.weight)
-    better, hit, scatter = m, 0.0, 1.0
+    better, hit, scatter = start or m, 0.0, 1.0
     for reach, degree, loose in steps:
         at = m.to_sheet(better.to_picture(lines.points))
         o, use, hit = inked(ink, lines, reach, level, at - lines.points, scale)
