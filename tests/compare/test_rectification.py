@@ -14,7 +14,7 @@ from tmm_sheets.compare.photo import frame_search, patches, profiles, rectificat
 from tmm_sheets.compare.photo.frame_fit import initial_map
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
-from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, Map, heights, homography
+from tmm_sheets.compare.photo.sheet_map import CORNERS, CREASED, FRAME, RELIEF, Map, heights, homography
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -60,6 +60,24 @@ def test_map_follows_lens_and_curled_paper(camera, worst):
     assert np.median(error) < 0.4 * worst
     assert scatter <= 0.03
     assert np.abs(m.to_picture(m.to_sheet(place(GRID))) - place(GRID)).max() < 0.01
+
+
+def test_creases_are_followed_by_the_finer_relief_only():
+    flat, (columns, rows) = projection(Camera(curl=0.0, tilt=0.1), 841.0, 594.0)
+
+    def place(p):
+        # Panels of a sheet folded to A4, every second crease 10 mm up, seen from 1 m above the middle.
+        height = np.interp(np.real(p), [0, 211, 421, 631, 841], [0, 10, 0, 10, 0])
+        return flat(p + height * (p - FRAME.centre) / 1000)
+
+    frame, seen = sides(place), lines(place, np.random.default_rng(3), 300)
+    m = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    errors = {}
+    for degree in (2, 4, RELIEF, 8, CREASED):
+        m, _ = fit_map(m, frame, seen, degree, 0.5)
+        errors[degree] = np.percentile(np.abs(m.to_sheet(place(GRID)) - GRID), 95)
+    assert errors[CREASED] < 0.6 * errors[RELIEF]
+    assert errors[CREASED] < 0.3
 
 
 def test_one_wrong_line_does_not_draw_the_map():

@@ -27,7 +27,7 @@ from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
 from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
-from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Map
+from tmm_sheets.compare.photo.sheet_map import CREASED, FRAME, PAPER, RELIEF, Map
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
@@ -56,6 +56,10 @@ LEAST_PATCHES, OFF, PATCH = 6, 1.5, 1.0
 """Least number of patches; mm one of them must be off for the map to follow them; mm that count as far off while it does."""
 PART = 120.0
 """Side of a part of the sheet, mm."""
+FINER = ((2.0, RELIEF, 1.0), (1.5, 8, 0.6), (1.2, CREASED, 0.4), (0.8, CREASED, 0.2), (0.7, CREASED + 1, 0.2))
+"""The same for paper with short waves or creases, from a map that is right in most of the sheet."""
+TOGETHER, BETTER = 0.07, 0.75
+"""mm by which lines near each other are off together in paper that is not smooth, and the share of it that may be left."""
 BY_LINES = ((3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 2, 1.0), (2.5, 2, 1.0))
 """The same for the lines alone, from a map that is right in part of the sheet."""
 WHOLE = 0.98
@@ -143,6 +147,8 @@ def rectify(
         attempts.begin(found)
     except CannotBuild as e:
         refused = e
+    if by_lines:
+        attempts.finer()
     if by_lines and not attempts.sound:
         say(tell("looking for the frame elsewhere"))
         attempts.elsewhere(as_lines([e for e in known if e.length < LONGEST], most=1500))
@@ -205,6 +211,19 @@ class _Attempts:
             with suppress(CannotBuild, np.linalg.LinAlgError):
                 self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
 
+    def finer(self) -> None:
+        """Fit paper with short waves or creases when lines near each other are off together; kept if they no longer are.
+
+        Flat paper gains nothing by it: so fine a relief follows what few lines there are.
+        """
+        best = self.best
+        if best is None or best.check.match < MATCH or (self.sound and best.check.together < TOGETHER):
+            return
+        with suppress(CannotBuild, np.linalg.LinAlgError):
+            finer = self._finer(best)
+            if finer.check.together < BETTER * best.check.together and finer.check.match > best.check.match - 0.01:
+                self.best = finer
+
     def elsewhere(self, lines: ProfileLines) -> None:
         """Try other frames, the likeliest by the drawing's ``lines`` first."""
         for found in frame_search.others(self.grey, lines)[:TRIED]:
@@ -238,6 +257,16 @@ class _Attempts:
             # Part of a side was followed along something else: now it is known where the frame must be.
             sides = frame_fit.sides_near(self.grey, m, ABOUT)
         return _Attempt(found, frame._replace(sides=sides), m, check)
+
+    def _finer(self, attempt: _Attempt) -> _Attempt:
+        """The fit of an attempt to paper with short waves or creases."""
+        ink = straighten(self.grey, attempt.map, COARSE)
+        level, m, sides = line_level(ink), attempt.map, attempt.frame.sides
+        for _ in range(2):
+            sides = frame_fit.sides_near(self.grey, m, ABOUT)
+            m, _, _ = refine(attempt.map, sides, ink, self.lines, level, COARSE, CREASED, FINER, m)
+        check = fit_check.check(m, attempt.map, sides, ink, self.lines, level, COARSE)
+        return attempt._replace(frame=attempt.frame._replace(sides=sides), map=m, check=check)
 
     def _by_patches(self, straight: Map, sides: Seen, ink: Any) -> Map:
         """Where to start when whole patches of the sheet are too far off for their lines to be told from their neighbours."""
@@ -349,6 +378,6 @@ def refine(
             return better, scatter, hit
         scatter = 1.4826 * float(np.median(np.abs(o[use])))
         seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
-        fine = highest == RELIEF < degree
+        fine = RELIEF <= highest < degree
         better = fit_waves(better, seen, loose) if fine else fit_map(better, sides, seen, min(degree, highest), loose)[0]
     return better, scatter, hit
