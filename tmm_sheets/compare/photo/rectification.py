@@ -207,7 +207,9 @@ class _Attempts:
             return
         attempt = self._fit(found, frame_fit.fit_frame(self.grey, start))
         self._keep(attempt)
-        if self.by_lines and not attempt.check.sound and attempt.check.match > HOPELESS:
+        # Where a side is hidden in part, what was followed there is something else, and draws the map to it.
+        framed = attempt.check.sound and float(attempt.check.sides.min()) >= fit_check.WHOLE
+        if self.by_lines and not framed and attempt.check.match > HOPELESS:
             with suppress(CannotBuild, np.linalg.LinAlgError):
                 self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
 
