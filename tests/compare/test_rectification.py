@@ -10,11 +10,11 @@ from tests.compare.simulation import Camera, projection
 from tmm_sheets import catalogue
 from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.photo import frame_search, rectification
+from tmm_sheets.compare.photo import frame_search, patches, profiles, rectification
 from tmm_sheets.compare.photo.frame_fit import initial_map
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
-from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, heights
+from tmm_sheets.compare.photo.sheet_map import CORNERS, CREASED, FRAME, RELIEF, Map, heights, homography
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -60,6 +60,24 @@ def test_map_follows_lens_and_curled_paper(camera, worst):
     assert np.median(error) < 0.4 * worst
     assert scatter <= 0.03
     assert np.abs(m.to_picture(m.to_sheet(place(GRID))) - place(GRID)).max() < 0.01
+
+
+def test_creases_are_followed_by_the_finer_relief_only():
+    flat, (columns, rows) = projection(Camera(curl=0.0, tilt=0.1), 841.0, 594.0)
+
+    def place(p):
+        # Panels of a sheet folded to A4, every second crease 10 mm up, seen from 1 m above the middle.
+        height = np.interp(np.real(p), [0, 211, 421, 631, 841], [0, 10, 0, 10, 0])
+        return flat(p + height * (p - FRAME.centre) / 1000)
+
+    frame, seen = sides(place), lines(place, np.random.default_rng(3), 300)
+    m = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    errors = {}
+    for degree in (2, 4, RELIEF, 8, CREASED):
+        m, _ = fit_map(m, frame, seen, degree, 0.5)
+        errors[degree] = np.percentile(np.abs(m.to_sheet(place(GRID)) - GRID), 95)
+    assert errors[CREASED] < 0.6 * errors[RELIEF]
+    assert errors[CREASED] < 0.3
 
 
 def test_one_wrong_line_does_not_draw_the_map():
@@ -129,3 +147,21 @@ def test_waves_take_up_what_is_left_but_no_single_line():
     assert np.abs(finer.correction(GRID) - wrong.correction(GRID)).max() < 0.05
     edge = np.array([20 + 300j, 836 + 100j])
     assert finer.waved(edge).real == pytest.approx(0, abs=1e-12)
+
+
+def test_circles_are_not_taken_for_their_neighbours():
+    # Circles as of a gearing, 2.1 mm apart where it matters, lie 2.1 mm aside in the picture: each where the next one ought to be.
+    centre, angle = 250 + 300j, np.linspace(0, 2 * np.pi, 400)
+    rings = [centre + r * np.exp(1j * angle) for r in (60, 62.1, 64.2, 80, 82.1)]
+    rings += [centre + np.linspace(5, 90, 60) * np.exp(1j * turn) for turn in np.arange(0, 6, 0.4)]
+    picture = np.zeros((594 * 4, 841 * 4), np.uint8)
+    for ring in rings:
+        q = profiles.pixels(ring + 2.1, 4.0)
+        cv2.polylines(picture, [np.column_stack((q.real, q.imag)).round().astype(np.int32)], False, 200, 2, cv2.LINE_AA)
+    m = Map(0j, 1.0, homography(profiles.pixels(CORNERS, 4.0), CORNERS))
+    points = np.concatenate(rings)
+    lines = profiles.ProfileLines(points, np.ones(len(points), complex), np.repeat(np.arange(len(rings)), [len(r) for r in rings]))
+    seen = patches.patches(m, m, picture, lines, 4.0)
+    about = np.abs(seen.sheet - centre) < 90
+    assert about.sum() >= 10
+    assert np.abs(m.to_sheet(seen.picture) - seen.sheet - 2.1)[about].max() < 0.4

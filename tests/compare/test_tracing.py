@@ -62,6 +62,14 @@ def test_a_line_that_ends_at_another_is_measured_at_both_sides_of_it(off):
     assert extra == []
 
 
+def test_a_line_that_goes_on_after_a_gap_is_not_short():
+    known = [line(1, 240 + 300j, CORNER), line(2, 300 + 250j, 300 + 350j)]
+    pieces = [(240 + 300j, CORNER - 5, "main"), (CORNER - 2, CORNER, "main"), (300 + 250j, 300 + 350j, "main")]
+    found, _ = traced(known, pieces)
+    assert found[0].ends[1] == pytest.approx(0, abs=0.3)
+    assert judge(found[0], 0.25, 0.15).verdict == "green"
+
+
 def test_an_end_where_another_line_goes_on_is_not_known():
     known = [line(1, 240 + 300j, CORNER), line(2, CORNER, 360 + 300j, "vector")]
     for end in (CORNER, CORNER + 3):

@@ -21,6 +21,8 @@ CELLS = (8, 6)
 """Cells along the sheet's width and height, some 100 mm each."""
 LEAST_POINTS, LEAST_LINES = 15, 3
 """Least points, of so many lines, by which a cell can be judged."""
+PART = 50.0
+"""mm; lines in a square of this side are near each other."""
 ASTRAY = 0.35
 """Share of a cell's points in place below which it is astray."""
 BARE = 0.3
@@ -34,7 +36,7 @@ MATCH = 0.5
 IN_PLACE, NEAR = 0.5, 3.0
 """mm from its place within which a line is in place, or has ink near."""
 CLOSE = 0.9
-"""Share of lines in place from which on paper that is not smooth is believed."""
+"""Share of lines in place from which on paper that is not smooth is believed, and a frame of which a side is hidden."""
 WHOLE = 0.9
 """Least share of a side's points that has a line in a fit that is beyond doubt."""
 SIDE, ALONGSIDE = 0.6, 0.5
@@ -55,6 +57,7 @@ class FitCheck:
     lost : of those, the ones at a side of the frame that is not seen there either
     judged : how many cells could be judged
     halves : how far maps of either half disagree, mm
+    together : how far lines near each other are off together, mm
     sides : share of each side of the frame that has a line where the map has it, bottom first
     """
 
@@ -63,6 +66,7 @@ class FitCheck:
     lost: Points
     judged: int
     halves: float
+    together: float
     sides: Floats
 
     @property
@@ -79,8 +83,9 @@ class FitCheck:
     @property
     def sound(self) -> bool:
         """Whether no better map need be sought."""
-        smooth = self.halves <= HALVES or self.match >= CLOSE
-        return self.acceptable and not len(self.astray) and float(self.sides.min()) >= WHOLE and smooth
+        close = self.match >= CLOSE
+        framed = float(np.sort(self.sides)[4 - SIDES if close else 0]) >= WHOLE  # no other frame brings a hidden side to light
+        return self.acceptable and not len(self.astray) and framed and (self.halves <= HALVES or close)
 
 
 def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float) -> FitCheck:
@@ -108,7 +113,17 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     astray, judged = _astray(lines, good, across.max(1) > level)
     lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
     shares = np.array([part.mean() for part in np.split(met, 4)])
-    return FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), shares)
+    return FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _together(lines, o, good), shares)
+
+
+def _together(lines: ProfileLines, o: Floats, good: Any) -> float:
+    """How far lines near each other are off together, mm: the root mean square of the medians of parts of the sheet."""
+    upright = np.abs(lines.normals.real) > np.sqrt(0.5)
+    along = o * np.sign(np.where(upright, lines.normals.real, lines.normals.imag))  # to the right or up
+    part = (lines.points.real // PART + 100 * (lines.points.imag // PART)) * 2 + upright
+    off = [float(np.median(along[here])) for k in np.unique(part[good])
+           if (here := good & (part == k)).sum() >= LEAST_POINTS and len(np.unique(lines.line[here])) >= LEAST_LINES]
+    return float(np.sqrt(np.mean(np.square(off)))) if off else 0.0
 
 
 def _on_sides(m: Map, straight: Map, sides: Seen, ink: Any, level: float, scale: float) -> Any:

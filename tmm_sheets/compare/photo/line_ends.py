@@ -28,6 +28,8 @@ ASIDE = np.linspace(-0.3, 0.3, 5)  # mm to either side where its ink may be
 BESIDE = np.linspace(-0.7, 0.7, 13)  # mm to either side where another's ink may come from; less than a pixel apart
 GAP, PATTERN_GAP, BEYOND_GAP = 1.6, 3.5, 0.3
 """mm of bare paper a solid and a dashed line may have along their way, and any line beyond its end, where letters stand near."""
+RESUMED = 4
+"""Places in a row with its own ink by which a line goes on after a wider gap than is usual."""
 CLEAR, CLEARER = 0.5, 0.6
 """Ink is a line's own if so many mm outside the line (first number) it is paler than this share of the middle's (second)."""
 TORN = 0.4  # mm of bare paper beyond which ink that may be another's is another's
@@ -149,7 +151,9 @@ def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:
     gap, torn = (PATTERN_GAP, PATTERN_GAP) if patterned else (GAP, TORN)
     low, last, inside = -1, 0, int((way.t <= 0.3).sum())
     for i in np.flatnonzero(dark).tolist():
-        if (i - last) * STEP > (gap if i < inside else BEYOND_GAP) + 1e-9:
+        # A pencil that was lifted goes on with ink that is nobody else's.
+        bare = BEYOND_GAP if i >= inside else PATTERN_GAP if own[i : i + RESUMED].all() else gap
+        if (i - last) * STEP > bare + 1e-9:
             break
         last = i
         if own[i]:

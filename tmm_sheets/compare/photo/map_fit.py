@@ -14,7 +14,7 @@ USUAL = 0.005
 """Weight of the priors below: as many mm off at every point cost as much as one parameter off by its usual size."""
 LENS = np.array([0.05, 0.03])
 """Usual distortion coefficients."""
-HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4}
+HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4, 7: 0.4, 8: 0.4, 9: 0.3, 10: 0.3}
 """Usual height of the paper in a term of each degree, mm."""
 FOOT = 400.0
 """Usual distance from the middle of the sheet to the camera's foot, mm."""
@@ -112,7 +112,8 @@ def fit_waves(m: Map, seen: Seen, loose: float) -> Map:
 
 def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
     """Homography, lens and relief by Levenberg-Marquardt steps with Geman-McClure weights."""
-    z, active = heights(seen.sheet), degree >= DEGREE
+    active = degree >= DEGREE
+    z = heights(seen.sheet, degree)
     first = np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend))
     size = np.append(np.maximum(np.abs(first[:8]), 1e-2), (0.05, 0.05)) * 1e-4
     x = np.concatenate((first, m.relief[active], (m.foot.real, m.foot.imag)))
@@ -127,7 +128,7 @@ def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
         return np.asarray(np.real(n * at))
 
     def residual(x: Floats) -> tuple[Floats, Floats, Floats]:
-        here, height = base(x), np.einsum("nk,k->n", z[:, active], x[10:-2])
+        here, height = base(x), np.einsum("nk,k->n", z, x[10:-2])
         return here, height, here - np.real(n * (seen.sheet + height * (seen.sheet - complex(*x[-2:])) / AWAY))
 
     def cost(x: Floats, r: Floats, far: float | Floats) -> float:
@@ -139,7 +140,7 @@ def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
         away = seen.sheet - complex(*x[-2:])
         jacobian = np.hstack((
             np.stack([(base(x[:10] + e) - here) / s for e, s in zip(np.diag(size), size, strict=True)], -1),
-            -np.real(n * away)[:, None] * z[:, active] / AWAY,
+            -np.real(n * away)[:, None] * z / AWAY,
             np.stack((n.real * height, -n.imag * height), -1) / AWAY,
         ))  # fmt: skip
         far = 3 * max(1.4826 * float(np.median(np.abs(r[seen.weight > 0]))), 0.1) if loose is None else loose

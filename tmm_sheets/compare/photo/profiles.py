@@ -132,21 +132,18 @@ def follow(profile: Any, steps: int = 2, stiffness: float = 0.5) -> npt.NDArray[
     """
     tables, n, m = profile.shape
     profile = np.minimum(profile, 0.5 * np.median(profile.max(2), 1)[:, None, None]).astype(np.float64)
-    cost = stiffness * np.maximum(profile.max((1, 2)), 1e-9)[:, None]
-    best = profile[:, 0]
-    came = np.zeros((n, tables, m), np.int64)
-    columns = np.arange(m)
-    options = np.full((2 * steps + 1, tables, m), -np.inf)
+    cost = stiffness * np.maximum(profile.max((1, 2)), 1e-9)[:, None, None] * np.abs(np.arange(-steps, steps + 1))
+    padded = np.full((tables, m + 2 * steps), -np.inf)
+    best = padded[:, steps : steps + m]
+    best[:] = profile[:, 0]
+    came_from = np.lib.stride_tricks.sliding_window_view(padded, 2 * steps + 1, axis=1)[..., ::-1]
+    options = np.empty((n, tables, m, 2 * steps + 1))
     for i in range(1, n):
-        for k, d in enumerate(range(-steps, steps + 1)):
-            lo, hi = max(d, 0), m + min(d, 0)
-            options[k, :, lo:hi] = best[:, lo - d : hi - d] - cost * abs(d)
-        k = options.argmax(0)
-        came[i] = columns - (k - steps)
-        best = options.max(0) + profile[:, i]
+        np.subtract(came_from, cost, out=options[i])
+        np.add(options[i].max(2), profile[:, i], out=best)
     way = np.zeros((tables, n), np.int64)
     way[:, -1] = best.argmax(1)
     which = np.arange(tables)
     for i in range(n - 1, 0, -1):
-        way[:, i - 1] = came[i, which, way[:, i]]
+        way[:, i - 1] = way[:, i] + steps - options[i, which, way[:, i]].argmax(1)
     return way

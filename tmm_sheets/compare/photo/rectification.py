@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search
+from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search, patches
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.hidden import Mask, hidden_places
@@ -27,7 +27,7 @@ from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
 from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
-from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Map
+from tmm_sheets.compare.photo.sheet_map import CREASED, FRAME, PAPER, RELIEF, Map
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
@@ -50,6 +50,16 @@ TURNED = {
 COARSE = 4.0  # pixels per mm, enough for the correction
 COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2), (0.7, RELIEF + 1, 0.2))
 """Reach to either side of a line, mm; degree of the relief (above the highest: waves); distance that counts as far off, mm."""
+PATCHED = (2, 4, RELIEF)
+"""Degrees of the relief by which a map follows patches of the sheet, one after the other."""
+LEAST_PATCHES, OFF, PATCH = 6, 1.5, 1.0
+"""Least number of patches; mm one of them must be off for the map to follow them; mm that count as far off while it does."""
+PART = 120.0
+"""Side of a part of the sheet, mm."""
+FINER = ((2.0, RELIEF, 1.0), (1.5, 8, 0.6), (1.2, CREASED, 0.4), (0.8, CREASED, 0.2), (0.7, CREASED + 1, 0.2))
+"""The same for paper with short waves or creases, from a map that is right in most of the sheet."""
+TOGETHER, BETTER = 0.07, 0.75
+"""mm by which lines near each other are off together in paper that is not smooth, and the share of it that may be left."""
 BY_LINES = ((3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 2, 1.0), (2.5, 2, 1.0))
 """The same for the lines alone, from a map that is right in part of the sheet."""
 WHOLE = 0.98
@@ -137,6 +147,8 @@ def rectify(
         attempts.begin(found)
     except CannotBuild as e:
         refused = e
+    if by_lines:
+        attempts.finer()
     if by_lines and not attempts.sound:
         say(tell("looking for the frame elsewhere"))
         attempts.elsewhere(as_lines([e for e in known if e.length < LONGEST], most=1500))
@@ -195,9 +207,24 @@ class _Attempts:
             return
         attempt = self._fit(found, frame_fit.fit_frame(self.grey, start))
         self._keep(attempt)
-        if self.by_lines and not attempt.check.sound and attempt.check.match > HOPELESS:
+        # Where a side is hidden in part, what was followed there is something else, and draws the map to it.
+        framed = attempt.check.sound and float(attempt.check.sides.min()) >= fit_check.WHOLE
+        if self.by_lines and not framed and attempt.check.match > HOPELESS:
             with suppress(CannotBuild, np.linalg.LinAlgError):
                 self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
+
+    def finer(self) -> None:
+        """Fit paper with short waves or creases when lines near each other are off together; kept if they no longer are.
+
+        Flat paper gains nothing by it: so fine a relief follows what few lines there are.
+        """
+        best = self.best
+        if best is None or best.check.match < MATCH or (self.sound and best.check.together < TOGETHER):
+            return
+        with suppress(CannotBuild, np.linalg.LinAlgError):
+            finer = self._finer(best)
+            if finer.check.together < BETTER * best.check.together and finer.check.match > best.check.match - 0.01:
+                self.best = finer
 
     def elsewhere(self, lines: ProfileLines) -> None:
         """Try other frames, the likeliest by the drawing's ``lines`` first."""
@@ -218,8 +245,12 @@ class _Attempts:
         ink = straighten(self.grey, straight, COARSE)
         level, highest = line_level(ink), RELIEF if self.by_lines else 2
         m, sides = straight, frame.sides
+        start = self._by_patches(straight, sides, ink)
+        if start is not straight:
+            with suppress(CannotBuild):
+                sides = frame_fit.sides_near(self.grey, start, ABOUT)
         for _ in range(2):
-            better, _, match = refine(straight, sides, ink, self.lines, level, COARSE, highest)
+            better, _, match = refine(straight, sides, ink, self.lines, level, COARSE, highest, start=start)
             if match >= MATCH:
                 m = better
             check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
@@ -229,10 +260,34 @@ class _Attempts:
             sides = frame_fit.sides_near(self.grey, m, ABOUT)
         return _Attempt(found, frame._replace(sides=sides), m, check)
 
+    def _finer(self, attempt: _Attempt) -> _Attempt:
+        """The fit of an attempt to paper with short waves or creases."""
+        ink = straighten(self.grey, attempt.map, COARSE)
+        level, m, sides = line_level(ink), attempt.map, attempt.frame.sides
+        for _ in range(2):
+            sides = frame_fit.sides_near(self.grey, m, ABOUT)
+            m, _, _ = refine(attempt.map, sides, ink, self.lines, level, COARSE, CREASED, FINER, m)
+        check = fit_check.check(m, attempt.map, sides, ink, self.lines, level, COARSE)
+        return attempt._replace(frame=attempt.frame._replace(sides=sides), map=m, check=check)
+
+    def _by_patches(self, straight: Map, sides: Seen, ink: Any) -> Map:
+        """Where to start when whole patches of the sheet are too far off for their lines to be told from their neighbours."""
+        m = straight
+        for degree in PATCHED if self.by_lines else ():
+            seen = patches.patches(m, straight, ink, self.lines, COARSE)
+            count = len(seen.weight) // 2
+            if count < LEAST_PATCHES or float(np.abs(m.to_sheet(seen.picture) - seen.sheet).max()) < OFF:
+                break
+            # As much as a fifth of the frame's points: what was taken for a side may be none.
+            own = sides._replace(weight=sides.weight * 0.2 * np.sqrt(2 * count / max((sides.weight**2).sum(), 1.0)))
+            m = fit_map(m, own, seen, degree, PATCH)[0]
+        return m
+
     def _without_frame(self, m: Map) -> Map:
         """The map by the lines of the drawing alone, from one that is right in part of the sheet."""
         ink = straighten(self.grey, m, COARSE)
-        return refine(m, NO_SIDES, ink, self.lines, line_level(ink), COARSE, RELIEF, BY_LINES)[0]
+        start = self._by_patches(m, NO_SIDES, ink)
+        return refine(m, NO_SIDES, ink, self.lines, line_level(ink), COARSE, RELIEF, BY_LINES, start)[0]
 
 
 def _remarks(path: Path, scale: float, smear: float, turned: int) -> tuple[str, ...]:
@@ -287,7 +342,7 @@ def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
 
 def refine(
     m: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float = SCALE, highest: int = RELIEF,
-    steps: Sequence[tuple[float, int, float]] = COARSE_TO_FINE,
+    steps: Sequence[tuple[float, int, float]] = COARSE_TO_FINE, start: Map | None = None,
 ) -> tuple[Map, float, float]:
     """Correct a map by lines seen in the picture that it straightened.
 
@@ -305,15 +360,19 @@ def refine(
         Degree of the relief; waves follow only with the full :data:`RELIEF`.
     steps
         See :data:`COARSE_TO_FINE`.
+    start
+        The map to be corrected, if not the one that straightened the picture.
 
     Returns
     -------
     The map, the robust scatter of the lines about it, mm, and the share of their points with ink within half a millimetre.
     """
-    # A line counts by its length up to some 30 mm.
-    weight = 1 / np.sqrt(np.maximum(np.bincount(lines.line), 8) / 8.0)[lines.line]
+    # A line counts by its length, up to some 30 mm in each part of the sheet: what it is alone to tell of is not to be drowned.
+    parts = (lines.points.real // PART).astype(int) + 100 * (lines.points.imag // PART).astype(int)
+    _, piece = np.unique(10000 * lines.line + parts, return_inverse=True)
+    weight = 1 / np.sqrt(np.maximum(np.bincount(piece), 8) / 8.0)[piece]
     sides = sides._replace(weight=0.5 * sides.weight)
-    better, hit, scatter = m, 0.0, 1.0
+    better, hit, scatter = start or m, 0.0, 1.0
     for reach, degree, loose in steps:
         at = m.to_sheet(better.to_picture(lines.points))
         o, use, hit = inked(ink, lines, reach, level, at - lines.points, scale)
@@ -321,6 +380,6 @@ def refine(
             return better, scatter, hit
         scatter = 1.4826 * float(np.median(np.abs(o[use])))
         seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
-        fine = highest == RELIEF < degree
+        fine = RELIEF <= highest < degree
         better = fit_waves(better, seen, loose) if fine else fit_map(better, sides, seen, min(degree, highest), loose)[0]
     return better, scatter, hit
