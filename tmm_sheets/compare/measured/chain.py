@@ -277,7 +277,6 @@ def _chains(sheet: Sheet, own: OwnNumbers, computed: Mapping[int, list[Judged]])
             _wrong_row(start, judged)
         else:
             start.mistake, start.wrong = found.mistake, found.wrong
-            sheet.accept(found)
             for i in _follow(sheet, start, found, beyond):
                 open_[i] = False
     for j in judged:
@@ -305,13 +304,15 @@ def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
 
 def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> Iterator[int]:
     """Take from all numbers what a mistake makes of them; those that are in order then follow from the number it starts with."""
+    before_all, after_all = sheet.left.copy(), sheet.after(found.shares)
+    sheet.accept(found)
     for i, (j, share, doubt) in enumerate(zip(sheet.judged, found.shares, found.doubt, strict=True)):
-        before = sheet.left[i]
+        before, after = before_all[i], after_all[i]
         if not sheet.reached(found, i) or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
             continue  # the mistake did not reach it, or with it nothing could be drawn
-        if found.wrong and abs(j.apart(before - share)) > abs(before):
+        if found.wrong and abs(after) > abs(before):
             continue  # it was gone on with otherwise
-        sheet.left[i] = j.apart(before - share)
+        sheet.left[i] = after
         # What is left need not be better than other numbers: amber is accused of nothing.
         allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt))
         explained = abs(sheet.left[i]) <= allowed and abs(share) > SHARE * j.tolerance and abs(sheet.left[i]) < abs(before)

@@ -88,7 +88,8 @@ class Sheet:
         self.judged = judged
         self.errors = errors
         self.labels = labels
-        self.left = np.array([j.deviation for j in judged])
+        self.deviation = np.array([j.deviation for j in judged])
+        self.left = self.deviation.copy()
         self.tolerance = np.array([j.tolerance for j in judged])
         self.changes: list[Change] = []
         self._made: dict[int, dict[Step, None]] = {}
@@ -129,6 +130,16 @@ class Sheet:
     def reached(self, found: Explanation, i: int) -> bool:
         """Whether a number depends on what was done wrong, also where that happens to leave it as it is."""
         return bool(found.shares[i]) or any(change.step in self._before(i) for change in found.changes)
+
+    def after(self, shares: Floats, lines: Sequence[int] | None = None) -> Floats:
+        """What is left of all numbers, or of some, when a further mistake makes ``shares`` of them.
+
+        A number that the mistakes before did not reach, because it was gone on with otherwise, may follow from all together.
+        """
+        of = range(len(self.judged)) if lines is None else lines
+        left, whole = (np.array([self.judged[i].apart(float(x)) for i, x in zip(of, differences[of] - shares, strict=True)])
+                       for differences in (self.left, self.deviation - self.predicted))
+        return np.where(np.abs(whole) < np.abs(left), whole, left)
 
     def uncertain(self, i: int, left: float) -> bool:
         """Whether a number may be anything with the mistakes found so far: the direction of a vector that has become short.
@@ -209,7 +220,7 @@ class Sheet:
         if h.kind == "neighbour" and not any(h.step is s for step in at for s in (step, *step.args)):
             return False
         share = self._shares(h, [i])[0]
-        left, allowed = self.judged[i].apart(self.left[i] - share), np.hypot(self.tolerance[i], CURVED * share)
+        left, allowed = self.after(share, [i])[0], np.hypot(self.tolerance[i], CURVED * share)
         return bool(isfinite(share) and abs(share) > self.tolerance[i] and abs(left) <= LEFT * allowed)
 
     def _drawn(self, h: Hypothesis) -> Explanation:
@@ -219,7 +230,7 @@ class Sheet:
         # With what cannot be drawn any more nothing is explained.
         known = np.isfinite(shares) & np.isfinite(self.tolerance)
         left = self.left[known] / self.tolerance[known]
-        after = self._apart(self.left - shares)[known] / np.hypot(self.tolerance, doubt)[known]
+        after = self.after(shares)[known] / np.hypot(self.tolerance, doubt)[known]
         gain = _loss(left) - _loss(after)
         # Results are computed from lengths, whatever their senses: what is not spoilt in them proves nothing.
         proves = np.array([self._proves(j, h) for j in self.judged])[known]
@@ -228,10 +239,6 @@ class Sheet:
         if np.any(proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT)):
             score = 0.0
         return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score)
-
-    def _apart(self, differences: Floats) -> Floats:
-        """Differences of all numbers: of angles the short way round."""
-        return np.array([j.apart(float(x)) for j, x in zip(self.judged, differences, strict=True)])
 
     @staticmethod
     def _proves(j: Judged, h: Hypothesis) -> bool:
