@@ -67,7 +67,7 @@ class Slipping(Hand):
     def slipped(self, step: Step, values: list[Any], made: Any) -> Any:
         if self.mirrors and step.plan != next(iter(self.mirrors.values())).plan:
             # Who looks at the plan sees its mirror image.
-            seen = [-np.conj(v) if id(a) in self.mirrors and a.rule.gives == "point" else v
+            seen = [-np.conj(v) if id(a) in self.mirrors and a.rule.gives in ("point", "vector") else v
                     for a, v in zip(self.errors.arguments(step), values, strict=True)]
             if any(a is not b for a, b in zip(seen, values, strict=True)):
                 made = np.array(self.errors.replayed(step, seen))

@@ -70,7 +70,8 @@ class Hypothesis:
     """One mistake: its kind, the key of its words, the step it was made in, the changes to replay.
 
     ``at`` is the number of the position, None where it was made at every one; ``other`` what stands in the words besides.
-    ``on_paper`` is the plan whose lengths are right all the same: only what was made of them is not.
+    ``on_paper`` is the plan whose lengths are right all the same: only what was made of them is not. ``drawn`` are plans, by their
+    scale factors, that are so many times as large: only their lengths are wrong.
     """
 
     kind: Kind
@@ -80,6 +81,7 @@ class Hypothesis:
     at: int | None = None
     other: str = ""
     on_paper: str = ""
+    drawn: tuple[tuple[str, float], ...] = ()
 
     def said(self) -> str:
         """The mistake as it is told to the reader."""

@@ -22,15 +22,12 @@ from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angl
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.compare.measured.own_steps import OwnValue
+from tmm_sheets.compare.measured.plan_scales import wrong_scales
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded, told
 from tmm_sheets.words import tell, tell_n
 
-SCALED = 4
-"""Lengths of a plan from which a wrong scale factor is recognised."""
-SIMILAR_SCALES = 0.15
-"""Difference of two scale factors, as a share, below which all lengths must tell of it."""
 ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
 MOST = 10
@@ -48,6 +45,7 @@ CHANCE = 1e-3
 EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
 
+
 def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> list[Judged]:
     """Judge every filled line, in the order of the sheets."""
     errors = found.errors(filled.factors, pencil, reading)
@@ -61,7 +59,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
     if judged:
         own = OwnNumbers(judged, errors)
-        left = _wrong_scales([j for j in judged if id(j) not in computed])
+        left = wrong_scales([j for j in judged if id(j) not in computed])
         _against_own(own, {id(j) for j in left})
         labels = next((plan.labels for plan, _ in found.plans if plan.name == "positions"), ())
         _chains(Sheet(left, errors, labels), own, computed)
@@ -213,48 +211,6 @@ def _own_gives(own: Iterable[Judged], value: float) -> str:
     return said.format(numbers=numbers, value=told(rounded(value, 4)))
 
 
-# --- scale factors ------------------------------------------------------------------------------------------------------------
-
-
-def _wrong_scales(judged: list[Judged]) -> list[Judged]:
-    """Mark the lengths of plans that were drawn with another scale factor than stated; returns what is left to explain."""
-    plans: dict[str, list[Judged]] = {}
-    for j in judged:
-        if j.entry.kind == "length" and j.entry.scale and j.line.factor is None:
-            plans.setdefault(j.entry.scale, []).append(j)
-    marked = {id(j) for of_plan in plans.values() for j in _drawn_to_another_scale(of_plan, judged)}
-    return [j for j in judged if id(j) not in marked]
-
-
-def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list[Judged]:
-    """Lengths of a plan that another scale factor explains, marked as such; none when it does not."""
-    long = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance]
-    off = [j for j in long if j.verdict == "red"]
-    if len(long) < SCALED or len(off) < 0.6 * len(long) or _has_reason(off, judged):
-        return []
-    times = float(np.median([j.line.value / j.exact for j in long]))
-    explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
-    # A long side drawn a little wrong makes a plan a little smaller, too, but not all of it.
-    needed = 0.8 * len(of_plan) if abs(times - 1) > SIMILAR_SCALES else len(of_plan)
-    if times <= 0 or abs(times - 1) < 0.01 or len(explained) < needed:
-        return []
-    first = off[0]
-    first.starts = True
-    first.wrong = (Hypothesis("scale", "plan scale", first.entry.terms[-1][0], (), other=told(f"{times:.3g}")),)
-    for j in explained:
-        if j is not first and j.verdict != "green":
-            j.follows = first
-    return explained
-
-
-def _has_reason(off: list[Judged], judged: list[Judged]) -> bool:
-    """True when something drawn earlier, on which this plan depends, is red already."""
-    first, plan = min(j.order for j in off), off[0].entry.plan
-    sources = {id(step) for j in off for step, _, g in j.rows if g}
-    return any(j.verdict == "red" and j.order < first and j.entry.plan != plan and id(j.entry.terms[-1][0]) in sources
-               for j in judged if j.entry.terms)
-
-
 # --- chains -------------------------------------------------------------------------------------------------------------------
 
 
@@ -310,13 +266,14 @@ def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> I
         before, after = before_all[i], after_all[i]
         if not sheet.reached(found, i) or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
             continue  # the mistake did not reach it, or with it nothing could be drawn
-        if found.wrong and abs(after) > abs(before):
+        uncertain = abs(before) > j.tolerance and sheet.uncertain(i, before)
+        if found.wrong and not found.half and abs(after) > abs(before) and not uncertain:
             continue  # it was gone on with otherwise
         sheet.left[i] = after
         # What is left need not be better than other numbers: amber is accused of nothing.
         allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt))
         explained = abs(sheet.left[i]) <= allowed and abs(share) > SHARE * j.tolerance and abs(sheet.left[i]) < abs(before)
-        explained = explained or (abs(before) > j.tolerance and sheet.uncertain(i, before))
+        explained = explained or uncertain
         if explained and found.wrong and j.off_own and j is not start:
             # Not from his own numbers by the rule, but by what he did instead.
             j.off_own = j.starts = False

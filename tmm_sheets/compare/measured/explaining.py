@@ -7,9 +7,10 @@ nothing is known beforehand, explains more than any of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 from math import isfinite
 from typing import Any, get_args
 
@@ -19,6 +20,7 @@ import numpy.typing as npt
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, computed_with, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Again, Change, displaced, replay
 from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
+from tmm_sheets.compare.measured.plan_scales import drawn_to, is_scaled, times_as_long
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, ordered, value_at
 from tmm_sheets.numbers import told
@@ -46,6 +48,8 @@ LEFT = 2.0
 """Tolerances that a discrete mistake may leave of the number it is looked for."""
 CHANCES = 8
 """Drawings by chance that tell how uncertain a number has become."""
+RED, WITNESSES = 2.0, 3
+"""Numbers of a plan and position, off by so many tolerances, without which two mistakes at once are not looked for."""
 SPOILT = 3.0
 """Tolerances by which a discrete mistake would spoil a number that it cannot have been made before when that is in order."""
 APART = 0.05
@@ -64,10 +68,12 @@ class Explanation:
     Attributes
     ----------
     changes : to be replayed
+    drawn : plans that are so many times as large, by their scale factors
     shares, doubt : what it makes of each number, and how well that is known; in the unit of the number
     score : how much of all deviations it explains
     wrong : discrete mistakes that are equally good, the first of them is told
     mistake : a displaced step where it is none of these
+    half : whether another discrete mistake belongs to it, which is found with what is left
     """
 
     changes: tuple[Change, ...]
@@ -76,6 +82,8 @@ class Explanation:
     score: float
     wrong: tuple[Hypothesis, ...] = ()
     mistake: Mistake | None = None
+    half: bool = False
+    drawn: tuple[tuple[str, float], ...] = ()
 
 
 class Sheet:
@@ -92,6 +100,7 @@ class Sheet:
         self.left = self.deviation.copy()
         self.tolerance = np.array([j.tolerance for j in judged])
         self.changes: list[Change] = []
+        self.drawn: dict[str, float] = {}
         self._made: dict[int, dict[Step, None]] = {}
         self.predicted = np.zeros(len(judged))
         self.steps: dict[Place, Step] = {}
@@ -113,19 +122,23 @@ class Sheet:
         """What explains a number best; None when nothing does: a slip in reading or computing this one."""
         done = self._otherwise(i)
         if done is not None:
-            reached = np.abs(done.shares) > self.tolerance
+            reached = np.abs(done.shares) > self.allowed
             alike = reached.copy()  # with all that a step drawn off may explain
             for place in self.places[i]:
                 alike[self.by_place[place][0]] = True
-            if reached.sum() > 1 and done.score > NEARLY * float(np.sum(_loss((self.left / self.tolerance)[alike]))):
+            if reached.sum() > 1 and done.score > NEARLY * float(np.sum(_loss((self.left / self.allowed)[alike]))):
                 return done  # nothing can explain much more
         off = self._displaced(i)
-        return off if done is None or (off is not None and off.score * NEARLY > done.score) else done
+        best = off if done is None or (off is not None and off.score * NEARLY > done.score) else done
+        both = self._together(i)
+        return best if both is None or (best is not None and best.score * NEARLY > both.score) else both
 
     def accept(self, found: Explanation) -> None:
         """Go on with what is left when a mistake is known."""
         self.changes += found.changes
+        self.drawn |= dict(found.drawn)
         self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
+        self.__dict__.pop("allowed", None)
 
     def reached(self, found: Explanation, i: int) -> bool:
         """Whether a number depends on what was done wrong, also where that happens to leave it as it is."""
@@ -142,14 +155,25 @@ class Sheet:
         return np.where(np.abs(whole) < np.abs(left), whole, left)
 
     def uncertain(self, i: int, left: float) -> bool:
-        """Whether a number may be anything with the mistakes found so far: the direction of a vector that has become short.
+        """Whether a number may be anything with the mistakes found so far: the direction of a vector that has become short."""
+        return bool(self.allowed[i] > self.tolerance[i] and abs(left) <= LEFT * self.allowed[i])
+
+    @cached_property
+    def allowed(self) -> Floats:
+        """Tolerances with the mistakes found so far.
 
         A tolerance holds for what is drawn rightly; here the drawing with the mistakes is made several times by chance.
         """
-        j, rng = self.judged[i], np.random.default_rng(i)
-        drawn = [j.changed(self._with([self._by_chance(s, rng) for s in self._before(i)])) for _ in range(CHANCES)]
-        spread = float(np.max(np.abs([j.apart(x - float(self.predicted[i])) for x in drawn if isfinite(x)]), initial=0.0))
-        return spread > LEFT * self.tolerance[i] and abs(left) <= LEFT * spread
+        if not self.changes:
+            return self.tolerance
+        drawn = [s for s in self.whole if s.rule.gives != "direction" and self.errors.own(s).any()]
+        spread = np.zeros(len(self.judged))
+        for chance in range(CHANCES):
+            rng = np.random.default_rng(chance)
+            value = self._with([self._by_chance(s, rng) for s in drawn])
+            off = [j.apart(self._changed(j, value) - float(self.predicted[i])) for i, j in enumerate(self.judged)]
+            spread = np.fmax(spread, np.abs(off))
+        return np.where(np.isfinite(spread) & (spread > LEFT * self.tolerance), spread, self.tolerance)
 
     def _by_chance(self, step: Step, rng: np.random.Generator) -> Change:
         """A step with a pencil's error by chance; what is kept nineteen times of twenty is two standard deviations."""
@@ -173,7 +197,7 @@ class Sheet:
     # --- something done otherwise -----------------------------------------------------------------------------------------
     def _otherwise(self, i: int) -> Explanation | None:
         """The discrete mistake that explains a number, with those that cannot be told from it."""
-        alone = float(_loss(self.left[i] / self.tolerance[i]))
+        alone = float(_loss(self.left[i] / self.allowed[i]))
         found = [(h, self._drawn(h)) for h in self._hypotheses(i) if self._leaves_little(i, h)]
         best = max((e.score for _, e in found), default=0.0)
         if best <= ALONE * alone:
@@ -181,7 +205,37 @@ class Sheet:
         # Of equally good ones the more usual first.
         equal = [(h, e) for h, e in found if e.score >= EQUAL * best]
         first = equal[0][1]
-        return Explanation(first.changes, first.shares, first.doubt, first.score, tuple(h for h, _ in equal[:TOLD]))
+        return replace(first, wrong=tuple(h for h, _ in equal[:TOLD]))
+
+    def _together(self, i: int) -> Explanation | None:
+        """The first of two discrete mistakes in one plan that explain a number together and neither of them alone.
+
+        Little may be left of everything they reach in that plan; a displaced point cannot do that.
+        """
+        here = [n for n, j in enumerate(self.judged) if j.entry.plan == self.judged[i].entry.plan and isfinite(j.tolerance)
+                and j.entry.label == self.judged[i].entry.label]
+        if sum(abs(self.left[n]) > RED * self.allowed[n] for n in here) < WITNESSES:
+            return None
+        some = [h for h in self._hypotheses(i) if h.step.plan == self.judged[i].entry.plan and h.kind != "neighbour"]
+        order = sorted(some, key=lambda h: self.errors.order(h.step))
+        found = []
+        for first, second in combinations(order, 2):
+            if first.step is second.step or first.kind == second.kind:
+                continue
+            both = replace(first, changes=(*first.changes, *second.changes))
+            if self._leaves_little(i, both) and self._leaves_little_of(here, both):
+                found.append((self._drawn(both).score, first))
+        best = max((score for score, _ in found), default=0.0)
+        if best <= 0:
+            return None
+        equal = tuple(dict.fromkeys(h for score, h in found if score >= EQUAL * best))
+        return replace(self._drawn(equal[0]), score=best, wrong=equal[:TOLD], half=True)
+
+    def _leaves_little_of(self, lines: Sequence[int], h: Hypothesis) -> bool:
+        """Whether all these numbers are nearly what they would be with a mistake."""
+        shares = self._shares(h, lines)
+        return all(isfinite(share) and abs(self.judged[n].apart(self.left[n] - share)) <= LEFT * np.hypot(
+            self.allowed[n], CURVED * share) for n, share in zip(lines, shares, strict=True))
 
     def _hypotheses(self, i: int) -> list[Hypothesis]:
         """Mistakes that may have been made before a number, the more usual kinds first."""
@@ -190,7 +244,7 @@ class Sheet:
             return []
         before = self._made_of([step for step, _, _ in j.entry.terms])
         k = self.labels.index(j.entry.label) if j.entry.label in self.labels else 0
-        found = [*hypotheses(before, k, self.labels, self.whole), *self._computed_with(i)]
+        found = [*hypotheses(before, k, self.labels, self.whole), *self._computed_with(i), *self._drawn_to(i)]
         return sorted(found, key=lambda h: _KINDS.index(h.kind))
 
     def _made_of(self, steps: Sequence[Step]) -> list[Step]:
@@ -206,10 +260,20 @@ class Sheet:
         """That a result, and all others of its plan, was computed with another scale factor."""
         j = self.judged[i]
         of_plan = [s for s in self.whole if s.plan == j.entry.scale]
-        if j.entry.kind == "result" and j.entry.reading and j.exact and of_plan:
-            times = float(j.line.value / j.exact)
+        if j.entry.kind == "result" and j.entry.reading and j.exact + self.predicted[i] and of_plan:
+            times = float(j.line.value / (j.exact + self.predicted[i]))
             if times > 0 and abs(times - 1) > APART:
                 yield computed_with(of_plan, times, told(f"{times:.3g}"))
+
+    def _drawn_to(self, i: int) -> Iterator[Hypothesis]:
+        """That the plan of a length was drawn with another scale factor than stated."""
+        if is_scaled(self.judged[i]):
+            scale = self.judged[i].entry.scale
+            of_plan = [n for n, j in enumerate(self.judged) if is_scaled(j) and j.entry.scale == scale]
+            measured = np.array([self.judged[n].line.value for n in of_plan])
+            expected = measured - (self.deviation - self.predicted)[of_plan]
+            if (found := times_as_long(measured, expected, self.allowed[of_plan])) is not None:
+                yield drawn_to(found[0] * self.drawn.get(scale, 1.0), self.judged[i].entry.terms[-1][0], scale)
 
     def _leaves_little(self, i: int, h: Hypothesis) -> bool:
         """Whether a number is nearly what it would be with a mistake, and would not be so without.
@@ -220,17 +284,17 @@ class Sheet:
         if h.kind == "neighbour" and not any(h.step is s for step in at for s in (step, *step.args)):
             return False
         share = self._shares(h, [i])[0]
-        left, allowed = self.after(share, [i])[0], np.hypot(self.tolerance[i], CURVED * share)
-        return bool(isfinite(share) and abs(share) > self.tolerance[i] and abs(left) <= LEFT * allowed)
+        left, allowed = self.after(share, [i])[0], np.hypot(self.allowed[i], CURVED * share)
+        return bool(isfinite(share) and abs(share) > self.allowed[i] and abs(left) <= LEFT * allowed)
 
     def _drawn(self, h: Hypothesis) -> Explanation:
         """The construction with a mistake, held against all numbers."""
         shares = self._shares(h, range(len(self.judged)))
         doubt = CURVED * np.abs(shares)
         # With what cannot be drawn any more nothing is explained.
-        known = np.isfinite(shares) & np.isfinite(self.tolerance)
-        left = self.left[known] / self.tolerance[known]
-        after = self.after(shares)[known] / np.hypot(self.tolerance, doubt)[known]
+        known = np.isfinite(shares) & np.isfinite(self.allowed)
+        left = self.left[known] / self.allowed[known]
+        after = self.after(shares)[known] / np.hypot(self.allowed, doubt)[known]
         gain = _loss(left) - _loss(after)
         # Results are computed from lengths, whatever their senses: what is not spoilt in them proves nothing.
         proves = np.array([self._proves(j, h) for j in self.judged])[known]
@@ -238,7 +302,7 @@ class Sheet:
         # However much it explains besides: what is in order was not spoilt.
         if np.any(proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT)):
             score = 0.0
-        return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score)
+        return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score, drawn=h.drawn)
 
     @staticmethod
     def _proves(j: Judged, h: Hypothesis) -> bool:
@@ -252,8 +316,13 @@ class Sheet:
     def _shares(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
         """What a discrete mistake makes of some numbers."""
         value = self._with(h.changes)
-        return np.array([0.0 if j.entry.kind != "result" and j.entry.plan == h.on_paper else j.changed(value) - self.predicted[i]
-                         for i, j in ((i, self.judged[i]) for i in lines)])
+        return np.array([0.0 if j.entry.kind != "result" and j.entry.plan == h.on_paper else
+                         self._changed(j, value, h.drawn) - self.predicted[i] for i, j in ((i, self.judged[i]) for i in lines)])
+
+    def _changed(self, j: Judged, value: Callable[[Step], Any], drawn: Sequence[tuple[str, float]] = ()) -> float:
+        """How much a number changes in a drawing, and by the scale factors of its plan that were found so far or are given."""
+        times = dict(drawn).get(j.entry.scale, self.drawn.get(j.entry.scale, 1.0)) if is_scaled(j) else 1.0
+        return times * (j.exact + j.changed(value)) - j.exact
 
     def _with(self, changes: Sequence[Change]) -> Any:
         """The construction with the mistakes found so far and further ones."""
@@ -264,7 +333,7 @@ class Sheet:
         """The displaced step behind a red number; None when it explains nothing else."""
         candidates = sorted((self.mistake(place) for place in self.places[i] if self.can_be_wrong(place)), key=lambda m: -m.score)
         candidates = [self.mistake(m.place, exact=True) for m in candidates[:TRIED]]
-        alone = float(_loss(self.left[i] / self.tolerance[i]))
+        alone = float(_loss(self.left[i] / self.allowed[i]))
         own = self.judged[i].entry.head
         good = [m for m in candidates if m.score > alone * ALONE and self.helps(m, i)]
         if not good:
@@ -299,7 +368,7 @@ class Sheet:
         here = np.array([self.judged[i].entry.plan == self.steps[place].plan for i in lines])
         if here.all() or not here.any():
             return
-        rows, aims = (gradient / self.tolerance[lines, None])[here], (self.left[lines] / self.tolerance[lines])[here]
+        rows, aims = (gradient / self.allowed[lines, None])[here], (self.left[lines] / self.allowed[lines])[here]
         usual = self._usual(place)
         begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
         yield begin
@@ -323,13 +392,13 @@ class Sheet:
         """The best displacement that the search finds when it begins with ``x``."""
         lines, gradient = self.by_place[place]
         of, mu, usual = self.steps[place], self.errors.scale(self.steps[place]), self._usual(place)
-        rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
+        rows, aims = gradient / self.allowed[lines, None], self.left[lines] / self.allowed[lines]
         best = Mistake(place, of, x, np.eye(2), 0.0, mu)
         for _ in range(6 if exact else 9):
             if exact and x.any():
-                shares = self.shares(place, x) / self.tolerance[lines]
+                shares = self.shares(place, x) / self.allowed[lines]
                 near = np.linalg.inv(usual) * NEAR
-                beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
+                beside = [self.shares(place, x + d) / self.allowed[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
                 rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
                 rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
             else:
@@ -363,12 +432,12 @@ class Sheet:
         shares = self.shares(mistake.place, mistake.moved)
         mostly = {j for j, share in zip(self.by_place[mistake.place][0].tolist(), shares, strict=True)
                   if self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])}
-        return bool(mostly - {i}) and (i in mostly or abs(self.left[i]) <= self.tolerance[i])
+        return bool(mostly - {i}) and (i in mostly or abs(self.left[i]) <= self.allowed[i])
 
     def shares(self, place: Place, x: Floats) -> Floats:
         """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
         value, lines = self._with((self._change(place, x),)), self.by_place[place][0]
-        return np.asarray([self.judged[i].changed(value) for i in lines] - self.predicted[lines])
+        return np.asarray([self._changed(self.judged[i], value) for i in lines] - self.predicted[lines])
 
     def _change(self, place: Place, x: Floats) -> Change:
         step = self.steps[place]
