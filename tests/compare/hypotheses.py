@@ -147,8 +147,9 @@ def coriolis(found: Measurables, rng: np.random.Generator) -> Slip | None:
 
 
 def normal(found: Measurables, rng: np.random.Generator) -> Slip | None:
+    """Outwards as long as inwards: ω² l, of which the length of the link is known and not taken off the drawing."""
     steps, k, label = _there(found, rng)
-    return _one("normal", _ruled(steps, "normal acceleration"), rng, lambda a, made, k: a[0] + a[1] ** 2 * (a[3] - a[2]), k, label)
+    return _one("normal", _ruled(steps, "normal acceleration"), rng, lambda a, made, k: 2 * a[0] - made[k], k, label)
 
 
 def parallel(found: Measurables, rng: np.random.Generator) -> Slip | None:

@@ -266,7 +266,7 @@ def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> I
         before, after = before_all[i], after_all[i]
         if not sheet.reached(found, i) or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
             continue  # the mistake did not reach it, or with it nothing could be drawn
-        uncertain = abs(before) > j.tolerance and sheet.uncertain(i, before)
+        uncertain = abs(before) > j.tolerance and sheet.uncertain(i, after)
         if found.wrong and not found.half and abs(after) > abs(before) and not uncertain:
             continue  # it was gone on with otherwise
         sheet.left[i] = after

@@ -137,7 +137,10 @@ class Sheet:
         """Go on with what is left when a mistake is known."""
         self.changes += found.changes
         self.drawn |= dict(found.drawn)
-        self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
+        if found.changes or found.drawn:
+            self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
+        else:
+            self.deviation -= found.shares  # only written wrongly
         self.__dict__.pop("allowed", None)
 
     def reached(self, found: Explanation, i: int) -> bool:
@@ -199,29 +202,57 @@ class Sheet:
         """The discrete mistake that explains a number, with those that cannot be told from it."""
         alone = float(_loss(self.left[i] / self.allowed[i]))
         found = [(h, self._drawn(h)) for h in self._hypotheses(i) if self._leaves_little(i, h)]
+        found += self._exchanged(i)
         best = max((e.score for _, e in found), default=0.0)
         if best <= ALONE * alone:
             return None
         # Of equally good ones the more usual first.
-        equal = [(h, e) for h, e in found if e.score >= EQUAL * best]
+        equal = [self._as_often(h, e) for h, e in found if e.score >= EQUAL * best]
+        best = max(e.score for _, e in equal)
+        equal = [(h, e) for h, e in equal if e.score >= EQUAL * best]
         first = equal[0][1]
         return replace(first, wrong=tuple(h for h, _ in equal[:TOLD]))
+
+    def _as_often(self, h: Hypothesis, once: Explanation) -> tuple[Hypothesis, Explanation]:
+        """A mistake made at one position, or at all of them where numbers at the others tell that."""
+        if (often := h.at_every_position()) is None:
+            return h, once
+        always = self._drawn(often)
+        rest = [np.where(np.isfinite(e.shares), self.after(e.shares), self.left) / np.hypot(self.allowed, e.doubt)
+                for e in (once, always)]
+        more = float(np.sum(_loss(rest[0]) - _loss(rest[1])))
+        return (often, always) if min(more, always.score - once.score) > (1 - EQUAL) * once.score else (h, once)
+
+    def _exchanged(self, i: int) -> Iterator[tuple[Hypothesis, Explanation]]:
+        """That a number and that in the next row were written into each other's rows."""
+        e = self.judged[i].entry
+        alike = [n for n, j in enumerate(self.judged) if (j.entry.plan, j.entry.label, j.entry.kind, j.entry.unit) == (
+            e.plan, e.label, e.kind, e.unit)]
+        at = alike.index(i)
+        for n in alike[max(at - 1, 0):at] + alike[at + 1:at + 2]:
+            between = self.judged[i].line.value - self.left[i] - self.judged[n].line.value + self.left[n]
+            shares = np.zeros(len(self.judged))
+            shares[[i, n]] = -between, between
+            before = self.left[[i, n]] / self.allowed[[i, n]]
+            after = [self.judged[m].apart(self.left[m] - shares[m]) for m in (i, n)] / self.allowed[[n, i]]
+            if e.terms and np.all(np.abs(before) > LEFT) and np.all(np.abs(after) <= LEFT):
+                other = self.judged[n].entry
+                place = f"({other.label}) " if other.label else ""
+                h = Hypothesis("neighbour", "row", e.terms[-1][0], (), other=f"{place}{other.quantity}")
+                yield h, Explanation((), shares, np.zeros(len(shares)), float(np.sum(_loss(before) - _loss(after))))
 
     def _together(self, i: int) -> Explanation | None:
         """The first of two discrete mistakes in one plan that explain a number together and neither of them alone.
 
         Little may be left of everything they reach in that plan; a displaced point cannot do that.
         """
-        here = [n for n, j in enumerate(self.judged) if j.entry.plan == self.judged[i].entry.plan and isfinite(j.tolerance)
-                and j.entry.label == self.judged[i].entry.label]
+        at = self.judged[i].entry
+        here = [n for n, j in enumerate(self.judged)
+                if (j.entry.plan, j.entry.label) == (at.plan, at.label) and isfinite(j.tolerance)]
         if sum(abs(self.left[n]) > RED * self.allowed[n] for n in here) < WITNESSES:
             return None
-        some = [h for h in self._hypotheses(i) if h.step.plan == self.judged[i].entry.plan and h.kind != "neighbour"]
-        order = sorted(some, key=lambda h: self.errors.order(h.step))
         found = []
-        for first, second in combinations(order, 2):
-            if first.step is second.step or first.kind == second.kind:
-                continue
+        for first, second in self._pairs(i, here):
             both = replace(first, changes=(*first.changes, *second.changes))
             if self._leaves_little(i, both) and self._leaves_little_of(here, both):
                 found.append((self._drawn(both).score, first))
@@ -231,18 +262,32 @@ class Sheet:
         equal = tuple(dict.fromkeys(h for score, h in found if score >= EQUAL * best))
         return replace(self._drawn(equal[0]), score=best, wrong=equal[:TOLD], half=True)
 
+    def _pairs(self, i: int, here: Sequence[int]) -> Iterator[tuple[Hypothesis, Hypothesis]]:
+        """Two mistakes in the plan of some numbers, in the order of drawing, of which one at least reaches number ``i``."""
+        plan = self.judged[i].entry.plan
+        some = [h for h in self._hypotheses(i, here) if _done_in(h, plan) and h.kind != "neighbour"]
+        some.sort(key=lambda h: self.errors.order(h.step))
+        before = set(self._made_of([step for step, _, _ in self.judged[i].entry.terms]))
+        reaching = [any(change.step in before for change in h.changes) for h in some]
+        alone = [reaches and self._leaves_little(i, h) for h, reaches in zip(some, reaching, strict=True)]
+        for a, b in combinations(range(len(some)), 2):
+            # Where one of them does not reach the number the other explains it alone.
+            if ((reaching[a] and reaching[b]) or alone[a] or alone[b]) and some[a].step is not some[b].step and (
+                    some[a].kind != some[b].kind):
+                yield some[a], some[b]
+
     def _leaves_little_of(self, lines: Sequence[int], h: Hypothesis) -> bool:
         """Whether all these numbers are nearly what they would be with a mistake."""
         shares = self._shares(h, lines)
         return all(isfinite(share) and abs(self.judged[n].apart(self.left[n] - share)) <= LEFT * np.hypot(
             self.allowed[n], CURVED * share) for n, share in zip(lines, shares, strict=True))
 
-    def _hypotheses(self, i: int) -> list[Hypothesis]:
-        """Mistakes that may have been made before a number, the more usual kinds first."""
+    def _hypotheses(self, i: int, others: Sequence[int] = ()) -> list[Hypothesis]:
+        """Mistakes that may have been made before a number, or before others of its position; the more usual kinds first."""
         j = self.judged[i]
         if not self.labels:
             return []
-        before = self._made_of([step for step, _, _ in j.entry.terms])
+        before = self._made_of([step for n in (i, *others) for step, _, _ in self.judged[n].entry.terms])
         k = self.labels.index(j.entry.label) if j.entry.label in self.labels else 0
         found = [*hypotheses(before, k, self.labels, self.whole), *self._computed_with(i), *self._drawn_to(i)]
         return sorted(found, key=lambda h: _KINDS.index(h.kind))
@@ -310,8 +355,10 @@ class Sheet:
 
         Further on it may have been gone on with otherwise, by lengths without their senses.
         """
-        here, there = h.step.plan, j.entry.plan
-        return there == here or (here in ("loads", "moments") and there.startswith("force-"))
+        if _done_in(h, j.entry.plan):
+            return True
+        # A neighbour's number may have been taken without its sense.
+        return h.kind != "neighbour" and any(step is h.step for step, _, _ in j.entry.terms)
 
     def _shares(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
         """What a discrete mistake makes of some numbers."""
@@ -442,6 +489,11 @@ class Sheet:
     def _change(self, place: Place, x: Floats) -> Change:
         step = self.steps[place]
         return Change(step, displaced(complex(*x)), place[1] if np.ndim(step.value) else None)
+
+
+def _done_in(h: Hypothesis, plan: str) -> bool:
+    """Whether a mistake is made in a plan, or in the loads that its sides are."""
+    return h.step.plan == plan or (h.step.plan in ("loads", "moments") and plan.startswith("force-"))
 
 
 def covariance(rows: Floats, usual: Floats) -> Floats:
