@@ -38,11 +38,21 @@ def times_as_long(measured: Floats, expected: Floats, tolerance: Floats) -> tupl
     off = long & (np.abs(measured - expected) > 2 * tolerance)
     if long.sum() < SCALED or off.sum() < 0.6 * long.sum():
         return None
-    times = float(np.median(measured[long] / expected[long]))
-    explained = np.abs(measured - times * expected) <= tolerance * max(times, 1.0)
+
+    def explained(times: float) -> npt.NDArray[np.bool_]:
+        left = 2.0 if abs(times - 1) > SIMILAR_SCALES else 1.0
+        return np.asarray(np.abs(measured - times * expected) <= left * tolerance * max(times, 1.0))
+
+    # The lengths are not equally exact: of what each tells the best, then all that agree with it together.
+    agree = max((explained(float(times)) for times in measured[long] / expected[long]), key=np.sum)
+    if not agree.any():
+        return None
+    weighted = np.where(agree, expected / tolerance**2, 0.0)
+    times = float(weighted @ measured / (weighted @ expected))
     # A long side drawn a little wrong makes a plan a little smaller, too, but not all of it.
     needed = 0.8 * len(measured) if abs(times - 1) > SIMILAR_SCALES else len(measured)
-    return None if times <= 0 or abs(times - 1) < 0.01 or explained.sum() < needed else (times, explained)
+    told_so = explained(times)
+    return None if times <= 0 or abs(times - 1) < 0.01 or told_so.sum() < needed else (times, told_so)
 
 
 def drawn_to(times: float, step: Step, scale: str) -> Hypothesis:
