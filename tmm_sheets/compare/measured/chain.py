@@ -274,8 +274,9 @@ def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> I
         allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt))
         explained = abs(sheet.left[i]) <= allowed and abs(share) > SHARE * j.tolerance and abs(sheet.left[i]) < abs(before)
         explained = explained or uncertain
-        if explained and found.wrong and j.off_own and j is not start:
-            # Not from his own numbers by the rule, but by what he did instead.
+        surely = abs(share) > 2 * j.tolerance and abs(after) <= j.tolerance
+        if explained and (found.wrong or surely) and j.off_own and j is not start:
+            # Not from his own numbers by the rule, but by what he did instead or where he drew it.
             j.off_own = j.starts = False
             j.remark = ""
         if explained and not j.starts:
