@@ -55,6 +55,9 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
     computed = _check_arithmetic(judged, filled, found)
     for j in judged:
+        if j.verdict == "red" and all(n.verdict == "green" for n in computed.get(id(j), ())):
+            computed.pop(id(j), None)  # rounding of numbers that are in order makes none wrong
+    for j in judged:
         j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
     if judged:
