@@ -299,8 +299,12 @@ class Student:
 
         if len(self.slips) == 1:
             return any(off(j.deviation, j) or j.starts for j in self.judged)
-        return all(any(off(j.deviation, j) and off(j.line.value - values.get(j.entry.id, np.inf), j) for j in self.judged)
-                   for values in self.without)
+        def written(j: Judged, value: float) -> float:
+            """Of what is told without a sign it shows nothing."""
+            return value if j.entry.signed or j.entry.kind in ("angle", "sense") else abs(value)
+
+        return all(any(off(j.deviation, j) and off(written(j, j.line.value) - written(j, values.get(j.entry.id, np.inf)), j)
+                       for j in self.judged) for values in self.without)
 
     def __str__(self) -> str:
         said = [f"{j.entry.id} ({j.deviation / j.tolerance:+.1f}): "

@@ -131,7 +131,7 @@ class Sheet:
         off = self._displaced(i)
         best = off if done is None or (off is not None and off.score * NEARLY > done.score) else done
         both = self._together(i)
-        return best if both is None or (best is not None and best.score * NEARLY > both.score) else both
+        return best if both is None or (best is not None and best.score > NEARLY * both.score) else both
 
     def accept(self, found: Explanation) -> None:
         """Go on with what is left when a mistake is known."""
@@ -254,7 +254,8 @@ class Sheet:
         found = []
         for first, second in self._pairs(i, here):
             both = replace(first, changes=(*first.changes, *second.changes))
-            if self._leaves_little(i, both) and self._leaves_little_of(here, both):
+            if self._leaves_little(i, both) and self._leaves_little_of(here, both) and not any(
+                    self._leaves_little_of(here, h) for h in (first, second)):
                 found.append((self._drawn(both).score, first))
         best = max((score for score, _ in found), default=0.0)
         if best <= 0:
@@ -358,7 +359,7 @@ class Sheet:
         if _done_in(h, j.entry.plan):
             return True
         # A neighbour's number may have been taken without its sense.
-        return h.kind != "neighbour" and any(step is h.step for step, _, _ in j.entry.terms)
+        return any(step is h.step for step, _, _ in j.entry.terms) and not (h.kind == "neighbour" and j.entry.kind == "sense")
 
     def _shares(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
         """What a discrete mistake makes of some numbers."""
