@@ -235,12 +235,26 @@ def _chains(sheet: Sheet, own: OwnNumbers, computed: Mapping[int, list[Judged]])
         if found is None:
             _wrong_row(start, judged)
         else:
-            start.mistake, start.wrong = found.mistake, found.wrong
-            for i in _follow(sheet, start, found, beyond):
-                open_[i] = False
+            open_[_told(sheet, start, found, beyond)] = False
+            if found.then is not None and (second := _shows(sheet, start, found.then)) is not None:
+                second.starts, second.follows = True, None
+                open_[[judged.index(second), *_told(sheet, second, found.then, beyond)]] = False
     for j in judged:
         if j.verdict == "red" and not j.starts and j.follows is None:
             j.follows = _own_reason(own, j, computed)
+
+
+def _told(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> list[int]:
+    """Tell a mistake at the number it was looked for; the numbers that follow from it."""
+    start.mistake, start.wrong = found.mistake, found.wrong
+    return list(_follow(sheet, start, found, beyond))
+
+
+def _shows(sheet: Sheet, start: Judged, found: Explanation) -> Judged | None:
+    """The number that shows most of the second of two mistakes; None where the first one's only does."""
+    by = np.where(np.isfinite(found.shares), np.abs(found.shares), 0.0) / sheet.tolerance
+    others = [i for i, j in enumerate(sheet.judged) if j.verdict == "red" and not j.starts and j.entry.plan == start.entry.plan]
+    return sheet.judged[max(others, key=lambda i: float(by[i]))] if others else None
 
 
 def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
@@ -270,7 +284,7 @@ def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> I
         if not sheet.reached(found, i) or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
             continue  # the mistake did not reach it, or with it nothing could be drawn
         uncertain = abs(before) > j.tolerance and sheet.uncertain(i, after)
-        if found.wrong and not found.half and abs(after) > abs(before) and not uncertain:
+        if found.wrong and abs(after) > abs(before) and not uncertain:
             continue  # it was gone on with otherwise
         sheet.left[i] = after
         # What is left need not be better than other numbers: amber is accused of nothing.

@@ -73,7 +73,7 @@ class Explanation:
     score : how much of all deviations it explains
     wrong : discrete mistakes that are equally good, the first of them is told
     mistake : a displaced step where it is none of these
-    half : whether another discrete mistake belongs to it, which is found with what is left
+    then : another discrete mistake in the same plan, without which this one explains nothing; shares when this one is known
     """
 
     changes: tuple[Change, ...]
@@ -82,7 +82,7 @@ class Explanation:
     score: float
     wrong: tuple[Hypothesis, ...] = ()
     mistake: Mistake | None = None
-    half: bool = False
+    then: Explanation | None = None
     drawn: tuple[tuple[str, float], ...] = ()
 
 
@@ -256,12 +256,16 @@ class Sheet:
             both = replace(first, changes=(*first.changes, *second.changes))
             if self._leaves_little(i, both) and self._leaves_little_of(here, both) and not any(
                     self._leaves_little_of(here, h) for h in (first, second)):
-                found.append((self._drawn(both).score, first))
-        best = max((score for score, _ in found), default=0.0)
+                found.append((self._drawn(both), first, second))
+        best = max((e.score for e, _, _ in found), default=0.0)
         if best <= 0:
             return None
-        equal = tuple(dict.fromkeys(h for score, h in found if score >= EQUAL * best))
-        return replace(self._drawn(equal[0]), score=best, wrong=equal[:TOLD], half=True)
+        equal = [(e, first, second) for e, first, second in found if e.score >= EQUAL * best]
+        both_, first, _ = equal[0]
+        begun = self._drawn(first)
+        seconds = tuple(second for _, other, second in equal if other is first)
+        then = replace(both_, changes=seconds[0].changes, shares=both_.shares - begun.shares, wrong=seconds[:TOLD])
+        return replace(begun, score=best, wrong=tuple(dict.fromkeys(h for _, h, _ in equal))[:TOLD], then=then)
 
     def _pairs(self, i: int, here: Sequence[int]) -> Iterator[tuple[Hypothesis, Hypothesis]]:
         """Two mistakes in the plan of some numbers, in the order of drawing, of which one at least reaches number ``i``."""
