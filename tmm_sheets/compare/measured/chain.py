@@ -251,10 +251,11 @@ def _told(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> lis
 
 
 def _shows(sheet: Sheet, start: Judged, found: Explanation) -> Judged | None:
-    """The number that shows most of the second of two mistakes; None where the first one's only does."""
+    """The number that shows most of the second of two mistakes, where that was made if one does; None where none does."""
     by = np.where(np.isfinite(found.shares), np.abs(found.shares), 0.0) / sheet.tolerance
-    others = [i for i, j in enumerate(sheet.judged) if j.verdict == "red" and not j.starts and j.entry.plan == start.entry.plan]
-    return sheet.judged[max(others, key=lambda i: float(by[i]))] if others else None
+    others = [i for i, j in enumerate(sheet.judged) if j.verdict == "red" and not j.starts and j.entry.label == start.entry.label]
+    best = max(others, key=lambda i: (sheet.proves(sheet.judged[i], found.wrong[0]) and by[i] > 1, float(by[i])), default=None)
+    return sheet.judged[best] if best is not None and by[best] > 1 else None
 
 
 def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:

@@ -48,6 +48,8 @@ LEFT = 2.0
 """Tolerances that a discrete mistake may leave of the number it is looked for."""
 CHANCES = 8
 """Drawings by chance that tell how uncertain a number has become."""
+LOADS = ("loads", "moments")
+"""Plans that are seen in the polygons of forces."""
 RED, WITNESSES = 2.0, 3
 """Numbers of a plan and position, off by so many tolerances, without which two mistakes at once are not looked for."""
 SPOILT = 3.0
@@ -247,8 +249,9 @@ class Sheet:
         Little may be left of everything they reach in that plan; a displaced point cannot do that.
         """
         at = self.judged[i].entry
-        here = [n for n, j in enumerate(self.judged)
-                if (j.entry.plan, j.entry.label) == (at.plan, at.label) and isfinite(j.tolerance)]
+        plan = _seen_in(self.judged[i])
+        here = [n for n, j in enumerate(self.judged) if j.entry.label == at.label and isfinite(j.tolerance)
+                and (_seen_in(j) == plan or (plan in LOADS and j.entry.plan.startswith("force-")))]
         if sum(abs(self.left[n]) > RED * self.allowed[n] for n in here) < WITNESSES:
             return None
         found = []
@@ -260,17 +263,18 @@ class Sheet:
         best = max((e.score for e, _, _ in found), default=0.0)
         if best <= 0:
             return None
-        equal = [(e, first, second) for e, first, second in found if e.score >= EQUAL * best]
+        equal = sorted((pair for pair in found if pair[0].score >= EQUAL * best), key=lambda pair: -pair[0].score)
         both_, first, _ = equal[0]
         begun = self._drawn(first)
-        seconds = tuple(second for _, other, second in equal if other is first)
+        # Those of other pairs, too: which two of them they were is not known then.
+        seconds = tuple(dict.fromkeys(second for _, _, second in sorted(equal, key=lambda pair: pair[1] is not first)))
         then = replace(both_, changes=seconds[0].changes, shares=both_.shares - begun.shares, wrong=seconds[:TOLD])
         return replace(begun, score=best, wrong=tuple(dict.fromkeys(h for _, h, _ in equal))[:TOLD], then=then)
 
     def _pairs(self, i: int, here: Sequence[int]) -> Iterator[tuple[Hypothesis, Hypothesis]]:
         """Two mistakes in the plan of some numbers, in the order of drawing, of which one at least reaches number ``i``."""
-        plan = self.judged[i].entry.plan
-        some = [h for h in self._hypotheses(i, here) if _done_in(h, plan) and h.kind != "neighbour"]
+        plans = {_seen_in(self.judged[n]) for n in (i, *here)}
+        some = [h for h in self._hypotheses(i, here) if h.kind != "neighbour" and any(_done_in(h, plan) for plan in plans)]
         some.sort(key=lambda h: self.errors.order(h.step))
         before = set(self._made_of([step for step, _, _ in self.judged[i].entry.terms]))
         reaching = [any(change.step in before for change in h.changes) for h in some]
@@ -347,7 +351,7 @@ class Sheet:
         after = self.after(shares)[known] / np.hypot(self.allowed, doubt)[known]
         gain = _loss(left) - _loss(after)
         # Results are computed from lengths, whatever their senses: what is not spoilt in them proves nothing.
-        proves = np.array([self._proves(j, h) for j in self.judged])[known]
+        proves = np.array([self.proves(j, h) for j in self.judged])[known]
         score = float(np.sum(np.where(proves, gain, np.maximum(gain, 0.0))))
         # However much it explains besides: what is in order was not spoilt.
         if np.any(proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT)):
@@ -355,7 +359,7 @@ class Sheet:
         return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score, drawn=h.drawn)
 
     @staticmethod
-    def _proves(j: Judged, h: Hypothesis) -> bool:
+    def proves(j: Judged, h: Hypothesis) -> bool:
         """Whether a number that is in order proves that something was not done: it shows where that was done.
 
         Further on it may have been gone on with otherwise, by lengths without their senses.
@@ -498,7 +502,12 @@ class Sheet:
 
 def _done_in(h: Hypothesis, plan: str) -> bool:
     """Whether a mistake is made in a plan, or in the loads that its sides are."""
-    return h.step.plan == plan or (h.step.plan in ("loads", "moments") and plan.startswith("force-"))
+    return h.step.plan == plan or (h.step.plan in LOADS and plan.startswith("force-"))
+
+
+def _seen_in(j: Judged) -> str:
+    """The plan that a number was measured in, or where its step is when it was computed."""
+    return j.entry.terms[-1][0].plan if j.entry.kind in ("result", "sense") and j.entry.terms else j.entry.plan
 
 
 def covariance(rows: Floats, usual: Floats) -> Floats:
