@@ -67,7 +67,7 @@ class Slipping(Hand):
     def slipped(self, step: Step, values: list[Any], made: Any) -> Any:
         if self.mirrors and step.plan != next(iter(self.mirrors.values())).plan:
             # Who looks at the plan sees its mirror image.
-            seen = [-np.conj(v) if id(a) in self.mirrors and a.rule.gives == "point" else v
+            seen = [-np.conj(v) if id(a) in self.mirrors and a.rule.gives in ("point", "vector") else v
                     for a, v in zip(self.errors.arguments(step), values, strict=True)]
             if any(a is not b for a, b in zip(seen, values, strict=True)):
                 made = np.array(self.errors.replayed(step, seen))
@@ -147,8 +147,9 @@ def coriolis(found: Measurables, rng: np.random.Generator) -> Slip | None:
 
 
 def normal(found: Measurables, rng: np.random.Generator) -> Slip | None:
+    """Outwards as long as inwards: ω² l, of which the length of the link is known and not taken off the drawing."""
     steps, k, label = _there(found, rng)
-    return _one("normal", _ruled(steps, "normal acceleration"), rng, lambda a, made, k: a[0] + a[1] ** 2 * (a[3] - a[2]), k, label)
+    return _one("normal", _ruled(steps, "normal acceleration"), rng, lambda a, made, k: 2 * a[0] - made[k], k, label)
 
 
 def parallel(found: Measurables, rng: np.random.Generator) -> Slip | None:
@@ -298,8 +299,12 @@ class Student:
 
         if len(self.slips) == 1:
             return any(off(j.deviation, j) or j.starts for j in self.judged)
-        return all(any(off(j.deviation, j) and off(j.line.value - values.get(j.entry.id, np.inf), j) for j in self.judged)
-                   for values in self.without)
+        def written(j: Judged, value: float) -> float:
+            """Of what is told without a sign it shows nothing."""
+            return value if j.entry.signed or j.entry.kind in ("angle", "sense") else abs(value)
+
+        return all(any(off(j.deviation, j) and off(written(j, j.line.value) - written(j, values.get(j.entry.id, np.inf)), j)
+                       for j in self.judged) for values in self.without)
 
     def __str__(self) -> str:
         said = [f"{j.entry.id} ({j.deviation / j.tolerance:+.1f}): "

@@ -1,8 +1,12 @@
-"""Plans drawn again with a mistake: against vector equations solved here, and told by the numbers of who made it."""
+"""Plans drawn again with a mistake: against vector equations solved here, and told by the numbers of who made it.
+
+Hundreds of such students: ``python -m tests.compare.hypotheses``.
+"""
 
 import numpy as np
 import pytest
 
+from tests.compare.hypotheses import student
 from tests.compare.students import opened
 from tmm_sheets.compare.diagnosis.hypotheses import hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
@@ -54,3 +58,16 @@ def test_two_changes_in_one_replay(shaper):
     moved = both[0] - alone
     assert moved[2] == pytest.approx((0.15j * np.conj(u[2])).real * u[2], rel=1e-9)
     assert not moved[[0, 1, 3, 4]].any()
+
+
+@pytest.mark.parametrize(("number", "kinds"), [
+    (1, ()),
+    (8, ("coriolis", "normal")),  # both in one plan: neither of them explains it alone
+    (14, ("crank", "scale")),  # a plan of velocities 1.25 times as large, of a crank that turns the other way
+    (11, ("mirror", "neighbour"))])  # a plan mirrored at every position, and two of its rows exchanged
+def test_students_are_told_what_they_did(number, kinds):
+    """What was done wrong is worked out by the trial's own vector equations; nothing but that is told."""
+    one = student("lugansk/shaper", number, 11, kinds)
+    assert one is not None
+    assert all(one.told(slip) for slip in one.slips), str(one)
+    assert sum(j.starts for j in one.judged) == len(kinds), str(one)

@@ -7,7 +7,7 @@ crosses another it may be drawn parallel for perpendicular, where there are two 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from inspect import signature
 from typing import Any, Literal
 
@@ -70,7 +70,9 @@ class Hypothesis:
     """One mistake: its kind, the key of its words, the step it was made in, the changes to replay.
 
     ``at`` is the number of the position, None where it was made at every one; ``other`` what stands in the words besides.
-    ``on_paper`` is the plan whose lengths are right all the same: only what was made of them is not.
+    ``on_paper`` is the plan whose lengths are right all the same: only what was made of them is not. ``drawn`` are plans, by their
+    scale factors, that are so many times as large: only their lengths are wrong. ``everywhere`` is what might have been done
+    otherwise at one position only.
     """
 
     kind: Kind
@@ -80,10 +82,19 @@ class Hypothesis:
     at: int | None = None
     other: str = ""
     on_paper: str = ""
+    drawn: tuple[tuple[str, float], ...] = ()
+    everywhere: bool = False
 
     def said(self) -> str:
         """The mistake as it is told to the reader."""
-        return tell(WORDS[self.words]).format(step=letter_of(self.step), other=self.other)
+        said = tell(WORDS[self.words]).format(step=letter_of(self.step), other=self.other)
+        return tell("{mistake}, at every position").format(mistake=said) if self.everywhere else said
+
+    def at_every_position(self) -> Hypothesis | None:
+        """The same mistake made at every position; None where it was, or cannot be."""
+        if self.at is None or self.kind == "neighbour" or not np.ndim(self.step.value):
+            return None
+        return replace(self, changes=tuple(replace(change, at=None) for change in self.changes), at=None, everywhere=True)
 
 
 def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = (), whole: Iterable[Step] = ()) -> Iterator[Hypothesis]:

@@ -22,15 +22,12 @@ from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angl
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.compare.measured.own_steps import OwnValue
+from tmm_sheets.compare.measured.plan_scales import wrong_scales
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded, told
 from tmm_sheets.words import tell, tell_n
 
-SCALED = 4
-"""Lengths of a plan from which a wrong scale factor is recognised."""
-SIMILAR_SCALES = 0.15
-"""Difference of two scale factors, as a share, below which all lengths must tell of it."""
 ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
 MOST = 10
@@ -48,6 +45,7 @@ CHANCE = 1e-3
 EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
 
+
 def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> list[Judged]:
     """Judge every filled line, in the order of the sheets."""
     errors = found.errors(filled.factors, pencil, reading)
@@ -57,11 +55,14 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
     computed = _check_arithmetic(judged, filled, found)
     for j in judged:
+        if j.verdict == "red" and all(n.verdict == "green" for n in computed.get(id(j), ())):
+            computed.pop(id(j), None)  # rounding of numbers that are in order makes none wrong
+    for j in judged:
         j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
     if judged:
         own = OwnNumbers(judged, errors)
-        left = _wrong_scales([j for j in judged if id(j) not in computed])
+        left = wrong_scales([j for j in judged if id(j) not in computed])
         _against_own(own, {id(j) for j in left})
         labels = next((plan.labels for plan, _ in found.plans if plan.name == "positions"), ())
         _chains(Sheet(left, errors, labels), own, computed)
@@ -213,48 +214,6 @@ def _own_gives(own: Iterable[Judged], value: float) -> str:
     return said.format(numbers=numbers, value=told(rounded(value, 4)))
 
 
-# --- scale factors ------------------------------------------------------------------------------------------------------------
-
-
-def _wrong_scales(judged: list[Judged]) -> list[Judged]:
-    """Mark the lengths of plans that were drawn with another scale factor than stated; returns what is left to explain."""
-    plans: dict[str, list[Judged]] = {}
-    for j in judged:
-        if j.entry.kind == "length" and j.entry.scale and j.line.factor is None:
-            plans.setdefault(j.entry.scale, []).append(j)
-    marked = {id(j) for of_plan in plans.values() for j in _drawn_to_another_scale(of_plan, judged)}
-    return [j for j in judged if id(j) not in marked]
-
-
-def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list[Judged]:
-    """Lengths of a plan that another scale factor explains, marked as such; none when it does not."""
-    long = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance]
-    off = [j for j in long if j.verdict == "red"]
-    if len(long) < SCALED or len(off) < 0.6 * len(long) or _has_reason(off, judged):
-        return []
-    times = float(np.median([j.line.value / j.exact for j in long]))
-    explained = [j for j in of_plan if abs(j.line.value - times * j.exact) <= j.tolerance * max(times, 1.0)]
-    # A long side drawn a little wrong makes a plan a little smaller, too, but not all of it.
-    needed = 0.8 * len(of_plan) if abs(times - 1) > SIMILAR_SCALES else len(of_plan)
-    if times <= 0 or abs(times - 1) < 0.01 or len(explained) < needed:
-        return []
-    first = off[0]
-    first.starts = True
-    first.wrong = (Hypothesis("scale", "plan scale", first.entry.terms[-1][0], (), other=told(f"{times:.3g}")),)
-    for j in explained:
-        if j is not first and j.verdict != "green":
-            j.follows = first
-    return explained
-
-
-def _has_reason(off: list[Judged], judged: list[Judged]) -> bool:
-    """True when something drawn earlier, on which this plan depends, is red already."""
-    first, plan = min(j.order for j in off), off[0].entry.plan
-    sources = {id(step) for j in off for step, _, g in j.rows if g}
-    return any(j.verdict == "red" and j.order < first and j.entry.plan != plan and id(j.entry.terms[-1][0]) in sources
-               for j in judged if j.entry.terms)
-
-
 # --- chains -------------------------------------------------------------------------------------------------------------------
 
 
@@ -276,13 +235,27 @@ def _chains(sheet: Sheet, own: OwnNumbers, computed: Mapping[int, list[Judged]])
         if found is None:
             _wrong_row(start, judged)
         else:
-            start.mistake, start.wrong = found.mistake, found.wrong
-            sheet.accept(found)
-            for i in _follow(sheet, start, found, beyond):
-                open_[i] = False
+            open_[_told(sheet, start, found, beyond)] = False
+            if found.then is not None and (second := _shows(sheet, start, found.then)) is not None:
+                second.starts, second.follows = True, None
+                open_[[judged.index(second), *_told(sheet, second, found.then, beyond)]] = False
     for j in judged:
         if j.verdict == "red" and not j.starts and j.follows is None:
             j.follows = _own_reason(own, j, computed)
+
+
+def _told(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> list[int]:
+    """Tell a mistake at the number it was looked for; the numbers that follow from it."""
+    start.mistake, start.wrong = found.mistake, found.wrong
+    return list(_follow(sheet, start, found, beyond))
+
+
+def _shows(sheet: Sheet, start: Judged, found: Explanation) -> Judged | None:
+    """The number that shows most of the second of two mistakes, where that was made if one does; None where none does."""
+    by = np.where(np.isfinite(found.shares), np.abs(found.shares), 0.0) / sheet.tolerance
+    others = [i for i, j in enumerate(sheet.judged) if j.verdict == "red" and not j.starts and j.entry.label == start.entry.label]
+    best = max(others, key=lambda i: (sheet.proves(sheet.judged[i], found.wrong[0]) and by[i] > 1, float(by[i])), default=None)
+    return sheet.judged[best] if best is not None and by[best] > 1 else None
 
 
 def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
@@ -305,19 +278,23 @@ def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
 
 def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> Iterator[int]:
     """Take from all numbers what a mistake makes of them; those that are in order then follow from the number it starts with."""
+    before_all, after_all = sheet.left.copy(), sheet.after(found.shares)
+    sheet.accept(found)
     for i, (j, share, doubt) in enumerate(zip(sheet.judged, found.shares, found.doubt, strict=True)):
-        before = sheet.left[i]
+        before, after = before_all[i], after_all[i]
         if not sheet.reached(found, i) or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
             continue  # the mistake did not reach it, or with it nothing could be drawn
-        if found.wrong and abs(j.apart(before - share)) > abs(before):
+        uncertain = abs(before) > j.tolerance and sheet.uncertain(i, after)
+        if found.wrong and abs(after) > abs(before) and not uncertain:
             continue  # it was gone on with otherwise
-        sheet.left[i] = j.apart(before - share)
+        sheet.left[i] = after
         # What is left need not be better than other numbers: amber is accused of nothing.
         allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt))
         explained = abs(sheet.left[i]) <= allowed and abs(share) > SHARE * j.tolerance and abs(sheet.left[i]) < abs(before)
-        explained = explained or (abs(before) > j.tolerance and sheet.uncertain(i, before))
-        if explained and found.wrong and j.off_own and j is not start:
-            # Not from his own numbers by the rule, but by what he did instead.
+        explained = explained or uncertain
+        surely = abs(share) > 2 * j.tolerance and abs(after) <= j.tolerance
+        if explained and (found.wrong or surely) and j.off_own and j is not start:
+            # Not from his own numbers by the rule, but by what he did instead or where he drew it.
             j.off_own = j.starts = False
             j.remark = ""
         if explained and not j.starts:

@@ -7,9 +7,10 @@ nothing is known beforehand, explains more than any of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 from math import isfinite
 from typing import Any, get_args
 
@@ -19,6 +20,7 @@ import numpy.typing as npt
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, computed_with, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Again, Change, displaced, replay
 from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
+from tmm_sheets.compare.measured.plan_scales import drawn_to, is_scaled, times_as_long
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, ordered, value_at
 from tmm_sheets.numbers import told
@@ -46,6 +48,10 @@ LEFT = 2.0
 """Tolerances that a discrete mistake may leave of the number it is looked for."""
 CHANCES = 8
 """Drawings by chance that tell how uncertain a number has become."""
+LOADS = ("loads", "moments")
+"""Plans that are seen in the polygons of forces."""
+RED, WITNESSES = 2.0, 3
+"""Numbers of a plan and position, off by so many tolerances, without which two mistakes at once are not looked for."""
 SPOILT = 3.0
 """Tolerances by which a discrete mistake would spoil a number that it cannot have been made before when that is in order."""
 APART = 0.05
@@ -64,10 +70,12 @@ class Explanation:
     Attributes
     ----------
     changes : to be replayed
+    drawn : plans that are so many times as large, by their scale factors
     shares, doubt : what it makes of each number, and how well that is known; in the unit of the number
     score : how much of all deviations it explains
     wrong : discrete mistakes that are equally good, the first of them is told
     mistake : a displaced step where it is none of these
+    then : another discrete mistake in the same plan, without which this one explains nothing; shares when this one is known
     """
 
     changes: tuple[Change, ...]
@@ -76,6 +84,8 @@ class Explanation:
     score: float
     wrong: tuple[Hypothesis, ...] = ()
     mistake: Mistake | None = None
+    then: Explanation | None = None
+    drawn: tuple[tuple[str, float], ...] = ()
 
 
 class Sheet:
@@ -88,9 +98,11 @@ class Sheet:
         self.judged = judged
         self.errors = errors
         self.labels = labels
-        self.left = np.array([j.deviation for j in judged])
+        self.deviation = np.array([j.deviation for j in judged])
+        self.left = self.deviation.copy()
         self.tolerance = np.array([j.tolerance for j in judged])
         self.changes: list[Change] = []
+        self.drawn: dict[str, float] = {}
         self._made: dict[int, dict[Step, None]] = {}
         self.predicted = np.zeros(len(judged))
         self.steps: dict[Place, Step] = {}
@@ -112,33 +124,61 @@ class Sheet:
         """What explains a number best; None when nothing does: a slip in reading or computing this one."""
         done = self._otherwise(i)
         if done is not None:
-            reached = np.abs(done.shares) > self.tolerance
+            reached = np.abs(done.shares) > self.allowed
             alike = reached.copy()  # with all that a step drawn off may explain
             for place in self.places[i]:
                 alike[self.by_place[place][0]] = True
-            if reached.sum() > 1 and done.score > NEARLY * float(np.sum(_loss((self.left / self.tolerance)[alike]))):
+            if reached.sum() > 1 and done.score > NEARLY * float(np.sum(_loss((self.left / self.allowed)[alike]))):
                 return done  # nothing can explain much more
         off = self._displaced(i)
-        return off if done is None or (off is not None and off.score * NEARLY > done.score) else done
+        best = off if done is None or (off is not None and off.score * NEARLY > done.score) else done
+        both = self._together(i)
+        return best if both is None or (best is not None and best.score > NEARLY * both.score) else both
 
     def accept(self, found: Explanation) -> None:
         """Go on with what is left when a mistake is known."""
         self.changes += found.changes
-        self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
+        self.drawn |= dict(found.drawn)
+        if found.changes or found.drawn:
+            self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
+        else:
+            self.deviation -= found.shares  # only written wrongly
+        self.__dict__.pop("allowed", None)
 
     def reached(self, found: Explanation, i: int) -> bool:
         """Whether a number depends on what was done wrong, also where that happens to leave it as it is."""
         return bool(found.shares[i]) or any(change.step in self._before(i) for change in found.changes)
 
+    def after(self, shares: Floats, lines: Sequence[int] | None = None) -> Floats:
+        """What is left of all numbers, or of some, when a further mistake makes ``shares`` of them.
+
+        A number that the mistakes before did not reach, because it was gone on with otherwise, may follow from all together.
+        """
+        of = range(len(self.judged)) if lines is None else lines
+        left, whole = (np.array([self.judged[i].apart(float(x)) for i, x in zip(of, differences[of] - shares, strict=True)])
+                       for differences in (self.left, self.deviation - self.predicted))
+        return np.where(np.abs(whole) < np.abs(left), whole, left)
+
     def uncertain(self, i: int, left: float) -> bool:
-        """Whether a number may be anything with the mistakes found so far: the direction of a vector that has become short.
+        """Whether a number may be anything with the mistakes found so far: the direction of a vector that has become short."""
+        return bool(self.allowed[i] > self.tolerance[i] and abs(left) <= LEFT * self.allowed[i])
+
+    @cached_property
+    def allowed(self) -> Floats:
+        """Tolerances with the mistakes found so far.
 
         A tolerance holds for what is drawn rightly; here the drawing with the mistakes is made several times by chance.
         """
-        j, rng = self.judged[i], np.random.default_rng(i)
-        drawn = [j.changed(self._with([self._by_chance(s, rng) for s in self._before(i)])) for _ in range(CHANCES)]
-        spread = float(np.max(np.abs([j.apart(x - float(self.predicted[i])) for x in drawn if isfinite(x)]), initial=0.0))
-        return spread > LEFT * self.tolerance[i] and abs(left) <= LEFT * spread
+        if not self.changes:
+            return self.tolerance
+        drawn = [s for s in self.whole if s.rule.gives != "direction" and self.errors.own(s).any()]
+        spread = np.zeros(len(self.judged))
+        for chance in range(CHANCES):
+            rng = np.random.default_rng(chance)
+            value = self._with([self._by_chance(s, rng) for s in drawn])
+            off = [j.apart(self._changed(j, value) - float(self.predicted[i])) for i, j in enumerate(self.judged)]
+            spread = np.fmax(spread, np.abs(off))
+        return np.where(np.isfinite(spread) & (spread > LEFT * self.tolerance), spread, self.tolerance)
 
     def _by_chance(self, step: Step, rng: np.random.Generator) -> Change:
         """A step with a pencil's error by chance; what is kept nineteen times of twenty is two standard deviations."""
@@ -162,24 +202,103 @@ class Sheet:
     # --- something done otherwise -----------------------------------------------------------------------------------------
     def _otherwise(self, i: int) -> Explanation | None:
         """The discrete mistake that explains a number, with those that cannot be told from it."""
-        alone = float(_loss(self.left[i] / self.tolerance[i]))
+        alone = float(_loss(self.left[i] / self.allowed[i]))
         found = [(h, self._drawn(h)) for h in self._hypotheses(i) if self._leaves_little(i, h)]
+        found += self._exchanged(i)
         best = max((e.score for _, e in found), default=0.0)
         if best <= ALONE * alone:
             return None
         # Of equally good ones the more usual first.
-        equal = [(h, e) for h, e in found if e.score >= EQUAL * best]
+        equal = [self._as_often(h, e) for h, e in found if e.score >= EQUAL * best]
+        best = max(e.score for _, e in equal)
+        equal = [(h, e) for h, e in equal if e.score >= EQUAL * best]
         first = equal[0][1]
-        return Explanation(first.changes, first.shares, first.doubt, first.score, tuple(h for h, _ in equal[:TOLD]))
+        return replace(first, wrong=tuple(h for h, _ in equal[:TOLD]))
 
-    def _hypotheses(self, i: int) -> list[Hypothesis]:
-        """Mistakes that may have been made before a number, the more usual kinds first."""
+    def _as_often(self, h: Hypothesis, once: Explanation) -> tuple[Hypothesis, Explanation]:
+        """A mistake made at one position, or at all of them where numbers at the others tell that."""
+        if (often := h.at_every_position()) is None:
+            return h, once
+        always = self._drawn(often)
+        rest = [np.where(np.isfinite(e.shares), self.after(e.shares), self.left) / np.hypot(self.allowed, e.doubt)
+                for e in (once, always)]
+        more = float(np.sum(_loss(rest[0]) - _loss(rest[1])))
+        return (often, always) if min(more, always.score - once.score) > (1 - EQUAL) * once.score else (h, once)
+
+    def _exchanged(self, i: int) -> Iterator[tuple[Hypothesis, Explanation]]:
+        """That a number and that in the next row were written into each other's rows."""
+        e = self.judged[i].entry
+        alike = [n for n, j in enumerate(self.judged) if (j.entry.plan, j.entry.label, j.entry.kind, j.entry.unit) == (
+            e.plan, e.label, e.kind, e.unit)]
+        at = alike.index(i)
+        for n in alike[max(at - 1, 0):at] + alike[at + 1:at + 2]:
+            between = self.judged[i].line.value - self.left[i] - self.judged[n].line.value + self.left[n]
+            shares = np.zeros(len(self.judged))
+            shares[[i, n]] = -between, between
+            before = self.left[[i, n]] / self.allowed[[i, n]]
+            after = [self.judged[m].apart(self.left[m] - shares[m]) for m in (i, n)] / self.allowed[[n, i]]
+            if e.terms and np.all(np.abs(before) > LEFT) and np.all(np.abs(after) <= LEFT):
+                other = self.judged[n].entry
+                place = f"({other.label}) " if other.label else ""
+                h = Hypothesis("neighbour", "row", e.terms[-1][0], (), other=f"{place}{other.quantity}")
+                yield h, Explanation((), shares, np.zeros(len(shares)), float(np.sum(_loss(before) - _loss(after))))
+
+    def _together(self, i: int) -> Explanation | None:
+        """The first of two discrete mistakes in one plan that explain a number together and neither of them alone.
+
+        Little may be left of everything they reach in that plan; a displaced point cannot do that.
+        """
+        at = self.judged[i].entry
+        plan = _seen_in(self.judged[i])
+        here = [n for n, j in enumerate(self.judged) if j.entry.label == at.label and isfinite(j.tolerance)
+                and (_seen_in(j) == plan or (plan in LOADS and j.entry.plan.startswith("force-")))]
+        if sum(abs(self.left[n]) > RED * self.allowed[n] for n in here) < WITNESSES:
+            return None
+        found = []
+        for first, second in self._pairs(i, here):
+            both = replace(first, changes=(*first.changes, *second.changes))
+            if self._leaves_little(i, both) and self._leaves_little_of(here, both) and not any(
+                    self._leaves_little_of(here, h) for h in (first, second)):
+                found.append((self._drawn(both), first, second))
+        best = max((e.score for e, _, _ in found), default=0.0)
+        if best <= 0:
+            return None
+        equal = sorted((pair for pair in found if pair[0].score >= EQUAL * best), key=lambda pair: -pair[0].score)
+        both_, first, _ = equal[0]
+        begun = self._drawn(first)
+        # Those of other pairs, too: which two of them they were is not known then.
+        seconds = tuple(dict.fromkeys(second for _, _, second in sorted(equal, key=lambda pair: pair[1] is not first)))
+        then = replace(both_, changes=seconds[0].changes, shares=both_.shares - begun.shares, wrong=seconds[:TOLD])
+        return replace(begun, score=best, wrong=tuple(dict.fromkeys(h for _, h, _ in equal))[:TOLD], then=then)
+
+    def _pairs(self, i: int, here: Sequence[int]) -> Iterator[tuple[Hypothesis, Hypothesis]]:
+        """Two mistakes in the plan of some numbers, in the order of drawing, of which one at least reaches number ``i``."""
+        plans = {_seen_in(self.judged[n]) for n in (i, *here)}
+        some = [h for h in self._hypotheses(i, here) if h.kind != "neighbour" and any(_done_in(h, plan) for plan in plans)]
+        some.sort(key=lambda h: self.errors.order(h.step))
+        before = set(self._made_of([step for step, _, _ in self.judged[i].entry.terms]))
+        reaching = [any(change.step in before for change in h.changes) for h in some]
+        alone = [reaches and self._leaves_little(i, h) for h, reaches in zip(some, reaching, strict=True)]
+        for a, b in combinations(range(len(some)), 2):
+            # Where one of them does not reach the number the other explains it alone.
+            if ((reaching[a] and reaching[b]) or alone[a] or alone[b]) and some[a].step is not some[b].step and (
+                    some[a].kind != some[b].kind):
+                yield some[a], some[b]
+
+    def _leaves_little_of(self, lines: Sequence[int], h: Hypothesis) -> bool:
+        """Whether all these numbers are nearly what they would be with a mistake."""
+        shares = self._shares(h, lines)
+        return all(isfinite(share) and abs(self.judged[n].apart(self.left[n] - share)) <= LEFT * np.hypot(
+            self.allowed[n], CURVED * share) for n, share in zip(lines, shares, strict=True))
+
+    def _hypotheses(self, i: int, others: Sequence[int] = ()) -> list[Hypothesis]:
+        """Mistakes that may have been made before a number, or before others of its position; the more usual kinds first."""
         j = self.judged[i]
         if not self.labels:
             return []
-        before = self._made_of([step for step, _, _ in j.entry.terms])
+        before = self._made_of([step for n in (i, *others) for step, _, _ in self.judged[n].entry.terms])
         k = self.labels.index(j.entry.label) if j.entry.label in self.labels else 0
-        found = [*hypotheses(before, k, self.labels, self.whole), *self._computed_with(i)]
+        found = [*hypotheses(before, k, self.labels, self.whole), *self._computed_with(i), *self._drawn_to(i)]
         return sorted(found, key=lambda h: _KINDS.index(h.kind))
 
     def _made_of(self, steps: Sequence[Step]) -> list[Step]:
@@ -195,10 +314,20 @@ class Sheet:
         """That a result, and all others of its plan, was computed with another scale factor."""
         j = self.judged[i]
         of_plan = [s for s in self.whole if s.plan == j.entry.scale]
-        if j.entry.kind == "result" and j.entry.reading and j.exact and of_plan:
-            times = float(j.line.value / j.exact)
+        if j.entry.kind == "result" and j.entry.reading and j.exact + self.predicted[i] and of_plan:
+            times = float(j.line.value / (j.exact + self.predicted[i]))
             if times > 0 and abs(times - 1) > APART:
                 yield computed_with(of_plan, times, told(f"{times:.3g}"))
+
+    def _drawn_to(self, i: int) -> Iterator[Hypothesis]:
+        """That the plan of a length was drawn with another scale factor than stated."""
+        if is_scaled(self.judged[i]):
+            scale = self.judged[i].entry.scale
+            of_plan = [n for n, j in enumerate(self.judged) if is_scaled(j) and j.entry.scale == scale]
+            measured = np.array([self.judged[n].line.value for n in of_plan])
+            expected = measured - (self.deviation - self.predicted)[of_plan]
+            if (found := times_as_long(measured, expected, self.allowed[of_plan])) is not None:
+                yield drawn_to(found[0] * self.drawn.get(scale, 1.0), self.judged[i].entry.terms[-1][0], scale)
 
     def _leaves_little(self, i: int, h: Hypothesis) -> bool:
         """Whether a number is nearly what it would be with a mistake, and would not be so without.
@@ -209,44 +338,47 @@ class Sheet:
         if h.kind == "neighbour" and not any(h.step is s for step in at for s in (step, *step.args)):
             return False
         share = self._shares(h, [i])[0]
-        left, allowed = self.judged[i].apart(self.left[i] - share), np.hypot(self.tolerance[i], CURVED * share)
-        return bool(isfinite(share) and abs(share) > self.tolerance[i] and abs(left) <= LEFT * allowed)
+        left, allowed = self.after(share, [i])[0], np.hypot(self.allowed[i], CURVED * share)
+        return bool(isfinite(share) and abs(share) > self.allowed[i] and abs(left) <= LEFT * allowed)
 
     def _drawn(self, h: Hypothesis) -> Explanation:
         """The construction with a mistake, held against all numbers."""
         shares = self._shares(h, range(len(self.judged)))
         doubt = CURVED * np.abs(shares)
         # With what cannot be drawn any more nothing is explained.
-        known = np.isfinite(shares) & np.isfinite(self.tolerance)
-        left = self.left[known] / self.tolerance[known]
-        after = self._apart(self.left - shares)[known] / np.hypot(self.tolerance, doubt)[known]
+        known = np.isfinite(shares) & np.isfinite(self.allowed)
+        left = self.left[known] / self.allowed[known]
+        after = self.after(shares)[known] / np.hypot(self.allowed, doubt)[known]
         gain = _loss(left) - _loss(after)
         # Results are computed from lengths, whatever their senses: what is not spoilt in them proves nothing.
-        proves = np.array([self._proves(j, h) for j in self.judged])[known]
+        proves = np.array([self.proves(j, h) for j in self.judged])[known]
         score = float(np.sum(np.where(proves, gain, np.maximum(gain, 0.0))))
         # However much it explains besides: what is in order was not spoilt.
         if np.any(proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT)):
             score = 0.0
-        return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score)
-
-    def _apart(self, differences: Floats) -> Floats:
-        """Differences of all numbers: of angles the short way round."""
-        return np.array([j.apart(float(x)) for j, x in zip(self.judged, differences, strict=True)])
+        return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score, drawn=h.drawn)
 
     @staticmethod
-    def _proves(j: Judged, h: Hypothesis) -> bool:
+    def proves(j: Judged, h: Hypothesis) -> bool:
         """Whether a number that is in order proves that something was not done: it shows where that was done.
 
         Further on it may have been gone on with otherwise, by lengths without their senses.
         """
-        here, there = h.step.plan, j.entry.plan
-        return there == here or (here in ("loads", "moments") and there.startswith("force-"))
+        if _done_in(h, j.entry.plan):
+            return True
+        # A neighbour's number may have been taken without its sense.
+        return any(step is h.step for step, _, _ in j.entry.terms) and not (h.kind == "neighbour" and j.entry.kind == "sense")
 
     def _shares(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
         """What a discrete mistake makes of some numbers."""
         value = self._with(h.changes)
-        return np.array([0.0 if j.entry.kind != "result" and j.entry.plan == h.on_paper else j.changed(value) - self.predicted[i]
-                         for i, j in ((i, self.judged[i]) for i in lines)])
+        return np.array([0.0 if j.entry.kind != "result" and j.entry.plan == h.on_paper else
+                         self._changed(j, value, h.drawn) - self.predicted[i] for i, j in ((i, self.judged[i]) for i in lines)])
+
+    def _changed(self, j: Judged, value: Callable[[Step], Any], drawn: Sequence[tuple[str, float]] = ()) -> float:
+        """How much a number changes in a drawing, and by the scale factors of its plan that were found so far or are given."""
+        times = dict(drawn).get(j.entry.scale, self.drawn.get(j.entry.scale, 1.0)) if is_scaled(j) else 1.0
+        return times * (j.exact + j.changed(value)) - j.exact
 
     def _with(self, changes: Sequence[Change]) -> Any:
         """The construction with the mistakes found so far and further ones."""
@@ -257,7 +389,7 @@ class Sheet:
         """The displaced step behind a red number; None when it explains nothing else."""
         candidates = sorted((self.mistake(place) for place in self.places[i] if self.can_be_wrong(place)), key=lambda m: -m.score)
         candidates = [self.mistake(m.place, exact=True) for m in candidates[:TRIED]]
-        alone = float(_loss(self.left[i] / self.tolerance[i]))
+        alone = float(_loss(self.left[i] / self.allowed[i]))
         own = self.judged[i].entry.head
         good = [m for m in candidates if m.score > alone * ALONE and self.helps(m, i)]
         if not good:
@@ -292,7 +424,7 @@ class Sheet:
         here = np.array([self.judged[i].entry.plan == self.steps[place].plan for i in lines])
         if here.all() or not here.any():
             return
-        rows, aims = (gradient / self.tolerance[lines, None])[here], (self.left[lines] / self.tolerance[lines])[here]
+        rows, aims = (gradient / self.allowed[lines, None])[here], (self.left[lines] / self.allowed[lines])[here]
         usual = self._usual(place)
         begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
         yield begin
@@ -316,13 +448,13 @@ class Sheet:
         """The best displacement that the search finds when it begins with ``x``."""
         lines, gradient = self.by_place[place]
         of, mu, usual = self.steps[place], self.errors.scale(self.steps[place]), self._usual(place)
-        rows, aims = gradient / self.tolerance[lines, None], self.left[lines] / self.tolerance[lines]
+        rows, aims = gradient / self.allowed[lines, None], self.left[lines] / self.allowed[lines]
         best = Mistake(place, of, x, np.eye(2), 0.0, mu)
         for _ in range(6 if exact else 9):
             if exact and x.any():
-                shares = self.shares(place, x) / self.tolerance[lines]
+                shares = self.shares(place, x) / self.allowed[lines]
                 near = np.linalg.inv(usual) * NEAR
-                beside = [self.shares(place, x + d) / self.tolerance[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
+                beside = [self.shares(place, x + d) / self.allowed[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
                 rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
                 rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
             else:
@@ -356,16 +488,26 @@ class Sheet:
         shares = self.shares(mistake.place, mistake.moved)
         mostly = {j for j, share in zip(self.by_place[mistake.place][0].tolist(), shares, strict=True)
                   if self.judged[j].verdict != "green" and abs(self.left[j] - share) < 0.5 * abs(self.left[j])}
-        return bool(mostly - {i}) and (i in mostly or abs(self.left[i]) <= self.tolerance[i])
+        return bool(mostly - {i}) and (i in mostly or abs(self.left[i]) <= self.allowed[i])
 
     def shares(self, place: Place, x: Floats) -> Floats:
         """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
         value, lines = self._with((self._change(place, x),)), self.by_place[place][0]
-        return np.asarray([self.judged[i].changed(value) for i in lines] - self.predicted[lines])
+        return np.asarray([self._changed(self.judged[i], value) for i in lines] - self.predicted[lines])
 
     def _change(self, place: Place, x: Floats) -> Change:
         step = self.steps[place]
         return Change(step, displaced(complex(*x)), place[1] if np.ndim(step.value) else None)
+
+
+def _done_in(h: Hypothesis, plan: str) -> bool:
+    """Whether a mistake is made in a plan, or in the loads that its sides are."""
+    return h.step.plan == plan or (h.step.plan in LOADS and plan.startswith("force-"))
+
+
+def _seen_in(j: Judged) -> str:
+    """The plan that a number was measured in, or where its step is when it was computed."""
+    return j.entry.terms[-1][0].plan if j.entry.kind in ("result", "sense") and j.entry.terms else j.entry.plan
 
 
 def covariance(rows: Floats, usual: Floats) -> Floats:
