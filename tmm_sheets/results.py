@@ -376,8 +376,10 @@ _SECTIONS: dict[str, Callable[[Project, Study, list[int]], dict[str, Any]]] = {
 def _flywheel(project: Project, scales: dict[str, Any]) -> dict[str, Any]:
     f = project.flywheel
     for symbol, scale in (("mu_phi", f.scales.angle), ("mu_F", f.scales.force), ("mu_M", f.scales.moment),
-                          ("mu_A", f.scales.work), ("mu_E", f.scales.energy), ("mu_J", f.scales.inertia)):  # fmt: skip
-        scales[symbol] = {"value": scale.mu, "unit": _latin(scale.unit), "where": "flywheel"}
+                          ("mu_A", f.scales.work), ("mu_E", f.scales.energy), ("mu_dE", f.scales.excess),
+                          ("mu_J", f.scales.inertia)):  # fmt: skip
+        if scale is not None:
+            scales[symbol] = {"value": scale.mu, "unit": _latin(scale.unit), "where": "flywheel"}
     return f.results()
 
 

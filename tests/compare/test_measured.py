@@ -350,3 +350,23 @@ def test_results_of_a_cam_are_as_exact_as_they_are_drawn(shaper):
     lines = [MeasuredLine(e, e.value, 0.0, 1) for e in entries]
     for j in judged(shaper, Filled(lines)):
         assert 0.1 < j.tolerance < 0.25
+
+
+@pytest.fixture(scope="module")
+def screen():
+    return measurables_of("screen")
+
+
+def test_a_good_drawing_of_class_three(screen):
+    """No length is asked for from a point that lies on no paper, and the graph of dE is measured at the scale it is drawn to."""
+    of = judged(screen, drawn(screen, screen.entries))
+    assert {"|AF|", "|AW3|"} <= {e.quantity for e in screen.entries.values() if e.plan == "positions"}
+    assert not [j.entry.id for j in of if j.starts]
+    energy = {e.label: e for e in screen.entries.values() if e.plan == "total-work"}
+    found = [energy[label].value * screen.scales[energy[label].scale].mu for label in energy]
+    (plan,) = (plan for plan, _ in screen.plans if plan.name == "total-work")
+    exact = plan["E"].value[:-1]
+    assert np.ptp([e.value for e in energy.values()]) > 40  # 0.51 J at 0.01 J/mm, not at the 0.5 J/mm of the energy-mass diagram
+    assert found == pytest.approx(exact, rel=1e-12)
+    ordinates = {j.entry.label: j.tolerance for j in of if j.entry.plan == "total-work"}
+    assert max(ordinates.values()) < 15

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import fit, times
+from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
@@ -27,7 +27,6 @@ from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
@@ -36,10 +35,6 @@ if TYPE_CHECKING:
 Options = dict[str, Any]
 CROWD = 4
 """So many intervals between two positions on an average are drawn, with their rays, as they are."""
-LEAST_SEEN = 8.0
-"""Height of the graph of dE at the scale of the energy-mass diagram below which it gets a scale of its own, mm."""
-ALONE = 60.0
-"""Greatest height of the graph then, mm."""
 FELT = 0.02
 """Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
 _BELOW = 7.0  # room of position numbers beside an axis
@@ -236,7 +231,7 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     """Sum of the works, which is the change of kinetic energy, at the scale of the energy-mass diagram."""
     fw = with_tangents(project)
     s = fw.scales
-    scale = _excess_scale(fw)
+    scale = s.excess or s.energy
     ratio = s.work.mu / scale.mu
     graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{scale}")
     if abs(ratio - 1) > 1e-9:
@@ -247,20 +242,10 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     low, high = min(0.0, float(ordinates.min())), max(0.0, float(ordinates.max()))
     g = _energy_graph(fw, box, options) if scale is s.energy else \
         graphs.Graph(complex(options["axis"], box.y1 - graphs.HEAD - graphs.OVER - high - 4.0))
-    of = stage(canvas, fw.total_plan, None, g.place(1.0, 1 / larger))
+    of = stage(canvas, fw.total_plan, None, g.place())
     of.curve("points", g(s.angle.mm(fw.samples) + 1j * ordinates))
     uprights(of, "points")
     axes(fw, of, "points", g, low, high, tr("ΔE, J"), fw.total_plan["points"].value.imag)
-
-
-def _excess_scale(fw: Wittenbauer) -> Scale:
-    """Scale factor of the graph of dE: that of the energy-mass diagram, or its own where it would be a line to that.
-
-    So it is where the links' inertia decides and dE is little beside what it swallows and gives back.
-    """
-    energy = fw.scales.energy
-    span = float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0)))
-    return energy if not 0 < span < LEAST_SEEN else fit("μ_{ΔE}", energy.unit, span * energy.mu, ALONE)
 
 
 def _enlarged(ratio: float) -> str:
@@ -301,7 +286,8 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
 def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Energy-mass curve by projection from the graphs of dE and J, its two tangents and the segment ab."""
     fw = with_tangents(project)
-    s, plan, scale = fw.scales, fw.energy_mass_plan, _excess_scale(fw)
+    s, plan = fw.scales, fw.energy_mass_plan
+    scale = s.excess or s.energy
     canvas.of = plan.name
     if scale is not s.energy:
         canvas.note(box, _enlarged(scale.mu / s.energy.mu))

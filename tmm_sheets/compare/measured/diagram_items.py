@@ -32,7 +32,8 @@ def collect(project: Project, found: Measurables) -> None:
                 for graph, step in zip(graphs.items(), motion.at_positions, strict=True):
                     _graph(found, graph, step.name, step, project.study.labels)
     if OF_MOMENT[0] in found.scales and project.driver is None:
-        _graph(found, OF_MOMENT, "M_ур", project.study.balance["M"], project.study.labels, tr("M_b"))
+        called = tr("M_b") if project.balancing == "Mур" else project.balancing
+        _graph(found, OF_MOMENT, "M_ур", project.study.balance["M"], project.study.labels, called)
 
 
 def _graph(found: Measurables, graph: tuple[str, str], quantity: str, step: Step, labels: tuple[str, ...],

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 TITLE = marked("Flywheel")
-MOMENT, WORK, ENERGY, INERTIA = "moment", "work", "energy", "inertia"
-"""Keys of the scale factors: diagrams of one quantity have one."""
+MOMENT, WORK, ENERGY, EXCESS, INERTIA = "moment", "work", "energy", "excess", "inertia"
+"""Keys of the scale factors: diagrams of one quantity have one, but that of dE may have its own."""
 NEAR = 1e-3
 """Millimetres by which the segment ab is moved to see what reading it does to the results."""
 
@@ -35,7 +35,7 @@ def collect(project: Project, found: Measurables) -> None:
         "reduced-moment": (MOMENT, s.moment, {"M": "y_M"}),
         "work": (WORK, s.work, work),
         "driving-moment": (WORK, s.work, {"K": "y_K"}),
-        "total-work": (ENERGY, s.energy, {"ΔE": "y_ΔE"}),
+        "total-work": (EXCESS, s.excess, {"ΔE": "y_ΔE"}) if s.excess is not None else (ENERGY, s.energy, {"ΔE": "y_ΔE"}),
         "reduced-inertia": (INERTIA, s.inertia, {"J": "y_J"}),
         "energy-mass": (ENERGY, s.energy, {"ab": "ab", "ψ_max": "ψ_max", "ψ_min": "ψ_min"}),
         "first-energy": (ENERGY, s.energy, {"T_II": "y_T2", "T_I": "y_T1", "ab": "ab"}),

@@ -98,11 +98,14 @@ def _position(plan: Plan, scales: Mapping[str, Scale], k: int) -> Iterator[Measu
 
 
 def _position_lines(plan: Plan) -> list[tuple[Step, Step]]:
-    """Lines of links; each point from the one it was laid off from, and all from the first pivot, so that two lengths fix each."""
+    """Lines of links; each point from the one it was laid off from, and all from the first pivot, so that two lengths fix each.
+
+    Where a way of assembly is looked for lies on no paper (the corner of a triad).
+    """
     points = [s for s in plan if s.rule.gives == "point"]
     origin = points[0]
     lines = [(s.args[0], s.args[1]) for s in plan if s.rule is rules.RAY]
-    lines += [(a, s) for s in points for a in s.args[:1] if isinstance(a, Step) and a.rule.gives == "point"]
+    lines += [(a, s) for s in points for a in s.args[:1] if isinstance(a, Step) and a in points]
     return lines + [(origin, s) for s in points if np.ndim(s.value) and s is not origin]
 
 

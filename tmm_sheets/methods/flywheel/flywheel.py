@@ -164,7 +164,10 @@ class DiagramSpace:
 
 @dataclass(frozen=True)
 class FlywheelScales:
-    """Scale factors of the diagrams and the pole distance, mm; ``work.mu`` = ``moment.mu angle.mu pole``."""
+    """Scale factors of the diagrams and the pole distance, mm; ``work.mu`` = ``moment.mu angle.mu pole``.
+
+    ``excess`` is that of the graph of dE where it has its own, not that of the energy-mass diagram.
+    """
 
     angle: Scale
     force: Scale
@@ -173,6 +176,7 @@ class FlywheelScales:
     energy: Scale
     inertia: Scale
     pole: float
+    excess: Scale | None = None
 
     def __post_init__(self) -> None:
         expected = self.moment.mu * self.angle.mu * self.pole
@@ -441,7 +445,12 @@ class Flywheel(ABC):
             energy=Scale("μ_E", mu_e, tr("J/mm")),
             inertia=Scale("μ_J", mu_j, tr("kg·m²/mm")),
             pole=mu_a / (mu_m * mu_phi),
+            excess=self._own_scale(float(np.ptp(np.append(excess, 0.0))), mu_e),
         )
+
+    def _own_scale(self, excess: float, mu_energy: float) -> Scale | None:
+        """Scale factor of the graph of dE, whose values span ``excess`` J, where that of energy is none for it."""
+        return None
 
     def _space(self) -> DiagramSpace:
         """Room for the diagrams when none is given."""
@@ -651,24 +660,40 @@ class Flywheel(ABC):
     def total_plan(self) -> Plan:
         """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at that of energy, mm; ``A``, ``A_K``, ``E``, J.
 
+        Where the graph has its own scale ``ΔE`` is drawn to that, and ``ΔE′`` is what the energy-mass diagram takes from it.
         ``δA`` is how much greater the work of the cycle is by the ordinates in the middles than by the area, % of the area.
         """
         plan = Plan(f"total-work{self.where}", tr("Graph of the total work"), "mm", self.labels)
         line = plan.add("y_1", ON_LINE, self.across, self.driving_plan["K"])
         curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
         total = plan.add("ΣA", SUM, curve, line)
-        energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("energy"))
+        own = self.scales.excess is not None
+        if own:
+            energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("excess"), say=tr(
+                "Convert the ordinate {0} from the scale factor μ_A = {1} J/mm to μ_{{ΔE}} = {2} J/mm: {name} = {0}·μ_A/μ_{{ΔE}} = "
+                "{value}."))
+            plan.add("ΔE′", ENLARGE, energy, self.mu("excess"), self.mu("energy"), say=tr(
+                "For the energy-mass diagram convert the ordinate {0} from the scale factor μ_{{ΔE}} = {1} J/mm to μ_E = {2} J/mm: "
+                "{name} = {0}·μ_{{ΔE}}/μ_E = {value}."))
+        else:
+            energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("energy"))
         plan.add("points", PLOT, self.across, energy)
         plan.add("A", FROM_PAPER, curve, self.mu("work"),
                  say=tr("Work of the variable moment {name} = y_2·μ_A = {0}·{1} J/mm = {value} J."))
         plan.add("A_K", FROM_PAPER, line, self.mu("work"),
                  say=tr("Work of the constant moment {name} = y_1·μ_A = {0}·{1} J/mm = {value} J."))
-        plan.add("E", FROM_PAPER, energy, self.mu("energy"),
-                 say=tr("Change of the kinetic energy {name} = ΔE·μ_E = {0}·{1} J/mm = {value} J."))
+        plan.add("E", FROM_PAPER, energy, self.mu("excess" if own else "energy"),
+                 say=tr("Change of the kinetic energy {name} = ΔE·μ_{{ΔE}} = {0}·{1} J/mm = {value} J.") if own else
+                 tr("Change of the kinetic energy {name} = ΔE·μ_E = {0}·{1} J/mm = {value} J."))
         done = plan.add("A_Σ", WORK_AT, plan["A"], len(self.labels) - 1)
         plan.add("δA", DIFFERENCE, done, self.area_plan["A_Σ"],
                  say=tr("The work of the cycle against that by the area of the graph: {name} = {value} %."))
         return plan
+
+    @property
+    def excess_ordinates(self) -> Step:
+        """Ordinates of dE at the positions at the scale of energy, mm."""
+        return self.total_plan["ΔE′" if self.scales.excess is not None else "ΔE"]
 
     @cached_property
     def inertia_angle(self) -> Scale:
@@ -743,7 +768,7 @@ class Flywheel(ABC):
         return np.asarray(curve(self.scales.angle.mm(np.asarray(phi, dtype=float))))
 
     def energy_curve(self, phi: Any) -> Floats:
-        """Ordinate of the graph dE(phi), mm."""
+        """Ordinate of the graph dE(phi) at the scale of energy, mm."""
         end = self.driving_plan["K"].value
         line = self.scales.angle.mm(np.asarray(phi, dtype=float)) * (end.imag / end.real)
         return np.asarray((self.work_curve(phi) + line) * (self.scales.work.mu / self.scales.energy.mu))
@@ -1095,7 +1120,7 @@ class Flywheel(ABC):
 
 
 _FACTORS = {"angle": ("mu_phi", "rad/mm"), "force": ("mu_F", "N/mm"), "moment": ("mu_M", "N*m/mm"), "work": ("mu_A", "J/mm"),
-            "energy": ("mu_E", "J/mm"), "inertia": ("mu_J", "kg*m2/mm")}  # fmt: skip
+            "energy": ("mu_E", "J/mm"), "excess": ("mu_dE", "J/mm"), "inertia": ("mu_J", "kg*m2/mm")}  # fmt: skip
 """Names and units of the scale factors in the record."""
 TANGENT = Rule("tangent of a graph", lambda slope, mu_phi, mu_j: np.arctan(slope * (mu_phi / mu_j)), ("number",) * 3, "inclination",
                marked("At the point of the graph J(φ1) draw the tangent; its slope angle is {name} = {value}."))

@@ -29,6 +29,10 @@ from tmm_sheets.words import marked, tr
 
 TURN = 2 * pi
 """One turn of the crank, rad."""
+EXCESS_SEEN = 8.0
+"""Height of the graph of dE at the scale of the energy-mass diagram below which it gets a scale of its own, mm."""
+EXCESS_ALONE = 60.0
+"""Greatest height of the graph then, mm."""
 FASTEST = Rule("angular velocity at the upper tangent", lambda omega, delta: omega * (1 + delta / 2), ("number",) * 2, "number",
                marked("At the upper tangent the angular velocity is {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} rad/s."),
                unit="rad/s", source="000, 5.5")
@@ -75,6 +79,13 @@ class Wittenbauer(Flywheel):
         upper, lower = (excess - mass * (self.reduced.omega1 * (1 + s * delta / 2)) ** 2 / 2 for s in (1, -1))
         return upper.max(), lower.min()  # both intercepts
 
+    def _own_scale(self, excess: float, mu_energy: float) -> Scale | None:
+        """Its own where the graph would be a line to that of the diagram.
+
+        So it is where the links' inertia decides and dE is little beside what it swallows and gives back.
+        """
+        return fit("μ_{ΔE}", tr("J/mm"), excess, EXCESS_ALONE) if 0 < excess < EXCESS_SEEN * mu_energy else None
+
     @cached_property
     def energy_mass_plan(self) -> Plan:
         """Energy-mass curve, tangents, segment ``ab``: see :func:`energy_mass_plan`."""
@@ -85,7 +96,7 @@ class Wittenbauer(Flywheel):
             criterion = f"{'highest' if side > 0 else 'lowest'} point of the energy-mass curve across the direction ψ_{name}"
             return self.contact(name, phi, criterion)[1:]
 
-        return energy_mass_plan(self.labels, self.total_plan["ΔE"], self.inertia_plan["J"], contact, self.mu("inertia"),
+        return energy_mass_plan(self.labels, self.excess_ordinates, self.inertia_plan["J"], contact, self.mu("inertia"),
                                 self.mu("energy"), self.omega1, self.drawn_delta, self.where)
 
     @property
@@ -104,7 +115,7 @@ class Wittenbauer(Flywheel):
         plan = Plan(f"energy-mass-speed{self.where}", title, "", self.labels)
         for name, rule in (("max", FASTEST), ("min", SLOWEST)):
             plan.add(f"ω_{name}", rule, self.omega1, self.drawn_delta)
-        plan.add("ω1", SPEED, self.total_plan["ΔE"], self.energy_mass_plan["a"], self.inertia_plan["J"], *self._running(plan),
+        plan.add("ω1", SPEED, self.excess_ordinates, self.energy_mass_plan["a"], self.inertia_plan["J"], *self._running(plan),
                  symbol="ω_1")
         return plan
 

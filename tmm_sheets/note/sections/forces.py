@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -436,7 +437,9 @@ def _lever(r: Reader, found: Scope) -> None:
         tree = (part if positive else -part) if tree is None else (tree + part if positive else tree - part)
     if tree is None or not last:
         return
-    name = letters_of(r.project.balancing) if lever.line is not None else "F_{ур}"
+    driven = letters_of(r.project.balancing)
+    # The force that a moment hangs on the lever with is called after it, as on the sheet.
+    name = driven if lever.line is not None else f"F_{{{re.sub('[_{}]', '', driven)}}}"
     quantities.append(Quantity(f"h_{{{index_of(name)}}}", abs(float(scale.mm(last))), "mm", r.id(own.arm), r.label))
     tree = tree / expression.Argument(len(quantities) - 1)
     value = float(expression.evaluate(tree, [q.value for q in quantities]))
@@ -452,9 +455,9 @@ def _lever(r: Reader, found: Scope) -> None:
             "m",
             "crank.length",
         )
-        force = Quantity("F_{ур}", abs(f_own), "N", r.id(own.force), r.label)
+        force = Quantity(name, abs(f_own), "N", r.id(own.force), r.label)
         found.formulas["lever_moment"] = r.checked(
-            letters_of("Mур"), lambda f, length: f * length, [force, length], lever.balancing
+            driven, lambda f, length: f * length, [force, length], lever.balancing
         )
 
 
