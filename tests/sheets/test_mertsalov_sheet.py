@@ -149,3 +149,14 @@ def test_views_of_the_other_method_are_refused():
     project = SimpleNamespace(flywheel=flywheel(Shaper(), data))
     with pytest.raises(CannotBuild, match=r'belongs to flywheel\.method = "mertsalov"'):
         draw(project, "energies", Box(324, 100, 647, 400))
+
+
+def test_the_graphs_of_the_moments_read_well(press):
+    """M_c and M_d together are at least 80 mm high, over a pole distance that a ruler lays off (H = mu_A/(mu_M mu_phi))."""
+    fw = press.flywheel
+    s = fw.scales
+    values = np.concatenate(([0.0, fw.M_constant], *(fw.at_samples.moment(side).value for side in (1, -1))))
+    assert np.ptp(values) / s.moment.mu >= 80
+    pole = s.work.mu / (s.moment.mu * s.angle.mu)
+    assert pole == pytest.approx(s.pole)
+    assert 2 * pole == pytest.approx(round(2 * pole), abs=1e-6)

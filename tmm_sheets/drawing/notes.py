@@ -47,7 +47,7 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
     return crowded
 
 
-def _wrapped(text: str, height: float, count: int) -> list[str]:
+def wrapped(text: str, height: float, count: int) -> list[str]:
     """The text broken between words into ``count`` lines of about one length; ``TOGETHER`` is a space that is not broken."""
     words = text.split(" ")
     widths = [letter(word, height).width for word in words]
@@ -69,7 +69,7 @@ def _wrapped(text: str, height: float, count: int) -> list[str]:
 
 def _choice(grid: Grid, region: Box, note: Note, height: float, count: int) -> tuple[float, complex, list[str]] | None:
     """The best free place in ``region`` for a note of so many lines: its cost, the lower left corner, the lines."""
-    lines = _wrapped(note.text, height, count)
+    lines = wrapped(note.text, height, count)
     laid = [letter(line, height) for line in lines]
     w = max(line.width for line in laid) + 0.15 * height
     h = (len(laid) - 1) * LEADING * height + laid[0].ascent + laid[-1].descent

@@ -19,6 +19,7 @@ from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.notes import wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import graphs
@@ -233,9 +234,8 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     s = fw.scales
     scale = s.excess or s.energy
     ratio = s.work.mu / scale.mu
-    graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{scale}")
-    if abs(ratio - 1) > 1e-9:
-        canvas.note(box, _enlarged(ratio))
+    graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{scale}",
+                   _enlarged(ratio) if abs(ratio - 1) > 1e-9 else "")
     canvas.of = fw.total_plan.name
     larger = s.energy.mu / scale.mu
     ordinates = larger * fw.energy_curve(fw.samples)
@@ -289,8 +289,6 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     s, plan = fw.scales, fw.energy_mass_plan
     scale = s.excess or s.energy
     canvas.of = plan.name
-    if scale is not s.energy:
-        canvas.note(box, _enlarged(scale.mu / s.energy.mu))
     energy = _energy_graph(fw, Box(*options["energy"]), {"axis": options["energy_axis"]})
     turned = _inertia_graph(fw, Box(*options["inertia"]), options)
     g = graphs.Graph(complex(options["axis"], energy.origin.imag))
@@ -298,7 +296,10 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     # The title stands in the widest gap between the lines that come down from the graph of J.
     cuts = np.unique(np.append(g(points).real, (g.origin.real, box.x1)))
     widest = int(np.argmax(np.diff(cuts)))
-    title = _narrow_title(canvas, Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), f"{s.energy}", f"{s.inertia}")
+    gap = Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1)
+    title = _narrow_title(canvas, gap, f"{s.energy}", f"{s.inertia}")
+    if scale is not s.energy:
+        title = _beneath(canvas, title, _enlarged(scale.mu / s.energy.mu))
     curve = fw.energy_mass_curve(fw.samples)
     of = stage(canvas, plan, None, g.place())
     of.curve("points", g(curve))
@@ -356,6 +357,16 @@ def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
     step = 1.6 * height
     canvas.lines(complex(gap.centre.real, gap.y1 - step), lines, step, height, "centre")
     return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * step - 3.0)
+
+
+def _beneath(canvas: Canvas, gap: Box, said: str) -> Box:
+    """Words right under a title on as many lines as the gap asks for; returns what is left below."""
+    room, height = gap.width - 2, 3.5
+    count = next((n for n in range(1, 4) if all(letter(line, height).width <= room for line in wrapped(said, height, n))), 4)
+    lines = wrapped(said, height, count)
+    height = size_for(lines, room, height)
+    canvas.lines(complex(gap.centre.real, gap.y1 - height), lines, 1.6 * height, height, "centre")
+    return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * 1.6 * height - 1.0)
 
 
 def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:

@@ -53,8 +53,11 @@ def check_room(box: Box, top: float, view: str) -> None:
             tell("make its box in the arrangement larger; for a four-stroke engine take the arrangement engine_2"))
 
 
-def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str) -> None:
-    """Title and scale factor on one line over the angle axis: the left column has no height to give away."""
+def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str, under: str = "") -> None:
+    """Title and scale factor on one line over the angle axis: the left column has no height to give away.
+
+    ``under`` is said of the graph's ordinates right beneath.
+    """
     x0 = options["axis"]
     for size in (5.0, 3.5, 2.5):
         name, scale = letter(title, size), letter(factor, size)
@@ -63,6 +66,8 @@ def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str)
     start = (x0 + box.x1 - name.width - scale.width - 8) / 2
     canvas.put(name, complex(start, box.y1 - 6.0))
     canvas.text(complex(start + name.width + 8, box.y1 - 6.0), factor, size)
+    if under:
+        canvas.text(complex((x0 + box.x1) / 2, box.y1 - 12.5), under, 3.5, "centre")
 
 
 def axes(canvas: Canvas, g: Graph, length: float, low: float, high: float, ordinate: str) -> None:

@@ -1176,6 +1176,9 @@ def _stacked(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
     heights = [span / m for span, m in zip(spans, mu, strict=True)]
     pole = mu[1] / (mu[0] * mu_phi)
     fitting = (sum(heights) <= space.stack) & (pole >= space.pole[0]) & (pole <= space.pole[1])
+    # A pole distance that a ruler lays off, in half millimetres, where there is one.
+    laid_off = fitting & (np.abs(2 * pole - np.round(2 * pole)) < 1e-6)
+    fitting = laid_off if laid_off.any() else fitting
     readable = fitting & (heights[0] >= READABLE)
     products = np.where(readable if readable.any() else fitting, np.prod(np.broadcast_arrays(*heights), axis=0), 0.0)
     best = np.unravel_index(int(np.argmax(products)), products.shape)
