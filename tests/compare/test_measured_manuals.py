@@ -8,7 +8,7 @@ DRAWN_BADLY = {"sh.arm.F34", "en.arm.Fi4", "en.arm.Fi2", "en.F21t", "en.F30", "e
 """Clean cells that are red: arms and a closing side of the manual that are off by 2 to 4.5 mm, and what follows from them."""
 FOUND = {
     "2 pS3_mm", "4 pS3_mm", "2 VS3_m_s", "4 VS3_m_s", "2 m3VS3sq_kg_m2_s2", "4 m3VS3sq_kg_m2_s2", "sh.VS3", "sh.F21t",
-    "|2-3| of link 2", "en.arm.h12", "en.arm.h14", "6 theta1", "S0", "r0", "rho_min", "pr.ab",
+    "|2-3| of link 2", "en.arm.h12", "en.arm.h14", "6 theta1", "S0", "r0", "rho_min", "pr.ab", "pr.Md",
     *(f"{k} M_G2_N_m" for k in (1, 2, 4, 5, 6, 7, 8, 10, 11, 12)), *(f"{k} I2_rot_kg_m2" for k in (1, 2, 4, 5, 7, 8, 10, 11)),
     *(f"{k} T_II_J" for k in (1, 2, 4, 5, 7, 8, 10, 11)), "1", "2", "3", "9", "10", "11", "12",
 }
@@ -36,6 +36,6 @@ def test_known_slips_are_found(outcomes):
 def test_what_is_missed_is_within_reach(outcomes):
     """A slip that is missed is smaller than what a pencil does, and more than half of those leave the number right."""
     missed = [o for o in outcomes if o.cell.slip and o.judged.verdict == "green"]
-    assert len(missed) == 35
+    assert len(missed) == 34
     assert all(abs(o.judged.deviation) <= o.judged.tolerance for o in missed)
     assert sum(map(is_right, missed)) == 21
