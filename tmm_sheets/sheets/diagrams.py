@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from itertools import pairwise
-from math import floor
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,8 +31,6 @@ TITLED = 74.0
 """Width of the title of the table of motion, mm."""
 GRAPH_SIZES = (280.0, 110.0), (240.0, 96.0), (200.0, 84.0), (170.0, 76.0)
 """Sizes of a single graph over the cycle for room that a sheet has left, mm."""
-_LEFT, _RIGHT = 24.0, 12.0
-"""Room beside the angle axis for the sign of the ordinate and for the arrow."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +73,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) 
         return
     width = box.width / len(columns)
     room = Box(0, 0, width, box.height)
-    angle = _angle(project, room)
+    angle = graphs.angle_axis(project, room)[0]
     left = canvas.title(box, tr("Kinematic diagrams"), str(angle))
     for n, quantities in enumerate(columns):
         x = box.x0 + n * width
@@ -158,7 +155,7 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     every = over_cycle(project)
     step, course = project.study.balance["M"], project.study_at(every, tuple("" for _ in every)).balance["M"]
     values, at = _row(course, every), _row(step, project.cycle.turned)
-    angle = _angle(project, box)
+    angle = graphs.angle_axis(project, box)[0]
     left = canvas.title(box, tr("Graph of the balancing moment"), str(angle))
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
     mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None else \
@@ -180,7 +177,7 @@ def over_cycle(project: Project) -> Any:
 
 def single(project: Project, canvas: Canvas, box: Box, title: str, quantity: DiagramQuantity) -> None:
     """One graph over the cycle under its title."""
-    angle = _angle(project, box)
+    angle = graphs.angle_axis(project, box)[0]
     _graph(project, canvas, canvas.title(box, title, str(angle)), angle, quantity)
 
 
@@ -253,13 +250,6 @@ def _quantity(key: str, sign: str, unit: str, curves: list[Curve]) -> DiagramQua
 # --- drawing ----------------------------------------------------------------------------------------------------------
 
 
-def _angle(project: Project, box: Box) -> Scale:
-    """Scale of the angle axis: half millimetres between the positions, so that the division is handy."""
-    n = len(project.cycle.labels)
-    length = floor(2 * (box.width - _LEFT - _RIGHT) / n) / 2 * n
-    return Scale("μ_φ", project.cycle.period / length, tr("rad/mm"))
-
-
 def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQuantity,
            level: tuple[str, float] | None = None) -> None:
     high = max(0.0, *(float(np.max(c.values)) for c in q.curves))
@@ -271,7 +261,7 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
     length = angle.mm(project.cycle.period)
     top, bottom = scale.mm(high), scale.mm(low)
     spare = box.height - above - below - (top - bottom)
-    o = complex(box.x0 + _LEFT + max(box.width - _LEFT - _RIGHT - length, 0) / 2, box.y0 + below + spare / 2 - bottom)
+    o = complex(graphs.angle_axis(project, box)[1], box.y0 + below + spare / 2 - bottom)
     canvas.of = q.key
     if level is None:
         canvas.begin(box, tr("Graph of {quantity}").format(quantity=q.letter))

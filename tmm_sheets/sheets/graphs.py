@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, PlacedFrame
@@ -22,6 +23,18 @@ OVER = 8.0
 """How far an axis runs beyond its graph, mm."""
 HEAD = 9.0
 """Room of a heading on one line, mm."""
+_LEFT, _RIGHT = 24.0, 12.0
+"""Room beside an angle axis for the sign of the ordinate and for the arrow, mm."""
+
+
+def angle_axis(project: Any, box: Box) -> tuple[Scale, float]:
+    """Scale factor of the angle of the crank over its cycle, and where the axis begins, mm.
+
+    One rule for all graphs, so that positions stand under each other; half millimetres between them, so that the division is handy.
+    """
+    n, room = len(project.cycle.labels), box.width - _LEFT - _RIGHT
+    length = floor(2 * room / n) / 2 * n
+    return Scale("μ_φ", project.cycle.period / length, tr("rad/mm")), box.x0 + _LEFT + (room - length) / 2
 
 
 @dataclass(frozen=True)

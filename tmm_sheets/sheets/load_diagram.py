@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, times
+from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed
+from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
 from tmm_sheets.sheets.linkage import indexed
 from tmm_sheets.words import tr
@@ -38,18 +39,19 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     top = max(0.0, *(float(np.max(f.shown(turned))) for f in shown))
     low = min(0.0, *(float(np.min(f.shown(turned))) for f in shown))
     scale = pick(project, canvas, "loads", f"μ_{kind}", tr("{unit}/mm").format(unit=unit), (top - low) / inside.height)
-    angle = Scale("μ_φ", cycle.period / inside.width, tr("rad/mm"))
+    angle, start = graphs.angle_axis(project, box)
+    length = angle.mm(cycle.period)
     title = tr("Technological load (taken)") if _accepted(project, shown) else tr("Technological load")
     canvas.title(box, title, f"{scale}, {angle}")
-    at = Frame(scale, complex(inside.x0, inside.y0 - low / scale.mu), angle)
+    at = Frame(scale, complex(start, inside.y0 - low / scale.mu), angle)
     if (said := _many_strokes(project, shown)) is not None:
         canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
     frame, o = canvas.placed("loads", "", at.origin, at.mu), at.origin
     with canvas.traced("axis", f"loads/{shown[0].name}", "", frame):
         canvas.arrow(o + 1j * low / scale.mu, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)
-        canvas.arrow(o, o + inside.width + 10.0, "axis", 3.0)
+        canvas.arrow(o, o + length + 10.0, "axis", 3.0)
         canvas.label(o + 1j * (top / scale.mu + 6.0), f"{', '.join(indexed(f.name) for f in shown)}, {unit}", 1 + 0j, 3.5, 1.5)
-        canvas.label(o + inside.width + 8.0, "φ", 1j, 3.5, 1.5)
+        canvas.label(o + length + 8.0, "φ", 1j, 3.5, 1.5)
     _positions(project, canvas, shown, at, frame)
     for f in shown:
         with canvas.traced("curve", f"loads/{f.name}", "", frame):
