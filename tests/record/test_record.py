@@ -134,6 +134,7 @@ def test_record_of_one_sheet(tmp_path, capsys):
     (["record", "lugansk/shaper"], 2, "--json"),
     (["why", "lugansk/shaper", "forces.arms.h5"], 2, "did you mean forces.arms.h50"),
     (["why", "lugansk/shaper", "flywhel.J_flywheel"], 2, "it has positions, velocities"),
+    (["why", "lugansk/shaper", "cycle.omega1"], 2, "not constructed"),
     (["why", "sixbar/1:1", "gear.z1"], 2, 'has no part "gear"'),
 ])
 def test_wrong_usage(arguments, status, said, capsys):

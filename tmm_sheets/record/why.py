@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 
+_ABOUT = ("schema", "project", "variant", "structure", "cycle", "condition", "scales")
+"""Sections of the results that tell about the whole project: read, counted or chosen, not constructed."""
+
+
 def lines(project: Project, result: str) -> Iterator[str]:
     """The chain of a result, arguments first: name, letters, value with its unit, and what it is from.
 
@@ -36,6 +40,13 @@ def lines(project: Project, result: str) -> Iterator[str]:
         when its part cannot be computed.
     """
     part = result.partition(".")[0].partition("[")[0]
+    if part in _ABOUT:
+        raise BadInput(
+            tell("{result} has no step behind it: it is read, counted or chosen, not constructed").format(result=result),
+            hint=tell("{command} tells what was read, and what follows from it").format(
+                command=f"tmm-sheets show {project.variant.project.name}"
+            ),
+        )
     if part not in project.parts:
         raise _unknown(project, result, ())
     found = dict(leaves(results.told(project, [part])))
