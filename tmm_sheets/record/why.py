@@ -43,9 +43,7 @@ def lines(project: Project, result: str) -> Iterator[str]:
     if part in _ABOUT:
         raise BadInput(
             tell("{result} has no step behind it: it is read, counted or chosen, not constructed").format(result=result),
-            hint=tell("{command} tells what was read, and what follows from it").format(
-                command=f"tmm-sheets show {project.variant.project.name}"
-            ),
+            hint=tell("{command} tells what was read, and what follows from it").format(command="tmm-sheets show"),
         )
     if part not in project.parts:
         raise _unknown(project, result, ())
