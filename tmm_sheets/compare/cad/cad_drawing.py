@@ -13,6 +13,7 @@ from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.matching import match
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, rebuilt
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.elements import views as views_of
@@ -105,9 +106,9 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
 
 
 def _as_built(known: KnownSheet, space: DrawingSpace, places: layout.Layout,
-              built: Mapping[ElementView, tuple[cad_built.BuiltPlan, Mapping[complex, complex]]], pencil: float) -> CadOutcome:
+              built: Mapping[ElementView, tuple[BuiltPlan, Mapping[complex, complex]]], pencil: float) -> CadOutcome:
     """The outcome with plans compared as they were built, judged by how they should have been."""
-    now = [cad_built.rebuilt(e, built[e.view][1]) if e.view in built else e for e in known.elements]
+    now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in known.elements]
     outcome = match(now, space, places.moves, pencil)
     findings = [cad_built.as_built(f, was, e, places.moves.get(was.view, Placing()), pencil) if was is not e else f
                 for f, was, e in zip(outcome.findings, known.elements, now, strict=True)]
