@@ -82,7 +82,8 @@ def test_planted_errors_are_found_and_nothing_else():
     _, planted = drawn()
     traces, extra = tracing.trace(known(), rectified().ink)
     marks = sheet().drawing.marks
-    red = {f.trace.element.number for f in (judge(t, 0.25, rectified().uncertainty) for t in traces) if f.verdict == "red"}
+    findings = [judge(t, 0.25, rectified().uncertainty) for t in traces]
+    red = {f.element.number for f in findings if f.verdict == "red"}
     guilty = {e.number for e in known() if any(m is marks[i] for i in planted for m in e.marks)}
     assert len(guilty) == len(planted) == 5
     assert red == guilty
@@ -91,7 +92,7 @@ def test_planted_errors_are_found_and_nothing_else():
     assert circle.growth == pytest.approx(2.5, abs=0.3)
     # A line that is moved farther than it can be told from others leaves ink behind; nothing else does.
     assert len(extra) <= 4
-    shows_what_is_off_on_the_ink(image_report("shaper", N, Path("photo.jpg"), rectified(), traces, extra, 0.25, ()), guilty)
+    shows_what_is_off_on_the_ink(image_report("shaper", N, Path("photo.jpg"), rectified(), findings, extra, 0.25, ()), guilty)
 
 
 def shows_what_is_off_on_the_ink(report, guilty):

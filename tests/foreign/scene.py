@@ -192,10 +192,23 @@ def _texture(ink: pencil.Ink, density: float) -> pencil.Ink:
 
 def take(what: Scene, folder: Path, most: float = 12.0) -> tuple[NDArray[np.uint8], dict[str, Any]]:
     """The picture (BGR, rows downwards as in the file) and the truth about it; drawings are kept in `folder`."""
-    random, traits = what.random, what.traits
-    project, sheet = what.sheet
-    marks = drawing.read(project, sheet, folder)
+    random = what.random
+    marks = drawing.read(*what.sheet, folder)
     drawn, wrong = mistakes.plant(marks, int(random.choice((0, 2, 3, 4))), random)
+    return taken(what, marks, drawn, wrong, random, most)
+
+
+def taken(
+    what: Scene,
+    marks: list[drawing.Mark],
+    drawn: list[drawing.Mark],
+    wrong: list[mistakes.Mistake],
+    random: np.random.Generator,
+    most: float = 12.0,
+) -> tuple[NDArray[np.uint8], dict[str, Any]]:
+    """The picture of a drawing that ought to have `marks`, and the truth about it."""
+    traits = what.traits
+    project, sheet = what.sheet
     ink = pencil.draw(drawn, random)
     paper = Paper(random, waves="waves" in traits, folds="folds" in traits)
     tilt = float(random.uniform(20, 32)) if "oblique" in traits else float(abs(random.normal(0, 7)) + 2)

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import view_places
-from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
-from tmm_sheets.compare.photo import numbers_read, placed_views, rectification, tracing
+from tmm_sheets.compare.photo import built_photo, numbers_read, placed_views, rectification, tracing
 from tmm_sheets.compare.photo.fit_check import MATCH
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
+from tmm_sheets.compare.photo.judging import PhotoFinding, judge
 from tmm_sheets.compare.photo.photograph import Picture, read
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
 from tmm_sheets.compare.photo.refusal import refusal
 from tmm_sheets.compare.photo.stations import as_lines
+from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import tell
@@ -38,11 +41,43 @@ CERTAIN = 0.12
 """By how much more of its lines another sheet must match for a picture to be called a picture of it."""
 
 
+@dataclass(frozen=True)
+class Examined:
+    """A picture that was measured.
+
+    Attributes
+    ----------
+    found : the straightened sheet
+    findings : on every element, in their order
+    extra : ink that belongs to none
+    built : plans that were built on a wrong step, with what that was
+    readings : what was read of its numbers, None where nothing was
+    notes : what was remarkable
+    """
+
+    found: Rectified
+    findings: Sequence[PhotoFinding]
+    extra: Sequence[ExtraInk]
+    built: Mapping[ElementView, BuiltPlan]
+    readings: numbers_read.Readings | None
+    notes: tuple[str, ...]
+
+
 def compare(
     project: Project, n: int, path: Path, views: Path | None = None, pencil: float = 0.25,
     say: Callable[[str], None] = lambda _: None, read_numbers: bool = False,
 ) -> Report:
-    """Compare a photograph of sheet ``n`` with the exact sheet.
+    """Compare a photograph of sheet ``n`` with the exact sheet; see :func:`examine`."""
+    e = examine(project, n, path, views, pencil, say, read_numbers)
+    name = project.variant.project.name
+    return image_report(name, n, path, e.found, e.findings, e.extra, pencil, e.notes, e.readings, e.built)
+
+
+def examine(
+    project: Project, n: int, path: Path, views: Path | None = None, pencil: float = 0.25,
+    say: Callable[[str], None] = lambda _: None, read_numbers: bool = False,
+) -> Examined:
+    """Measure a photograph of sheet ``n``, and look for what was done wrong.
 
     Parameters
     ----------
@@ -95,12 +130,21 @@ def compare(
         raise refusal(picture.grey, found, known, path, n)
     say(tell("measuring the elements"))
     traces, extra = tracing.trace(known, found.ink, found.hidden)
+    findings = [judge(t, pencil, found.uncertainty, found.soft) for t in traces]
+    built: built_photo.Built = {}
+    if placed is None:
+        say(tell("looking for what was done wrong"))
+        built = built_photo.built_otherwise(project, ours, findings, found.ink)
+    if built:
+        traces, extra = tracing.trace(built_photo.as_built(known, built), found.ink, found.hidden)
+        findings = [built_photo.judged_as_built(judge(t, pencil, found.uncertainty, found.soft), e)
+                    for t, e in zip(traces, known, strict=True)]
     extra = [x for x in extra if placed is None or placed.strange(x)]
     readings = None
     if reader is not None:
         say(tell("reading the numbers"))
         readings = numbers_read.readings(traces, found.ink, reader)
-    return image_report(project.variant.project.name, n, path, found, traces, extra, pencil, notes, readings)
+    return Examined(found, findings, extra, {view: plan for view, (plan, _) in built.items()}, readings, notes)
 
 
 def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> Rectified:

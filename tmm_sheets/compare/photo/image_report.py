@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.elements import dashed
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
+from tmm_sheets.compare.elements import ElementView, dashed
 from tmm_sheets.compare.findings import called, origin, table, worst
 from tmm_sheets.compare.photo import image_story, overlay
-from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding, judge
+from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding
 from tmm_sheets.compare.photo.numbers_read import Readings
 from tmm_sheets.compare.photo.rectification import Rectified
-from tmm_sheets.compare.photo.traces import ExtraInk, Trace
+from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.compare.story import Story, Table
 from tmm_sheets.numbers import told
@@ -39,7 +41,7 @@ NUMBERS_READ = marked(
 class _Judged:
     """The findings on a sheet, and those worth showing: what is off, red before amber and the worst first."""
 
-    findings: list[PhotoFinding]
+    findings: Sequence[PhotoFinding]
     extra: Sequence[ExtraInk]
 
     @cached_property
@@ -72,14 +74,14 @@ class _Judged:
 
 
 def image_report(
-    name: str, n: int, path: Path, found: Rectified, traces: Sequence[Trace], extra: Sequence[ExtraInk], pencil: float,
-    notes: tuple[str, ...], readings: Readings | None = None,
+    name: str, n: int, path: Path, found: Rectified, findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk], pencil: float,
+    notes: tuple[str, ...], readings: Readings | None = None, built: Mapping[ElementView, BuiltPlan] = MappingProxyType({}),
 ) -> Report:
     """Report of sheet ``n`` of the project ``name`` compared with the picture at ``path``: the table, the tree and the overlays.
 
-    ``pencil`` is the error of a point drawn by hand, mm; ``readings`` what was read of its numbers, None where nothing was.
+    ``pencil`` is the error of a point drawn by hand, mm; ``readings`` what was read of its numbers, None where nothing was;
+    ``built`` are plans that were built on a mistake.
     """
-    findings = [judge(t, pencil, found.uncertainty, found.soft) for t in traces]
     judged = _Judged([_read_otherwise(f, readings) for f in findings] if readings else findings, extra)
     soft = SOFT_TOLERANCE if found.soft else 0.0
     count = judged.count
@@ -92,10 +94,14 @@ def image_report(
     summary = said.format(sheet=n, project=name, file=path.name, n=sum(count.values()), **count)
     tolerance, head, rows = _tolerance(pencil, found.uncertainty, soft), tuple(map(tell, HEAD)), _rows(judged)
     unread = [_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]
-    lines = [summary, "; ".join(_hidden(judged)), tolerance, *(["", *table(head, rows)] if rows else []), "", *unread]
+    mistakes = image_story.mistakes(found, judged.findings, judged.bad, built)
+    wrong = [f"  {k}. {m.where}: {m.what}" for k, m in enumerate(mistakes, 1)]
+    lines = [summary, "; ".join(_hidden(judged)), tolerance, *(["", tell("What is wrong") + ":", *wrong] if wrong else []),
+             *(["", *table(head, rows)] if rows else []), "", *unread]
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
-        "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged), "notes": list(notes),
+        "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged),
+        "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in built.items()], "notes": list(notes),
         **({"numbers": readings.tree} if readings else {}),
     }  # fmt: skip
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
@@ -103,7 +109,7 @@ def image_report(
     *hidden, extra_places = _hidden(judged)
     verdicts = [str(f.verdict) for f in judged.bad] + ["amber"] * len(judged.extra)
     tables = (Table(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
-    story = Story(title, (summary, extra_places, tolerance, *notes), image_story.mistakes(found, judged.findings, judged.bad),
+    story = Story(title, (summary, extra_places, tolerance, *notes), mistakes,
                   tables, (*hidden, *unread))
     return Report("\n".join(lines), tree, files, notes, story)
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.findings import called, counted
 from tmm_sheets.compare.photo import overlay
@@ -27,24 +28,32 @@ PIXELS = 860.0
 """Longer side of a picture: twice as many pixels as it has on a page."""
 
 
-def mistakes(found: Rectified, findings: Iterable[PhotoFinding], bad: Sequence[PhotoFinding]) -> tuple[Mistake, ...]:
-    """What is off, those views first that have the most red; ``bad`` in the order of the table, which numbers them."""
+def mistakes(found: Rectified, findings: Iterable[PhotoFinding], bad: Sequence[PhotoFinding],
+             built: Mapping[ElementView, BuiltPlan]) -> tuple[Mistake, ...]:
+    """What is off: views that were built on a mistake first, then those that have the most red.
+
+    ``bad`` in the order of the table, which numbers them.
+    """
     of_view: dict[ElementView, list[tuple[int, PhotoFinding]]] = {}
     for k, f in enumerate(bad, 1):
         of_view.setdefault(f.element.view, []).append((k, f))
     exact: dict[ElementView, list[Any]] = {}
     for f in findings:
         exact.setdefault(f.element.view, []).extend(drawn(f.element))
-    order = sorted(of_view, key=lambda v: (-sum(f.verdict == "red" for _, f in of_view[v]), v.n))
-    return tuple(_mistake(found, v, of_view[v], exact[v]) for v in order)
+    order = sorted(of_view, key=lambda v: (v not in built, -sum(f.verdict == "red" for _, f in of_view[v]), v.n))
+    return tuple(_mistake(found, v, of_view[v], exact[v], built.get(v)) for v in order)
 
 
-def _mistake(found: Rectified, view: ElementView, bad: Sequence[tuple[int, PhotoFinding]], exact: Sequence[Any]) -> Mistake:
+def _mistake(found: Rectified, view: ElementView, bad: Sequence[tuple[int, PhotoFinding]], exact: Sequence[Any],
+             built: BuiltPlan | None) -> Mistake:
     red = any(f.verdict == "red" for _, f in bad)
     details = [tell("no. {number}, {element}: {what}").format(number=k, element=called(f.element), what=f.what)
                for k, f in bad[:SHOWN]]
     if len(bad) > SHOWN:
         details.append(tell("and {n} more, in the table").format(n=len(bad) - SHOWN))
+    what = counted([f for _, f in bad])
+    if built is not None:
+        what, details = built.said(), [built.explained(), *details]
     wrong = tuple(shown(f) for _, f in bad)
     if exact and Box.around(np.concatenate(exact)).width > WHOLE:
         here = Box.around(np.array([f.at for _, f in bad]), ABOUT)
@@ -53,7 +62,7 @@ def _mistake(found: Rectified, view: ElementView, bad: Sequence[tuple[int, Photo
     picture = Picture(tuple(exact), (), wrong, tuple((f.at, reach, str(k)) for k, f in bad))
     box = picture.box
     seen = Photo(box, overlay.piece(found.ink, found.level, box, PIXELS / max(box.width, box.height)))
-    return Mistake(view.name, counted([f for _, f in bad]), "red" if red else "amber", tuple(details), replace(picture, photo=seen))
+    return Mistake(view.name, what, "red" if red else "amber", tuple(details), replace(picture, photo=seen))
 
 
 def shown(f: PhotoFinding) -> Any:

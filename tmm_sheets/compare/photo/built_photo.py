@@ -1,0 +1,84 @@
+"""Plans of a photographed sheet that were built on a wrong step: see ``diagnosis/built_plan.py``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.compare.diagnosis import built_plan
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, Drawing, rebuilt
+from tmm_sheets.compare.elements import Element, ElementView, sampled
+from tmm_sheets.compare.findings import millimetres
+from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.photo.ink_levels import line_level
+from tmm_sheets.compare.photo.judging import PhotoFinding
+from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.report import verdict
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.words import tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+STEP = 0.5
+"""Between places along a line that are looked at, mm."""
+REACH = 0.6
+"""How far beside its place a pencil's line may run in a straightened picture, mm."""
+OFFSETS = np.arange(-REACH, REACH + 0.05, 0.1)
+ALONG = 7
+"""So many neighbouring places are averaged: a line that only crosses is no ink along this one."""
+ENDS = 1.5
+"""Beside the ends of a line others begin, mm."""
+Built = Mapping[ElementView, tuple[BuiltPlan, Mapping[complex, complex]]]
+
+
+def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[PhotoFinding], ink: Any) -> Built:
+    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of the sheet."""
+    wrong: dict[ElementView, list[Element]] = {}
+    for f in findings:
+        if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red":
+            wrong.setdefault(f.element.view, []).append(f.element)
+    level = line_level(ink)
+    tips: dict[ElementView, list[complex]] = {}
+    for f in findings:
+        if f.verdict == "red" and f.element.kind == "line" and f.trace.at is not None:
+            tips.setdefault(f.element.view, []).extend(f.trace.at[[0, -1]].tolist())
+
+    def seen(view: ElementView) -> Drawing:
+        return Drawing(lambda line: inked(ink, line, level), tips.get(view, []))
+
+    return built_plan.built_otherwise(project, known, wrong, seen)
+
+
+def as_built(elements: Sequence[Element], built: Built) -> list[Element]:
+    """The elements of the sheet as they are with the mistakes."""
+    return [rebuilt(e, built[e.view][1]) if e.view in built else e for e in elements]
+
+
+def judged_as_built(f: PhotoFinding, was: Element) -> PhotoFinding:
+    """A finding on an element of a plan compared as it was built, judged by the place ``was`` that it should have."""
+    now = f.element
+    off = float(np.abs(now.points - was.points).max()) if len(now.points) == len(was.points) else 0.0
+    f = replace(f, element=was)
+    if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:
+        return f
+    said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))
+    what = said if f.verdict == "green" else f"{said}; {f.what}"
+    deviation = max(off, f.deviation)
+    return replace(f, verdict=verdict(deviation, f.tolerance), deviation=deviation, what=what)
+
+
+def inked(ink: Any, line: Points, level: float) -> float:
+    """Share of a line, by both its ends, mm, that ink in its direction covers; ``level`` is the darkness of ink."""
+    import cv2
+
+    size = float(abs(line[1] - line[0]))
+    if size < 2 * ENDS + STEP:
+        return 1.0  # too short to be told
+    along = (line[1] - line[0]) / size
+    points, normals = sampled(np.array([line[0] + ENDS * along, line[1] - ENDS * along]), STEP)
+    profile = sample(ink, pixels(points[:, None] + normals[:, None] * OFFSETS))
+    return float((cv2.blur(profile, (1, ALONG), borderType=cv2.BORDER_REPLICATE).max(1) > level).mean())
