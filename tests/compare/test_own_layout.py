@@ -16,6 +16,7 @@ from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.report_pages import page
+from tmm_sheets.compare.story import listed
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.drawing.marks import Line
 from tmm_sheets.project import Project
@@ -76,7 +77,7 @@ def test_the_plan_is_compared_as_it_was_built(compared):
     assert {f.verdict for f in wrong} == {"red"}
     assert not any(f.missing for f in wrong)
     assert all("as follows from the mistake" in f.what for f in wrong)
-    assert "laid off the other way" in cad_story.lines(found, cad_report.gone(found.outcome))[1]
+    assert "laid off the other way" in listed(cad_story.mistakes(found, cad_report.gone(found.outcome)))[1]
 
 
 @pytest.mark.parametrize("far", [1e20, np.inf, np.nan])

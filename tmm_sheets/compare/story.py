@@ -9,6 +9,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.marks import Points
+from tmm_sheets.words import tell
 
 
 @dataclass(frozen=True)
@@ -42,13 +43,17 @@ class Picture:
 
 @dataclass(frozen=True)
 class Mistake:
-    """Something done wrong: in which view, what, in how many words it needs, how bad ("red", "amber"), and what it looks like."""
+    """Something done wrong: in which view, what, in how many words it needs, how bad ("red", "amber"), and what it looks like.
+
+    ``named`` where ``what`` is what was done, not how many lines are off.
+    """
 
     where: str
     what: str
     verdict: str
     details: tuple[str, ...] = ()
     picture: Picture | None = None
+    named: bool = False
 
 
 @dataclass(frozen=True)
@@ -70,6 +75,15 @@ class Story:
     mistakes: tuple[Mistake, ...] = ()
     tables: tuple[Table, ...] = ()
     unjudged: tuple[str, ...] = field(default_factory=tuple)
+
+
+def listed(mistakes: Sequence[Mistake]) -> list[str]:
+    """Mistakes for the terminal, a line each; what was done is told once, with all views where it shows."""
+    where: dict[tuple[str, str], list[str]] = {}
+    for m in mistakes:
+        where.setdefault((m.what, "" if m.named else m.where), []).append(m.where)
+    lines = [f"  {k}. {'; '.join(views)}: {what}" for k, ((what, _), views) in enumerate(where.items(), 1)]
+    return [tell("What is wrong") + ":", *lines, ""] if lines else []
 
 
 def clipped(lines: Sequence[Points], box: Box) -> tuple[Points, ...]:

@@ -21,6 +21,7 @@ from tmm_sheets.compare.findings import worst
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet, sheet_numbers
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.report import Report
+from tmm_sheets.compare.story import listed
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal, told
 from tmm_sheets.words import marked, tell
@@ -53,7 +54,7 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     exact = [p for e in found.exact for p in drawn(e)]
     files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, marked, looks)
     name = project.variant.project.name
-    said = "\n".join([*cad_story.lines(found, gone), cad_report.text(name, path, found, pencil)])
+    said = "\n".join([*listed(cad_story.mistakes(found, gone)), cad_report.text(name, path, found, pencil)])
     return Report(said, cad_report.tree(name, path, found, pencil), files, found.notes, cad_story.story(name, path, found, pencil))
 
 

@@ -51,7 +51,8 @@ def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
         details.append(tell("and {n} more, in the table").format(n=len(bad) - SHOWN))
     if built is not None:
         details = [built.explained(), *details]
-    return Mistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad))
+    return Mistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad),
+                   named=built is not None)
 
 
 def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding]) -> Picture | None:
@@ -88,12 +89,3 @@ def _unjudged(found: cad_report.Examined, lost: set[ElementView]) -> list[str]:
                       "{n} lines or texts that belong to nothing on the sheet are in the table, but not judged as mistakes", extra)
         out.append(said.format(n=extra))
     return out
-
-
-def lines(found: cad_report.Examined, lost: set[ElementView]) -> list[str]:
-    """The mistakes for the terminal: a line each, those with a known cause first."""
-    out = []
-    for m in mistakes(found, lost):
-        out.append(f"{m.where}: {m.what}")
-    return [tell("What is wrong") + ":", *(f"  {k}. {line}" for k, line in enumerate(out, 1)), ""] if out else []
-

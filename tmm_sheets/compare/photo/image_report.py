@@ -22,7 +22,7 @@ from tmm_sheets.compare.photo.numbers_read import Readings
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report, said_verdict
-from tmm_sheets.compare.story import Story, Table
+from tmm_sheets.compare.story import Story, Table, listed
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
@@ -95,9 +95,8 @@ def image_report(
     tolerance, head, rows = _tolerance(pencil, found.uncertainty, soft), tuple(map(tell, HEAD)), _rows(judged)
     unread = [_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]
     mistakes = image_story.mistakes(found, judged.findings, judged.bad, built)
-    wrong = [f"  {k}. {m.where}: {m.what}" for k, m in enumerate(mistakes, 1)]
-    lines = [summary, "; ".join(_hidden(judged)), tolerance, *(["", tell("What is wrong") + ":", *wrong] if wrong else []),
-             *(["", *table(head, rows)] if rows else []), "", *unread]
+    lines = [summary, "; ".join(_hidden(judged)), tolerance, "", *listed(mistakes), *([*table(head, rows), ""] if rows else []),
+             *unread]
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
         "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged),

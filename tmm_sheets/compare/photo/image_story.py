@@ -62,7 +62,8 @@ def _mistake(found: Rectified, view: ElementView, bad: Sequence[tuple[int, Photo
     picture = Picture(tuple(exact), (), wrong, tuple((f.at, reach, str(k)) for k, f in bad))
     box = picture.box
     seen = Photo(box, overlay.piece(found.ink, found.level, box, PIXELS / max(box.width, box.height)))
-    return Mistake(view.name, what, "red" if red else "amber", tuple(details), replace(picture, photo=seen))
+    return Mistake(view.name, what, "red" if red else "amber", tuple(details), replace(picture, photo=seen),
+                   named=built is not None)
 
 
 def shown(f: PhotoFinding) -> Any:
