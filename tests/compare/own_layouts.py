@@ -34,6 +34,7 @@ from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet
 from tmm_sheets.compare.measured.measurable import Measurables
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
@@ -171,9 +172,8 @@ def misbuilt(project: Project, known: KnownSheet, drawn: Drawn, rng: random.Rand
         rng.shuffle(steps)
         for s in steps:
             way = rng.choice(list(WAYS))
-            at = replayed(plan, s, k, WAYS[way])
-            new = {complex(frame(z)): complex(frame(w)) for z, w in at if abs(frame(z) - frame(w)) > 1e-6}
-            far = [abs(z - w) * drawn.places[v].scale for z, w in new.items() if np.abs(points - z).min() < 0.01]
+            new = {step: (complex(frame(z)), complex(frame(w))) for step, z, w in replayed(plan, s, k, WAYS[way])}
+            far = [abs(z - w) * drawn.places[v].scale for z, w in new.values() if np.abs(points - z).min() < 0.01]
             # The mistake must show, and the plan stay on its paper.
             if len(far) >= 1 and 8 < max(far) < 150:
                 _rebuilt(drawn, v, new)
@@ -201,7 +201,7 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
     plans = {plan.name: plan for plan, _ in found.plans}
     hand = Slipping(found, np.random.default_rng(0), (slip,))
     hand.sigma = 0.0
-    new: dict[ElementView, tuple[dict[complex, complex], float]] = {}
+    new: dict[ElementView, tuple[Moves, float]] = {}
     at_steps = {}
     for v in drawn.places:
         at = {e.by.frame for e in drawn.elements if e.view == v and e.role == "vector" and e.by is not None and e.by.frame >= 0}
@@ -219,8 +219,8 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
             if was.dtype.kind == "c":
                 z, w = (complex(frame(complex(x[k] if x.ndim else x))) for x in (was, now))
                 if np.isfinite(w) and np.abs(points - z).min() < 0.03:
-                    moved_to[z] = at_steps[v, s.path] = w
-        far = max((abs(z - w) for z, w in moved_to.items()), default=0.0) * drawn.places[v].scale
+                    moved_to[s], at_steps[v, s.path] = (z, w), w
+        far = max((abs(z - w) for z, w in moved_to.values()), default=0.0) * drawn.places[v].scale
         if far > 400:
             return False  # nobody has so much paper
         new[v] = (moved_to, far)
@@ -234,7 +234,7 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
     return True
 
 
-def replayed(plan, wrong: Step, k: int, way: complex) -> list[tuple[complex, complex]]:
+def replayed(plan, wrong: Step, k: int, way: complex) -> list[tuple[Step, complex, complex]]:
     """Points of a plan at a position, as they are and as they would be with one vector laid off another way."""
     made: dict[int, object] = {}
     out = []
@@ -252,23 +252,30 @@ def replayed(plan, wrong: Step, k: int, way: complex) -> list[tuple[complex, com
         if s.rule.gives == "point":
             was, now = (complex(np.broadcast_to(np.asarray(x), (len(plan.labels),))[k]) for x in (s.value, value))
             if np.isfinite(now):
-                out.append((was, now))
+                out.append((s, was, now))
     return out
 
 
-def _rebuilt(drawn: Drawn, view: ElementView, new: dict[complex, complex]) -> None:
+Moves = dict[Step, tuple[complex, complex]]
+"""Where points of a plan are, mm of our sheet, and where the student has them."""
+
+
+def _rebuilt(drawn: Drawn, view: ElementView, new: Moves) -> None:
     """Move the ends of lines, the dots and the letters with the points they belong to."""
-    def to(z: complex) -> complex:
-        near = min(new, key=lambda w: abs(w - z))
-        return new[near] if abs(near - z) < 0.02 else z
+    def to(z: complex, e: Element) -> complex:
+        """Of points in one place, such as b and b3 where nothing slides, that which the element is named after is meant."""
+        here = [(s, w) for s, (was, w) in new.items() if abs(was - z) < 0.02]
+        names = e.name.split("–")
+        return min(here, key=lambda x: (x[0].path != e.step, letter_of(x[0]) not in names))[1] if here else z
 
     for k, e in enumerate(drawn.elements):
         if e.view != view:
             continue
         if e.kind == "line" and e.role == "vector":
-            a, b = (to(complex(z)) for z in e.points)
+            a, b = (to(complex(z), e) for z in e.points)
             if abs(b - a) < 1:
                 drawn.elements[k] = replace(e, points=np.array([a, a + 1e-3]), fills=())
+                drawn.wrong[e.number] = "built"
                 continue
             turn = (b - a) / (e.points[1] - e.points[0])
             turn /= abs(turn)
@@ -276,14 +283,14 @@ def _rebuilt(drawn: Drawn, view: ElementView, new: dict[complex, complex]) -> No
                 drawn.wrong[e.number] = "built"
             drawn.elements[k] = replace(e, points=np.array([a, b]), fills=tuple(b + (f - e.points[1]) * turn for f in e.fills))
         elif e.kind == "circle":
-            d = to(e.centre) - e.centre
+            d = to(e.centre, e) - e.centre
             if abs(d) > 0.3:
                 drawn.wrong[e.number] = "built"
             drawn.elements[k] = replace(e, centre=e.centre + d, points=e.points + d, fills=tuple(f + d for f in e.fills))
         elif e.kind == "text" and e.text != view.name:
-            near = min(new, key=lambda w: abs(w - e.middle))
-            if abs(near - e.middle) < 12:
-                drawn.elements[k] = replace(e, points=e.points + new[near] - near)
+            was, now = min(new.values(), key=lambda x: abs(x[0] - e.middle))
+            if abs(was - e.middle) < 12:
+                drawn.elements[k] = replace(e, points=e.points + now - was)
     drawn.elements = [e for e in drawn.elements if e.kind != "line" or e.length > 0.01]
 
 

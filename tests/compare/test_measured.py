@@ -14,7 +14,7 @@ from tests.compare.students import PENCIL, READING, Hand, Plant
 from tests.compare.students import opened as measurables_of
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.explaining import covariance
+from tmm_sheets.compare.measured.displaced_step import covariance
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, read
 from tmm_sheets.compare.measured.measured_lengths import NAME
 from tmm_sheets.construction.step import value_at

@@ -11,7 +11,7 @@ from tests.compare.hypotheses import Slip
 from tests.compare.own_layouts import Drawn, follows, is_there, taken
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_report, cad_story, view_search
-from tmm_sheets.compare.diagnosis import built_plan
+from tmm_sheets.compare.diagnosis.drawn_plan import drawn_plan
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import Report
@@ -84,10 +84,10 @@ def test_the_plan_is_compared_as_it_was_built(compared):
 def test_a_plan_that_no_paper_holds_is_none(far):
     """Nearly parallel lines meet anywhere."""
     plans = {plan.name: plan for plan in SHAPER.plans["study"].values()}
-    drawn = built_plan.drawn_plan(KNOWN, plans, ACCELERATIONS)
-    last = list(drawn.steps.values())[-1]
-    assert not built_plan.moved_points(drawn, lambda step: far if step is last else step.value)
-    assert built_plan.moved_points(drawn, lambda step: step.value + 1 if step is last else step.value)
+    drawn = drawn_plan(KNOWN, plans, ACCELERATIONS)
+    last = drawn.points[-1].step
+    assert not drawn.moved(lambda step: far if step is last else step.value)
+    assert drawn.moved(lambda step: step.value + 1 if step is last else step.value)
 
 
 @pytest.mark.parametrize("times", [0.5, 2.0])

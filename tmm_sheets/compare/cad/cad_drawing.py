@@ -12,8 +12,10 @@ from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report,
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
+from tmm_sheets.compare.cad.lost_views import lost_views
 from tmm_sheets.compare.cad.matching import match
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, rebuilt
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
+from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, rebuilt, vanished
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.elements import views as views_of
@@ -93,7 +95,7 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say, laid.views)
     made: list[Hypothesis] = []
     if laid.views:
-        lost, made = cad_built.lost_views(project, laid.known, space, places)
+        lost, made = lost_views(project, laid.known, space, places)
         places = places.with_more(lost)
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
     if not _of_this_sheet(outcome):
@@ -107,12 +109,14 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
 
 
 def _as_built(known: KnownSheet, space: DrawingSpace, places: layout.Layout,
-              built: Mapping[ElementView, tuple[BuiltPlan, Mapping[complex, complex]]], pencil: float) -> CadOutcome:
+              built: Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]], pencil: float) -> CadOutcome:
     """The outcome with plans compared as they were built, judged by how they should have been."""
     now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in known.elements]
-    outcome = match(now, space, places.moves, pencil)
-    findings = [cad_built.as_built(f, was, e, places.moves.get(was.view, Placing()), pencil) if was is not e else f
-                for f, was, e in zip(outcome.findings, known.elements, now, strict=True)]
+    outcome = match([e for e in now if not vanished(e)], space, places.moves, pencil)
+    found = {f.element.number: f for f in outcome.findings}
+    findings = [found[e.number] if was is e else
+                cad_built.as_built(found.get(e.number), was, e, places.moves.get(was.view, Placing()), pencil)
+                for was, e in zip(known.elements, now, strict=True)]
     return replace(outcome, findings=tuple(findings))
 
 

@@ -49,6 +49,10 @@ AGREE = 0.7
 """Least share of the lines of a changed view, by length, that must tell the same place, and of its points that must be near ink."""
 CALLED = 0.5
 """Share of its letters that stand there, with the likeness of its title, that tells a view of a line or two."""
+UPON = 0.05
+"""Share of its length by which the ends of a line may be off those of another that lies upon it."""
+OVER = 1.0
+"""How far beyond the end of a line it is looked whether it goes on, mm."""
 FEW_LINES = 3
 """Least number of lines by which a changed view is known."""
 MANY_LINES = 4
@@ -131,18 +135,23 @@ class Search:
         self.free = theirs
         self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
 
-    def changed(self, v: ElementView, main: Iterable[Element], least: int = FEW_LINES) -> FoundView | None:
+    def changed(self, v: ElementView, main: Iterable[Element], least: int = FEW_LINES, left_over: bool = False) -> FoundView | None:
         """A view that is drawn with other main lines than ours, at a scale of its own; None where it is not found whole.
 
-        ``least`` is the number of lines by which it is known, if not by its title and letters.
+        ``least`` is the number of lines by which it is known, if not by its title and letters; in what the others have
+        ``left_over`` a line that ends where it should will do.
         """
         self.main[v] = [e for e in main if e.length > 0.01]
+        if not self.main[v]:
+            return None
         z = lines([e.points for e in self.main[v]]).points(1.0)
         self.points[v] = z[:: max(len(z) // MOST, 1)]
-        few = _distinct(e for e in self.main[v] if e.length > SHORTEST) < least
-        tries = [one for one in self.tries(0, v, None, 1, 0, AGREE) if one.share > AS_DRAWN
+        few = distinct([e for e in self.main[v] if e.length > SHORTEST]) < least
+        scales = dict.fromkeys((self.scales.get(v.mu), None))  # plans of one scale factor are drawn alike, mostly
+        tries = [one for scale in scales for one in self.tries(0, v, scale, 1, 0, AGREE) if one.share > AS_DRAWN
                  and (v.mu is None or handy(one.placing))
-                 and not (few and self._read(v, one.placing) + self._titled(v, one.placing) < CALLED)]
+                 and not (few and self._read(v, one.placing) + self.titled(v, one.placing) < CALLED
+                          and not (left_over and self._ends(v, one.placing)))]
         found = [(self.worth(v, FoundView(one.placing, one.share)) - one.less, one) for one in tries]
         best = max(found, key=lambda x: x[0], default=None)
         return None if best is None else FoundView(best[1].placing, best[1].share)
@@ -219,20 +228,29 @@ class Search:
         share = self.free.share(points, NEAR)
         met = [e for e in self.main[v] if e.length * min(placing.scale, 1.0) > SHORTEST
                and self.free.share(placing(_some(e.points)), NEAR) > 0.8]
-        lines_met = _distinct(met)
+        lines_met = distinct(met)
         bends = any(e.kind in ("curve", "arc") for e in met)
-        read, titled = self._read(v, placing), self._titled(v, placing)
+        read, titled = self._read(v, placing), self.titled(v, placing)
         known_scale = self.scales.get(v.mu)
         same = known_scale is not None and abs(placing.scale / known_scale - 1) < 0.01
         witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy(placing)
         if least > 1 and not bends and lines_met < least:
             return None
-        enough = lines_met >= 2 or bends or (lines_met == 1 and read + titled > (0.3 if same else CALLED))
+        called = read + titled > (0.3 if same else CALLED)
+        whole = same or known_scale is None
+        enough = lines_met >= 2 or bends or (lines_met == 1 and (called or (whole and self._ends(v, placing))))
         if not enough or share < 0.35 or share + witness < 0.75:
             return None
         size = max(float(np.abs(points - points[0]).max()), 1.0)
         sure = (share + witness) * (1 + 0.15 * np.log1p(lines_met) + 0.1 * np.log10(size))
         return _Try(-float(sure), taken, k, placing, share)
+
+    def _ends(self, v: ElementView, placing: Placing) -> bool:
+        """Whether the longest line of a view, at a scale one may choose, is in the drawing and no longer there."""
+        a, b = placing(max(self.main[v], key=lambda e: e.length).points[[0, -1]])
+        u = (b - a) / max(abs(b - a), 1e-9)
+        inside, beyond = np.linspace(a, b, MOST // 10), np.array([a - OVER * u, b + OVER * u])
+        return handy(placing) and self.free.share(inside, NEAR) >= SURE and not self.free.share(beyond, NEAR)
 
     def _read(self, v: ElementView, placing: Placing) -> float:
         """Share of a view's letters that stand near their places."""
@@ -241,16 +259,21 @@ class Search:
                    for word, z in texts)
         return near / len(texts) if texts else 0.0
 
-    def _titled(self, v: ElementView, placing: Placing) -> float:
+    def titled(self, v: ElementView, placing: Placing) -> float:
         """How much the most similar title near a place has in common with the view's own, 0 .. 1."""
         box = Box.around(placing(self.points[v]))
         own = _tokens(v.name)
         return max((_common(own, said) for said, at in self.titles if box.contains(at, TITLE)), default=0.0)
 
 
-def _distinct(elements: Iterable[Element]) -> int:
-    """The number of lines that do not lie upon one another."""
-    return len({(round(e.middle.real), round(e.middle.imag)) for e in elements})
+def distinct(elements: Iterable[Element]) -> int:
+    """The number of lines that do not lie upon one another, nearly."""
+    some: list[Points] = []
+    for e in elements:
+        ends = e.points[[0, -1]]
+        if not any(min(np.abs(ends - other).max(), np.abs(ends[::-1] - other).max()) < UPON * e.length + NEAR for other in some):
+            some.append(ends)
+    return len(some)
 
 
 def handy(placing: Placing) -> bool:

@@ -16,7 +16,8 @@ from statistics import NormalDist
 import numpy as np
 
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
-from tmm_sheets.compare.measured.explaining import CURVED, Explanation, Sheet
+from tmm_sheets.compare.measured.evidence import CURVED, Evidence, Explanation, place_of
+from tmm_sheets.compare.measured.explaining import explanation
 from tmm_sheets.compare.measured.judged import Judged, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
@@ -65,7 +66,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
         left = wrong_scales([j for j in judged if id(j) not in computed])
         _against_own(own, {id(j) for j in left})
         labels = next((plan.labels for plan, _ in found.plans if plan.name == "positions"), ())
-        _chains(Sheet(left, errors, labels), own, computed)
+        _chains(Evidence(left, errors, labels), own, computed)
     for j in judged:
         if id(j) in computed and j.verdict != "green":
             origin = _origin(j, computed)
@@ -217,9 +218,9 @@ def _own_gives(own: Iterable[Judged], value: float) -> str:
 # --- chains -------------------------------------------------------------------------------------------------------------------
 
 
-def _chains(sheet: Sheet, own: OwnNumbers, computed: Mapping[int, list[Judged]]) -> None:
+def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Judged]]) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
-    judged = sheet.judged
+    judged = evidence.judged
     open_ = np.array([j.verdict == "red" for j in judged])
     beyond, tried = _beyond_chance(len(judged)), 0
     while open_.any():
@@ -231,31 +232,32 @@ def _chains(sheet: Sheet, own: OwnNumbers, computed: Mapping[int, list[Judged]])
             continue
         start.starts = True
         tried += 1
-        found = sheet.explanation(int(first)) if tried <= MOST else None
+        found = explanation(evidence, int(first)) if tried <= MOST else None
         if found is None:
             _wrong_row(start, judged)
         else:
-            open_[_told(sheet, start, found, beyond)] = False
-            if found.then is not None and (second := _shows(sheet, start, found.then)) is not None:
+            open_[_told(evidence, start, found, beyond)] = False
+            if found.then is not None and (second := _shows(evidence, start, found.then)) is not None:
                 second.starts, second.follows = True, None
-                open_[[judged.index(second), *_told(sheet, second, found.then, beyond)]] = False
+                open_[[judged.index(second), *_told(evidence, second, found.then, beyond)]] = False
     for j in judged:
         if j.verdict == "red" and not j.starts and j.follows is None:
             j.follows = _own_reason(own, j, computed)
 
 
-def _told(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> list[int]:
+def _told(evidence: Evidence, start: Judged, found: Explanation, beyond: float) -> list[int]:
     """Tell a mistake at the number it was looked for; the numbers that follow from it."""
     start.mistake, start.wrong = found.mistake, found.wrong
-    return list(_follow(sheet, start, found, beyond))
+    return list(_follow(evidence, start, found, beyond))
 
 
-def _shows(sheet: Sheet, start: Judged, found: Explanation) -> Judged | None:
+def _shows(evidence: Evidence, start: Judged, found: Explanation) -> Judged | None:
     """The number that shows most of the second of two mistakes, where that was made if one does; None where none does."""
-    by = np.where(np.isfinite(found.shares), np.abs(found.shares), 0.0) / sheet.tolerance
-    others = [i for i, j in enumerate(sheet.judged) if j.verdict == "red" and not j.starts and j.entry.label == start.entry.label]
-    best = max(others, key=lambda i: (sheet.proves(sheet.judged[i], found.wrong[0]) and by[i] > 1, float(by[i])), default=None)
-    return sheet.judged[best] if best is not None and by[best] > 1 else None
+    by = np.where(np.isfinite(found.shares), np.abs(found.shares), 0.0) / evidence.tolerance
+    judged = evidence.judged
+    others = [i for i, j in enumerate(judged) if j.verdict == "red" and not j.starts and j.entry.label == start.entry.label]
+    best = max(others, key=lambda i: (evidence.proves(judged[i], found.wrong[0]) and by[i] > 1, float(by[i])), default=None)
+    return judged[best] if best is not None and by[best] > 1 else None
 
 
 def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
@@ -276,21 +278,21 @@ def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
             return
 
 
-def _follow(sheet: Sheet, start: Judged, found: Explanation, beyond: float) -> Iterator[int]:
+def _follow(evidence: Evidence, start: Judged, found: Explanation, beyond: float) -> Iterator[int]:
     """Take from all numbers what a mistake makes of them; those that are in order then follow from the number it starts with."""
-    before_all, after_all = sheet.left.copy(), sheet.after(found.shares)
-    sheet.accept(found)
-    for i, (j, share, doubt) in enumerate(zip(sheet.judged, found.shares, found.doubt, strict=True)):
+    before_all, after_all = evidence.left.copy(), evidence.after(found.shares)
+    evidence.accept(found)
+    for i, (j, share, doubt) in enumerate(zip(evidence.judged, found.shares, found.doubt, strict=True)):
         before, after = before_all[i], after_all[i]
-        if not sheet.reached(found, i) or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
+        if not evidence.reached(found, i) or (j.verdict == "green" and abs(before) <= j.tolerance) or not isfinite(share):
             continue  # the mistake did not reach it, or with it nothing could be drawn
-        uncertain = abs(before) > j.tolerance and sheet.uncertain(i, after)
+        uncertain = abs(before) > j.tolerance and evidence.uncertain(i, after)
         if found.wrong and abs(after) > abs(before) and not uncertain:
             continue  # it was gone on with otherwise
-        sheet.left[i] = after
+        evidence.left[i] = after
         # What is left need not be better than other numbers: amber is accused of nothing.
         allowed = (beyond if j.verdict == "red" else 1) * hypot(j.tolerance, float(doubt))
-        explained = abs(sheet.left[i]) <= allowed and abs(share) > SHARE * j.tolerance and abs(sheet.left[i]) < abs(before)
+        explained = abs(evidence.left[i]) <= allowed and abs(share) > SHARE * j.tolerance and abs(evidence.left[i]) < abs(before)
         explained = explained or uncertain
         surely = abs(share) > 2 * j.tolerance and abs(after) <= j.tolerance
         if explained and (found.wrong or surely) and j.off_own and j is not start:
@@ -339,7 +341,7 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
             j.off_own = j.starts = True
             j.remark = _own_gives([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)
         if j.verdict == "red":
-            seen |= {_place(step, k) for step, k, _ in j.entry.terms}
+            seen |= {place_of(step, k) for step, k, _ in j.entry.terms}
 
 
 def _contradicts(j: Judged, made: OwnValue, beyond: float) -> bool:
@@ -351,7 +353,3 @@ def _contradicts(j: Judged, made: OwnValue, beyond: float) -> bool:
     if any(m.verdict == "red" and np.iscomplexobj(step.value) for m, _ in made.reasons for step, _, _ in m.entry.terms):
         return False
     return j.verdict == "red" or all(m.verdict == "green" for m, _ in made.reasons)
-
-
-def _place(step: Step, k: int) -> Place:
-    return id(step), k if np.size(step.value) > 1 else 0

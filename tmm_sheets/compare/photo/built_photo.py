@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.compare.diagnosis import built_plan
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, Drawing, rebuilt
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, Drawing
+from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, rebuilt, vanished
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
@@ -32,7 +33,7 @@ ALONG = 7
 """So many neighbouring places are averaged: a line that only crosses is no ink along this one."""
 ENDS = 1.5
 """Beside the ends of a line others begin, mm."""
-Built = Mapping[ElementView, tuple[BuiltPlan, Mapping[complex, complex]]]
+Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
 
 
 def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[PhotoFinding], ink: Any) -> Built:
@@ -61,6 +62,9 @@ def as_built(elements: Sequence[Element], built: Built) -> list[Element]:
 def judged_as_built(f: PhotoFinding, was: Element) -> PhotoFinding:
     """A finding on an element of a plan compared as it was built, judged by the place ``was`` that it should have."""
     now = f.element
+    if vanished(now):
+        said = tell("without length, as follows from the mistake")
+        return replace(f, element=was, verdict=verdict(was.length, f.tolerance), deviation=was.length, what=said)
     off = float(np.abs(now.points - was.points).max()) if len(now.points) == len(was.points) else 0.0
     f = replace(f, element=was)
     if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:

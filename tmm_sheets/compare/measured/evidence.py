@@ -1,0 +1,235 @@
+"""Judged numbers as witnesses: what is left of them with the mistakes found so far, and what a further one would leave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
+from tmm_sheets.compare.diagnosis.replay import Again, Change, replay
+from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
+from tmm_sheets.compare.measured.plan_scales import is_scaled
+from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.step import Step, ordered
+
+Floats = npt.NDArray[np.float64]
+CURVED = 0.05
+"""Share of what a mistake explains that may be off: its displacement is not known better."""
+HUBER = 2.0
+"""Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
+LEFT = 2.0
+"""Tolerances that a discrete mistake may leave of the number it is looked for."""
+CHANCES = 8
+"""Drawings by chance that tell how uncertain a number has become."""
+LOADS = ("loads", "moments")
+"""Plans that are seen in the polygons of forces."""
+SPOILT = 3.0
+"""Tolerances by which a discrete mistake would spoil a number that it cannot have been made before when that is in order."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What was done wrong and what it makes of the numbers.
+
+    Attributes
+    ----------
+    changes : to be replayed
+    drawn : plans that are so many times as large, by their scale factors
+    shares, doubt : what it makes of each number, and how well that is known; in the unit of the number
+    score : how much of all deviations it explains
+    wrong : discrete mistakes that are equally good, the first of them is told
+    mistake : a displaced step where it is none of these
+    then : another discrete mistake in the same plan, without which this one explains nothing; shares when this one is known
+    """
+
+    changes: tuple[Change, ...]
+    shares: Floats
+    doubt: Floats
+    score: float
+    wrong: tuple[Hypothesis, ...] = ()
+    mistake: Mistake | None = None
+    then: Explanation | None = None
+    drawn: tuple[tuple[str, float], ...] = ()
+
+
+class Evidence:
+    """All judged numbers together: what is left of their deviations, and which steps each depends on.
+
+    ``labels`` are those of the positions of the linkage.
+    """
+
+    def __init__(self, judged: list[Judged], errors: Errors, labels: Sequence[str]) -> None:
+        self.judged = judged
+        self.errors = errors
+        self.labels = labels
+        self.deviation = np.array([j.deviation for j in judged])
+        self.left = self.deviation.copy()
+        self.tolerance = np.array([j.tolerance for j in judged])
+        self.changes: list[Change] = []
+        self.drawn: dict[str, float] = {}
+        self._made: dict[int, dict[Step, None]] = {}
+        self.predicted = np.zeros(len(judged))
+        self.steps: dict[Place, Step] = {}
+        self.heads: set[Place] = set()
+        gradients: dict[Place, dict[int, complex]] = {}
+        for i, j in enumerate(judged):
+            if j.entry.head is not None:
+                self.heads.add(place_of(j.entry.head, j.at))
+            for step, k, g in j.rows:
+                if g and isfinite(abs(g)):
+                    place = place_of(step, k)
+                    self.steps[place] = step
+                    gradients.setdefault(place, {})[i] = g
+        self.by_place = {place: (np.array(list(of)), np.array([[g.real, g.imag] for g in of.values()]))
+                         for place, of in gradients.items()}
+        self.places = [[place_of(step, k) for step, k, g in j.rows if g and isfinite(abs(g))] for j in judged]
+
+    def accept(self, found: Explanation) -> None:
+        """Go on with what is left when a mistake is known."""
+        self.changes += found.changes
+        self.drawn |= dict(found.drawn)
+        if found.changes or found.drawn:
+            self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
+        else:
+            self.deviation -= found.shares  # only written wrongly
+        self.__dict__.pop("allowed", None)
+
+    def reached(self, found: Explanation, i: int) -> bool:
+        """Whether a number depends on what was done wrong, also where that happens to leave it as it is."""
+        return bool(found.shares[i]) or any(change.step in self._before(i) for change in found.changes)
+
+    def after(self, shares: Floats, lines: Sequence[int] | None = None) -> Floats:
+        """What is left of all numbers, or of some, when a further mistake makes ``shares`` of them.
+
+        A number that the mistakes before did not reach, because it was gone on with otherwise, may follow from all together.
+        """
+        of = range(len(self.judged)) if lines is None else lines
+        left, whole = (np.array([self.judged[i].apart(float(x)) for i, x in zip(of, differences[of] - shares, strict=True)])
+                       for differences in (self.left, self.deviation - self.predicted))
+        return np.where(np.abs(whole) < np.abs(left), whole, left)
+
+    def uncertain(self, i: int, left: float) -> bool:
+        """Whether a number may be anything with the mistakes found so far: the direction of a vector that has become short."""
+        return bool(self.allowed[i] > self.tolerance[i] and abs(left) <= LEFT * self.allowed[i])
+
+    @cached_property
+    def allowed(self) -> Floats:
+        """Tolerances with the mistakes found so far.
+
+        A tolerance holds for what is drawn rightly; here the drawing with the mistakes is made several times by chance.
+        """
+        if not self.changes:
+            return self.tolerance
+        drawn = [s for s in self.whole if s.rule.gives != "direction" and self.errors.own(s).any()]
+        spread = np.zeros(len(self.judged))
+        for chance in range(CHANCES):
+            rng = np.random.default_rng(chance)
+            value = self.with_changes([self._by_chance(s, rng) for s in drawn])
+            off = [j.apart(self.changed(j, value) - float(self.predicted[i])) for i, j in enumerate(self.judged)]
+            spread = np.fmax(spread, np.abs(off))
+        return np.where(np.isfinite(spread) & (spread > LEFT * self.tolerance), spread, self.tolerance)
+
+    def _by_chance(self, step: Step, rng: np.random.Generator) -> Change:
+        """A step with a pencil's error by chance; what is kept nineteen times of twenty is two standard deviations."""
+        own = np.nan_to_num(self.errors.own(step))
+        off = (own @ rng.normal(0, 0.5, (len(own), 2, 1)))[:, :, 0]
+
+        def done(again: Again, values: Sequence[Any]) -> Any:
+            made = np.asarray(again(*values))
+            by = off[:, 0] + 1j * off[:, 1] if made.dtype.kind == "c" else off[:, 0]
+            return made + (by if made.ndim else by[0])
+
+        return Change(step, done)
+
+    def _before(self, i: int) -> dict[Step, None]:
+        """Steps of the linkage that a number goes back to."""
+        if i not in self._made:
+            made = self.made_of([step for step, _, _ in self.judged[i].entry.terms])
+            self._made[i] = {s: None for s in made if s.rule.gives != "direction" and self.errors.own(s).any()}
+        return self._made[i]
+
+    def made_of(self, steps: Sequence[Step]) -> list[Step]:
+        """Steps with all that they were made of on paper."""
+        return list(ordered(steps, lambda step: [a for a in self.errors.arguments(step) if isinstance(a, Step)]))
+
+    @cached_property
+    def whole(self) -> list[Step]:
+        """All steps that any number goes back to."""
+        return self.made_of([step for j in self.judged for step, _, _ in j.entry.terms])
+
+    def leaves_little(self, i: int, h: Hypothesis) -> bool:
+        """Whether a number is nearly what it would be with a mistake, and would not be so without.
+
+        A neighbour's number is hardly another one: it is seen where it was taken, farther on it would be a guess.
+        """
+        at = [step for step, _, _ in self.judged[i].entry.terms]
+        if h.kind == "neighbour" and not any(h.step is s for step in at for s in (step, *step.args)):
+            return False
+        share = self.shares_of(h, [i])[0]
+        left, allowed = self.after(share, [i])[0], np.hypot(self.allowed[i], CURVED * share)
+        return bool(isfinite(share) and abs(share) > self.allowed[i] and abs(left) <= LEFT * allowed)
+
+    def replayed(self, h: Hypothesis) -> Explanation:
+        """The construction with a mistake, held against all numbers."""
+        shares = self.shares_of(h, range(len(self.judged)))
+        doubt = CURVED * np.abs(shares)
+        # With what cannot be drawn any more nothing is explained.
+        known = np.isfinite(shares) & np.isfinite(self.allowed)
+        left = self.left[known] / self.allowed[known]
+        after = self.after(shares)[known] / np.hypot(self.allowed, doubt)[known]
+        gain = loss(left) - loss(after)
+        # Results are computed from lengths, whatever their senses: what is not spoilt in them proves nothing.
+        proves = np.array([self.proves(j, h) for j in self.judged])[known]
+        score = float(np.sum(np.where(proves, gain, np.maximum(gain, 0.0))))
+        # However much it explains besides: what is in order was not spoilt.
+        if np.any(proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT)):
+            score = 0.0
+        return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score, drawn=h.drawn)
+
+    @staticmethod
+    def proves(j: Judged, h: Hypothesis) -> bool:
+        """Whether a number that is in order proves that something was not done: it shows where that was done.
+
+        Further on it may have been gone on with otherwise, by lengths without their senses.
+        """
+        if done_in(h, j.entry.plan):
+            return True
+        # A neighbour's number may have been taken without its sense.
+        return any(step is h.step for step, _, _ in j.entry.terms) and not (h.kind == "neighbour" and j.entry.kind == "sense")
+
+    def shares_of(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
+        """What a discrete mistake makes of some numbers."""
+        value = self.with_changes(h.changes)
+        return np.array([0.0 if j.entry.kind != "result" and j.entry.plan == h.on_paper else
+                         self.changed(j, value, h.drawn) - self.predicted[i] for i, j in ((i, self.judged[i]) for i in lines)])
+
+    def changed(self, j: Judged, value: Callable[[Step], Any], drawn: Sequence[tuple[str, float]] = ()) -> float:
+        """How much a number changes in a drawing, and by the scale factors of its plan that were found so far or are given."""
+        times = dict(drawn).get(j.entry.scale, self.drawn.get(j.entry.scale, 1.0)) if is_scaled(j) else 1.0
+        return times * (j.exact + j.changed(value)) - j.exact
+
+    def with_changes(self, changes: Sequence[Change]) -> Any:
+        """The construction with the mistakes found so far and further ones."""
+        return replay(self.errors, [*self.changes, *changes])
+
+
+def done_in(h: Hypothesis, plan: str) -> bool:
+    """Whether a mistake is made in a plan, or in the loads that its sides are."""
+    return h.step.plan == plan or (h.step.plan in LOADS and plan.startswith("force-"))
+
+
+def loss(r: Any) -> Any:
+    """Huber's loss of what is beyond the tolerance: square, and straight for what is far off."""
+    size = np.maximum(np.abs(r) - 1, 0)
+    return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
+
+
+def place_of(step: Step, k: int) -> Place:
+    """A step at a position; what is the same at all of them has one place."""
+    return id(step), k if np.size(step.value) > 1 else 0
