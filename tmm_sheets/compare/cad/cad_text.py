@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from math import inf
 
 import numpy as np
@@ -18,6 +19,8 @@ SIZES = 1.2
 """How many times as high as another a text of the same size may be."""
 ARROWS = str.maketrans("", "", "→←↑↓")
 """Signs that may be drawn among the texts."""
+MOST = 8
+"""So many texts are tried in all ways in which one or two of them belong to another label."""
 FAR = 12.0
 """How far from its place a text may be, mm: where a letter goes is the draughtsman's choice."""
 
@@ -69,13 +72,17 @@ class _Reading:
                 self._take(n, k)
 
     def joined(self) -> None:
-        """Several texts that make one: those within its box, or else those ever a little farther off."""
-        for margin in (0.0, 0.25, 0.5):
-            for n, want in self._missing():
-                near = [k for k in self._about(want)
-                        if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + CLOSE)]
-                if order := self._spelling(near, want):
-                    self._take(n, *order)
+        """Several texts that make one: those within its box, or else those ever a little farther off; last all but one or two.
+
+        A part of a label that stands close by may lie in the box, too.
+        """
+        for strangers in (0, 1, 2):
+            for margin in (0.0, 0.25, 0.5):
+                for n, want in self._missing():
+                    near = [k for k in self._about(want)
+                            if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + CLOSE)]
+                    if order := next(filter(None, (self._spelling(some, want) for some in _but(near, strangers))), None):
+                        self._take(n, *order)
 
     def _spelling(self, near: list[int], want: Element) -> list[int]:
         """The texts in an order in which they make the wanted one; none if there is no such order.
@@ -128,6 +135,13 @@ class _Reading:
         """Texts whose middle is not far from the rectangle."""
         size = abs(complex(want.points[2] - want.points[0])) / 2
         return np.flatnonzero(np.abs(self.at - want.middle) < size + reach).tolist()
+
+
+def _but(near: list[int], strangers: int) -> Iterator[list[int]]:
+    """All of some texts, then all but one, and so on; two are left at least."""
+    yield near
+    for less in range(1, min(strangers, len(near) - 2) + 1 if len(near) <= MOST else 0):
+        yield from map(list, combinations(near, len(near) - less))
 
 
 def _same(joined: str, wanted: str, several: bool) -> bool:

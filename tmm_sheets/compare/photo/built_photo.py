@@ -14,9 +14,12 @@ from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, rebuilt, vanished
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.photo import tracing
 from tmm_sheets.compare.photo.ink_levels import line_level
-from tmm_sheets.compare.photo.judging import PhotoFinding
+from tmm_sheets.compare.photo.judging import PhotoFinding, judge
 from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.photo.rectification import Rectified
+from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
@@ -54,19 +57,22 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[Phot
     return built_plan.built_otherwise(project, known, wrong, seen)
 
 
-def as_built(elements: Sequence[Element], built: Built) -> list[Element]:
-    """The elements of the sheet as they are with the mistakes."""
-    return [rebuilt(e, built[e.view][1]) if e.view in built else e for e in elements]
+def as_built(elements: Sequence[Element], built: Built, found: Rectified, pencil: float) -> tuple[
+        list[PhotoFinding], list[ExtraInk]]:
+    """Findings on all elements, in order, those of plans compared as they were built; and ink that belongs to none."""
+    now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in elements]
+    traces, extra = tracing.trace([e for e in now if not vanished(e)], found.ink, found.hidden)
+    of = {t.element.number: judge(t, pencil, found.uncertainty, found.soft) for t in traces}
+    return [_judged(of.get(e.number), e, found, pencil) for e in elements], extra
 
 
-def judged_as_built(f: PhotoFinding, was: Element) -> PhotoFinding:
-    """A finding on an element of a plan compared as it was built, judged by the place ``was`` that it should have."""
-    now = f.element
-    if vanished(now):
-        said = tell("without length, as follows from the mistake")
-        return replace(f, element=was, verdict=verdict(was.length, f.tolerance), deviation=was.length, what=said)
+def _judged(f: PhotoFinding | None, was: Element, found: Rectified, pencil: float) -> PhotoFinding:
+    """A finding on an element that may have been built elsewhere, judged by the place ``was`` that it should have."""
+    if f is None:
+        said, tolerance = tell("without length, as follows from the mistake"), pencil + found.uncertainty
+        return PhotoFinding(was, verdict(was.length, tolerance), was.length, said, was.middle, Trace(was, "small"), tolerance)
+    now, f = f.element, replace(f, element=was)
     off = float(np.abs(now.points - was.points).max()) if len(now.points) == len(was.points) else 0.0
-    f = replace(f, element=was)
     if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:
         return f
     said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))

@@ -136,9 +136,7 @@ def examine(
         say(tell("looking for what was done wrong"))
         built = built_photo.built_otherwise(project, ours, findings, found.ink)
     if built:
-        traces, extra = tracing.trace(built_photo.as_built(known, built), found.ink, found.hidden)
-        findings = [built_photo.judged_as_built(judge(t, pencil, found.uncertainty, found.soft), e)
-                    for t, e in zip(traces, known, strict=True)]
+        findings, extra = built_photo.as_built(known, built, found, pencil)
     extra = [x for x in extra if placed is None or placed.strange(x)]
     readings = None
     if reader is not None:

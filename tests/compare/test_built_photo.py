@@ -1,0 +1,106 @@
+"""A plan that was built on a mistake is known in a photograph, and what follows from the mistake is no other one."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.compare.hypotheses import Slip
+from tests.compare.own_layouts import Drawn, follows
+from tests.compare.slip_photographs import followed
+from tmm_sheets.catalogue import read
+from tmm_sheets.compare.diagnosis.built_plan import errors_of
+from tmm_sheets.compare.known_sheet import known_sheet
+from tmm_sheets.compare.photo import built_photo, tracing
+from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.profiles import SCALE
+from tmm_sheets.compare.photo.sheet_map import PAPER
+from tmm_sheets.compare.photo.wiping import paint
+from tmm_sheets.compare.placing import Placing
+from tmm_sheets.project import Project
+
+SHAPER = Project(read("lugansk/shaper"))
+WHOLE = known_sheet(SHAPER, 1)
+NAMES = ("План ускорений (положение 2)", "План сил звена 5")
+KNOWN = replace(WHOLE, elements=[e for e in WHOLE.elements if e.view.name in NAMES and e.kind != "text"])
+VIEWS = {e.view.name: e.view for e in KNOWN.elements}
+
+
+def photographed(elements):
+    """A straightened picture of elements in ink."""
+    ink = np.zeros((round((PAPER.y1 - PAPER.y0) * SCALE), round((PAPER.x1 - PAPER.x0) * SCALE)), np.uint8)
+    for e in elements:
+        paint(ink, e, e.points, 0.0, 200)
+    return ink
+
+
+def examined(elements):
+    """What is found in such a picture: findings as they are drawn, and what was built."""
+    ink = photographed(elements)
+    found = SimpleNamespace(ink=ink, hidden=None, uncertainty=0.15, soft=False)
+    findings = [judge(t, 0.25, 0.15) for t in tracing.trace(KNOWN.elements, ink)[0]]
+    built = built_photo.built_otherwise(SHAPER, KNOWN, findings, ink)
+    return built, built_photo.as_built(KNOWN.elements, built, found, 0.25)[0] if built else findings
+
+
+def slipped(step, way):
+    """The elements with a step of the plan of accelerations done otherwise, and what is wrong then."""
+    drawn = Drawn(list(KNOWN.elements), {v: Placing() for v in VIEWS.values()})
+    plans, errors = errors_of(SHAPER, KNOWN)
+    mu = {f.plan: f.mu[0] for f in KNOWN.sheet.frames if f.plan in plans}
+    found = SimpleNamespace(plans=[(plans[name], name) for name in mu], errors=lambda *_: errors,
+                            scales={name: SimpleNamespace(mu=mu[name]) for name in mu})
+    plan = plans["accelerations"]
+    assert follows(found, KNOWN, drawn, Slip("coriolis", step, plan.labels.index("2"), {plan[step]: way}))
+    return followed(drawn, KNOWN), drawn.wrong
+
+
+@pytest.fixture(scope="module")
+def coriolis():
+    elements, wrong = slipped("k", lambda a, made, k: a[0] - 2j * a[1] * (a[3] - a[2]))
+    return *examined(elements), wrong
+
+
+def test_the_mistake_is_named_in_every_plan_that_follows_from_it(coriolis):
+    built, _, _ = coriolis
+    assert {v.name for v in built} == set(NAMES)
+    assert {plan.mistake.kind for plan, _ in built.values()} == {"coriolis"}
+    assert all(plan.explains == plan.of for plan, _ in built.values())
+
+
+def test_what_follows_is_told_as_such(coriolis):
+    _, findings, wrong = coriolis
+    bad = {f.element.number: f for f in findings if f.verdict != "green"}
+    vectors = {f.element.number for f in findings if f.element.role == "vector"}
+    assert bad.keys() & vectors == wrong.keys() & vectors
+    assert all("as follows from the mistake" in f.what for f in bad.values())
+    by_number = {e.number: e for e in KNOWN.elements}
+    assert all(f.element is by_number[n] for n, f in bad.items())  # judged by, and shown beside, what ought to be there
+
+
+def test_a_sound_plan_has_no_mistake():
+    built, findings = examined(KNOWN.elements)
+    assert not built
+    assert {f.verdict for f in findings} == {"green"}
+
+
+def test_one_wrong_line_is_no_mistake_of_the_plan():
+    vectors = [e for e in KNOWN.elements if e.view.name == NAMES[0] and e.role == "vector"]
+    worst = max(vectors, key=lambda e: e.length)
+    turn = np.exp(0.05j)
+    off = replace(worst, points=worst.points[0] + (worst.points - worst.points[0]) * turn, fills=())
+    built, findings = examined([off if e is worst else e for e in KNOWN.elements])
+    assert not built
+    assert [f.verdict for f in findings if f.element is worst] == ["red"]
+
+
+def test_ink_that_crosses_a_line_is_none_along_it():
+    ink = photographed([])
+    line = np.array([300 + 300j, 360 + 300j])
+    assert built_photo.inked(ink, line, 20.0) == 0
+    for x in range(300, 361, 6):
+        ink[round((PAPER.y1 - 310) * SCALE):round((PAPER.y1 - 290) * SCALE), round(x * SCALE):round((x + 0.5) * SCALE)] = 60
+    assert built_photo.inked(ink, line, 20.0) < 0.3
+    ink[round((PAPER.y1 - 300.2) * SCALE):round((PAPER.y1 - 299.8) * SCALE), round(300 * SCALE):round(340 * SCALE)] = 60
+    assert built_photo.inked(ink, line, 20.0) == pytest.approx(2 / 3, abs=0.1)
