@@ -59,3 +59,17 @@ def test_an_arrow_is_accused_of_what_was_done_to_it(said, e, what):
 
 def test_no_other_arrow_is_said_to_point_the_other_way(said):
     assert [n for n, f in said.items() if "other way" in f.what] == [REVERSED.number]
+
+
+def test_heads_outside_a_short_dimension_are_its_own():
+    known = elements(composed(Project(read("lugansk/shaper")), 4))
+    outside = [e for e in known if e.role == "dimension" and len(e.fills) == 2 and _between_heads(e) < e.length - 6]
+    assert outside
+    some = [e for e in known if e.role in ("dimension", "frame")]
+    found = compared(draw(some, Way(), random.Random(1)), None, some).findings
+    assert {f.verdict for f in found} == {"green"}
+
+
+def _between_heads(e):
+    """Distance of the tips of a dimension's heads."""
+    return abs(e.fills[0][0] - e.fills[1][0])

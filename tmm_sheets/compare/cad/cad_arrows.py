@@ -118,7 +118,8 @@ def _wanted(state: Comparison) -> Iterator[_Arrow]:
         for head in e.fills:
             tip, back = complex(head[0]), complex(head.mean() - head[0])
             other = e.points[0] if abs(e.points[0] - tip) > abs(e.points[-1] - tip) else e.points[-1]
-            tail = complex(other) if e.kind == "line" else tip + 3 * back
+            outside = ((other - tip) * np.conj(back)).real < 0  # heads of a short dimension point at it from both sides
+            tail = complex(other) if e.kind == "line" and not outside else tip + 3 * back
             if finding.shift is not None and finding.verdict != "green" and e.kind == "line":
                 tip, tail = _found_at(e.middle, tip, finding), _found_at(e.middle, tail, finding)
             yield _Arrow(n, finding, tip, tail, e.kind == "line" and len(e.fills) == 1)
