@@ -76,7 +76,8 @@ def arrows(state: Comparison) -> None:
             _off_by(state, arrow, off)
     # A head that several may have, for they lie upon one another, is that of the arrow with no other one near its tip.
     free = [k for k in range(len(heads.area)) if k not in taken]
-    for _, arrow, k in sorted(_pairs(_backwards, wanted, heads), key=lambda x: -float(_elsewhere(x[1], heads)[free].min(initial=np.inf))):
+    near = {arrow: float(_elsewhere(arrow, heads)[free].min(initial=np.inf)) for arrow in wanted}
+    for _, arrow, k in sorted(_pairs(_backwards, wanted, heads), key=lambda x: -near[x[1]]):
         if k not in taken and arrow in wanted:
             taken[k] = arrow.tip
             wanted.remove(arrow)
