@@ -111,7 +111,7 @@ def _explained(drawn: DrawnPlan, errors: Errors, space: DrawingSpace, move: Plac
     found = [_Found(_share(drawn, space.lines, move, points), points, h) for h, points in _mistakes(drawn, errors, before)]
     best = max((f.share for f in found), default=0.0)
     if best < MOST or not explains(usual, best):
-        found += [_Found(_share(drawn, space.lines, move, points), points, said)
+        found += [_Found(_share(drawn, space.lines, move, points, vanishing=False), points, said)
                   for points, said in _points_off(drawn, errors, space, move)]
         best = max((f.share for f in found), default=0.0)
     if best < MOST or not explains(usual, best):
@@ -146,16 +146,20 @@ def _points_off(drawn: DrawnPlan, errors: Errors, space: DrawingSpace, move: Pla
                     yield points, said.format(point=letter_of(step), distance=millimetres(off * move.scale))
 
 
-def _share(drawn: DrawnPlan, theirs: KnownLines, move: Placing, points: Sequence[PlanPoint]) -> float:
-    """Share of a plan's vectors, by length, that have ink where its points come to lie."""
+def _share(drawn: DrawnPlan, theirs: KnownLines, move: Placing, points: Sequence[PlanPoint], vanishing: bool = True) -> float:
+    """Share of a plan's vectors, by length, that have ink where its points come to lie.
+
+    A mistake may make vectors ``vanishing``; a point that lies on another one instead only makes what is wrong disappear.
+    """
     inked = whole = 0.0
     for e in drawn.vectors:
         line = between(e, points)
         size = max(abs(line[1] - line[0]), e.length)
-        if abs(line[1] - line[0]) > DRAWN:  # what becomes so short is not drawn
+        drawn_at_all = abs(line[1] - line[0]) > DRAWN
+        if size > DRAWN and (drawn_at_all or not vanishing):
             weight = min(size, WEIGHT)
             whole += weight
-            inked += weight * (_inked(theirs, move, line) >= WHOLE)
+            inked += weight * (drawn_at_all and _inked(theirs, move, line) >= WHOLE)
     return inked / whole if whole else 0.0
 
 
