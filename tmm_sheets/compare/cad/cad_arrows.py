@@ -74,8 +74,11 @@ def arrows(state: Comparison) -> None:
             taken[k] = arrow.tip
             wanted.remove(arrow)
             _off_by(state, arrow, off)
-    for _, arrow, k in _pairs(_backwards, wanted, heads):
-        if k not in taken:
+    # A head that several may have, for they lie upon one another, is that of the arrow with no other one near its tip.
+    free = [k for k in range(len(heads.area)) if k not in taken]
+    near = {arrow: float(_elsewhere(arrow, heads)[free].min(initial=np.inf)) for arrow in wanted}
+    for _, arrow, k in sorted(_pairs(_backwards, wanted, heads), key=lambda x: -near[x[1]]):
+        if k not in taken and arrow in wanted:
             taken[k] = arrow.tip
             wanted.remove(arrow)
             _tell(state, arrow, tell("points the other way"), state.elements[arrow.n].length)

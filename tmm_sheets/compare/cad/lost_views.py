@@ -6,8 +6,8 @@ together with it explains most of what is left. All plans that follow from it ar
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
@@ -16,16 +16,17 @@ from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.view_search import AS_DRAWN, CALLED, FEW_LINES, NEAR, SURE, FoundView, Search, distinct, handy, unused
 from tmm_sheets.compare.diagnosis.built_plan import AS_GOOD, EQUAL, errors_of, explains, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, drawn_plan, rebuilt
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind
 from tmm_sheets.compare.diagnosis.replay import replay
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
-from tmm_sheets.construction.step import Step
 
 if TYPE_CHECKING:
     from tmm_sheets.compare.cad.layout import Layout
     from tmm_sheets.project import Project
 
+KINDS = get_args(Kind)
+"""Kinds of mistakes, the more usual first."""
 MISTAKES = 2
 """So many mistakes are looked for in views that are not found."""
 
@@ -42,7 +43,7 @@ def lost_views(project: Project, known: KnownSheet, space: DrawingSpace, places:
             break  # ink that other plans have, too, was all there was for it
         made.append(h)
         out |= found
-    return out, made
+    return out | lost.left_over(), made
 
 
 class _Lost:
@@ -60,7 +61,7 @@ class _Lost:
         self.titled_otherwise = {v for v in self.usual if places.share[v] >= SURE and search.strange(v, self.moves[v])
                                  and (v.mu is None or handy(self.moves[v]))}
         self.doubtful = [v for v in self.shown if self.usual.get(v, 0.0) < SURE]
-        self.sure = [v for v in self.usual if v not in self.doubtful]
+        self.sure = [v for v in self.usual if v not in self.doubtful and distinct(self.main[v]) >= FEW_LINES]
         self.titled = [v for v in self.sure if search.titled(v, self.moves[v]) > CALLED]
 
     def _search(self, views: Collection[ElementView]) -> Search:
@@ -85,9 +86,6 @@ class _Lost:
         tried: list[tuple[float, float, Hypothesis]] = []
         for h in possible([self.shown[v] for v in self.doubtful], self.errors):
             value = replay(self.errors, [c for m in (*made, h) for c in m.changes])
-            # What is made at every position makes plans change places, of which only a title tells which is which.
-            if any(self._contradicts(view, value) for view in (self.titled if h.at is None else self.sure)):
-                continue
             gain, whole, factors = 0.0, False, set()
             explained: set[ElementView] = set()
             taken: dict[ElementView, float] = {}
@@ -112,15 +110,26 @@ class _Lost:
             # A plan that is like ours at another scale is none that a mistake explains, several are.
             if whole or len(factors) > 1:
                 tried.append((gain - stolen, stolen, h))
-        most = max((gain for gain, _, _ in tried), default=0.0)
-        good = [(stolen > EQUAL * most, h.at is None, h) for gain, stolen, h in tried if gain > 0 and gain >= AS_GOOD * most]
-        return min(good, key=lambda x: x[:2])[2] if good else None
+        most, good = 0.0, []
+        for gain, stolen, h in sorted(tried, key=lambda x: -x[0]):
+            if gain <= 0 or gain < AS_GOOD * most:
+                break
+            if not self._contradicted(h, made):
+                most = most or gain
+                good.append((stolen > EQUAL * most, h.at is None, KINDS.index(h.kind), h))
+        return min(good, key=lambda x: x[:3])[3] if good else None
 
-    def _contradicts(self, view: ElementView, value: Callable[[Step], Any]) -> bool:
-        """Whether a view that stands as it should would not do so with a mistake."""
-        new = self.shown[view].moved(value)
-        ink = lines([self.moves[view](e.points) for e in self._rebuilt(view, new)]).points(1.0) if new else np.zeros(0, complex)
-        return bool(len(ink)) and self.space.lines.share(ink, NEAR) < AS_DRAWN
+    def _contradicted(self, h: Hypothesis, made: Sequence[Hypothesis]) -> bool:
+        """Whether a view that stands as it should is nowhere as it would be with a mistake.
+
+        What is made at every position makes plans change places, of which only a title tells which is which.
+        """
+        value = replay(self.errors, [c for m in (*made, h) for c in m.changes])
+        for view in self.titled if h.at is None else self.sure:
+            new = self.shown[view].moved(value)
+            if new and self._search([view]).changed(view, self._rebuilt(view, new), 1) is None:
+                return True
+        return False
 
     def _weight(self, view: ElementView) -> float:
         return sum(e.length for e in self.shown[view].vectors)
@@ -133,7 +142,9 @@ class _Lost:
         if one is None:
             return None
         drawn = lines([one.placing(e.points) for e in main])
-        others = ((v, drawn.share(self.moves[v](self.points[v]), NEAR)) for v in self.doubtful if v in self.moves and v != view)
+        # What stands under the title of another one has no right to its ink.
+        others = ((v, drawn.share(self.moves[v](self.points[v]), NEAR)) for v in self.doubtful
+                  if v in self.moves and v != view and v not in self.titled_otherwise)
         return one, {v: share for v, share in others if share > EQUAL}
 
     def _rebuilt(self, view: ElementView, new: Sequence[PlanPoint]) -> list[Element]:
@@ -153,4 +164,16 @@ class _Lost:
                 self.moves[view] = one.placing
                 search.without(view, one.placing)
         self.doubtful = [v for v in self.doubtful if v not in out]
+        return out
+
+    def left_over(self) -> dict[ElementView, FoundView]:
+        """The views of a line or two, without title or letters, that are found in the ink no other view has."""
+        left = [v for v in dict.fromkeys(e.view for e in self.known.elements) if v.n and v not in self.moves]
+        search = self._search(left)
+        out: dict[ElementView, FoundView] = {}
+        for view in sorted(search.views, key=lambda v: -sum(e.length for e in search.main[v])):
+            one = search.changed(view, search.main[view], 1, left_over=True) if search.enough() else None
+            if one is not None and search.worth(view, one) >= SURE:
+                out[view] = one
+                search.without(view, one.placing)
         return out

@@ -148,7 +148,7 @@ class Search:
         self.points[v] = z[:: max(len(z) // MOST, 1)]
         few = distinct([e for e in self.main[v] if e.length > SHORTEST]) < least
         scales = dict.fromkeys((self.scales.get(v.mu), None))  # plans of one scale factor are drawn alike, mostly
-        tries = [one for scale in scales for one in self.tries(0, v, scale, 1, 0, AGREE) if one.share > AS_DRAWN
+        tries = [one for scale in scales for one in self.tries(0, v, scale, 1, 0, AGREE, left_over) if one.share > AS_DRAWN
                  and (v.mu is None or handy(one.placing))
                  and not (few and self._read(v, one.placing) + self.titled(v, one.placing) < CALLED
                           and not (left_over and self._ends(v, one.placing)))]
@@ -205,7 +205,8 @@ class Search:
                 self.scales.setdefault(v.mu, best.placing.scale)
             self.without(v, best.placing)
 
-    def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int, agree: float = 0.0) -> Iterator[_Try]:
+    def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int, agree: float = 0.0,
+              left_over: bool = False) -> Iterator[_Try]:
         """The places a view may be at, at a scale if that is known, on which a share of its lines agrees."""
         seen: list[Placing] = []
         middle = complex(self.points[v].mean())
@@ -216,13 +217,13 @@ class Search:
             if fitted is None or any(abs(fitted(middle) - p(middle)) < 1 and abs(fitted.scale / p.scale - 1) < 0.02 for p in seen):
                 continue
             seen.append(fitted)
-            one = self._judged(k, v, fitted, least, taken)
+            one = self._judged(k, v, fitted, least, taken, left_over)
             if one is not None:
                 yield one
             if len(seen) >= TRIED:
                 return
 
-    def _judged(self, k: int, v: ElementView, placing: Placing, least: int, taken: int) -> _Try | None:
+    def _judged(self, k: int, v: ElementView, placing: Placing, least: int, taken: int, left_over: bool = False) -> _Try | None:
         """A place with how sure it is; None where it may be chance."""
         points = placing(self.points[v])
         share = self.free.share(points, NEAR)
@@ -237,8 +238,7 @@ class Search:
         if least > 1 and not bends and lines_met < least:
             return None
         called = read + titled > (0.3 if same else CALLED)
-        whole = same or known_scale is None
-        enough = lines_met >= 2 or bends or (lines_met == 1 and (called or (whole and self._ends(v, placing))))
+        enough = lines_met >= 2 or bends or (lines_met == 1 and (called or ((same or left_over) and self._ends(v, placing))))
         if not enough or share < 0.35 or share + witness < 0.75:
             return None
         size = max(float(np.abs(points - points[0]).max()), 1.0)

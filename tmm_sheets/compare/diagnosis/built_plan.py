@@ -166,7 +166,8 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
         out = []
         for m in mistakes:
             points = drawn.moved(replay(errors, [c for one in (*made, m) for c in one.changes]))
-            if points and (share := _share(drawn, drawing.inked, points)) >= MOST and explains(usual, share):
+            share = _share(drawn, drawing.inked, points, not isinstance(m.said, str)) if points else 0.0
+            if share >= MOST and explains(usual, share):
                 out.append(_Found(share, points, m))
         return out
 
@@ -201,14 +202,17 @@ def _points_off(drawn: DrawnPlan, drawing: Drawing) -> Iterator[_Mistake]:
                                (Change(p.step, displaced(by), drawn.k),))
 
 
-def _share(drawn: DrawnPlan, inked: Inked, points: Sequence[PlanPoint]) -> float:
-    """Share of a plan's vectors, by length, that have ink where its points come to lie."""
+def _share(drawn: DrawnPlan, inked: Inked, points: Sequence[PlanPoint], vanishing: bool = True) -> float:
+    """Share of a plan's vectors, by length, that have ink where its points come to lie.
+
+    A mistake may make vectors ``vanishing``; a point that lies on another one instead only makes what is wrong disappear.
+    """
     there = whole = 0.0
     for e in drawn.vectors:
         line = between(e, points)
         length = abs(line[1] - line[0])
-        if length > DRAWN:  # what becomes so short is not drawn
+        if length > DRAWN or (e.length > DRAWN and not vanishing):
             weight = min(max(length, e.length), WEIGHT)
             whole += weight
-            there += weight * (inked(line) >= WHOLE)
+            there += weight * (length > DRAWN and inked(line) >= WHOLE)
     return there / whole if whole else 0.0

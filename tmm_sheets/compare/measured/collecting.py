@@ -36,7 +36,7 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
         linkage_items.collect(project, found, shown)
         diagram_items.collect(project, found)
     for part, collect in (("flywheel", flywheel_items.collect), ("gear", machine_items.gear), ("reducer", machine_items.reducer),
-                          ("cam", machine_items.cam)):
+                          ("train", machine_items.train), ("cam", machine_items.cam)):
         if part in there:
             with suppress(CannotBuild):  # its sheet has said why
                 collect(project, found)

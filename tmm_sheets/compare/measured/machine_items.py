@@ -19,11 +19,13 @@ from tmm_sheets.compare.measured.measurable import (
     scalar,
 )
 from tmm_sheets.compare.measured.measured_units import DEGREES, MILLIMETRES, TURNS
+from tmm_sheets.compare.measured.speed_pictures import speed_pictures
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.cams.cam_motion import ACROSS, ORDINATE
 from tmm_sheets.methods.gears.rack import TAKEN
+from tmm_sheets.methods.gears.train_steps import CENTRAL_PITCH
 from tmm_sheets.methods.integration import CHORD
 from tmm_sheets.words import tell
 
@@ -106,9 +108,25 @@ def reducer(project: Project, found: Measurables) -> None:
     for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", TURNS)):
         for name, told in results[group].items():
             scalar(found, tell("Reducer"), f"reducer-{name}", told.value, unit)
+    speed_pictures("reducer", project.reducer.plans, found)
     for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q"):
         if name in results:
             scalar(found, tell("Reducer"), f"reducer-{name}", results[name].value, "")
+
+
+def train(project: Project, found: Measurables) -> None:
+    """Results of the train of gears; tooth numbers and speeds that are given are none."""
+    train = project.train
+    results: Mapping[str, Any] = train.results()
+    for name, told in results["distances"].items():
+        scalar(found, tell("Train of gears"), f"train-{name}", told.value, MILLIMETRES)
+    for step in train.kinematics:
+        if step.rule is CENTRAL_PITCH:
+            scalar(found, tell("Train of gears"), f"train-{step.name}", float(step.value), MILLIMETRES)
+    for name, told in results["speeds_rpm"].items():
+        if name.removeprefix("n") not in train.given:
+            scalar(found, tell("Train of gears"), f"train-{name}", told.value, TURNS)
+    speed_pictures("train", train.plans, found)
 
 
 def cam(project: Project, found: Measurables) -> None:
