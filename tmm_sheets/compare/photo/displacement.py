@@ -11,7 +11,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.stations import ENOUGH, LEAST, STEP, Stations, expected_ink, fit, measured, smoothed
+from tmm_sheets.compare.photo.stations import ENOUGH, LEAST, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed
 from tmm_sheets.compare.photo.traces import Trace
 
 FAR = 6.0  # mm from its place within which a displaced element is sought
@@ -97,12 +97,14 @@ def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, own
 def beside(t: Trace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owners, level: float) -> Trace | None:
     """The trace of a straight line that lies in one stroke with others, where ink of none has its whole length beside; or None.
 
-    ``lines`` is where what was found is drawn, 255 there, ``taken`` the same with room to spare; the rest is as for :func:`rather_elsewhere`.
+    ``lines`` is where what was found is drawn, 255 there, ``taken`` the same with room to spare; the rest is as for
+    :func:`rather_elsewhere`.
     """
     offsets, at = _about(t.element, s)
     drawn = owners.others(t.element.number, s.points[:, None] + s.normals[:, None] * offsets)
     profile = smoothed(sample(ink, at), drawn)
-    unknown = np.where(np.abs(offsets) <= BROAD, ~_apart(profile, sample(lines, at, nearest=True) > 0, drawn, offsets, level), sample(taken, at) > 100)
+    apart = _apart(profile, sample(lines, at, nearest=True) > 0, drawn, offsets, level)
+    unknown = np.where(np.abs(offsets) <= BROAD, ~apart, sample(taken, at) > 100)
     found = _elsewhere(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level)
     if found is None or found.at is None or found.covered < WHOLE or found.deviation < LEFT:
         return None
@@ -177,6 +179,8 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
     if np.abs(base @ y).max() > reach + 0.5:
         return None
     found = measured(e, s, base @ y, np.ones(n, bool), float(share[best] / expected))
+    if shrunk(e, found):
+        return None
     return replace(found, darkness=float(np.median(strength[use])) if use.any() else 0.0)
 
 

@@ -32,6 +32,8 @@ ALONE = 0.9
 FAINT, DARK, SMALL_DARK, SMALL = 0.3, 0.6, 0.35, 0.45
 """Darkness from which on a place belongs to a spot, and least darkness of a spot and of a dot in its place, as shares of the
 lines'; the same of dots of less than the radius, mm, which blur makes pale."""
+TOUCHED = 9
+"""Pixels about the middle of a small spot that nothing else may take."""
 TELLS = 0.15
 """Least share of a dot that lines do not show as well for anything to be told of its place."""
 
@@ -68,6 +70,8 @@ def displaced_dots(
     spots = spots[np.array([_alone(seen, stats[k]) for k in spots], bool)]
     w, h, area, middles = w[spots], h[spots], area[spots], middles[spots]
     z = (middles[:, 0] + 0.5) / SCALE + 1j * (PAPER.y1 - (middles[:, 1] + 0.5) / SCALE)
+    touched = cv2.boxFilter(free.astype(np.float32), -1, (TOUCHED, TOUCHED))
+    clear = np.array([touched[round(y), round(x)] > 0.999 for x, y in middles], bool)
     dark = sample(cv2.dilate(ink, np.ones((3, 3), np.uint8)), pixels(z))
     out = []
     for e in some:
@@ -75,6 +79,8 @@ def displaced_dots(
         least = usual * (SMALL_DARK if e.radius < SMALL else DARK)
         sized = (area > SIZES[0] * size) & (area < SIZES[1] * size) & (np.maximum(w, h) < (2 * e.radius + WIDER) * SCALE)
         like = sized & (far < FAR) & (far > max(LEAST, e.radius + ASIDE)) & (dark > least) & ~at(z, hidden)
+        if e.radius < SMALL:  # or it may be the end of a line that was drawn over
+            like &= clear
         if like.any() and not _in_place(e, lines, ink, words, least):
             by = complex(z[like][far[like].argmin()]) - e.centre
             out.append(Trace(e, "beside", by, deviation=abs(by), at=np.asarray(e.points + by)))
@@ -89,20 +95,22 @@ def _alone(seen: Any, box: Any) -> bool:
 
 
 def _in_place(e: Element, lines: Any, ink: Any, words: Any, least: float) -> bool:
-    """Whether a dot is clearly seen in its place, or a little beside; where lines show as much nothing is clear."""
+    """Whether a dot is clearly seen in its place, or a little beside; a small one also where lines would show as much."""
     grid = np.arange(-REACH, REACH + 0.5 / SCALE, 1 / SCALE)
     places = e.centre + grid - 1j * grid[:, None]
     p = pixels(places)
     drawn, y, seen = _soft(sample(lines, p)), sample(ink, p).astype(np.float64), sample(words, p) == 0
     plain = np.stack((drawn[seen], np.ones(seen.sum())), -1)
-    line = sample(lines, p) > 127
+    line, told = sample(lines, p) > 127, e.radius >= SMALL
     for by in (grid + 1j * grid[:, None])[np.hypot(grid, grid[:, None]) <= ASIDE]:
         disc = 255.0 * (np.abs(places - e.centre - by) <= e.radius)
         dot = _soft(np.where(line, 0.0, disc))[seen]
         rest = dot - plain @ np.linalg.lstsq(plain, dot, rcond=None)[0]
-        if rest @ rest > TELLS * float((_soft(disc) ** 2).sum()) and float(rest @ y[seen] / (rest @ rest)) > least:
-            return True
-    return False
+        if rest @ rest > TELLS * float((_soft(disc) ** 2).sum()):
+            told = True
+            if float(rest @ y[seen] / (rest @ rest)) > least:
+                return True
+    return not told
 
 
 def _soft(picture: Any) -> Floats:

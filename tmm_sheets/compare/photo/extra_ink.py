@@ -29,8 +29,11 @@ STRAIGHT = 0.4
 
 SHORT, WIDE = 2.0, 0.9
 """Least length and largest width of a piece of a stroke, mm."""
-IN_ROW, FARTHEST, CROSSED = 0.5, 8.0, 0.8
-"""mm that pieces of a stroke may be out of line, mm from one to the next, and least share of that way that was wiped out."""
+RAGGED = 0.4
+"""mm by which a piece may end before the line that crosses."""
+IN_ROW, FARTHEST, CROSSED, INK = 0.5, 8.0, 0.8, 5.0
+"""mm that pieces of a stroke may be out of line, mm from one to the next, least share of that way that was wiped out, and least
+length of all pieces together, mm."""
 
 
 def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: float = 0.0) -> list[ExtraInk]:
@@ -51,7 +54,7 @@ def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: floa
     """
     free = np.where(words > 0, np.uint8(0), left)
     out = _regions(free, level, straight=False)
-    strokes = [] if wiped is None else _strokes(free, wiped, max(level, dark))
+    strokes = [] if wiped is None else _strokes(left, wiped, max(level, dark))
     for x in (*_regions(left, level, straight=True), *strokes):
         if all(max(abs(x.middle.real - y.middle.real) - (x.width + y.width) / 2,
                    abs(x.middle.imag - y.middle.imag) - (x.height + y.height) / 2) > 0 for y in out):
@@ -127,7 +130,7 @@ def _strokes(left: Any, wiped: Any, level: float) -> list[ExtraInk]:
     out = []
     for z in groups:
         width, height = np.ptp(z.real), np.ptp(z.imag)
-        if hypot(width, height) >= EXTRA:
+        if hypot(width, height) >= EXTRA and np.abs(z[1::2] - z[::2]).sum() >= INK:
             middle = complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
             out.append(ExtraInk(middle, float(width), float(height), hypot(width, height)))
     return out
@@ -158,8 +161,9 @@ def _in_rows(ends: Any, wiped: Any) -> list[Any]:
         a, b = both[order[1]], both[order[2]]
         if {int(k) // 2 for k in order[:2]} not in ({0}, {1}) or abs(b - a) > FARTHEST:
             continue
-        between = sample(wiped, pixels(a + np.linspace(0, 1, 25) * (b - a)), nearest=True) > 0
-        if between.mean() >= CROSSED:
+        way = (b - a) / max(abs(b - a), 1e-9)
+        between = np.linspace(a + RAGGED * way, b - RAGGED * way, 25)
+        if abs(b - a) <= 2 * RAGGED or (sample(wiped, pixels(between), nearest=True) > 0).mean() >= CROSSED:
             row[first(int(j))] = first(int(i))
     groups: dict[int, list[Any]] = {}
     for k in range(len(ends)):

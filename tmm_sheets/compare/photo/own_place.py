@@ -12,7 +12,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed, stations
+from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed, stations
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.drawing.styles import line_type
 
@@ -105,6 +105,8 @@ def in_place(strip: Strip, level: float) -> Trace | None:
         if _at_home(profile, base @ x):
             return Trace(e, "dense", covered=float(there.mean()), at=e.points)
     t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])))
+    if shrunk(e, t):
+        return None
     if e.kind == "curve":
         t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
     return t

@@ -17,6 +17,7 @@ from tmm_sheets.drawing.styles import line_type
 STEP = 0.1  # mm between offsets of a profile
 LEAST = 6.0  # mm of line that can be measured
 SETTLED = 1e-3  # mm of change below which a fit has converged
+SHRUNK = 0.5  # share of its radius by which a circle is never too small
 BLURRED = 7  # steps over which a line that crosses may be seen, beside its own width
 ENOUGH = 0.6  # least share of an element's ink on the line it is fitted by
 
@@ -133,6 +134,11 @@ def fit(base: Floats, o: Floats, use: Any, loose: float, prior: float = 0.02) ->
         if k > 2 and np.abs(x - before).max(initial=0.0) < SETTLED:
             break
     return np.asarray(x)
+
+
+def shrunk(e: Element, t: Trace) -> bool:
+    """Whether a circle was found so much smaller than it belongs that it is no circle."""
+    return e.kind in ("circle", "arc") and t.growth < -SHRUNK * e.radius
 
 
 def measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> Trace:
