@@ -1,5 +1,6 @@
 """The map of a photographed sheet: the fit against a simulated camera's own formulas, the search for the frame's sides."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import cv2
@@ -10,8 +11,10 @@ from tests.compare.simulation import Camera, projection
 from tmm_sheets import catalogue
 from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.photo import frame_search, patches, profiles, rectification
-from tmm_sheets.compare.photo.frame_fit import initial_map
+from tmm_sheets.compare.photo import fit_check, frame_search, patches, profiles, rectification
+from tmm_sheets.compare.photo.fit_check import FitCheck
+from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map
+from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.sheet_map import CORNERS, CREASED, FRAME, RELIEF, Map, heights, homography
@@ -165,3 +168,93 @@ def test_circles_are_not_taken_for_their_neighbours():
     about = np.abs(seen.sheet - centre) < 90
     assert about.sum() >= 10
     assert np.abs(m.to_sheet(seen.picture) - seen.sheet - 2.1)[about].max() < 0.4
+
+
+def test_a_line_counts_by_its_length_in_each_part_of_the_sheet():
+    """Points every 3 mm: a short line, a long one within a part, one as long through three parts, two short ones in one place."""
+    rows = [(10 + 10j, 5), (10 + 20j, 36), (10 + 30j, 108), (10 + 40j, 5), (10 + 40j, 5), (50 + 50j, 8)]
+    points = [a + np.arange(n) * (3 if n != 108 else 3.2) for a, n in rows]
+    p = np.concatenate(points)
+    number = np.repeat(np.arange(len(rows)), [n for _, n in rows])
+    weight = rectification.weights(profiles.ProfileLines(p, np.full(len(p), 1j), number))
+    count = [float((weight[number == k] ** 2).sum()) for k in range(len(rows))]
+    assert count[0] == pytest.approx(5)
+    assert count[1] == pytest.approx(8)
+    assert count[2] == pytest.approx(3 * 8)
+    assert count[3] == count[4] == pytest.approx(5)  # a second line in the same place is a second witness
+    assert count[5] == pytest.approx(8)  # at the limit
+    none = rectification.weights(profiles.ProfileLines(p[:0], p[:0], number[:0]))
+    assert none.shape == (0,)
+
+
+SEEN_WHOLE = FitCheck(0.95, np.zeros(0, complex), np.zeros(0, complex), 60, 0.3, 0.02, np.ones(4), np.zeros(0, complex), 0.0)
+
+
+@pytest.mark.parametrize(
+    ("sides_seen", "match", "sound", "acceptable"),
+    [
+        ((1, 1, 1, 1), 0.95, True, True),
+        ((1, 1, 1, 0), 0.95, True, True),  # no other frame brings a hidden side to light
+        ((1, 1, 1, 0), 0.85, False, True),  # but with fewer lines in place another may be better
+        ((0, 1, 1, 1), 0.85, False, True),
+        ((1, 1, 1, 0.89), 0.95, True, True),
+        ((1, 1, 0, 0), 0.95, False, False),
+        ((1, 1, 0.7, 0), 0.95, False, True),  # seen in part: enough to judge, not to stop looking
+        ((1, 1, 0.59, 0), 0.95, False, False),
+        ((1, 1, 1, 1), 0.49, False, False),
+    ],
+)
+def test_how_many_sides_must_be_seen(sides_seen, match, sound, acceptable):
+    check = replace(SEEN_WHOLE, sides=np.array(sides_seen, float), match=match)
+    assert (check.sound, check.acceptable) == (sound, acceptable)
+
+
+@pytest.mark.parametrize(
+    ("sides_seen", "match", "again"),
+    [
+        ((1, 1, 1, 1), 0.95, False),
+        ((1, 1, 1, 0.4), 0.95, True),  # what was followed there is something else
+        ((1, 1, 1, 0.4), 0.25, False),  # and the lines cannot tell where the frame is
+        ((1, 1, 1, 1), 0.4, True),
+    ],
+)
+def test_a_frame_hidden_in_part_is_sought_once_more_from_the_lines(sides_seen, match, again, monkeypatch):
+    asked = []
+    attempts = rectification._Attempts(np.zeros((40, 60), np.uint8), None, True)
+    check = replace(SEEN_WHOLE, sides=np.array(sides_seen, float), match=match)
+    plain = Map(0j, 1.0, homography(profiles.pixels(CORNERS, 4.0), CORNERS))
+    frame = FrameFit(plain, rectification.NO_SIDES, 0.1, 0.2)
+    monkeypatch.setattr(rectification.frame_fit, "fit_frame", lambda grey, start: frame)
+    monkeypatch.setattr(rectification.frame_fit, "frame_about", lambda grey, start, near: frame)
+    monkeypatch.setattr(rectification.frame_fit, "initial_map", lambda *_: plain)
+    monkeypatch.setattr(attempts, "_without_frame", lambda m: asked.append(m) or m)
+    monkeypatch.setattr(attempts, "_fit", lambda found, fit: rectification._Attempt(found, fit, plain, check))
+    attempts.begin(FoundFrame(profiles.pixels(CORNERS, 4.0), (), False, 1.0))
+    assert bool(asked) == again
+    assert attempts.best.check is check
+
+
+@pytest.mark.parametrize(
+    ("shifts", "found"),
+    [
+        ([0.3] * 6, 0),
+        ([3, 3, 3, 0, 0, 0], 3),  # side by side and alike
+        ([3, 3, 0, 0, 0, 0], 0),  # two share their lines
+        ([3, -3, 3, 0, 0, 0], 0),  # not alike: single lines taken for their neighbours
+        ([3, 0, 0, 3, 0, 3], 0),  # not near each other
+        ([1.4] * 6, 0),
+        ([2.0, 2.5, 3.0, 0, 0, 0], 1),  # the middle one is like both
+        ([], 0),
+    ],
+)
+def test_patches_shifted_alike_side_by_side_are_a_misfit(shifts, found):
+    m = Map(0j, 1.0, homography(profiles.pixels(CORNERS, 4.0), CORNERS))
+    z = 100 + 100j + 45 * np.arange(len(shifts))
+    picture = m.to_picture(z + 1j * np.array(shifts, float))
+    seen = Seen(np.tile(picture, 2), np.tile(z, 2), np.repeat([1 + 0j, 1j], len(z)), np.ones(2 * len(z)))
+    shifted, by = fit_check._shifted(seen, m)
+    assert len(shifted) == found
+    check = replace(SEEN_WHOLE, shifted=shifted, shift=by)
+    assert check.acceptable == check.sound == (not found)
+    if found:
+        assert by == pytest.approx(np.median([s for s, z_ in zip(shifts, z, strict=True) if z_ in shifted]), abs=0.01)

@@ -1,5 +1,7 @@
 """Elements measured in ink that was put where it is known to be: ends, strokes in common, displacements, ink too much."""
 
+from itertools import pairwise
+
 import cv2
 import numpy as np
 import pytest
@@ -289,3 +291,74 @@ def test_what_shows_of_a_hidden_line_is_not_extra():
     known = [line(1, 300 + 300j, 340 + 300j)]
     traces, extra = trace(known, ink, hidden)
     assert (traces[0].status, extra) == ("hidden", [])
+
+
+@pytest.mark.parametrize("by", [0.0, 2.1, -1.8])
+def test_a_circle_crossed_by_many_lines_is_not_seen_in_their_ink(by):
+    """Radii 3 mm apart along the circle: smeared along it they would be a grey band, and the circle in it anywhere."""
+    centre, radius = 300 + 300j, 30.0
+    turn = np.linspace(0, 2 * np.pi, 200)
+    ring = Element(1, VIEW, "", "circle", centre + radius * np.exp(1j * turn), "thin", centre, radius, 0.0, 2 * np.pi)
+    way = np.exp(2j * np.pi * np.arange(60) / 60)
+    radii = [line(k + 2, centre + 20 * u, centre + 40 * u, "thin") for k, u in enumerate(way)]
+    drawn = centre + (radius + by) * np.exp(1j * turn)
+    chords = [(a, b, "thin") for a, b in pairwise(drawn)]
+    found, _ = traced([ring, *radii], [*chords, *((*e.points, e.style) for e in radii)])
+    assert found[0].growth == pytest.approx(by, abs=0.3)
+    assert judge(found[0], 0.25, 0.15).verdict == ("red" if by else "green")
+
+
+@pytest.mark.parametrize(("end", "seen"), [(6.0, True), (0.4, False)])
+def test_a_stroke_that_lines_cut_to_pieces_is_extra(end, seen):
+    """One of two lines that belong in the same place was turned; lines that cross leave no piece of 8 mm."""
+    a, b = 250 + 300j, 290 + 300j
+    cross = [line(k + 3, 258 + 7 * k + 270j, 258 + 7 * k + 330j, "thin") for k in range(5)]
+    known = [line(1, a, b, "thin"), line(2, a, b, "thin"), *cross]
+    found, extra = traced(known, [(a, b, "thin"), (a, b + 1j * end, "thin"), *((*e.points, e.style) for e in cross)])
+    assert {judge(t, 0.25, 0.15).verdict for t in found} == {"green"}
+    assert bool(extra) == seen
+    for x in extra:
+        assert abs(x.middle - (275 + 300j + 1j * end * 25 / 40)) < 4
+
+
+def dot(number, at, radius=0.6):
+    outline = at + radius * np.exp(1j * np.linspace(0, 2 * np.pi, 24))
+    return Element(number, VIEW, "", "circle", outline, "main", at, radius, 0.0, 2 * np.pi, fills=(outline,))
+
+
+@pytest.mark.parametrize(
+    ("places", "says"),
+    [
+        ([0j], ""),
+        ([0.3 + 0.2j], ""),  # a hand's reach
+        ([3j], "a dot like it stands beside, and none here: 3.0 mm too far up"),
+        ([2.5 - 2.5j], "a dot like it stands beside, and none here: 3.5 mm too far down and right"),
+        ([0j, 3j], ""),  # a spot, but the dot is there, too
+        ([], ""),  # none at all: lines may have rubbed it out
+        ([9j], ""),  # too far to be this one
+    ],
+)
+def test_a_dot_that_stands_beside_its_place(places, says):
+    known = [line(1, 270 + 300j, 330 + 300j, "thin"), dot(2, CORNER)]
+    ink = paper()
+    draw(ink, *known[0].points, "thin")
+    for by in places:
+        draw(ink, CORNER + by, CORNER + by + 1e-6, "main", 180)
+        draw(ink, CORNER + by - 0.2, CORNER + by + 0.2, "main", 180)
+    found, _ = trace(known, ink)
+    f = judge(found[1], 0.25, 0.15)
+    assert (f.verdict, f.what if f.verdict != "green" else "") == ("amber" if says else "green", says)
+
+
+@pytest.mark.parametrize(("gap", "rest", "short"), [(2.0, 2.5, False), (2.0, 0.6, True), (4.5, 1.5, True)])
+def test_a_gap_near_an_end_is_a_lifted_pencil_when_ink_follows(gap, rest, short):
+    """The head of another arrow covers the end: the rest may be its ink or the line's own."""
+    end = 300 + 300j
+    other = arrow(2, end + 30, end - rest)
+    known = [line(1, end - 60, end), other]
+    ink = paper()
+    draw(ink, end - 60, end - gap - rest)
+    draw(ink, end - rest, end + 30)
+    fill_head(ink, end - rest, -1)
+    f = judge(trace(known, ink)[0][0], 0.25, 0.15)
+    assert ("too short at its end" in f.what) == short

@@ -203,7 +203,7 @@ def _is(element: dict[str, Any], mark: Mark) -> bool:
         return bool(element["kind"] == "text" and _read(mark.string) in element["name"])
     name = _read(mark.name)
     names = ("", name, f"{name}({mark.position})") if name else (element["name"],)
-    kinds = {"fill": ("line",), "circle": ("circle", "arc"), "polyline": ("curve", "line")}.get(mark.kind, (mark.kind,))
+    kinds = {"fill": ("line", "circle"), "circle": ("circle", "arc"), "polyline": ("curve", "line")}.get(mark.kind, (mark.kind,))
     # a view without a title is called by its module in the record, by a name in the report
     return (element["view"] == mark.view or "." in mark.view) and element["name"] in names and element["kind"] in kinds
 

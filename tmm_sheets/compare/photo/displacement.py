@@ -11,7 +11,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.stations import ENOUGH, LEAST, STEP, Stations, expected_ink, fit, measured, smoothed
+from tmm_sheets.compare.photo.stations import ENOUGH, LEAST, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed
 from tmm_sheets.compare.photo.traces import Trace
 
 FAR = 6.0  # mm from its place within which a displaced element is sought
@@ -23,13 +23,17 @@ WHOLE, DARKER, FULLER = 0.85, 1.25, 0.12
 its own place."""
 BETWEEN = 0.6
 """Darkness between a stroke and a line beside it, as a share of the line's, below which paper separates them."""
+BROAD, STROKE = 1.6, 0.5
+"""mm to either side of a line within which what belongs to its stroke is told by the ink, and within which others are of it."""
+LEFT = 0.8
+"""mm off its place from which on a line has left its stroke."""
 BAND = 17
 """Steps about a line in its own place where it was wiped out."""
 BARE, BARE_LENGTH = 0.35, 2.5
 """Share of an element without ink, and mm of that not hidden by others, beyond which it is missing."""
 
 
-def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: float) -> Trace:
+def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: Owners, level: float) -> Trace:
     """The trace of an element that was not found in its own place.
 
     Parameters
@@ -42,13 +46,16 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, level: f
         Where that was, 255 there.
     ink
         The rectified picture.
+    owners
+        Who is drawn where.
     level
         Darkness of ink.
     """
     offsets, at = _about(e, s)
     expected = expected_ink(e)
     about = np.abs(offsets) <= 0.5
-    here = smoothed(sample(ink, at[:, about])) > level
+    near = s.points[:, None] + s.normals[:, None] * offsets[about]
+    here = smoothed(sample(ink, at[:, about]), owners.others(e.number, near)) > level
     if here[:, np.abs(offsets[about]) <= 0.2].any(1).mean() > THERE * expected:
         # There is ink where it belongs, only it cannot be told from others'.
         return Trace(e, "dense", covered=float(here.any(1).mean()), at=e.points)
@@ -73,9 +80,10 @@ def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, own
 
     offsets, at = _about(t.element, s)
     near = s.points[:, None] + s.normals[:, None] * offsets
-    others = cv2.dilate(owners.others(t.element.number, near).astype(np.uint8), np.ones((1, BAND), np.uint8)) > 0
+    drawn = owners.others(t.element.number, near)
+    others = cv2.dilate(drawn.astype(np.uint8), np.ones((1, BAND), np.uint8)) > 0
     own = (np.abs(offsets) <= BAND / 2 * STEP) & ~others  # wiped out for its own sake
-    profile = smoothed(np.where(own, sample(ink, at), sample(left, at)))
+    profile = smoothed(np.where(own, sample(ink, at), sample(left, at)), drawn)
     unknown = ~own & (sample(wiped, at) > 100)
     darker = _elsewhere(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
     if darker is not None and darker.covered >= WHOLE:
@@ -86,27 +94,49 @@ def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, own
     return fuller
 
 
-def beside(t: Trace, s: Stations, ink: Any, taken: Any, level: float) -> Trace | None:
+def beside(t: Trace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owners, level: float) -> Trace | None:
     """The trace of a straight line that lies in one stroke with others, where ink of none has its whole length beside; or None.
 
-    ``taken`` is where what was found is drawn, 255 there; the rest is as for :func:`rather_elsewhere`.
+    ``lines`` is where what was found is drawn, 255 there, ``taken`` the same with room to spare; the rest is as for
+    :func:`rather_elsewhere`.
     """
     offsets, at = _about(t.element, s)
-    profile, unknown = smoothed(sample(ink, at)), sample(taken, at) > 100
+    drawn = owners.others(t.element.number, s.points[:, None] + s.normals[:, None] * offsets)
+    profile = smoothed(sample(ink, at), drawn)
+    apart = _apart(profile, sample(lines, at, nearest=True) > 0, drawn, offsets, level)
+    unknown = np.where(np.abs(offsets) <= BROAD, ~apart, sample(taken, at) > 100)
     found = _elsewhere(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level)
-    if found is None or found.at is None or found.covered < WHOLE:
+    if found is None or found.at is None or found.covered < WHOLE or found.deviation < LEFT:
         return None
-    # Apart from the stroke: paler between them, or it is the stroke's own edge.
     begin, end = found.at - t.element.points
     share = np.abs(s.points - t.element.points[0]) / t.element.length
     way = ((begin + share * (end - begin)) * np.conj(s.normals)).real
     row, column = np.arange(len(way)), np.clip(np.round((way - offsets[0]) / STEP).astype(int), 0, len(offsets) - 1)
+    # Paler between it and the stroke all along, or it may be the edge of either.
     inside = (np.abs(offsets) < np.abs(way)[:, None]) & (offsets * way[:, None] > 0)
     dark = profile[row, column]
     apart = (dark > level) & ~unknown[row, column] & (np.where(inside, profile, 255).min(1) < BETWEEN * dark)
     # Lines that cross may hide as much of it again.
     length = apart.sum() * t.element.length / len(way)
     return replace(found, status="beside") if length >= LEAST / 2 and np.ptp(share[apart]) * t.element.length >= LEAST else None
+
+
+def _apart(profile: Any, found: Any, drawn: Any, offsets: Floats, level: float) -> Any:
+    """Where paper separates places across a line from the stroke it is in, and no other line is drawn between them.
+
+    ``found`` is where lines were found, ``drawn`` where others belong.
+    """
+    out = np.zeros(profile.shape, bool)
+    middle = len(offsets) // 2
+    for side in (slice(middle, None), slice(middle, None, -1)):
+        aside = np.abs(offsets[side])
+        stroke = found[:, side] & (aside <= 2 * STROKE)
+        beyond = ~np.logical_or.accumulate(stroke[:, ::-1], 1)[:, ::-1]
+        ink = np.where(beyond | (np.roll(beyond, -1, 1) & stroke), profile[:, side], np.inf)
+        paler = beyond & (np.minimum.accumulate(ink, 1) < np.maximum(BETWEEN * profile[:, side], level))
+        other = drawn[:, side] & (aside > STROKE)
+        out[:, side] = np.logical_or.accumulate(paler, 1) & ~np.logical_or.accumulate(other, 1)
+    return out
 
 
 def _about(e: Element, s: Stations) -> tuple[Floats, Any]:
@@ -149,6 +179,8 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
     if np.abs(base @ y).max() > reach + 0.5:
         return None
     found = measured(e, s, base @ y, np.ones(n, bool), float(share[best] / expected))
+    if shrunk(e, found):
+        return None
     return replace(found, darkness=float(np.median(strength[use])) if use.any() else 0.0)
 
 

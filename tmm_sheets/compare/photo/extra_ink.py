@@ -1,4 +1,7 @@
-"""Ink that belongs to no known element."""
+"""Ink that belongs to no known element.
+
+Regions of it, and strokes of which the lines that cross them have left pieces in a row.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.photo.profiles import SCALE, pixels
+from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER
 from tmm_sheets.compare.photo.traces import ExtraInk
 
@@ -24,7 +27,16 @@ STRAIGHT = 0.4
 """mm; standard deviation across a stroke that is straight: no hand writes a letter as long as what is reported and as straight."""
 
 
-def extra_ink(left: Any, level: float, words: Any) -> list[ExtraInk]:
+SHORT, WIDE = 2.0, 0.9
+"""Least length and largest width of a piece of a stroke, mm."""
+RAGGED = 0.4
+"""mm by which a piece may end before the line that crosses."""
+IN_ROW, FARTHEST, CROSSED, INK = 0.5, 8.0, 0.8, 5.0
+"""mm that pieces of a stroke may be out of line, mm from one to the next, least share of that way that was wiped out, and least
+length of all pieces together, mm."""
+
+
+def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: float = 0.0) -> list[ExtraInk]:
     """Regions of leftover ink inside the frame, the longest first.
 
     Parameters
@@ -35,10 +47,15 @@ def extra_ink(left: Any, level: float, words: Any) -> list[ExtraInk]:
         Darkness of ink.
     words
         Where a hand may have written, 255 there: only straight strokes count.
+    wiped
+        Where it was wiped out, 255 there; without it no strokes are put together.
+    dark
+        Least darkness of such a stroke: what was rubbed out is paler.
     """
     free = np.where(words > 0, np.uint8(0), left)
     out = _regions(free, level, straight=False)
-    for x in _regions(left, level, straight=True):
+    strokes = [] if wiped is None else _strokes(left, wiped, max(level, dark))
+    for x in (*_regions(left, level, straight=True), *strokes):
         if all(max(abs(x.middle.real - y.middle.real) - (x.width + y.width) / 2,
                    abs(x.middle.imag - y.middle.imag) - (x.height + y.height) / 2) > 0 for y in out):
             out.append(x)
@@ -86,6 +103,72 @@ def _regions(left: Any, level: float, straight: bool) -> list[ExtraInk]:
         x, y = middles[i]
         out.append(ExtraInk(complex((x + 0.5) / scale, PAPER.y1 - (y + 0.5) / scale), w, h, hypot(w, h)))
     return out
+
+
+def _strokes(left: Any, wiped: Any, level: float) -> list[ExtraInk]:
+    """Strokes in pieces, each shorter than a region that is reported."""
+    import cv2
+
+    scale = SCALE / COARSE
+    dark = cv2.resize((left > level).astype(np.uint8) * np.uint8(COARSE**2), None, fx=1 / COARSE, fy=1 / COARSE,
+                      interpolation=cv2.INTER_AREA)  # fmt: skip
+    _, labels, stats, _ = cv2.connectedComponentsWithStats((dark > COARSE).astype(np.uint8), connectivity=8)
+    ends = []
+    for i in range(1, len(stats)):
+        x, y, w, h = (int(n) for n in stats[i, :4])
+        if not SHORT * scale <= hypot(w, h) < 3 * EXTRA * scale:
+            continue
+        row, column = np.nonzero(labels[y : y + h, x : x + w] == i)
+        z = (column + x + 0.5) / scale + 1j * (PAPER.y1 - (row + y + 0.5) / scale)
+        middle = z.mean()
+        _, way = np.linalg.eigh(np.cov((z - middle).real, (z - middle).imag))
+        u = complex(way[0, 1], way[1, 1])
+        along, across = ((z - middle) * np.conj(u)).real, ((z - middle) * np.conj(u)).imag
+        if np.ptp(along) >= SHORT and np.ptp(across) <= WIDE and _inside(middle):
+            ends.append((middle + along.min() * u, middle + along.max() * u))
+    groups = _in_rows(np.array(ends, complex).reshape(-1, 2), wiped)
+    out = []
+    for z in groups:
+        width, height = np.ptp(z.real), np.ptp(z.imag)
+        if hypot(width, height) >= EXTRA and np.abs(z[1::2] - z[::2]).sum() >= INK:
+            middle = complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
+            out.append(ExtraInk(middle, float(width), float(height), hypot(width, height)))
+    return out
+
+
+def _inside(z: complex) -> bool:
+    return FRAME.x0 + INSET < z.real < FRAME.x1 - INSET and FRAME.y0 + INSET < z.imag < FRAME.y1 - INSET
+
+
+def _in_rows(ends: Any, wiped: Any) -> list[Any]:
+    """The ends of pieces that follow one another in a straight row, where only what was wiped out parts them; two or more each."""
+    row = list(range(len(ends)))
+
+    def first(k: int) -> int:
+        while row[k] != k:
+            k = row[k]
+        return k
+
+    near = np.abs(ends.mean(1)[:, None] - ends.mean(1)) < 2 * EXTRA
+    for i, j in np.argwhere(np.triu(near, 1)):
+        both = np.concatenate((ends[i], ends[j]))
+        u = both[np.abs(both - both[0]).argmax()] - both[0]
+        u = u / abs(u)
+        along, across = ((both - both[0]) * np.conj(u)).real, ((both - both[0]) * np.conj(u)).imag
+        if np.ptp(across) > IN_ROW:
+            continue
+        order = np.argsort(along)
+        a, b = both[order[1]], both[order[2]]
+        if {int(k) // 2 for k in order[:2]} not in ({0}, {1}) or abs(b - a) > FARTHEST:
+            continue
+        way = (b - a) / max(abs(b - a), 1e-9)
+        between = np.linspace(a + RAGGED * way, b - RAGGED * way, 25)
+        if abs(b - a) <= 2 * RAGGED or (sample(wiped, pixels(between), nearest=True) > 0).mean() >= CROSSED:
+            row[first(int(j))] = first(int(i))
+    groups: dict[int, list[Any]] = {}
+    for k in range(len(ends)):
+        groups.setdefault(first(k), []).append(ends[k])
+    return [np.concatenate(g) for g in groups.values() if len(g) > 1]
 
 
 def _across(labels: Any, box: Any, label: int) -> float:

@@ -2,17 +2,19 @@
 
 A drawing made badly has single lines in wrong places; a map fitted badly has whole regions of them. So the sheet is cut into
 cells, and in each the level and the upright lines are asked apart whether most are where they belong (a map that took a line for
-its neighbour is right along it). A region without ink where lines belong is hidden rather than astray.
+its neighbour is right along it). A region without ink where lines belong is hidden rather than astray. Whole patches that lie
+elsewhere, beside others that lie elsewhere alike, are not put down to the drawing either.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map
+from tmm_sheets.compare.photo.patches import APART, patches
 from tmm_sheets.compare.photo.profiles import ProfileLines, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats, Map
 from tmm_sheets.drawing.marks import Points
@@ -43,6 +45,10 @@ SIDE, ALONGSIDE = 0.6, 0.5
 """Least share of a side's points that must have a line for the side to count as seen, as a whole and beside a cell."""
 SIDES = 3
 """Least number of sides that must be seen."""
+SHIFTED, ALIKE = 1.5, 0.8
+"""mm from its place beyond which a patch is shifted, and by which neighbours that are shifted alike may differ."""
+TOGETHER = 3
+"""Least number of patches near each other, shifted alike."""
 OFFSETS = np.arange(-NEAR, NEAR + 0.05, 0.1)
 
 
@@ -58,6 +64,8 @@ class FitCheck:
     judged : how many cells could be judged
     halves : how far maps of either half disagree, mm
     together : how far lines near each other are off together, mm
+    shifted : middles of the patches that lie elsewhere, each beside others that do so alike, mm
+    shift : by how much they do, mm
     sides : share of each side of the frame that has a line where the map has it, bottom first
     """
 
@@ -68,11 +76,14 @@ class FitCheck:
     halves: float
     together: float
     sides: Floats
+    shifted: Points
+    shift: float
 
     @property
     def acceptable(self) -> bool:
         """Whether the drawing may be judged by the map, if there is no better one."""
         return (self.match >= MATCH and len(self.astray) <= LOCAL * self.judged and not len(self.lost)
+                and not len(self.shifted)
                 and int((self.sides >= SIDE).sum()) >= SIDES)
 
     @property
@@ -113,7 +124,26 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     astray, judged = _astray(lines, good, across.max(1) > level)
     lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
     shares = np.array([part.mean() for part in np.split(met, 4)])
-    return FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _together(lines, o, good), shares)
+    found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _together(lines, o, good), shares,
+                     np.zeros(0, complex), 0.0)
+    if not found.acceptable:  # refused without that
+        return found
+    shifted, by = _shifted(patches(m, straight, ink, lines, scale), m)
+    return replace(found, shifted=shifted, shift=by)
+
+
+def _shifted(seen: Seen, m: Map) -> tuple[Points, float]:
+    """The patches that lie elsewhere beside others that do so alike, and by how much, mm, the median."""
+    count = len(seen.weight) // 2
+    z = seen.sheet[:count]
+    by = m.to_sheet(seen.picture[:count]) - z
+    off = np.abs(by) > SHIFTED
+    z, by = z[off], by[off]
+    # Not side by side only: neighbours share lines.
+    near = np.abs(z[:, None] - z[None]) < 2.3 * APART
+    alike = near & (np.abs(by[:, None] - by[None]) < ALIKE)
+    some = alike.sum(1) >= TOGETHER
+    return z[some], float(np.median(np.abs(by[some]))) if some.any() else 0.0
 
 
 def _together(lines: ProfileLines, o: Floats, good: Any) -> float:

@@ -28,6 +28,8 @@ ASIDE = np.linspace(-0.3, 0.3, 5)  # mm to either side where its ink may be
 BESIDE = np.linspace(-0.7, 0.7, 13)  # mm to either side where another's ink may come from; less than a pixel apart
 GAP, PATTERN_GAP, BEYOND_GAP = 1.6, 3.5, 0.3
 """mm of bare paper a solid and a dashed line may have along their way, and any line beyond its end, where letters stand near."""
+LIFTED, RESTS = 2.6, 1.2
+"""mm of bare paper a lifted pencil may leave near an end, and least mm of ink, its own or another's, from there to the end."""
 RESUMED = 4
 """Places in a row with its own ink by which a line goes on after a wider gap than is usual."""
 CLEAR, CLEARER = 0.5, 0.6
@@ -122,13 +124,20 @@ def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
     # Ink goes on round a blunt end, and a tip is too thin to be seen to its point.
     shown = ROUND * pen if tip is None else tip - TIP
     if most < min(shown, 0.0):
-        weak = own[(np.arange(len(t)) > extent[1] + 1) & (t < 0)]
-        return float("nan") if len(weak) and weak.mean() > 0.3 else most - shown
+        rest = slice(extent[1] + 1, int((t < min(shown, 0.0)).sum()))
+        weak = own[extent[1] + 2 : int((t < 0).sum())]
+        return float("nan") if (len(weak) and weak.mean() > 0.3) or _lifted(dark[rest]) else most - shown
     beyond = least - shown
     seen = own[(t > pen + BLUR) & (t <= least)]
     if beyond > 0 and len(seen) and seen.sum() * STEP >= min(SEEN, beyond) and seen.mean() > SHARE:
         return beyond
     return float("nan") if most - min(least, 0.0) > VAGUE else 0.0
+
+
+def _lifted(rest: Any) -> bool:
+    """Whether between where a line stops and its proper end there is one gap, as by a lifted pencil, and then ink all the way."""
+    bare = int(np.argmax(rest)) if rest.any() else len(rest)
+    return bool(bare * STEP <= LIFTED and (len(rest) - bare) * STEP >= RESTS and rest[bare:].all())
 
 
 def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, Any]:

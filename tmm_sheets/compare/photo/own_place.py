@@ -12,7 +12,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, smoothed, stations
+from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed, stations
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.drawing.styles import line_type
 
@@ -24,6 +24,7 @@ BROAD = 18  # steps; a wider stroke is not measured as one
 OFF = 0.6  # mm; a line farther off its place is measured a second time
 AS_DARK = 0.6  # darkness of its own place, as a share of that where a line was found, at which the place is not bare
 FREE = 0.25  # least share of a line free of others for it to be measured by itself
+LEAST_END = 3.0  # mm of a quarter of a line by which its end is judged
 SHARED = 0.4  # least share of a line free or in one stroke with others for it to be measured with them
 
 
@@ -58,7 +59,7 @@ def _across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) 
     first = 0
     for (e, s), count in zip(some, counts, strict=True):
         here = slice(first, first + count)
-        yield Strip(e, s, smoothed(profile[here]), others[here])
+        yield Strip(e, s, smoothed(profile[here], others[here]), others[here])
         first += count
 
 
@@ -88,9 +89,12 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     r = np.abs(o - base @ x)
     good = use & (r < 0.45)
     share = good.sum() / free.sum()
-    # Both halves must be there, or it may be another line crossing at a small angle.
-    half = len(free) // 2
-    halves = [good[k].sum() / max(free[k].sum(), 1) for k in (slice(0, half), slice(half, None)) if free[k].sum() > 3]
+    # Both halves must be there, and the ends of a straight line, or it may be another line crossing at a small angle.
+    half, quarter = len(free) // 2, len(free) // 4
+    parts = [slice(0, half), slice(half, None)]
+    if e.kind == "line" and quarter * e.length / len(free) > LEAST_END:
+        parts += [slice(0, quarter), slice(-quarter, None)]
+    halves = [good[k].sum() / max(free[k].sum(), 1) for k in parts if free[k].sum() > 3]
     if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
         return None
     if (np.abs(base @ x)[free] > OFF).mean() > 0.1:
@@ -101,6 +105,8 @@ def in_place(strip: Strip, level: float) -> Trace | None:
         if _at_home(profile, base @ x):
             return Trace(e, "dense", covered=float(there.mean()), at=e.points)
     t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])))
+    if shrunk(e, t):
+        return None
     if e.kind == "curve":
         t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
     return t

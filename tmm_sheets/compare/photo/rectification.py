@@ -27,7 +27,7 @@ from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
 from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
-from tmm_sheets.compare.photo.sheet_map import CREASED, FRAME, PAPER, RELIEF, Map
+from tmm_sheets.compare.photo.sheet_map import CREASED, FRAME, PAPER, RELIEF, Floats, Map
 from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
@@ -54,8 +54,8 @@ PATCHED = (2, 4, RELIEF)
 """Degrees of the relief by which a map follows patches of the sheet, one after the other."""
 LEAST_PATCHES, OFF, PATCH = 6, 1.5, 1.0
 """Least number of patches; mm one of them must be off for the map to follow them; mm that count as far off while it does."""
-PART = 120.0
-"""Side of a part of the sheet, mm."""
+PART, PLENTY = 120.0, 8
+"""Side of a part of the sheet, mm, and points of a line in it beyond which it counts no more."""
 FINER = ((2.0, RELIEF, 1.0), (1.5, 8, 0.6), (1.2, CREASED, 0.4), (0.8, CREASED, 0.2), (0.7, CREASED + 1, 0.2))
 """The same for paper with short waves or creases, from a map that is right in most of the sheet."""
 TOGETHER, BETTER = 0.07, 0.75
@@ -367,10 +367,7 @@ def refine(
     -------
     The map, the robust scatter of the lines about it, mm, and the share of their points with ink within half a millimetre.
     """
-    # A line counts by its length, up to some 30 mm in each part of the sheet: what it is alone to tell of is not to be drowned.
-    parts = (lines.points.real // PART).astype(int) + 100 * (lines.points.imag // PART).astype(int)
-    _, piece = np.unique(10000 * lines.line + parts, return_inverse=True)
-    weight = 1 / np.sqrt(np.maximum(np.bincount(piece), 8) / 8.0)[piece]
+    weight = weights(lines)
     sides = sides._replace(weight=0.5 * sides.weight)
     better, hit, scatter = start or m, 0.0, 1.0
     for reach, degree, loose in steps:
@@ -383,3 +380,13 @@ def refine(
         fine = RELIEF <= highest < degree
         better = fit_waves(better, seen, loose) if fine else fit_map(better, sides, seen, min(degree, highest), loose)[0]
     return better, scatter, hit
+
+
+def weights(lines: ProfileLines) -> Floats:
+    """How much each point counts: a line by its length, up to some 30 mm in each part of the sheet.
+
+    What a line is alone to tell of is not to be drowned by longer ones.
+    """
+    parts = (lines.points.real // PART).astype(int) + 100 * (lines.points.imag // PART).astype(int)
+    _, piece = np.unique(10000 * lines.line + parts, return_inverse=True)
+    return np.asarray(1 / np.sqrt(np.maximum(np.bincount(piece), PLENTY) / PLENTY)[piece])

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, dashed
+from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.fit_check import SIDE, SIDES
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map
@@ -45,7 +46,8 @@ def attempt(found: Rectified, known: Sequence[Element]) -> bytes:
     """The sheet laid over the picture as well as it could be, what does not fit circled, as PNG."""
     exact = [p for e in known if e.kind != "text" for p in dashed(e)]
     none = np.zeros(0, complex)
-    flags = [overlay.Flag(k, "red", complex(z), none) for k, z in enumerate(found.check.astray, 1)]
+    flags = [overlay.Flag(k, "red", complex(z), none)
+             for k, z in enumerate(np.concatenate((found.check.astray, found.check.shifted)), 1)]
     return overlay.png(found.ink, found.level, exact, flags)
 
 
@@ -71,7 +73,12 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
     if _patterned(grey, found.map):
         yield (tell("the ground has lines that may be taken for the frame"),
                tell("put the sheet on a plain ground that is darker than the paper, nothing under it"))
-    if len(check.astray):
+    if len(check.shifted):
+        parts = tell("parts of the sheet lie {by} mm elsewhere, neighbours alike: {n}, circled in the overlay of the attempt")
+        yield (parts.format(by=millimetres(check.shift), n=len(check.shifted)),
+               tell("lay the sheet flat, weights on its corners, and photograph from straight above; "
+                    "if a view was drawn in another place, give --views FILE"))
+    elif len(check.astray):
         places = tell("parts of the sheet whose lines are elsewhere: {n} of {all}, circled in the overlay of the attempt")
         yield (places.format(n=len(check.astray), all=check.judged),
                tell("lay the sheet flat, weights on its corners, and photograph from straight above"))

@@ -17,6 +17,8 @@ from tmm_sheets.drawing.styles import line_type
 STEP = 0.1  # mm between offsets of a profile
 LEAST = 6.0  # mm of line that can be measured
 SETTLED = 1e-3  # mm of change below which a fit has converged
+SHRUNK = 0.5  # share of its radius by which a circle is never too small
+BLURRED = 7  # steps over which a line that crosses may be seen, beside its own width
 ENOUGH = 0.6  # least share of an element's ink on the line it is fitted by
 
 
@@ -62,11 +64,21 @@ def as_lines(elements: Sequence[Element], least: float = 8.0, most: int = 4000) 
     return ProfileLines(np.concatenate(p), np.concatenate(n), np.concatenate(line))
 
 
-def smoothed(profile: Any) -> Any:
-    """Profiles averaged over five neighbours along the line."""
+def smoothed(profile: Any, others: Any = None) -> Any:
+    """Profiles averaged over five neighbours along the line, which may be millimetres apart.
+
+    What lies at ``others``, of the same shape, is left out where a neighbour shows the place without: a line that crosses is not to
+    be smeared along this one.
+    """
     import cv2
 
-    return cv2.blur(profile, (1, 5)) if len(profile) >= 5 else profile
+    if len(profile) < 5:
+        return profile
+    if others is None:
+        return cv2.blur(profile, (1, 5))
+    alone = 1 - cv2.dilate(others.astype(np.uint8), np.ones((1, BLURRED), np.uint8)).astype(np.float32)
+    seen = cv2.blur(alone, (1, 5))
+    return np.where(seen > 0.1, cv2.blur(profile * alone, (1, 5)) / np.maximum(seen, 0.1), cv2.blur(profile, (1, 5)))
 
 
 def similarity_base(p: Points, n: Points, middle: complex, half: float) -> Floats:
@@ -122,6 +134,11 @@ def fit(base: Floats, o: Floats, use: Any, loose: float, prior: float = 0.02) ->
         if k > 2 and np.abs(x - before).max(initial=0.0) < SETTLED:
             break
     return np.asarray(x)
+
+
+def shrunk(e: Element, t: Trace) -> bool:
+    """Whether a circle was found so much smaller than it belongs that it is no circle."""
+    return e.kind in ("circle", "arc") and t.growth < -SHRUNK * e.radius
 
 
 def measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> Trace:

@@ -21,6 +21,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
+from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
 from tmm_sheets.compare.photo.ink_levels import ink_levels
@@ -90,7 +91,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
     found = _doubted(found, ink, left, wiped, owners, pale)
-    found = _beside_strokes(found, small, ink, pale)
+    found = _beside_strokes(found, small, ink, owners, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     words = _places_of_lettering(elements, ink)
     ended = with_ends(open_lines, ink, owners, words, pale)
@@ -98,10 +99,11 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = with_heads(list(lines.values()), ink, owners, words, hidden)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
+    out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
     for e in elements:  # a hand may have written here
         if e.kind == "text":
             fill(words, grown(e.points, 0.8 * e.height + 1.0))
-    return [out[e.number] for e in elements], extra_ink(left, level, words)
+    return [out[e.number] for e in elements], extra_ink(left, level, words, wiped, PALE * min(_usual(found).values(), default=0.0))
 
 
 def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
@@ -127,7 +129,7 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
     """Traces of lines that are not in their places, the longest first; each is wiped out where it is found."""
     found = []
     for e in sorted(absent, key=lambda e: -e.length):
-        t = displaced(e, stations(e, e.kind != "line"), left, wiped, ink, level)
+        t = displaced(e, stations(e, e.kind != "line"), left, wiped, ink, owners, level)
         found.append(t)
         if t.at is not None:
             owners.add(e, t.at)
@@ -161,24 +163,43 @@ def _usual(found: Sequence[Trace]) -> dict[float, float]:
     return {width: float(np.median(values)) for width, values in widths.items()}
 
 
-def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, level: float) -> list[Trace]:
-    """The traces; of lines in one stroke with others it is seen whether a line like them lies beside the stroke."""
-    taken = np.zeros_like(ink)
+def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, owners: Owners, level: float) -> list[Trace]:
+    """The traces; of lines that cannot be told from others it is seen whether a line like them lies beside."""
+    lines, taken = np.zeros_like(ink), np.zeros_like(ink)
     for e in small:
         wipe_small(taken, e)
     for t in found:
         if t.at is not None:
+            paint(lines, t.element, t.at, 0)
             paint(taken, t.element, t.at, CLOSE)
     usual = _usual(found)
     out = []
     for t in found:
-        if t.status == "shared" and t.element.kind == "line":
-            other = beside(t, stations(t.element, False), ink, taken, level)
+        if t.status in ("shared", "dense") and t.element.kind == "line":
+            other = beside(t, stations(t.element, False), ink, lines, taken, owners, level)
             # Paler lines were rubbed out, or are the edges of others.
             if other is not None and other.darkness > PALE * usual.get(line_type(t.element.style).width, 0.0):
                 t = other
         out.append(t)
     return out
+
+
+def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any, hidden: Mask) -> list[Trace]:
+    """Traces of the dots that stand beside their places."""
+    dots = [e for e in small if e.kind == "circle" and e.fills]
+    usual = _usual(found)
+    if not dots or not usual:
+        return []
+    lines, taken = np.zeros_like(ink), np.zeros_like(ink)
+    for e in small:
+        paint(taken, e, e.points, CLOSE)
+        if not (e.kind == "circle" and e.fills):
+            paint(lines, e, e.points, 0)
+    for t in found:
+        where = t.element.points if t.at is None else t.at
+        paint(taken, t.element, where, CLOSE)
+        paint(lines, t.element, where, 0)
+    return displaced_dots(dots, lines, taken, ink, words, hidden, max(usual.values()))
 
 
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
