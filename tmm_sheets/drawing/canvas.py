@@ -33,6 +33,7 @@ class Label:
 
     ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
     with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
+    Lettering with a ``shelf`` stands on one, at the end of a leader that begins at this distance from the anchor.
     ``of``, ``part`` (its number) and ``by`` (the step it names) are those of the canvas when the label was asked for.
     """
 
@@ -45,6 +46,7 @@ class Label:
     of: str = ""
     part: int = -1
     by: Trace | None = None
+    shelf: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -286,11 +288,11 @@ class Canvas:
         self._one("lettering", first, markup)
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
-              leader: bool = True) -> None:
+              leader: bool = True, shelf: float = 0.0) -> None:
         """Ask for lettering near a point; see :class:`Label`."""
         if anchor == anchor:
             self.labels.append(
-                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by))
+                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf))
 
     def note(self, box: Box, text: str) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
