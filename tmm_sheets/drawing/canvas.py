@@ -299,7 +299,7 @@ class Canvas:
         self.notes.append(Note(text, box, self.of, len(self.parts) - 1))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
-        """Title of a view centred at the top of its place, the scale factor under it; returns what is left below."""
+        """Title of a view centred at the top of its place, the scale factor under it and no larger; returns what is left below."""
         self.begin(box, text)
         x = (box.x0 + box.x1) / 2
         y = box.y1 - height
@@ -307,7 +307,8 @@ class Canvas:
         self.put(laid, complex(x - laid.width / 2, y), 0.0, text)
         if factor:
             y -= 8.0
-            self.text(complex(x, y), factor, size_for([factor], box.width - 2.0, 5.0), "centre")
+            large = max((run.height for run in laid.runs), default=height)
+            self.text(complex(x, y), factor, size_for([factor], box.width - 2.0, min(large, 5.0)), "centre")
         self.parts[-1] = self.parts[-1]._replace(headed=len(self.marks))
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 

@@ -362,6 +362,8 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
     _left_out(project, canvas, box, layout)
     tiny: dict[str, list[str]] = {}
+    caption = tr("Position {label}")
+    height = min(size_for([caption.format(label=label)], place.width, 3.5) for (_, label), _, place, _ in layout.places())
     for (index, label), span, place, spare in layout.places():
         middle = place.centre + 4.0j
         canvas.of = f"velocity plan {label}"
@@ -370,8 +372,7 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         s = stage(canvas, plan, index, Frame(layout.scale, middle - layout.scale.mm(span.centre)))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
-        name = tr("Position {label}").format(label=label)
-        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), name, size_for([name], place.width, 3.5), "centre")
+        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), caption.format(label=label), height, "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(
