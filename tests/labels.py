@@ -1,7 +1,8 @@
 """Labels of finished sheets: do they read as what they name? ``python -m tests.labels [PROJECT ...]``.
 
 For every label: its own line or point is nearer than any other and the shortest way there crosses nothing, or it has a leader; it
-covers no line thicker than 0.25 mm. See :mod:`tmm_sheets.drawing.owners`.
+covers no line thicker than 0.25 mm. A leader runs over no lettering and crosses no other leader. See
+:mod:`tmm_sheets.drawing.owners`. Labels so near other lettering on their level that both read as one word are counted.
 """
 
 from __future__ import annotations
@@ -11,12 +12,14 @@ from collections import Counter
 from multiprocessing import Pool
 from typing import NamedTuple
 
+import numpy as np
+
 from tests.gallery import names
 from tmm_sheets import catalogue
 from tmm_sheets.drawing import labels as placing
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.marks import Arc, Box, Line
+from tmm_sheets.drawing.marks import Arc, Box, Line, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
@@ -29,7 +32,7 @@ class Placed(NamedTuple):
 
     label: Label
     box: Box
-    leader: bool
+    leader: list[Line]
 
 
 class Fault(NamedTuple):
@@ -45,25 +48,23 @@ class Fault(NamedTuple):
 def judged(project, n):
     """Faults of the labels of a sheet, and how many labels it has."""
     kept = []
-    original = placing._set
+    original = placing._draw
 
-    def keeping(canvas, grid, ink, label):
+    def keeping(canvas, label, box):
         first = len(canvas.marks)
-        found = original(canvas, grid, ink, label)
-        marks = canvas.marks[first:]
-        texts = [m for m in marks if not isinstance(m, Line) or m.style == "text"]
-        x0, y0, x1, y1 = grid.boxes[-1]
-        kept.append(Placed(label, Box(x0, y0, x1, y1), len(texts) < len(marks)))
-        return found
+        original(canvas, label, box)
+        kept.append(Placed(label, box, [m for m in canvas.marks[first:] if isinstance(m, Line) and m.style != "text"]))
 
-    placing._set = keeping
+    placing._draw = keeping
     try:
         composed = sheet.composed(project, n)
     finally:
-        placing._set = original
+        placing._draw = original
     # The circle of an enlarged detail is a window: what is inside is read through it.
     ink = owners.Ink([m for m in composed.drawing.marks[: composed.parts[-1].first]
                       if not (isinstance(m, Arc) and m.of == "details.corner")])
+    corners = [placing.text_box(m) for m in composed.drawing.marks[: composed.parts[-1].first] if isinstance(m, Text)]
+    written = np.array([(z.real.min(), z.imag.min(), z.real.max(), z.imag.max()) for z in corners]).reshape(-1, 4)
     widths = [line_type(m.style).width if hasattr(m, "style") else 0.0 for m in ink.marks]
     faults = []
     for p in kept:
@@ -72,39 +73,59 @@ def judged(project, n):
         over = near[owners._enters(ink.a[near], ink.b[near] - ink.a[near], p.box)]
         if any(widths[ink.of[k]] > THICK for k in over):
             what = f"{what} covers".strip()
+        what = f"{what} {_badly_led(p, kept, written)}".strip()
         if what:
             faults.append(Fault(f"{project.variant.project.name} {n}", p.label.of, p.label.text, p.label.anchor, what))
-    return faults, len(kept), sum(p.leader for p in kept)
+    run_on = sum(_runs_on(p, kept, written) for p in kept)
+    return faults, len(kept), sum(bool(p.leader) for p in kept), run_on
+
+
+def _badly_led(p, kept, written):
+    """Whether the leader of a label runs over lettering of the views or of other labels, or crosses another leader."""
+    boxes = np.vstack([written, *(q.box for q in kept if q is not p)])
+    a, b = (np.array([getattr(m, end) for q in kept if q is not p for m in q.leader]) for end in "ab")
+    for line in p.leader:
+        z = line.a + np.linspace(0, 1, 200)[:, None] * (line.b - line.a)
+        x0, y0, x1, y1 = boxes.T
+        if ((z.real > x0) & (z.real < x1) & (z.imag > y0) & (z.imag < y1)).any():
+            return "leader over lettering"
+        if len(a) and owners.crossing(a, b, line.a, line.b).any():
+            return "leaders cross"
+    return ""
+
+
+def _runs_on(p, kept, written):
+    boxes = np.vstack([written, *(q.box for q in kept if q is not p)])
+    return bool(placing._beside(np.array(p.box)[:, None], boxes, placing.WORD * p.label.height)[0])
 
 
 def of_project(name):
-    found, count, leaders = [], 0, 0
+    found, counts = [], np.zeros(3, int)
     try:
         project = Project(catalogue.read(name))
         for n in range(1, len(project.sheets) + 1):
             try:
-                faults, labels, led = judged(project, n)
+                faults, *numbers = judged(project, n)
             except Exception as e:
                 found.append(Fault(f"{name} {n}", "", "", 0j, f"{type(e).__name__}: {e}"))
                 continue
             found += faults
-            count += labels
-            leaders += led
+            counts += numbers
     except Exception as e:
         found.append(Fault(name, "", "", 0j, f"{type(e).__name__}: {e}"))
-    return found, count, leaders
+    return found, counts
 
 
 def main(patterns):
-    faults, count, leaders = [], 0, 0
+    faults, counts = [], np.zeros(3, int)
     with Pool() as pool:
-        for found, n, led in pool.imap(of_project, names(patterns)):
+        for found, numbers in pool.imap(of_project, names(patterns)):
             faults += found
-            count += n
-            leaders += led
+            counts += numbers
     for f in faults:
         print(f"{f.sheet:34} {f.view:28} {f.text:24} ({f.at.real:.0f}, {f.at.imag:.0f})  {f.what}")
-    print(f"{count} labels, {leaders} with leaders, {len(faults)} faults:", dict(Counter(f.what for f in faults)))
+    count, leaders, run_on = counts
+    print(f"{count} labels, {leaders} with leaders, {run_on} run on, {len(faults)} faults:", dict(Counter(f.what for f in faults)))
     sys.exit(1 if faults else 0)
 
 

@@ -53,7 +53,7 @@ def test_the_leader_of_another_label_from_the_same_point_is_foreign():
     ink, label = owners.Ink([Line(0j, 40 + 0j, "main")]), Label(0j, "D", 5.0)
     beside = Box(-9.0, -9.0, -5.5, -5.0)
     assert owners.Round(ink, label, 60.0).reads(beside) == ""
-    ink.add([Line(0j, -10 - 10j, "thin")])
+    ink.lead([0j], [-10 - 10j])
     assert owners.Round(ink, label, 60.0).reads(beside) == "nearer"
 
 
@@ -66,16 +66,75 @@ def test_vectors_on_one_line_are_named_together():
 def test_no_lines_at_all_and_a_leader_that_is_added():
     assert reads((28, 1, 32, 4), []) == ""
     ink = owners.Ink(LINES)
-    ink.add([Line(30 + 5j, 30 + 1.2j, "thin")])
+    ink.lead([30 + 5j], [30 + 1.2j])
     here = owners.Round(ink, Label(40 + 0j, "x", 3.5, by=A), 60.0)
     assert here.reads(Box(31, 1.3, 35, 4.3)) == "nearer"
 
 
 def test_a_leader_runs_along_no_line_and_crosses_no_strong_one():
     here = owners.Round(owners.Ink(LINES), Label(30 + 0j, "x", 3.5, by=A), 60.0)
-    assert here.leads(30 + 0j, 34 - 8j)
-    assert not here.leads(30 + 0j, 40 + 0.5j)
-    assert not here.leads(30 + 0j, 32 + 12j)
+    assert here.met(30 + 0j, 34 - 8j) == 0
+    assert here.met(30 + 0j, 40 + 0.5j) == 1
+    assert here.met(30 + 0j, 32 + 12j) == 1
+
+
+def test_a_leader_crosses_no_other_leader():
+    ink = owners.Ink(LINES)
+    ink.lead([28 - 3j, 28 + 3j], [36 - 3j, 26 + 3j])
+    here = owners.Round(ink, Label(30 + 0j, "x", 3.5, by=A), 60.0)
+    assert here.met(30 + 0j, 34 - 8j) == 1
+    assert here.met(30 + 0j, 24 - 8j) == 0
+
+
+def hemmed(texts):
+    """A point in a thicket, with only one way out to either side, and lettering about it; label, leader."""
+    canvas = Canvas()
+    for k in range(-12, 13):
+        canvas.line(complex(150 + k, 90), complex(150 + k, 98), "main")
+        canvas.line(complex(150 + k, 102), complex(150 + k, 110), "main")
+    for at, text in texts:
+        canvas.text(at, text, 2.5)
+    canvas.label(150 + 100j, "s", 1, 3.5)
+    first = len(canvas.marks)
+    assert labels.place(canvas, Box(0, 0, 300, 200)) == []
+    return canvas.marks[first:]
+
+
+def test_a_leader_runs_over_no_lettering():
+    free, *leader = hemmed([])
+    assert free.at.real > 160
+    assert leader
+    other, *leader = hemmed([(156 + 99j, "m")])
+    assert leader
+    assert other.at.real < 145
+
+
+def test_letters_of_two_things_are_not_read_as_one_word():
+    """Beside 12 a point has its letter on the other side, or under it: 127 would be another thing."""
+    canvas = Canvas()
+    canvas.text(99 + 98.8j, "12", 3.5, "right")
+    canvas.label(100 + 100j, "7", 0.2, 3.5, 0.5)
+    canvas.label(100 + 100j, "8", -1, 3.5, 0.5)
+    first = len(canvas.marks)
+    assert labels.place(canvas, Box(0, 0, 300, 200)) == []
+    boxes = [labels.text_box(mark) for mark in canvas.marks[first:]]
+    for z, other in ((boxes[0], boxes[1]), (boxes[1], boxes[0])):
+        level = z.imag.min() < other.imag.max() and other.imag.min() < z.imag.max()
+        assert not level or abs(z.real.mean() - other.real.mean()) > 3.5
+    assert not (boxes[1].real.min() < 101 and 97 < boxes[1].imag.mean() < 103)
+
+
+@pytest.mark.parametrize("lines", [[], [Line(150 + 100j, 190 + 140j, "vector")]])
+def test_a_label_with_a_shelf_stands_on_it_and_is_led_from_the_edge_of_what_it_names(lines):
+    canvas = Canvas()
+    canvas.marks += lines
+    canvas.label(150 + 100j, "I", 1 + 1j, 5.0, 5.0, shelf=3.0)
+    first = len(canvas.marks)
+    assert labels.place(canvas, Box(0, 0, 300, 200)) == []
+    text, leader, shelf = canvas.marks[first:]
+    assert abs(leader.a - (150 + 100j)) == pytest.approx(3.0)
+    assert leader.b in (shelf.a, shelf.b)
+    assert shelf.a.imag == shelf.b.imag == pytest.approx(text.at.imag - labels.SHELF)
 
 
 def test_the_letter_moves_along_its_vector_before_it_gets_a_leader():
@@ -99,6 +158,7 @@ def test_the_letter_moves_along_its_vector_before_it_gets_a_leader():
 def test_labels_of_sheets_read_rightly(name):
     project = Project(catalogue.read(name))
     for n in range(1, len(project.sheets) + 1):
-        faults, count, _ = trial.judged(project, n)
+        faults, count, *_ = trial.judged(project, n)
         assert count > 10
-        assert not faults
+        assert not [f for f in faults if "leader" not in f.what]
+        assert len(faults) <= 0.05 * count  # in a thicket there may be no way for a leader that meets nothing

@@ -3,7 +3,7 @@
 import pytest
 
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.tables import GAP, size_in, widened
+from tmm_sheets.drawing.tables import GAP, LEAST, size_in, widened
 
 WIDE, NARROW = "Balancing moment by the lever, N·m", "12"
 
@@ -51,3 +51,13 @@ def test_indices_keep_clear_of_the_lines_of_their_row(row):
     laid, room = letter("M_{r}^{red}", size), (row - size) / 2
     assert max(laid.descent, laid.ascent - size) < room or row < 4.5
     assert size == 3.5 or row < 6.3
+
+
+@pytest.mark.parametrize(("spare", "gap"), [(GAP, GAP), (LEAST, LEAST), (1.5, LEAST)])
+def test_lettering_keeps_farther_off_the_lines_where_there_is_room(spare, gap):
+    """A millimetre on both sides, as near as half of it only where the letters would become smaller."""
+    need = letter(WIDE, 3.5).width
+    total = need + letter(NARROW, 3.5).width + 2 * spare
+    found = widened([total / 2, total / 2], [[WIDE, NARROW]], 3.5)
+    assert sum(found) == pytest.approx(total)
+    assert found[0] >= need + gap - 1e-9

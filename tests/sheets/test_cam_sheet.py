@@ -10,6 +10,7 @@ import pytest
 from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
 from tmm_sheets.methods.cams.cam_profile import DIAGRAMS, cam
 from tmm_sheets.sheets.arrangement import arrangement
@@ -126,6 +127,7 @@ def test_every_label_finds_its_place_and_no_lettering_lies_on_other_lettering(da
     assert place(canvas, FRAME) == []
     runs = [m for m in canvas.marks if isinstance(m, Text)]
     x0, y0, x1, y1 = np.array([(c.real.min(), c.imag.min(), c.real.max(), c.imag.max()) for c in map(text_box, runs)]).T
+    y1 -= [0.0 if m.angle else m.height - letter(m.text, m.height).ascent for m in runs]  # φ is no capital
     wide = np.minimum(x1[:, None], x1) - np.maximum(x0[:, None], x0)
     high = np.minimum(y1[:, None], y1) - np.maximum(y0[:, None], y0)
     pairs = [(runs[i], runs[j], j - i) for i, j in np.argwhere(np.triu((wide > 0.8) & (high > 0.8), 1))]

@@ -10,7 +10,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Line, Polyline, Text
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import diagrams
+from tmm_sheets.sheets import diagrams, graphs
 from tmm_sheets.sheets.sheet import composed
 
 BOX = Box(20.0, 10.0, 330.0, 240.0)
@@ -146,3 +146,11 @@ def test_both_sheets_have_room(name):
     project = Project(read(name))
     for n in (1, 2):
         assert composed(project, n).crowded == ()
+
+
+@pytest.mark.parametrize(("values", "said"), [
+    ([-4.308, -4.258], ["−4,308", "−4,258"]), ([-991.1, -975.3], ["−991,1", "−975,3"]),
+    ([-4865.8, -4800.0], ["−4865,8", "−4800,0"]),
+    ([0.0, 0.0], ["0", "0"]), ([1e-3, -2e-3], ["0,001000", "−0,002000"])])  # fmt: skip
+def test_two_numbers_said_to_differ_can_be_told_apart(values, said):
+    assert graphs.column(values, 4, least=1) == said

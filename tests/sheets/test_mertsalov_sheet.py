@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -160,3 +161,13 @@ def test_the_graphs_of_the_moments_read_well(press):
     pole = s.work.mu / (s.moment.mu * s.angle.mu)
     assert pole == pytest.approx(s.pole)
     assert 2 * pole == pytest.approx(round(2 * pole), abs=1e-6)
+
+
+@pytest.mark.parametrize(("name", "n", "foreign"), [("sixbar/3:2", 2, ("I", "T")), ("press", 1, ("J", "E"))])
+def test_a_sheet_has_one_letter_for_inertia_and_one_for_energy(name, n, foreign):
+    """Manual 001 writes J and E, manual 002 I and T: signs, scale factors, terms, formulas."""
+    runs = [mark for mark in composed(Project(catalogue.read(name)), n).drawing.marks if isinstance(mark, Text)]
+    indexed = [(mark.text, after.text) for mark, after in pairwise(runs) if after.height < mark.height]
+    assert not {index for sign, index in indexed if sign.endswith("μ")} & set(foreign)
+    signs = {sign for sign, _ in indexed}
+    assert not {sign for sign in signs if sign.split("·")[-1].strip("( ;+d") in foreign}

@@ -182,3 +182,18 @@ def test_a_hodograph_is_closed_and_balances_the_crank(name):
     others = sum(load.vector.value for load in p.study.forces.loads[crank.link] if load.vector is not step)
     assert np.abs(np.broadcast_to(step.value + others, (len(p.cycle.labels),))).max() < 1e-9 * size
     assert abs(course[0] - course[-1]) < 1e-3 * size
+
+
+def test_nothing_stands_between_a_title_and_the_plans_of_several_positions():
+    """The plans are parts of their own, with captions; a plan that is lower than its neighbours leaves no room to others."""
+    canvas = Canvas()
+    canvas.begin(FIELD, "", "plans")
+    canvas.title(Box(100.0, 100.0, 500.0, 300.0), "Plans")
+    for x, top in ((120.0, 270.0), (400.0, 240.0)):
+        canvas.begin(Box(x, 100.0, x + 80.0, 280.0), "Plan of a position")
+        canvas.line(complex(x, 110.0), complex(x + 80.0, top), "vector")
+    canvas.begin(FIELD, "", "other view")
+    taken = offers._of_part(canvas, 1, FIELD, offers._closed(FIELD, []).shape)
+    assert taken[int((440 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
+    assert taken[int((300 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
+    assert not taken[int((600 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]

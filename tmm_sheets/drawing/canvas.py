@@ -33,6 +33,7 @@ class Label:
 
     ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
     with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
+    Lettering with a ``shelf`` stands on one, at the end of a leader that begins at this distance from the anchor.
     ``of``, ``part`` (its number) and ``by`` (the step it names) are those of the canvas when the label was asked for.
     """
 
@@ -45,6 +46,7 @@ class Label:
     of: str = ""
     part: int = -1
     by: Trace | None = None
+    shelf: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -286,18 +288,18 @@ class Canvas:
         self._one("lettering", first, markup)
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
-              leader: bool = True) -> None:
+              leader: bool = True, shelf: float = 0.0) -> None:
         """Ask for lettering near a point; see :class:`Label`."""
         if anchor == anchor:
             self.labels.append(
-                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by))
+                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf))
 
     def note(self, box: Box, text: str) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
         self.notes.append(Note(text, box, self.of, len(self.parts) - 1))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
-        """Title of a view centred at the top of its place, the scale factor under it; returns what is left below."""
+        """Title of a view centred at the top of its place, the scale factor under it and no larger; returns what is left below."""
         self.begin(box, text)
         x = (box.x0 + box.x1) / 2
         y = box.y1 - height
@@ -305,7 +307,8 @@ class Canvas:
         self.put(laid, complex(x - laid.width / 2, y), 0.0, text)
         if factor:
             y -= 8.0
-            self.text(complex(x, y), factor, size_for([factor], box.width - 2.0, 5.0), "centre")
+            large = max((run.height for run in laid.runs), default=height)
+            self.text(complex(x, y), factor, size_for([factor], box.width - 2.0, min(large, 5.0)), "centre")
         self.parts[-1] = self.parts[-1]._replace(headed=len(self.marks))
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 

@@ -35,13 +35,25 @@ FAR = 1e3
 
 BESIDE = 1.2
 """Clear distance, mm, between a symbol, such as a hinge, and its letter."""
+WORD = 0.6
+"""Lettering on one level that stands nearer than this, in heights of its capitals, is read on as one word."""
+RUN_ON = 5.0
+"""Cost of such a place, in millimetres of distance."""
+COVERING = 30.0
+"""Cost of a place over the leader of another label, in millimetres of distance."""
+CROSSING, OVER, MISREAD = 8.0, 300.0, 1e4
+"""Cost of each thing a leader crosses or runs along, of lettering under it, of being read as another thing's letter, mm."""
+ROUNDS = 2
+"""So many times labels whose leaders meet others are set again."""
+SHELF = 0.8
+"""Clear distance, mm, of lettering from the shelf it stands on."""
 
 _DISTANCES = np.array([0.0, 0.6, 1.4, 2.5, 4.0, 6.0, 8.5, 11.0, 14.0, 18.0, 23.0])
 _DIRECTIONS = np.exp(1j * np.linspace(0, 2 * pi, 24, endpoint=False))
 _TURNING = 4.0 * np.abs(np.angle(_DIRECTIONS)) / pi
 """Cost of each direction, the first being the one asked for."""
 _MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
-_ALONG = np.linspace(0, 1, 24)[:, None]
+_ALONG = np.linspace(0, 1, 40)[:, None]
 _FIRST_BEYOND = np.array([0, 0, 1, 1])[:, None]
 """A rectangle's cells: from the one its lower left corner is in to the one after that of its upper right corner."""
 
@@ -76,27 +88,47 @@ def text_box(mark: Text) -> Points:
 
 
 def place(canvas: Canvas, area: Box) -> list[Crowded]:
-    """Set every requested label of the canvas inside ``area``; returns those that found no free place."""
-    grid, ink = Grid(area, canvas.marks), owners.Ink(canvas.marks)
-    crowded = []
-    for label in canvas.labels:
-        if not _set(canvas, grid, ink, label):
-            crowded.append(Crowded(label.text, label.anchor))
+    """Set every requested label of the canvas inside ``area``; returns those that found no free place.
+
+    A leader that meets what was set after it gets another place when all the others have theirs.
+    """
+    grid, ink = Grid(area, canvas.marks, len(canvas.labels)), owners.Ink(canvas.marks)
+    found = [_found(grid, ink, k, label) for k, label in enumerate(canvas.labels)]
+    for _ in range(ROUNDS):
+        for k, label in enumerate(canvas.labels):
+            if not (ill := grid.ill(k)):
+                continue
+            grid.lift(ink, k)
+            other = _placed(grid, ink, label, *_size(label))
+            grid.put(ink, k, *other[:2])
+            if grid.ill(k) < ill:
+                found[k] = other
+            else:
+                grid.put(ink, k, *found[k][:2])
+    for label, box, _ in found:
+        _draw(canvas, label, box)
+    crowded = [Crowded(label.text, label.anchor) for label, (_, _, free) in zip(canvas.labels, found, strict=True) if not free]
     canvas.labels.clear()
     return crowded
 
 
 class Grid:
-    """Ink on the sheet as two summed-area tables, and the labels set so far."""
+    """Ink on the sheet as two summed-area tables; lettering (``written``), that of the labels (``boxes``) last, and their leaders.
 
-    def __init__(self, area: Box, marks: list[Mark]) -> None:
+    Places of labels that are not set are not numbers.
+    """
+
+    def __init__(self, area: Box, marks: list[Mark], labels: int = 0) -> None:
         self.area = area
         shape = (int(area.height / CELL) + 3, int(area.width / CELL) + 3)
         heavy, light = np.zeros(shape, np.uint8), np.zeros(shape, np.uint8)
         runs: dict[bool, list[Points]] = {True: [], False: []}
+        written: list[tuple[float, float, float, float]] = []
         for mark in marks:
             if isinstance(mark, Text):
-                self._box(heavy, text_box(mark))
+                corners = text_box(mark)
+                self._box(heavy, corners)
+                written.append((corners.real.min(), corners.imag.min(), corners.real.max(), corners.imag.max()))
             elif isinstance(mark, Line):
                 runs[mark.style in HEAVY].append(np.array([mark.a, mark.b]))
             else:
@@ -117,7 +149,37 @@ class Grid:
         self._corner = np.array([area.x0, area.y0] * 2)[:, None]
         self.inside = np.array([area.x0 + 1, area.y0 + 1, area.x1 - 1, area.y1 - 1])[:, None]
         self._last = np.array([shape[1], shape[0]] * 2)[:, None]
-        self.boxes: npt.NDArray[np.float64] = np.empty((0, 4))
+        self.written = np.vstack((np.array(written).reshape(-1, 4), np.full((labels, 4), np.nan)))
+        self.boxes = self.written[len(written):]
+        self._led: dict[int, tuple[complex, complex]] = {}
+        self.leaders: Points = np.empty(0, complex)
+
+    def put(self, ink: owners.Ink, k: int, label: Label, box: Box) -> None:
+        """Label ``k`` is set."""
+        self.boxes[k] = box
+        self._led.pop(k, None)
+        if _led(label, box):
+            self._led[k] = _way(label, box)
+        self._lead(ink)
+
+    def lift(self, ink: owners.Ink, k: int) -> None:
+        """Label ``k`` is taken off."""
+        self.boxes[k] = np.nan
+        self._led.pop(k, None)
+        self._lead(ink)
+
+    def _lead(self, ink: owners.Ink) -> None:
+        ends = np.array(list(self._led.values())).reshape(-1, 2)
+        self.leaders = _sampled(list(ends)) if len(ends) else np.empty(0, complex)
+        ink.lead(*ends.T)
+
+    def ill(self, k: int) -> int:
+        """How many other leaders and how much other lettering the leader of label ``k`` meets."""
+        if k not in self._led:
+            return 0
+        a, b = np.array([way for n, way in self._led.items() if n != k]).reshape(-1, 2).T
+        written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
+        return int(owners.crossing(a, b, *self._led[k]).sum()) + _over(written, *self._led[k])
 
     def _ink(self, target: npt.NDArray[np.uint8], p: Points) -> None:
         i, j = ((p.imag - self.area.y0) / CELL).astype(int), ((p.real - self.area.x0) / CELL).astype(int)
@@ -186,26 +248,38 @@ class _Places:
         if len(b):
             beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
             blocked |= (beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])).any(axis=1)
-        self.sides, self.cost = sides, cost + LIGHT * grid.under(grid.light, sides)
+        self.run_on = _beside(sides, grid.written, WORD * label.height)
+        cost = cost + LIGHT * grid.under(grid.light, sides) + RUN_ON * self.run_on
+        p = grid.leaders
+        p = p[(p.real > x0.min()) & (p.real < x1.max()) & (p.imag > y0.min()) & (p.imag < y1.max())]
+        if len(p):
+            over = (p.real > x0[:, None]) & (p.real < x1[:, None]) & (p.imag > y0[:, None]) & (p.imag < y1[:, None])
+            cost = cost + COVERING * over.any(axis=1)
+        self.sides, self.cost = sides, cost
         free = np.flatnonzero(~blocked)
         self.free = free[np.argsort(self.cost[free], kind="stable")]
 
     def read(self, here: owners.Round, leaders: bool = True) -> int | None:
-        """The cheapest free place where the label reads as what it names, or has a leader that meets no lettering.
+        """The cheapest free place where the label reads as what it names, or has a leader that meets nothing.
 
-        A leader that crosses a strong line, or runs along any, is taken only where there is no other way.
+        Where there is none the best of the others: a leader had better cross a line than the label be read as another thing's, or
+        the leader run over lettering. None without ``leaders``.
         """
-        poor = None
+        poor, least = None, np.inf
         for k in map(int, self.free):
             box = Box(*self.sides[:, k].tolist())
             if not _led(self.label, box):
-                if not here.reads(box):
-                    return k
-            elif leaders and not _over_lettering(self._grid, *_way(self.label, box)):
-                if here.leads(*_way(self.label, box)):
-                    return k
-                poor = k if poor is None else poor
-        return poor
+                ill = MISREAD if here.reads(box) else 0.0
+            elif leaders:
+                over = _over(self._grid.written, *_way(self.label, box))
+                ill = OVER * over if over else CROSSING * here.met(*_way(self.label, box))
+            else:
+                continue
+            if not ill:
+                return k
+            if self.cost[k] + ill < least:
+                poor, least = k, self.cost[k] + ill
+        return poor if leaders else None
 
     def least(self) -> int:
         """The cheapest place, or where none is free the one that is least inked."""
@@ -214,20 +288,35 @@ class _Places:
         return int(np.argmin(self.cost + 20.0 * self._grid.under(self._grid.heavy, self.sides)))
 
 
-def _set(canvas: Canvas, grid: Grid, ink: owners.Ink, label: Label) -> bool:
+def _beside(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap: float) -> npt.NDArray[np.bool_]:
+    """Which rectangles (x0, y0, x1, y1; shape (4, n)) have one of the ``boxes`` on their level nearer than ``gap``."""
+    x0, y0, x1, y1 = sides
+    b = boxes[(boxes[:, 2] > x0.min() - gap) & (boxes[:, 0] < x1.max() + gap) & (boxes[:, 3] > y0.min()) & (boxes[:, 1] < y1.max())]
+    level = 0.4 * (y1 - y0)[:, None]  # an index of the one beside the bar of the other is not yet a word
+    near = (x0[:, None] - gap < b[:, 2]) & (x1[:, None] + gap > b[:, 0])
+    return np.asarray((near & (y0[:, None] + level < b[:, 3]) & (y1[:, None] - level > b[:, 1])).any(axis=1))
+
+
+def _size(label: Label) -> tuple[float, float]:
     laid = letter(label.text, label.height)
-    w, h = laid.width + 0.15 * label.height, laid.ascent + laid.descent
-    label, box, found = _placed(grid, ink, label, w, h)
+    return laid.width + 0.15 * label.height, laid.ascent + laid.descent
+
+
+def _found(grid: Grid, ink: owners.Ink, k: int, label: Label) -> tuple[Label, Box, bool]:
+    found = _placed(grid, ink, label, *_size(label))
+    grid.put(ink, k, *found[:2])
+    return found
+
+
+def _draw(canvas: Canvas, label: Label, box: Box) -> None:
+    laid = letter(label.text, label.height)
     canvas.of, first = label.of, len(canvas.marks)
     with canvas.traced("text", *(label.by[1:] if label.by is not None else ())):
         canvas.put(laid, complex(box.x0, box.y0 + laid.descent), 0.0, label.text)
-        grid.boxes = np.vstack((grid.boxes, box))
         _leader(canvas, label, box)
-    ink.add([m for m in canvas.marks[first:] if isinstance(m, Line) and m.style != "text"])
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
-    return found
 
 
 def _placed(grid: Grid, ink: owners.Ink, label: Label, w: float, h: float) -> tuple[Label, Box, bool]:
@@ -235,38 +324,47 @@ def _placed(grid: Grid, ink: owners.Ink, label: Label, w: float, h: float) -> tu
     places = _Places(grid, label, w, h)
     here = owners.Round(ink, label, 2 * (NEAR + label.gap) + w)
     k = places.read(here)
-    if k is None or _led(label, Box(*places.sides[:, k])):
+    if k is None or places.run_on[k] or _led(label, Box(*places.sides[:, k])):
         for anchor in here.along():
             moved = replace(label, anchor=anchor)
             others = _Places(grid, moved, w, h)
             there = others.read(owners.Round(ink, moved, 2 * (NEAR + label.gap) + w), leaders=False)
-            if there is not None:
+            if there is not None and not others.run_on[there]:
                 return moved, Box(*others.sides[:, there]), True
     return label, Box(*places.sides[:, places.least() if k is None else k]), bool(len(places.free))
 
 
 def _led(label: Label, box: Box) -> bool:
     """Whether lettering there stands too far to be read without a leader."""
-    a, b = _way(label, box)
-    return abs(b - a) > NEAR + label.gap
+    return bool(label.shelf) or abs(box.nearest(label.anchor) - label.anchor) > NEAR + label.gap
 
 
 def _way(label: Label, box: Box) -> tuple[complex, complex]:
-    """From the anchor to the nearest point of the lettering."""
-    return label.anchor, box.nearest(label.anchor)
+    """From the anchor to the nearest point of the lettering, or from the edge of what it names to its shelf."""
+    if not label.shelf:
+        return label.anchor, box.nearest(label.anchor)
+    end = min(_shelf(box), key=lambda z: abs(z - label.anchor))
+    return label.anchor + label.shelf * (end - label.anchor) / abs(end - label.anchor), end
 
 
-def _over_lettering(grid: Grid, a: complex, b: complex) -> bool:
-    x0, y0, x1, y1 = grid.boxes.T
-    if not len(x0):
-        return False
+def _shelf(box: Box) -> tuple[complex, complex]:
+    """Ends of the shelf under lettering."""
+    return complex(box.x0, box.y0 - SHELF), complex(box.x1, box.y0 - SHELF)
+
+
+def _over(boxes: npt.NDArray[np.float64], a: complex, b: complex) -> int:
+    """Over how much lettering a leader runs."""
     p = a + _ALONG * (b - a)
-    return bool(((p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)).any())
+    x0, y0, x1, y1 = boxes[(boxes[:, 2] > p.real.min()) & (boxes[:, 0] < p.real.max())].T
+    return int(((p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)).any(axis=0).sum())
 
 
 def _leader(canvas: Canvas, label: Label, box: Box) -> None:
     """Thin line from the anchor to the nearest point of lettering that stands too far to be read without one."""
-    if _led(label, box):
+    if label.shelf:
+        canvas.line(*_way(label, box), "thin")
+        canvas.line(*_shelf(box), "thin")
+    elif _led(label, box):
         _, end = _way(label, box)
         u = (end - label.anchor) / abs(end - label.anchor)
         # A label that keeps off its anchor stands beside a symbol: the line ends at that symbol's edge, not inside it.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import Canvas, Note
+from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.labels import Crowded, Grid
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
@@ -25,7 +26,7 @@ TOGETHER = "\u00a0"
 STEP = 1.0
 """Distance of the places tried, mm."""
 OUTSIDE = 4.0
-"""What a millimetre outside the view costs, in millimetres from its lower edge."""
+"""What a millimetre of distance from the view's ink costs, in millimetres from its lower edge."""
 TITLE, BESIDE_TITLE = 17.0, 40.0
 """Height of a title with its scale factor, mm, and what it costs to stand beside it: that would be read as part of it."""
 
@@ -34,9 +35,9 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
     """Set every note of the canvas inside ``area``; returns those that found no free place, which are left out."""
     crowded = []
     for note in canvas.notes:
-        grid = Grid(area, canvas.marks)
+        grid, ink = Grid(area, canvas.marks), _ink(canvas, note)
         for region, height in product((note.box, area), HEIGHTS):
-            found = [choice for n in LINES if (choice := _choice(grid, region, note, height, n)) is not None]
+            found = [choice for n in LINES if (choice := _choice(grid, region, ink, note, height, n)) is not None]
             if found:
                 _, corner, lines = min(found, key=lambda choice: choice[0])
                 _set(canvas, note, corner, lines, height)
@@ -67,8 +68,20 @@ def wrapped(text: str, height: float, count: int) -> list[str]:
         room += height
 
 
-def _choice(grid: Grid, region: Box, note: Note, height: float, count: int) -> tuple[float, complex, list[str]] | None:
-    """The best free place in ``region`` for a note of so many lines: its cost, the lower left corner, the lines."""
+def _ink(canvas: Canvas, note: Note) -> Box:
+    """What is drawn of a view, in all its parts; its place where there is nothing."""
+    ends = [*(part.first for part in canvas.parts[1:]), len(canvas.marks)]
+    own = [canvas.marks[part.first:end] for part, end in zip(canvas.parts, ends, strict=True)
+           if part.draw == canvas.parts[note.part].draw and all(note.box.contains(z, 0.1) for z in part.box.corners)]
+    drawn = dense(chain.from_iterable(own), 5.0)
+    return Box.around(drawn) if len(drawn) else note.box
+
+
+def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count: int) -> tuple[float, complex, list[str]] | None:
+    """The best free place in ``region`` for a note of so many lines: its cost, the lower left corner, the lines.
+
+    Best is near the lower edge of the ``ink`` of its view: a view may leave most of its place to others.
+    """
     lines = wrapped(note.text, height, count)
     laid = [letter(line, height) for line in lines]
     w = max(line.width for line in laid) + 0.15 * height
@@ -77,8 +90,8 @@ def _choice(grid: Grid, region: Box, note: Note, height: float, count: int) -> t
     x, y = np.meshgrid(np.arange(region.x0 + CLEAR, region.x1 - w - CLEAR, STEP),
                        np.arange(region.y0 + CLEAR, region.y1 - h - CLEAR, STEP))
     sides = np.array([x.ravel(), y.ravel(), x.ravel() + w, y.ravel() + h])
-    outside = np.maximum.reduce([box.x0 - sides[0], box.y0 - sides[1], sides[2] - box.x1, sides[3] - box.y1, np.zeros(x.size)])
-    cost = OUTSIDE * outside + np.abs(sides[1] - box.y0) + 0.2 * np.abs(sides[0] + w / 2 - box.centre.real)
+    outside = np.maximum.reduce([ink.x0 - sides[2], ink.y0 - sides[3], sides[0] - ink.x1, sides[1] - ink.y1, np.zeros(x.size)])
+    cost = OUTSIDE * outside + np.abs(sides[1] - ink.y0) + 0.2 * np.abs(sides[0] + w / 2 - ink.centre.real)
     cost += BESIDE_TITLE * (sides[3] > box.y1 - TITLE)
     cost += height * LINES.index(count)
     covered = grid.under(grid.heavy, _with_margin(sides)) + grid.under(grid.light, _with_margin(sides))

@@ -6,7 +6,7 @@ nearer than any other, and the shortest way there must cross none. Where there i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -38,12 +38,13 @@ Flags = npt.NDArray[np.bool_]
 class Ink:
     """Lines of a sheet as segments ``a`` .. ``b``, shape (n,), each with the number of its mark; lettering is none of them.
 
-    From number ``drawn`` on they are leaders.
+    Leaders have the number ``drawn``.
     """
 
     def __init__(self, marks: Iterable[Mark]) -> None:
         self.marks = list(marks)
         self.drawn = len(self.marks)
+        self.lead(np.empty(0), np.empty(0))
         runs, numbers, strong = [], [], []
         for number, mark in enumerate(self.marks):
             if isinstance(mark, Text) or (isinstance(mark, Line) and mark.style == "text"):
@@ -65,16 +66,18 @@ class Ink:
         x, y = (np.stack((self.a.real, self.b.real)), np.stack((self.a.imag, self.b.imag)))
         self.sides = np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)])
 
-    def add(self, marks: Sequence[Mark]) -> None:
-        """More lines, such as leaders."""
-        if not marks:
-            return
-        more = Ink(marks)
-        self.a, self.b = np.concatenate((self.a, more.a)), np.concatenate((self.b, more.b))
-        self.of = np.concatenate((self.of, more.of + len(self.marks)))
-        self.strong = np.concatenate((self.strong, more.strong))
-        self.sides = np.concatenate((self.sides, more.sides), axis=1)
-        self.marks += more.marks
+    def lead(self, a: Any, b: Any) -> None:
+        """The leaders there are now, from ``a`` to ``b``."""
+        self._leaders = np.asarray(a, complex), np.asarray(b, complex)
+
+    def round(self, p: complex, reach: float) -> tuple[Any, Any, Any, Any]:
+        """Segments that may be within ``reach`` of a point: ``a``, ``b``, number of the mark, strength; those of leaders last."""
+        here = self.near(Box(p.real, p.imag, p.real, p.imag), reach)
+        a, b = self._leaders
+        near = _distance(a, b, p) <= reach
+        n = int(near.sum())
+        return (np.concatenate((self.a[here], a[near])), np.concatenate((self.b[here], b[near])),
+                np.concatenate((self.of[here], np.full(n, self.drawn))), np.concatenate((self.strong[here], np.zeros(n, bool))))
 
     def of_step(self, by: Trace) -> list[int]:
         """Numbers of the marks of the same step, position and frame."""
@@ -100,10 +103,9 @@ class Round:
 
     def __init__(self, ink: Ink, label: Label, reach: float) -> None:
         p = label.anchor
-        here = ink.near(Box(p.real, p.imag, p.real, p.imag), reach)
         self.anchor = p
-        self.a, self.b, self.of = ink.a[here], ink.b[here], ink.of[here]
-        self.strong = ink.strong[here]
+        self.a, self.b, self.of, self.strong = ink.round(p, reach)
+        self.leaders = self.of >= ink.drawn
         self.own = _own(ink, self, label)
         self._vector = _vector(ink, self, label)
         if self._vector is not None:  # what lies on it is named together with it
@@ -121,22 +123,19 @@ class Round:
         foreign = ~self.own & (gaps <= gap)
         if not foreign.any():
             return ""
-        if gap > SLACK and _crossing(self.a[foreign], self.b[foreign], start, end).any():
+        if gap > SLACK and crossing(self.a[foreign], self.b[foreign], start, end).any():
             return "crossed"
         return "nearer" if gaps[foreign].min() < gap - SLACK else ""
 
-
-    def leads(self, start: complex, end: complex) -> bool:
-        """Whether a leader from the anchor crosses no strong line but its own and runs along none."""
+    def met(self, start: complex, end: complex) -> int:
+        """How many strong lines but its own and other leaders a leader from the anchor crosses, and lines it runs along."""
         along = end - start
         d = self.b - self.a
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * abs(along)
         apart = np.minimum(_to_line(self.a, start, end), _to_line(self.b, start, end))
         beside = np.minimum(apart, np.minimum(_distance(self.a, self.b, start + 0.5 * along), _distance(self.a, self.b, end)))
-        if (parallel & (beside < BESIDE)).any():
-            return False
-        strong = self.strong & ~self.own
-        return not _crossing(self.a[strong], self.b[strong], start, end).any()
+        crossed = (self.strong | self.leaders) & ~self.own
+        return int((parallel & (beside < BESIDE)).sum() + crossing(self.a[crossed], self.b[crossed], start, end).sum())
 
     def along(self) -> list[complex]:
         """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
@@ -221,7 +220,7 @@ def _enters(a: Any, d: Any, box: Box) -> Flags:
     return np.asarray(first <= last)
 
 
-def _crossing(a: Any, b: Any, p: complex, q: complex) -> Flags:
+def crossing(a: Any, b: Any, p: complex, q: complex) -> Flags:
     """Whether segments cross the way from ``p`` to ``q``; touching its ends does not count."""
     def side(u: Any, v: Any, w: Any) -> Any:
         return ((v - u) * np.conj(w - u)).imag

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 from tmm_sheets.drawing.lettering import SIZES, letter
 
-GAP = 1.0
-"""What a column is wider than its widest text, mm."""
+GAP, LEAST = 2.0, 1.0
+"""What a column is wider than its widest text, where there is room and at least, mm."""
 INDICES = 1.8
 """Height of a row in heights of its letters with which indices above and below keep clear of its lines."""
 
@@ -17,9 +18,9 @@ def size_in(row: float) -> float:
     return 3.5 if row >= INDICES * 3.5 else 2.5
 
 
-def needs(rows: Sequence[Sequence[str]], height: float) -> list[float]:
-    """Least widths of the columns, mm, with letters of a height."""
-    return [max(letter(cell, height).width for cell in column) + GAP for column in zip(*rows, strict=True)]
+def needs(rows: Sequence[Sequence[str]], height: float, gap: float = GAP) -> list[float]:
+    """Widths that the columns need, mm, with letters of a height."""
+    return [max(letter(cell, height).width for cell in column) + gap for column in zip(*rows, strict=True)]
 
 
 def widened(widths: Sequence[float], rows: Sequence[Sequence[str]], height: float) -> list[float]:
@@ -27,8 +28,8 @@ def widened(widths: Sequence[float], rows: Sequence[Sequence[str]], height: floa
 
     Where there is not enough to spare with letters of this height, the next smaller ones of the standard down to 2.5 mm decide.
     """
-    for size in (size for size in reversed(SIZES) if 2.5 <= size <= height):
-        need = needs(rows, size)
+    for size, gap in product((size for size in reversed(SIZES) if 2.5 <= size <= height), (GAP, LEAST)):
+        need = needs(rows, size, gap)
         lack = sum(max(n - w, 0.0) for n, w in zip(need, widths, strict=True))
         spare = sum(max(w - n, 0.0) for n, w in zip(need, widths, strict=True))
         if not lack:

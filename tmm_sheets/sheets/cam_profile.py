@@ -14,7 +14,7 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
-from tmm_sheets.drawing.tables import needs, size_in, widened
+from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cam import ANGLE, for_cams, in_degrees, in_mm, lines_of_text
 from tmm_sheets.sheets.frame import ratio, standard
@@ -217,7 +217,7 @@ _WIDTHS, _ROW = (56.0, 34.0), 7.0
 
 
 def _widths(cam: Cam) -> list[float]:
-    return [max(least, need + 2.0) for least, need in zip(_WIDTHS, needs(_given(cam), 3.5), strict=True)]
+    return [max(least, need + 2.0) for least, need in zip(_WIDTHS, needs(_given(cam), 3.5, LEAST), strict=True)]
 
 
 def _table_size(cam: Cam) -> tuple[float, float]:

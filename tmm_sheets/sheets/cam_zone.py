@@ -286,7 +286,7 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     course, found = d.placed(canvas, plate.course_plan), d.placed(canvas, plate.plan)
     at = course.frame
     d.axes(course, steps[2], (9.0, 9.0), tr("{symbol}, m").format(symbol="S + S''"), 6.0)
-    canvas.label(o + d.length + 6, "φ", 1j, 3.5, 1.5, leader=False)
+    canvas.label(o + d.length + 6, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
     course.curve(steps[1], at(phi + 1j * s), "centre")
     for name, values, away in (("S", s, -1 + 1j), ("S + S''", total, 1 + 1j)):
         k = int(np.argmax(values))

@@ -27,7 +27,7 @@ MOST = 6
 """So many vectors can be told apart in a detail."""
 ONE = 0.02
 """Corners closer than this are one, mm."""
-TIMES = (5, 10, 20, 25, 40, 50, 100)
+TIMES = (5, 10, 20, 40, 50, 100)
 """Enlargements (GOST 2.302)."""
 FILLED = 0.6
 """Part of the window that the corners take at most."""
@@ -78,7 +78,8 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         radius = _free_radius(canvas, it)
         canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
         canvas.circle(it.centre, radius, "thin")
-        canvas.label(it.centre + radius * complex(np.exp(0.25j * np.pi)), name, 1 + 1j, 5.0, 1.5)
+        # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
+        canvas.label(it.centre, name, 1 + 1j, 5.0, radius + 2.0, shelf=radius)
 
 
 def _free_radius(canvas: Canvas, it: Corner) -> float:

@@ -13,7 +13,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import needs, size_in, widened
+from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
@@ -96,10 +96,10 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Opt
     every = [*beside, *every]
     for digits in (4, 3):
         rows = _motion_rows(_rows_of(project), every, digits, two=bool(beside))
-        if sum(needs(rows, 2.5)) <= left.width:
+        if sum(needs(rows, 2.5, LEAST)) <= left.width:
             break
     row = min(left.height / len(rows), 7.0)
-    height = size_in(row) if sum(needs(rows, 3.5)) <= left.width else 2.5
+    height = size_in(row) if sum(needs(rows, 3.5, LEAST)) <= left.width else 2.5
     first = min(12.0, 0.06 * left.width + needs([[line[0]] for line in rows], height)[0])
     width = (left.width - first) / len(every)
     widths = widened([first, *[width] * len(every)], rows, height)

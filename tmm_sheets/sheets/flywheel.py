@@ -216,11 +216,13 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
     drive.letters("K", "K", 1j if end.imag > 0 else -1j)
     share = fixed(100 * fw.work_error, 2)
+    # So many figures that both can be told apart.
+    drawn, converged = graphs.column([float(fw.work[-1]), float(fw.work_converged[-1])], 4, least=1)
     note: tuple[str, ...] = (
         tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
-            index=varying, label=fw.labels[-1], work=fixed(float(fw.work[-1]), 1)),
+            index=varying, label=fw.labels[-1], work=drawn),
         tr("by the area of the graph {work} J ({share} %)").format(
-            work=fixed(float(fw.work_converged[-1]), 1), share=share if share.startswith("−") else f"+{share}"))
+            work=converged, share=share if share.startswith("−") else f"+{share}"))
     if abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
         far = tr("δ by them: {difference} % from n → ∞") if fw.given else tr("J_{{f}} by them: {difference} % from n → ∞")
         note += (far.format(difference=f"{'+' if fw.difference_percent > 0 else ''}{fixed(fw.difference_percent, 2)}"),)

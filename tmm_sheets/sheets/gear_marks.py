@@ -13,7 +13,7 @@ from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
 from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box, Role
-from tmm_sheets.drawing.tables import needs
+from tmm_sheets.drawing.tables import LEAST, needs
 from tmm_sheets.sheets.player import Stage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
@@ -115,7 +115,7 @@ def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], width
     ``widths`` are the least ones of the columns of values.
     """
     row = min(tallest, box.height / len(rows))
-    needed = needs([cells[1:] for cells in rows if len(cells) > len(widths)], 3.5)
+    needed = needs([cells[1:] for cells in rows if len(cells) > len(widths)], 3.5, LEAST)
     widths = [max(least, need + 2.0) for least, need in zip(widths, needed, strict=True)]
     edges = [box.x0, box.x1 - sum(widths)]
     for w in widths:

@@ -109,10 +109,10 @@ def numbers(canvas: Canvas, g: Graph, x: Any, labels: Sequence[str], heights: An
             canvas.text(at + 1.2 + 1.3j, name, 3.5)
 
 
-def column(values: Any, digits: int = 4) -> list[str]:
-    """Numbers of a column, all with the same decimals: ``digits`` significant ones for the largest."""
+def column(values: Any, digits: int = 4, least: int = 0) -> list[str]:
+    """Numbers of a column, all with the same decimals: ``digits`` significant ones for the largest, ``least`` decimals at least."""
     largest = float(np.max(np.abs(values)))
-    decimals = max(0, digits - 1 - floor(log10(largest))) if largest > 0 else 0
+    decimals = max(least, digits - 1 - floor(log10(largest))) if largest > 0 else 0
     return [fixed(float(v), decimals) for v in values]
 
 

@@ -26,6 +26,7 @@ from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Segment
+    from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.cycle import Strokes
     from tmm_sheets.methods.linkage.loads import Applied
@@ -361,6 +362,8 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
     _left_out(project, canvas, box, layout)
     tiny: dict[str, list[str]] = {}
+    caption = tr("Position {label}")
+    height = min(size_for([caption.format(label=label)], place.width, 3.5) for (_, label), _, place, _ in layout.places())
     for (index, label), span, place, spare in layout.places():
         middle = place.centre + 4.0j
         canvas.of = f"velocity plan {label}"
@@ -369,8 +372,7 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         s = stage(canvas, plan, index, Frame(layout.scale, middle - layout.scale.mm(span.centre)))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
-        name = tr("Position {label}").format(label=label)
-        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), name, size_for([name], place.width, 3.5), "centre")
+        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), caption.format(label=label), height, "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(
@@ -492,47 +494,62 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
 
 
 COLUMNS = 7
-"""Most segments the table of lengths shows where the mechanism has segments of its own to tell."""
-MOST_DRAWN = 8
-"""Most segments of the velocity plans the table of lengths shows all of."""
+"""So many segments the table of lengths shows of those of the velocity plans, if there are."""
+COLUMN = 12.5
+"""Width of a column, mm, from which on it shows more: all segments that the speeds are worked out from, if there is room."""
 
 
 def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Tables of measured segments and of velocities over all positions (manual 000, tables 3.2 and 3.3)."""
     vel, cycle = project.study.velocities, project.cycle
-    varying = []
+    varying: list[tuple[Segment, Any]] = []
+    constant: list[tuple[Segment, Any]] = []
     for seg in vel.plan.segments:
         value = np.broadcast_to(vel.plan.length(seg.tail, seg.head).value, (len(cycle.labels),))
-        if not np.allclose(value, value[0]):
-            varying.append((seg, value))
-    lengths = _measured_lengths(project, canvas, varying)
+        (constant if np.allclose(value, value[0]) else varying).append((seg, value))
     linear: dict[str, Any] = {}
     for seg, value in varying:
         linear.setdefault(seg.symbol.replace("\u0305", ""), value)
     turning = [(f"ω_{link}", np.abs(w.value)) for link, w in vel.omega.items()
                if np.ndim(w.value) and link in vel.reference]
-    left, right = _table_places(box, len(lengths), stacked=bool(options.get("stacked")))
-    if lengths:
-        _table_over_positions(project, canvas, left, tr("Lengths of the segments, mm"), lengths, 1)
     speeds = [*linear.items(), *turning]
+    stacked = bool(options.get("stacked"))
+    room = max(COLUMNS, int((box.width - 30.0) / COLUMN) - (0 if stacked else len(speeds)))
+    lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning], room)
+    left, right = _table_places(box, len(lengths), len(speeds), stacked=stacked)
+    if lengths:
+        mu = canvas.scales["velocities"].mu
+        said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0]) / mu, 1)}" for seg, value in constant]
+        _table_over_positions(project, canvas, left, "; ".join([tr("Lengths of the segments, mm"), *said]), lengths, 1)
     if speeds:
         title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
         _table_over_positions(project, canvas, right, title, speeds, 3)
 
 
-def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]]) -> list[tuple[str, Any]]:
-    """Captions and lengths, mm, of the segments to be measured; none (NaN) of a plan that is not drawn."""
+def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]], turning: list[str],
+                      room: int) -> list[tuple[str, Any]]:
+    """Captions and lengths, mm, of the segments to be measured, as many as there is room for; none (NaN) of a plan not drawn.
+
+    They are what the speeds come from: the vectors of the plans, and the segments that the links ``turning`` have there.
+    """
     lengths = _lengths_on_rockers(project, canvas)
-    mu = canvas.scales["velocities"].mu
-    drawn = {f"|{linkage.indexed(seg.tail.name)}{linkage.indexed(seg.head.name)}|": value / mu for seg, value in varying}
-    if not lengths and len(drawn) <= MOST_DRAWN:
+    mu, vel = canvas.scales["velocities"].mu, project.study.velocities
+    drawn = {_segment(seg.tail, seg.head): value / mu for seg, value in varying}
+    for q, b in (vel.reference[link][2:] for link in turning):
+        if _segment(q, b) not in drawn and _segment(b, q) not in drawn:
+            drawn[_segment(q, b)] = np.abs(np.asarray(b.value) - np.asarray(q.value)) / mu
+    if not lengths and len(drawn) <= room:
         lengths = list(drawn.items())
-    elif len(lengths) < COLUMNS:
+    else:
         others = [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
-        lengths += others[:COLUMNS - len(lengths)]
+        lengths += others[:max(room - len(lengths), 0)]
     for i, _ in kinematic_frames.beyond_drawing(project):
         lengths = [(name, np.where((np.arange(len(v)) == i) & name.startswith("|"), np.nan, v)) for name, v in lengths]
     return lengths
+
+
+def _segment(tail: Step, head: Step) -> str:
+    return f"|{linkage.indexed(tail.name)}{linkage.indexed(head.name)}|"
 
 
 def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any]]:
@@ -555,14 +572,15 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
     return lengths
 
 
-def _table_places(box: Box, columns: int, *, stacked: bool) -> tuple[Box, Box]:
-    """Places of the table of lengths with so many columns and of that of speeds, which has all of it without any."""
+def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool) -> tuple[Box, Box]:
+    """Places of the tables of lengths and of speeds with so many columns; the second has all of it without any of the first."""
     if not columns:
         return box, box
     if stacked:
         middle = (box.y0 + box.y1) / 2
         return Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
-    one = min(19.0, (0.45 * box.width - 10.0) / columns)
+    few = (0.45 * box.width - 10.0) / columns if columns <= COLUMNS else 0.0
+    one = min(19.0, max(few, (box.width - 30.0) / (columns + speeds)))
     left = Box(box.x0, box.y0, box.x0 + 10.0 + one * columns, box.y1)
     return left, Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
 

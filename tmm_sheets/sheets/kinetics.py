@@ -288,12 +288,14 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         canvas.note(box, tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())))
     # Equation and values close under a polygon that does not fill the height of its place.
     low = max(box.y0, min(frame(z).imag for z in points.values()) - AROUND[1] - ROOM)
-    _equation(canvas, complex(box.centre.real, low + 9.5), terms(sides), box.width - 4.0)
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
                                                  value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
              for sign, tail, head in asked]
-    _fitted(canvas, complex(box.centre.real, low + 3.0), "; ".join(found), 3.5, box.width - 4.0)
+    lines = [*_equation(terms(sides), box.width - 4.0), "; ".join(found)]
+    size = size_for(lines, box.width - 4.0, 3.5)
+    for line, y in zip(reversed(lines), (3.0, 9.5, 15.5), strict=False):
+        canvas.text(complex(box.centre.real, low + y), line, size, "centre")
 
 
 def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
@@ -316,13 +318,13 @@ def newtons(force: float) -> str:
     return fixed(force, 1) if force >= 10 else number(force, 4)
 
 
-def _equation(canvas: Canvas, at: complex, terms: list[str], width: float) -> None:
+def _equation(terms: list[str], width: float) -> list[str]:
     """Vector equation of a force plan; one that would become unreadably small in its width goes on two lines."""
-    if letter(" + ".join(terms) + " = 0", 2.5).width > width:
-        half = (len(terms) + 1) // 2
-        _fitted(canvas, at + 6.0j, " + ".join(terms[:half]) + " +", 3.5, width)
-        terms = terms[half:]
-    _fitted(canvas, at, " + ".join(terms) + " = 0", 3.5, width)
+    whole = " + ".join(terms) + " = 0"
+    if letter(whole, 2.5).width <= width:
+        return [whole]
+    half = (len(terms) + 1) // 2
+    return [" + ".join(terms[:half]) + " +", " + ".join(terms[half:]) + " = 0"]
 
 
 def _fitted(canvas: Canvas, at: complex, text: str, height: float, width: float, align: Align = "centre") -> None:

@@ -51,7 +51,7 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
         canvas.arrow(o + 1j * low / scale.mu, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)
         canvas.arrow(o, o + length + 10.0, "axis", 3.0)
         canvas.label(o + 1j * (top / scale.mu + 6.0), f"{', '.join(indexed(f.name) for f in shown)}, {unit}", 1 + 0j, 3.5, 1.5)
-        canvas.label(o + length + 8.0, "φ", 1j, 3.5, 1.5)
+        graphs.turned_angle(canvas, o + length + 10.0)
     _positions(project, canvas, shown, at, frame)
     for f in shown:
         with canvas.traced("curve", f"loads/{f.name}", "", frame):

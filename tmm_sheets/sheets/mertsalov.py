@@ -46,7 +46,14 @@ def _procedure(project: Any) -> Mertsalov:
 
 def _signs(options: Options) -> tuple[str, str, str, str]:
     change, second, first = map(tr, options.get("energies", ENERGIES))
-    return change, second, first, tr(options.get("inertia", INERTIA))
+    return change, second, first, _spelled(tr(options.get("inertia", INERTIA)), options)
+
+
+def _spelled(said: str, options: Options) -> str:
+    """A text with one letter for every moment of inertia and one for every energy: I and T as manual 002 has them, or J and E."""
+    if "energies" in options:
+        return said.replace("I_", "J_").replace("μ_T", "μ_E")
+    return said.replace("J_", "I_").replace("μ_J", "μ_I")
 
 
 def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -79,7 +86,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     _, second, _, sign = _signs(options)
     mu_t = Scale("μ_T", float(fw.energy_plan.asides["μ_T"].value), tr("J/mm"))
     graphs.heading(canvas, box, options, tr("Graphs of {inertia}(φ_1) and {energy}(φ_1)").format(inertia=sign, energy=second),
-                   f"{s.inertia}, {mu_t}")
+                   _spelled(f"{s.inertia}, {mu_t}", options))
     canvas.of = fw.inertia_plan.name
     g = graphs.Graph(complex(options["axis"], box.y0 + 8.0))
     x = s.angle.mm(fw.samples)
@@ -89,7 +96,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     doubled = s.inertia.mu * fw.reduced.omega1**2  # the terms are doubled energies
     terms = stage(canvas, fw.reduced.numbered.plan, None, g.place(s.angle.mu, doubled))
     of.curve("points", g(x + 1j * curve))
-    parts = _terms(fw)
+    parts = [(_spelled(name, options), step, part) for name, step, part in _terms(fw)]
     for n, (name, step, part) in enumerate(parts, 1):
         terms.curve(step, g(x + 1j * part), "main")
         # A narrow peak is named at its left flank, where there is room.
@@ -147,7 +154,7 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     ratio = s.work.mu / s.energy.mu
     against = "" if abs(ratio - 1) < 1e-9 else f" (μ_A/{number(ratio)})" if ratio > 1 else f" ({number(1 / ratio)}μ_A)"
     graphs.heading(canvas, box, options, tr("Graphs of {change}(φ_1), {first}(φ_1), ω_1(φ_1)").format(change=change, first=first),
-                   f"{Scale('μ_T', s.energy.mu, s.energy.unit)}" + f"{against}, {omega}")
+                   _spelled(f"{Scale('μ_T', s.energy.mu, s.energy.unit)}", options) + f"{against}, {omega}")
     x = s.angle.mm(fw.samples)
     total, own = fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))
     low, high = min(0.0, float(own.min())), max(0.0, float(total.max()), float(own.max()))
@@ -235,7 +242,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         *_motor(fw), *flywheel.power(fw), *flywheel.disagreement(fw), *_size(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
-    for i, line in enumerate(rows):
+    for i, line in enumerate(_spelled(row, options) for row in rows):
         canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, size_for([line], box.width, 3.5))
 
 
@@ -332,7 +339,7 @@ def _size(fw: Mertsalov) -> list[str]:
 def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
     fw = _procedure(project)
-    rows = [[tr("Flywheel"), tr("I_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
+    rows = [[tr("Flywheel"), _spelled(tr("I_I, kg·m^2"), options), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
     if fw.given:
         rows += [[name, fixed(fw.J_first, 2), *(fixed(fw.reduced.omega1 * (1 + side * delta / 2), 4) for side in (1, -1)),
                   fixed(delta, 5)] for name, delta in ((tr("Mertsalov, construction"), fw.unevenness),

@@ -97,17 +97,30 @@ def _closed(inside: Box, closed: Sequence[Box]) -> NDArray[np.bool_]:
 
 def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDArray[np.bool_]:
     """Cells with ink of a part of a view, or between its ink: within its picture nothing else may stand."""
-    part, own = canvas.parts[k], np.zeros(shape, bool)
+    part = canvas.parts[k]
     if part.draw == "title block":
-        return own
-    end = canvas.parts[k + 1].first if k + 1 < len(canvas.parts) else len(canvas.marks)
-    z = np.concatenate((dense(canvas.marks[part.first:end], CELL),
-                        *(_about(label) for label in canvas.labels if label.part == k)))  # fmt: skip
+        return np.zeros(shape, bool)
+    own = _cells(canvas, range(k, k + 1), inside, shape)
+    taken = _between(own, 0) | _between(own, 1)
+    if part.title and own.any():
+        # A title is that of all parts up to the next one: plans of several positions.
+        after = (n for n in range(k + 1, len(canvas.parts)) if canvas.parts[n].headed or canvas.parts[n].draw != part.draw)
+        whole = range(k, next(after, len(canvas.parts))) if part.headed else range(k, k + 1)
+        picture = _between(_cells(canvas, whole, inside, shape), 0)
+        taken |= _under_title(picture) | _between(picture, 1)
+    return taken
+
+
+def _cells(canvas: Canvas, parts: range, inside: Box, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Cells with ink of parts that follow each other, or under their labels that are not set yet."""
+    end = canvas.parts[parts.stop].first if parts.stop < len(canvas.parts) else len(canvas.marks)
+    z = np.concatenate((dense(canvas.marks[canvas.parts[parts.start].first:end], CELL),
+                        *(_about(label) for label in canvas.labels if label.part in parts)))  # fmt: skip
+    own = np.zeros(shape, bool)
     i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
     there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
     own[i[there], j[there]] = True
-    taken = _between(own, 0) | _between(own, 1)
-    return taken | _under_title(own) if part.title and own.any() else taken
+    return own
 
 
 def _under_title(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -78,7 +78,7 @@ def _sizes(project: Project, title: str, columns: Columns) -> list[tuple[float, 
         return []
     rows = _cells(project, columns, 4)
     return [(max(sum(needs(rows, size_in(row))) + extra * len(columns), letter(title, 3.5).width + 4.0), HEAD + row * len(rows))
-            for row, extra in zip(ROWS, (3.0, 1.0, 0.0), strict=True)]
+            for row, extra in zip(ROWS, (2.0, 0.0, 0.0), strict=True)]
 
 
 def _table(project: Project, canvas: Canvas, box: Box, title: str, columns: Columns) -> None:

@@ -1,0 +1,48 @@
+"""Remarks stand near what is drawn of their view, not anywhere in its place."""
+
+import pytest
+
+from tmm_sheets.drawing import notes
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Box, Text
+
+FIELD = Box(0.0, 0.0, 400.0, 300.0)
+
+
+def placed(canvas):
+    first = len(canvas.marks)
+    crowded = notes.place(canvas, FIELD)
+    return crowded, next(mark.at for mark in canvas.marks[first:] if isinstance(mark, Text))
+
+
+@pytest.mark.parametrize("low", [240.0, 150.0, 30.0])
+def test_a_view_that_leaves_most_of_its_place_free_has_its_remark_near_its_ink(low):
+    canvas, box = Canvas(), Box(50.0, 10.0, 250.0, 290.0)
+    canvas.begin(box, "", "force plan")
+    canvas.line(complex(60, low), complex(240, low + 20), "vector")
+    canvas.note(box, "Less than 1 mm")
+    crowded, at = placed(canvas)
+    assert crowded == []
+    assert low - 20 < at.imag < low + 30
+
+
+def test_the_parts_of_a_view_count_together_those_of_its_neighbours_do_not():
+    canvas, box = Canvas(), Box(50.0, 10.0, 250.0, 290.0)
+    canvas.begin(box, "", "velocity plans")
+    canvas.note(box, "Less than 1 mm")
+    for y in (250.0, 120.0):
+        canvas.begin(Box(60.0, y - 20, 240.0, y + 20), "", "velocity plans")
+        canvas.line(complex(70, y), complex(230, y), "vector")
+    canvas.begin(Box(260.0, 10.0, 390.0, 290.0), "", "velocity plans")
+    canvas.line(270 + 20j, 380 + 20j, "vector")
+    _, at = placed(canvas)
+    assert 100 < at.imag < 140
+
+
+def test_a_view_without_ink_has_its_remark_in_its_place():
+    canvas = Canvas()
+    canvas.begin(Box(50.0, 200.0, 250.0, 290.0), "", "empty")
+    canvas.note(canvas.parts[-1].box, "Less than 1 mm")
+    crowded, at = placed(canvas)
+    assert crowded == []
+    assert 200 < at.imag < 290

@@ -1,0 +1,48 @@
+"""The tables beside the velocity plans: whoever measures the segments told finds all the speeds told."""
+
+import numpy as np
+import pytest
+
+from tmm_sheets.catalogue import read
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import kinematics
+from tmm_sheets.sheets.sheet import composed
+
+
+def tables(project, monkeypatch):
+    """Titles and columns of the tables of sheet 1, and its scale factor of velocities."""
+    found = []
+    original = kinematics._table_over_positions
+
+    def keeping(project, canvas, place, title, columns, decimals):
+        found.append((title, dict(columns)))
+        original(project, canvas, place, title, columns, decimals)
+
+    monkeypatch.setattr(kinematics, "_table_over_positions", keeping)
+    scales = composed(project, 1).scales
+    return found, scales["velocities"].mu
+
+
+@pytest.mark.parametrize("name", ["screen", "loom", "lugansk/engine", "tests/projects/conveyor.toml"])
+def test_every_speed_has_its_segment(name, monkeypatch):
+    project = Project(read(name))
+    ((_, lengths), (_, speeds)), mu = tables(project, monkeypatch)
+    for sign, values in speeds.items():
+        if sign.startswith("ω"):
+            q, b = project.study.velocities.reference[sign.removeprefix("ω_")][:2]
+            arm = abs(project.study.positions.points[b].at(0) - project.study.positions.points[q].at(0))
+            values = values * arm
+        assert any(np.allclose(values, length * mu, atol=1e-9) for length in lengths.values()), sign
+
+
+def test_what_does_not_change_is_told_once(monkeypatch):
+    ((title, lengths), _), mu = tables(Project(read("screen")), monkeypatch)
+    assert "|pb| = 50,3" in title
+    assert mu == pytest.approx(0.03)
+    assert "|pb|" not in lengths
+
+
+def test_a_narrow_place_has_some_columns_only(monkeypatch):
+    ((_, lengths), (_, speeds)), _ = tables(Project(read("lugansk/shaper")), monkeypatch)
+    assert len(lengths) >= kinematics.COLUMNS
+    assert len(lengths) <= kinematics.COLUMNS or (len(lengths) + len(speeds)) * kinematics.COLUMN <= 377
