@@ -74,6 +74,26 @@ def test_what_has_nothing_to_draw_gives_its_room_away():
     assert 43.0 <= found[0].height < 60.0
 
 
+def test_what_lies_over_a_place_is_not_its_own():
+    """Under the designation, 40 mm high, a view has what it would have in a place as much lower."""
+    free, covered = Need((4.0, 3.0), (20.0, 20.0)), Need((4.0, 3.0), (20.0, 20.0), covered=40.0)
+    assert covered.ink(300.0, 240.0) == free.ink(300.0, 200.0) < free.ink(300.0, 240.0)
+    assert covered.short(300.0, 79.0) > 0 == covered.short(300.0, 80.0)
+
+
+@pytest.mark.parametrize("name", ["sixbar/6:1", "sixbar/10:1", "lugansk/shaper", "lugansk/engine", "transport/press@07-ЭПС-718"])
+def test_the_position_plans_fill_their_place(name):
+    """They stand in the corner of the turned designation: the solver knows what that leaves."""
+    project = Project(catalogue.read(name))
+    view = next(v for v in arranged(project, 1).views if v.draw == "kinematics.position_plans")
+    frame = kinematic_frames.positions(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
+    z, d = kinematic_frames.positions_reach(project)
+    left, below, right, above = kinematic_frames.positions_around(project, view.options)
+    on_paper = z / frame.scale.mu + d
+    drawn = (np.ptp(on_paper.real) + left + right) * (np.ptp(on_paper.imag) + below + above)
+    assert drawn > 0.6 * view.box.width * view.box.height
+
+
 def test_one_view_has_the_whole_room():
     assert solve(leaves(Need((1.0, 1.0)))[0], ROOM) == {0: ROOM}
 

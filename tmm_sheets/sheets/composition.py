@@ -20,7 +20,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
 from tmm_sheets.sheets.frame import needed, standard
-from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
+from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
@@ -90,8 +90,11 @@ class _Way:
             leaf.leaf = number
         whole = _around([view.box for view in arrangement(self.plan.name).views])
         room = Box(whole.x0, TITLE_BLOCK.y0, TITLE_BLOCK.x1, whole.y1)
-        found = solve(tree, room)
         views = [part for parts in self.parts for part in parts]
+        for view, node in views:
+            if node.need is not None and view.draw in NEEDS and _designated(view.box):
+                node.need = replace(node.need, covered=max(room.y1 - DESIGNATION.y0, 0.0))
+        found = solve(tree, room)
         if not all(_kept(view.box, found[node.leaf]) for view, node in views if view.draw not in NEEDS):
             return None
         placed = replace(self.plan, views=tuple(_placed(view, node, found) for view, node in views))
@@ -126,9 +129,13 @@ def _fixed(box: Box) -> Node:
     return Node(Need(least=size, most=size, drawn=lambda w, h: w * h), area=box.width * box.height)
 
 
+def _designated(box: Box) -> bool:
+    """Whether a box reaches up to the turned designation or under it."""
+    return box.x0 < DESIGNATION.x1 and box.y1 > DESIGNATION.y0 - GAP
+
+
 def _below_designation(box: Box) -> Box:
-    over = box.x0 < DESIGNATION.x1 and box.y1 > DESIGNATION.y0
-    return box._replace(y1=DESIGNATION.y0) if over else box
+    return box._replace(y1=min(box.y1, DESIGNATION.y0)) if _designated(box) else box
 
 
 def _placed(view: View, node: Node, found: dict[int, Box]) -> View:
