@@ -28,6 +28,10 @@ UNDER = 80.0
 """What stands so near under a title belongs to it, and nothing else may stand between, mm."""
 REACH = 2.0
 """How far a label may stand off beyond its gap, mm."""
+OPEN = 100.0
+"""What is open to one side of a view and wider than this is no part of its picture, mm."""
+FAR = 10**6
+"""More cells than a sheet has."""
 APART = (12.0, 9.0, 6.0)
 """Distances from all else with which a place is looked for, mm: the widest first."""
 
@@ -106,7 +110,8 @@ def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDA
     i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
     there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
     own[i[there], j[there]] = True
-    taken = _between(own, 0) | _between(own, 1)
+    along, across = _between(own, 0), _between(own, 1)
+    taken = along[0] | across[0] | along[1] & across[1]
     return taken | _under_title(own) if part.title and own.any() else taken
 
 
@@ -128,8 +133,10 @@ def _about(label: Label) -> Points:
     return label.anchor + np.array([0j, complex(u.real * width, u.imag * height)])
 
 
-def _between(cells: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
-    """Cells between the first and the last inked one of every line along an axis."""
-    before = np.maximum.accumulate(cells, axis=axis)
-    behind = np.flip(np.maximum.accumulate(np.flip(cells, axis), axis=axis), axis)
-    return np.asarray(before & behind)
+def _between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Cells between two inked ones of a line along an axis: those that are less than ``OPEN`` apart, and any."""
+    n = np.arange(cells.shape[axis]).reshape((-1, 1) if axis == 0 else (1, -1))
+    before = np.maximum.accumulate(np.where(cells, n, -1), axis=axis)
+    behind = np.flip(np.minimum.accumulate(np.flip(np.where(cells, n, FAR), axis), axis=axis), axis)
+    inside = (before >= 0) & (behind < FAR)
+    return np.asarray(inside & ((behind - before) * CELL < OPEN)), np.asarray(inside)
