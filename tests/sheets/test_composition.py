@@ -10,7 +10,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinematic_frames
+from tmm_sheets.sheets import friction, kinematic_frames
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.sheet import INSIDE
@@ -92,6 +92,13 @@ def test_the_position_plans_fill_their_place(name):
     on_paper = z / frame.scale.mu + d
     drawn = (np.ptp(on_paper.real) + left + right) * (np.ptp(on_paper.imag) + below + above)
     assert drawn > 0.6 * view.box.width * view.box.height
+
+
+@pytest.mark.parametrize(("count", "columns"), [(1, 1), (2, 2), (4, 2), (7, 3)])
+def test_pairs_with_friction_stand_where_their_journals_are_largest(count, columns):
+    """In a place about as high as wide; where none fits the least room is said."""
+    assert friction.grid(count, 400.0, 418.0)[0] == columns
+    assert friction.grid(count, 40.0, 60.0) == (1, friction.LEAST)
 
 
 def test_one_view_has_the_whole_room():

@@ -58,7 +58,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     indicator.draw(project, every)
     _position_numbers(project, s)
     _point_letters(project, s)
-    _link_numbers(s, pos)
+    linkage.number_links(s, pos)
     _rotations(project, s)
     if cycle.strokes is not None and project.variant.cycle is not None and project.variant.cycle.working:
         _strokes(project, s)
@@ -219,18 +219,6 @@ def _point_letters(project: Project, s: Stage) -> None:
             symbols.centre_of_mass(s.pen(step, "symbol"), s.at(step))
         text = f"{letters}({project.cycle.labels[project.force_index]})" if moving and not name[1:] else letters
         s.letters(step, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
-
-
-def _link_numbers(s: Stage, pos: Positions) -> None:
-    """Numbers of the links beside the middles of their bars and at their blocks."""
-    for shape in linkage.shapes(pos):
-        link = pos.directions[shape.link]
-        if shape.bar:
-            names = linkage.along_bar(s, pos, shape)
-            a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
-            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, a + (0.62 if len(names) > 2 else 0.5) * (b - a))
-        elif shape.block is not None:
-            s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(pos.points[shape.block]))
 
 
 def _rotations(project: Project, s: Stage) -> None:
