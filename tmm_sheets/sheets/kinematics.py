@@ -19,7 +19,7 @@ from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
+from tmm_sheets.sheets import flat_crossings, graphs, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick, together
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tr, tr_in
@@ -174,7 +174,8 @@ def _own_path(project: Project, s: Stage, name: str, n: complex, u: complex) -> 
     for side, there in ((n, [i for i in marks if ahead[i]]), (-n, [i for i in marks if not ahead[i]])):
         for crowd in _crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
-            s.position(crowd[0]).letters(name, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, at + 2.0 * side, False)
+            said = graphs.ranged([cycle.labels[i] for i in crowd])
+            s.position(crowd[0]).letters(name, said, side, 2.5, 0.6, at + 2.0 * side, False)
 
 
 def _crowds(marks: list[int], z: Any) -> list[list[int]]:
@@ -190,11 +191,6 @@ def _crowds(marks: list[int], z: Any) -> list[list[int]]:
 
 CROWDED = 2.8
 """Distance of two marks, mm, below which their numbers do not fit side by side."""
-
-
-def _range(labels: list[str]) -> str:
-    """Numbers of neighbouring positions: 7, 8 or 7–10."""
-    return f"{labels[0]}–{labels[-1]}" if len(labels) > 2 else ", ".join(labels)
 
 
 def _shared_path(project: Project, s: Stage, name: str, n: complex) -> None:
