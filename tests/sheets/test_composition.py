@@ -10,7 +10,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinematic_frames
+from tmm_sheets.sheets import friction, kinematic_frames
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.sheet import INSIDE
@@ -72,6 +72,33 @@ def test_what_has_nothing_to_draw_gives_its_room_away():
     tree = joined(1, leaves(Need((0.0, 0.0), (24.0, 43.0), (80.0, 43.0)), Need((3.0, 4.0), (20.0, 20.0))), [1.0, 1.0])
     found = solve(tree, ROOM)
     assert 43.0 <= found[0].height < 60.0
+
+
+def test_what_lies_over_a_place_is_not_its_own():
+    """Under the designation, 40 mm high, a view has what it would have in a place as much lower."""
+    free, covered = Need((4.0, 3.0), (20.0, 20.0)), Need((4.0, 3.0), (20.0, 20.0), covered=40.0)
+    assert covered.ink(300.0, 240.0) == free.ink(300.0, 200.0) < free.ink(300.0, 240.0)
+    assert covered.short(300.0, 79.0) > 0 == covered.short(300.0, 80.0)
+
+
+@pytest.mark.parametrize("name", ["sixbar/6:1", "sixbar/10:1", "lugansk/shaper", "lugansk/engine", "transport/press@07-ЭПС-718"])
+def test_the_position_plans_fill_their_place(name):
+    """They stand in the corner of the turned designation: the solver knows what that leaves."""
+    project = Project(catalogue.read(name))
+    view = next(v for v in arranged(project, 1).views if v.draw == "kinematics.position_plans")
+    frame = kinematic_frames.positions(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
+    z, d = kinematic_frames.positions_reach(project)
+    left, below, right, above = kinematic_frames.positions_around(project, view.options)
+    on_paper = z / frame.scale.mu + d
+    drawn = (np.ptp(on_paper.real) + left + right) * (np.ptp(on_paper.imag) + below + above)
+    assert drawn > 0.6 * view.box.width * view.box.height
+
+
+@pytest.mark.parametrize(("count", "columns"), [(1, 1), (2, 2), (4, 2), (7, 3)])
+def test_pairs_with_friction_stand_where_their_journals_are_largest(count, columns):
+    """In a place about as high as wide; where none fits the least room is said."""
+    assert friction.grid(count, 400.0, 418.0)[0] == columns
+    assert friction.grid(count, 40.0, 60.0) == (1, friction.LEAST)
 
 
 def test_one_view_has_the_whole_room():

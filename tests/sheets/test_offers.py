@@ -32,9 +32,11 @@ def cells(canvas):
 @pytest.mark.parametrize(("lines", "found"), [
     ([], True),
     ([(30 + 300j, 826 + 300j)], True),  # 285 mm over and under a line
-    ([(30 + 10j, 30 + 580j), (826 + 10j, 826 + 580j)], False),  # between the ink of one view nothing may stand
+    ([(30 + 10j, 30 + 580j), (826 + 10j, 826 + 580j), (30 + 10j, 826 + 10j), (30 + 580j, 826 + 580j)], False),  # within a picture
+    ([(30 + 10j, 30 + 580j), (826 + 10j, 826 + 580j), (30 + 580j, 826 + 580j)], True),  # in a wide bay that is open below
+    ([(x + 10j, x + 580j) for x in (30, 115, 200, 285, 370, 455, 540, 625, 710, 795)], False),  # narrow bays are the view's own
     ([(30 + 10j, 826 + 580j)], True),  # beside a diagonal
-], ids=["nothing", "line", "inside", "diagonal"])  # fmt: skip
+], ids=["nothing", "line", "inside", "bay", "narrow", "diagonal"])  # fmt: skip
 def test_a_place_is_clear_of_all_ink_and_outside_pictures(lines, found):
     box = offers._place(cells(canvas_with(*lines)), [(200.0, 120.0)], FIELD)
     assert (box is not None) is found
@@ -47,7 +49,7 @@ def test_a_place_is_clear_of_all_ink_and_outside_pictures(lines, found):
 
 
 def test_the_next_smaller_size_is_taken_and_none_that_does_not_fit():
-    canvas = canvas_with((20 + 5j, 700 + 5j), (20 + 589j, 700 + 589j), (20 + 5j, 20 + 589j), (700 + 5j, 700 + 589j))
+    canvas = canvas_with((20 + 5j, 700 + 5j), (20 + 588j, 700 + 588j), (20 + 5j, 20 + 588j), (700 + 5j, 700 + 588j))
     left = cells(canvas)
     box = offers._place(left, [(200.0, 120.0), (100.0, 60.0)], FIELD)
     assert (box.width, box.height) == (100.0, 60.0)

@@ -20,7 +20,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
 from tmm_sheets.sheets.frame import needed, standard
-from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
+from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
@@ -90,8 +90,11 @@ class _Way:
             leaf.leaf = number
         whole = _around([view.box for view in arrangement(self.plan.name).views])
         room = Box(whole.x0, TITLE_BLOCK.y0, TITLE_BLOCK.x1, whole.y1)
-        found = solve(tree, room)
         views = [part for parts in self.parts for part in parts]
+        for view, node in views:
+            if node.need is not None and view.draw in NEEDS and _designated(view.box):
+                node.need = replace(node.need, covered=max(room.y1 - DESIGNATION.y0, 0.0))
+        found = solve(tree, room)
         if not all(_kept(view.box, found[node.leaf]) for view, node in views if view.draw not in NEEDS):
             return None
         placed = replace(self.plan, views=tuple(_placed(view, node, found) for view, node in views))
@@ -126,9 +129,13 @@ def _fixed(box: Box) -> Node:
     return Node(Need(least=size, most=size, drawn=lambda w, h: w * h), area=box.width * box.height)
 
 
+def _designated(box: Box) -> bool:
+    """Whether a box reaches up to the turned designation or under it."""
+    return box.x0 < DESIGNATION.x1 and box.y1 > DESIGNATION.y0 - GAP
+
+
 def _below_designation(box: Box) -> Box:
-    over = box.x0 < DESIGNATION.x1 and box.y1 > DESIGNATION.y0
-    return box._replace(y1=DESIGNATION.y0) if over else box
+    return box._replace(y1=min(box.y1, DESIGNATION.y0)) if _designated(box) else box
 
 
 def _placed(view: View, node: Node, found: dict[int, Box]) -> View:
@@ -332,6 +339,39 @@ def _synthesis(project: Project, view: View) -> Node | None:
     return _fixed(view.box) if project.variant.synthesis is not None else None
 
 
+def _friction(project: Project, view: View) -> Node:
+    from tmm_sheets.sheets import friction
+
+    return _leaf(view.box, _reaching(view.box, *friction.scheme(project), friction.AROUND, (150.0, 90.0)))
+
+
+def _friction_pairs(project: Project, view: View) -> Node:
+    from tmm_sheets.sheets import friction
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        return friction.pairs_area(project, width, height)
+
+    return _leaf(view.box, Need(least=(200.0, 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 1.5)
+
+
+def _friction_power(project: Project, view: View) -> Node:
+    return _leaf(view.box, Need(least=(170.0, 76.0), most=(inf, 130.0), drawn=lambda w, h: 0.7 * w * h), 0.5)
+
+
+def _friction_table(project: Project, view: View) -> Node:
+    from tmm_sheets.sheets.friction import ROWS
+
+    found = project.study.forces.friction
+    return _rows(project, view, len(found.pairs) + 1 if found else 1, 34.0, (5.0, ROWS[0]), (0.7 * view.box.width, inf))
+
+
+def _friction_positions(project: Project, view: View) -> Node:
+    from tmm_sheets.sheets.friction import ROWS
+
+    return _rows(project, view, len(project.cycle.labels) + 1, 12.0, (4.6, ROWS[1]), (0.7 * view.box.width, inf))
+
+
 def _cam(least: tuple[float, float], share: float) -> Callable[[Project, View], Node | None]:
     """Need of a view of the cam that takes what room there is; shares of its box below which it cannot be read."""
     def node(project: Project, view: View) -> Node | None:
@@ -397,6 +437,8 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),
     "given_position.values": _values, "false_positions.group": _false_positions,
+    "friction.mechanism": _friction, "friction.pairs": _friction_pairs, "friction.power": _friction_power,
+    "friction.table": _friction_table, "friction.positions": _friction_positions,
     "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
 }
 """Views that tell what they need; others keep the size of their boxes."""

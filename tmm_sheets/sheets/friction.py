@@ -6,7 +6,7 @@ that deviates from it by the angle of friction; both the motion of the one link 
 
 from __future__ import annotations
 
-from math import ceil, degrees, sqrt
+from math import ceil, degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.linkage.friction import Friction
     from tmm_sheets.project import Project
@@ -33,6 +34,16 @@ ARROW = 24.0
 """Length of a reaction's arrow, mm."""
 OUTSIDE, WORDS, LEAST = 22.0, 30.0, 8.0
 """Room round a journal for its arrows and signs, height of the words above and below, least radius of the largest journal, mm."""
+SLIDING = 24.0, 40.0
+"""Half a length of a guide: at least, and at most where no journal stands beside it, mm."""
+TITLE = 18.0
+"""Height of the heading over the pairs, mm."""
+AROUND = 4.0, 4.0, 4.0, 20.0
+"""Room round the mechanism at the left, below, right and above, mm."""
+ROWS = 9.0, 8.0
+"""Highest rows of the table of pairs and of that over all positions, mm."""
+SPEED, DRIVE = 14.0, 24.0
+"""Radii of the arrows of the crank's angular velocity and of what drives it, mm."""
 
 
 def _friction(project: Project) -> Friction:
@@ -64,15 +75,22 @@ def _line(project: Project, index: str) -> Step:
     return of.touches.get(index) or project.study.positions.points[_hinge(of, index)]
 
 
-def mechanism(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """The mechanism at the analysed position: circles of friction to scale, in each pair the reaction on its first link."""
+def scheme(project: Project) -> tuple[list[complex], list[complex]]:
+    """Points of the mechanism at the analysed position, m, and what sticks out of each on paper, mm."""
     of, k, pos = _friction(project), project.force_index, project.study.positions
     shown = _reactions(project)
     points = [complex(step.at(k)) for step in pos.points.values()]
     ends = [complex(pos.points[_hinge(of, index)].at(k)) for index, *_ in shown]
     reach = [1.3 * ARROW * force / abs(force) if force else 0j for *_, force in shown]
-    frame = fit_frame(project, canvas, "friction-scheme", "μ_l", tr("m/mm"), [*points, *points, *ends],
-                      [*[12 + 12j] * len(points), *[-12 - 14j] * len(points), *reach], box.inset(4.0, 4.0, 4.0, 20.0))
+    pivot = complex(pos.points[pos.mechanism.crank.pivot].at(k))
+    return [*points, *points, *ends, pivot, pivot], [
+        *[12 + 12j] * len(points), *[-12 - 14j] * len(points), *reach, (1 + 1j) * DRIVE, (-1 - 1j) * DRIVE]
+
+
+def mechanism(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The mechanism at the analysed position: circles of friction to scale, in each pair the reaction on its first link."""
+    of, k, pos = _friction(project), project.force_index, project.study.positions
+    frame = fit_frame(project, canvas, "friction-scheme", "μ_l", tr("m/mm"), *scheme(project), box.inset(*AROUND))
     title = tr("Reactions with friction (position {label})").format(label=project.cycle.labels[k])
     canvas.title(box, title, str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
@@ -81,8 +99,20 @@ def mechanism(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     for name, step in pos.points.items():
         if name in of.radii or name in pos.mechanism.fixed:
             s.letters(step, linkage.indexed(name), gap=3.0)
-    for index, step, force in shown:
+    linkage.number_links(s, pos)
+    _on_crank(project, s)
+    for index, step, force in _reactions(project):
         _reaction(project, s, step, index, force, ARROW)
+
+
+def _on_crank(project: Project, s: Stage) -> None:
+    """How the crank turns, and the moment that drives it."""
+    k, study, c = project.force_index, project.study, project.mechanism.crank
+    pivot, away = s.at(c.pivot), linkage.clear_of_crank(s, study.positions)
+    symbols.rotation_arrow(s.pen(study.velocities.omega[c.link], "symbol"), pivot, SPEED, away, c.omega, f"ω_{c.link}")
+    moment = study.forces.balancing if study.driver is None else None
+    if moment is not None and not is_zero(moment.at(k), study.forces.moment_size(k)):
+        symbols.rotation_arrow(s.pen(moment, "symbol"), pivot, DRIVE, away, float(moment.at(k)), balancing_sign(project))
 
 
 def _reaction(project: Project, s: Stage, step: Step, index: str, force: complex, length: float) -> None:
@@ -96,6 +126,29 @@ def _reaction(project: Project, s: Stage, step: Step, index: str, force: complex
     s.pen(step, "text").label(at + (length - 4.0) * u, f"F̅_{{{index}}}", 1j * u, 3.5, 1.5)
 
 
+def grid(count: int, width: float, height: float) -> tuple[int, float]:
+    """Columns in which so many pairs have the largest room for a journal, and the radius of that room, mm."""
+    def room(columns: int) -> float:
+        return min(width / columns, (height - TITLE) / ceil(count / columns) - WORDS) / 2 - OUTSIDE
+
+    return max(((columns, max(room(columns), LEAST)) for columns in range(1, count + 1)), key=lambda found: (found[1], -found[0]))
+
+
+def pairs_area(project: Project, width: float, height: float) -> float:
+    """What the pairs fill of a place of this size, mm^2."""
+    of = _friction(project)
+    count = max(len(of.pairs), 1)
+    half = OUTSIDE + _drawn(of, grid(count, width, height)[1])[1]
+    return TITLE * width + count * 2 * half * (2 * half + WORDS)
+
+
+def _drawn(of: Friction, room: float) -> tuple[Scale, float]:
+    """Scale of the journals in a room of this radius, and the radius of the largest one or half a length of a guide, mm."""
+    radii = [float(radius.args[1]) for radius in of.radii.values()]
+    scale = standard((max(radii, default=0.02), room))
+    return scale, max(scale.mm(max(radii)) if radii else min(room, SLIDING[1]), SLIDING[0])
+
+
 def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Every pair with friction enlarged, side by side and in rows."""
     of, k = _friction(project), project.force_index
@@ -104,20 +157,20 @@ def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         left = canvas.title(box, tr("Friction in the pairs"))
         canvas.text(left.centre, tr("No pair has friction"), 3.5, "centre")
         return
-    columns = min(len(shown), max(round(sqrt(len(shown) * box.width / box.height)), 1))
-    rows = ceil(len(shown) / columns)
-    width, height = box.width / columns, (box.height - 18.0) / rows
-    radii = [float(radius.args[1]) for radius in of.radii.values()]
-    room = max(min(width, height - WORDS) / 2 - OUTSIDE, LEAST)
-    scale = standard((max(radii, default=0.02), room))
-    left = canvas.title(box, tr("Pairs with friction"), ratio(scale) if radii else "")
-    height = left.height / rows
+    columns, room = grid(len(shown), box.width, box.height)
+    scale, half = _drawn(of, room)
+    left = canvas.title(box, tr("Pairs with friction"), ratio(scale) if of.radii else "")
+    # A pair keeps its words near; what height is left is in one piece for others.
+    width, height = box.width / columns, min(left.height / ceil(len(shown) / columns), 2 * (half + OUTSIDE) + WORDS)
     for n, (index, step, force) in enumerate(shown):
         x, y = left.x0 + n % columns * width, left.y1 - n // columns * height
         place = Box(x, y - height, x + width, y)
         at = complex(project.study.positions.points[_hinge(of, index)].at(k))
         frame = Frame(scale, place.centre + 3.0j - scale.mm(at))
-        (_turning if index in of.moments else _sliding)(project, canvas, place, frame, index, step, force)
+        if index in of.moments:
+            _turning(project, canvas, place, frame, index, step, force)
+        else:
+            _sliding(project, canvas, place, frame, index, step, force, half)
         _said(canvas, place, _told(project, of, index, force, k))
 
 
@@ -138,32 +191,34 @@ def _turning(project: Project, canvas: Canvas, box: Box, frame: Frame, index: st
                                float(np.real(turn.at(k))), f"ω_{{{index}}}")
 
 
-def _sliding(project: Project, canvas: Canvas, box: Box, frame: Frame, index: str, step: Step, force: complex) -> None:
-    """A block on its guide, the normal, the reaction that deviates from it, the velocity of sliding."""
+def _sliding(project: Project, canvas: Canvas, box: Box, frame: Frame, index: str, step: Step, force: complex,
+             half: float) -> None:
+    """A block on its guide of this half length, the normal, the reaction that deviates from it, the velocity of sliding."""
     of, k, pos = _friction(project), project.force_index, project.study.positions
     hinge = _hinge(of, index)
     s = stage(canvas, pos.plan, k, frame)
     canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(index, hinge, "′"), 3.5, "centre")
     centre, v, turn = s.at(hinge), complex(of.sliding[index].at(k)), float(of.deviations[index].at(k))
     normal = force * complex(np.exp(-1j * turn)) / abs(force) if force else 1j * v / abs(v) if v else 1j
-    along = -1j * normal
+    along, thick = -1j * normal, half / 6
     with canvas.as_role("symbol"):
-        for side in (4.0, -4.0):
-            a, b = (centre + x * along + side * normal for x in (-22.0, 22.0))
+        for side in (thick, -thick):
+            a, b = (centre + x * along + side * normal for x in (-half, half))
             symbols.fixed_guide(canvas, a, b, 1 if side > 0 else -1)
-        symbols.block(canvas, centre, along, size=(16.0, 8.0))
-    _reaction(project, s, step, index, force, ARROW + 4.0)
+        symbols.block(canvas, centre, along, size=(4 * thick, 2 * thick))
+    length = half + ARROW / 4
+    _reaction(project, s, step, index, force, length)
     if force:
-        s.pen(of.deviations[index], "axis").line(centre - 12.0 * normal, centre + (ARROW + 2.0) * normal, "axis")
+        s.pen(of.deviations[index], "axis").line(centre - half / 2 * normal, centre + length * normal, "axis")
         if turn:
             start, end = sorted((float(np.angle(normal)), float(np.angle(normal)) + turn))
-            s.pen(of.deviations[index], "dimension").angle_mark(centre, start, end, ARROW - 6.0, "φ")
+            s.pen(of.deviations[index], "dimension").angle_mark(centre, start, end, 0.75 * half, "φ")
     if not of.still(index, k):
         u = v / abs(v)
-        tail = centre - 9.0 * normal + 4.0 * u
+        tail = centre - (thick + 5.0) * normal + 4.0 * u
         pen = s.pen(of.sliding[index], "symbol")
-        pen.arrow(tail, tail + 16.0 * u, "vector")
-        pen.label(tail + 12.0 * u, f"V̅_{{{index}}}", -normal, 3.5, 1.5)
+        pen.arrow(tail, tail + half / 2 * u, "vector")
+        pen.label(tail + (half / 2 - 4.0) * u, f"V̅_{{{index}}}", -normal, 3.5, 1.5)
 
 
 def _name(index: str, hinge: str, mark: str = "") -> str:
@@ -213,7 +268,7 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                          number(abs(complex(of.sliding[index].at(k))), 4), power])
     left = canvas.title(box, tr("Friction in the pairs"))
     said = _balance(project, of, k)
-    row = min((left.height - 7.0 * len(said)) / len(rows), 8.0)
+    row = min((left.height - 7.0 * len(said)) / len(rows), ROWS[0])
     height = size_in(row)
     widths = widened([box.width / len(rows[0])] * len(rows[0]), rows, height)
     place = canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
@@ -247,7 +302,7 @@ def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     cells = [graphs.column(values, 4) for _, values in columns]
     rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(study.labels)]
     left = canvas.title(box, tr("Reactions with friction in all positions"))
-    row = min(left.height / len(rows), 7.0)
+    row = min(left.height / len(rows), ROWS[1])
     height = size_in(row)
     widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
     canvas.table(complex(box.x0, left.y1), widths, rows, row, height)

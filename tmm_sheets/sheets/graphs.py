@@ -109,6 +109,11 @@ def numbers(canvas: Canvas, g: Graph, x: Any, labels: Sequence[str], heights: An
             canvas.text(at + 1.2 + 1.3j, name, 3.5)
 
 
+def ranged(labels: list[str]) -> str:
+    """Numbers of neighbouring positions: 7, 8 or 7–10."""
+    return f"{labels[0]}–{labels[-1]}" if len(labels) > 2 else ", ".join(labels)
+
+
 def column(values: Any, digits: int = 4, least: int = 0) -> list[str]:
     """Numbers of a column, all with the same decimals: ``digits`` significant ones for the largest, ``least`` decimals at least."""
     largest = float(np.max(np.abs(values)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.numbers import is_zero
-from tmm_sheets.sheets import diagrams
+from tmm_sheets.sheets import diagrams, graphs
 from tmm_sheets.sheets.frame import Frame, extent
 from tmm_sheets.words import tr
 
@@ -68,15 +69,20 @@ def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
 def _numbers(project: Project, canvas: Canvas, ends: Points, middle: complex, traced: tuple[Step, int, str]) -> None:
     """Dots at the positions with their numbers, those of one place together."""
     step, placed, name = traced
-    there: dict[complex, list[str]] = {}
-    for k, label in project.cycle.drawn:
+    there: dict[complex, list[int]] = {}
+    for n, (k, _) in enumerate(project.cycle.drawn):
         z = complex(ends[k])
         same = next((other for other in there if abs(other - z) < 1.0), z)
-        there.setdefault(same, []).append(label)
-    for z, labels in there.items():
-        with canvas.traced("point", step.path, labels[0], placed, name):
+        there.setdefault(same, []).append(n)
+    labels = [label for _, label in project.cycle.drawn]
+    for z, numbers in there.items():
+        with canvas.traced("point", step.path, labels[numbers[0]], placed, name):
             canvas.dot(z, 0.5)
-            canvas.label(z, ", ".join(labels), z - middle, 2.5, 0.9)
+            # Neighbours as a range: the first of each run, its last.
+            starts = [i for i, n in enumerate(numbers) if not i or numbers[i - 1] != n - 1]
+            runs = [numbers[a:b] for a, b in pairwise([*starts, len(numbers)])]
+            said = ", ".join(graphs.ranged([labels[n] for n in run]) for run in runs)
+            canvas.label(z, said, z - middle, 2.5, 0.9)
 
 
 def _reaction(project: Project) -> tuple[str, Step, Points]:

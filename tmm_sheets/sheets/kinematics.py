@@ -19,7 +19,7 @@ from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets import flat_crossings, indicator, kinematic_frames, linkage
+from tmm_sheets.sheets import flat_crossings, graphs, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick, together
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tr, tr_in
@@ -59,7 +59,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     indicator.draw(project, every)
     _position_numbers(project, s)
     _point_letters(project, s)
-    _link_numbers(s, pos)
+    linkage.number_links(s, pos)
     _rotations(project, s)
     if cycle.strokes is not None and project.variant.cycle is not None and project.variant.cycle.working:
         _strokes(project, s)
@@ -175,7 +175,8 @@ def _own_path(project: Project, s: Stage, name: str, n: complex, u: complex) -> 
     for side, there in ((n, [i for i in marks if ahead[i]]), (-n, [i for i in marks if not ahead[i]])):
         for crowd in _crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
-            s.position(crowd[0]).letters(name, _range([cycle.labels[i] for i in crowd]), side, 2.5, 0.6, at + 2.0 * side, False)
+            said = graphs.ranged([cycle.labels[i] for i in crowd])
+            s.position(crowd[0]).letters(name, said, side, 2.5, 0.6, at + 2.0 * side, False)
 
 
 def _crowds(marks: list[int], z: Any) -> list[list[int]]:
@@ -191,11 +192,6 @@ def _crowds(marks: list[int], z: Any) -> list[list[int]]:
 
 CROWDED = 2.8
 """Distance of two marks, mm, below which their numbers do not fit side by side."""
-
-
-def _range(labels: list[str]) -> str:
-    """Numbers of neighbouring positions: 7, 8 or 7–10."""
-    return f"{labels[0]}–{labels[-1]}" if len(labels) > 2 else ", ".join(labels)
 
 
 def _shared_path(project: Project, s: Stage, name: str, n: complex) -> None:
@@ -220,18 +216,6 @@ def _point_letters(project: Project, s: Stage) -> None:
             symbols.centre_of_mass(s.pen(step, "symbol"), s.at(step))
         text = f"{letters}({project.cycle.labels[project.force_index]})" if moving and not name[1:] else letters
         s.letters(step, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
-
-
-def _link_numbers(s: Stage, pos: Positions) -> None:
-    """Numbers of the links beside the middles of their bars and at their blocks."""
-    for shape in linkage.shapes(pos):
-        link = pos.directions[shape.link]
-        if shape.bar:
-            names = linkage.along_bar(s, pos, shape)
-            a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
-            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, a + (0.62 if len(names) > 2 else 0.5) * (b - a))
-        elif shape.block is not None:
-            s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(pos.points[shape.block]))
 
 
 def _rotations(project: Project, s: Stage) -> None:

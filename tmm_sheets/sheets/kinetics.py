@@ -441,5 +441,5 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
             [tr("Force analysis: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(kinetic, 2)],
             [tr("Zhukovsky lever: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(hung, 2)],
             [tr("Difference, %"), number(difference, 2, 100.0)]]
-    row = min(box.height / len(rows), 9.0)
-    canvas.table(complex(box.x0, box.y1), widened([box.width * 0.66, box.width * 0.34], rows, 3.5), rows, row, 3.5)
+    row, width = min(box.height / len(rows), 9.0), min(box.width, 210.0)
+    canvas.table(complex(box.x0, box.y1), widened([width * 0.66, width * 0.34], rows, 3.5), rows, row, 3.5)

@@ -108,6 +108,18 @@ def crank_pins(pos: Positions) -> tuple[str, ...]:
     return shapes(pos)[0].bar[1:]
 
 
+def number_links(s: Stage, pos: Positions) -> None:
+    """Numbers of the links beside the middles of their bars and at their blocks."""
+    for shape in shapes(pos):
+        link = pos.directions[shape.link]
+        if shape.bar:
+            names = along_bar(s, pos, shape)
+            a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
+            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, a + (0.62 if len(names) > 2 else 0.5) * (b - a))
+        elif shape.block is not None:
+            s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(pos.points[shape.block]))
+
+
 def clear_of_crank(s: Stage, pos: Positions) -> complex:
     """Unit vector from the crank's pivot into the widest angle between its arms, opposite a single arm."""
     pivot = s.at(pos.points[pos.mechanism.crank.pivot])

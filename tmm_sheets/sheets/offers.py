@@ -28,6 +28,10 @@ UNDER = 80.0
 """What stands so near under a title belongs to it, and nothing else may stand between, mm."""
 REACH = 2.0
 """How far a label may stand off beyond its gap, mm."""
+OPEN = 100.0
+"""What is open to one side of a view and wider than this is no part of its picture, mm."""
+FAR = 10**6
+"""More cells than a sheet has."""
 APART = (12.0, 9.0, 6.0)
 """Distances from all else with which a place is looked for, mm: the widest first."""
 
@@ -101,13 +105,16 @@ def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDA
     if part.draw == "title block":
         return np.zeros(shape, bool)
     own = _cells(canvas, range(k, k + 1), inside, shape)
-    taken = _between(own, 0) | _between(own, 1)
+    along, across = _between(own, 0), _between(own, 1)
+    taken = along[0] | across[0] | along[1] & across[1]
     if part.title and own.any():
         # A title is that of all parts up to the next one: plans of several positions.
         after = (n for n in range(k + 1, len(canvas.parts)) if canvas.parts[n].headed or canvas.parts[n].draw != part.draw)
         whole = range(k, next(after, len(canvas.parts))) if part.headed else range(k, k + 1)
-        picture = _between(_cells(canvas, whole, inside, shape), 0)
-        taken |= _under_title(picture) | _between(picture, 1)
+        picture = _between(_cells(canvas, whole, inside, shape), 0)[1] if len(whole) > 1 else own
+        taken |= _under_title(picture)
+        if len(whole) > 1:
+            taken |= _between(picture, 1)[1]
     return taken
 
 
@@ -141,8 +148,10 @@ def _about(label: Label) -> Points:
     return label.anchor + np.array([0j, complex(u.real * width, u.imag * height)])
 
 
-def _between(cells: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
-    """Cells between the first and the last inked one of every line along an axis."""
-    before = np.maximum.accumulate(cells, axis=axis)
-    behind = np.flip(np.maximum.accumulate(np.flip(cells, axis), axis=axis), axis)
-    return np.asarray(before & behind)
+def _between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Cells between two inked ones of a line along an axis: those that are less than ``OPEN`` apart, and any."""
+    n = np.arange(cells.shape[axis]).reshape((-1, 1) if axis == 0 else (1, -1))
+    before = np.maximum.accumulate(np.where(cells, n, -1), axis=axis)
+    behind = np.flip(np.minimum.accumulate(np.flip(np.where(cells, n, FAR), axis), axis=axis), axis)
+    inside = (before >= 0) & (behind < FAR)
+    return np.asarray(inside & ((behind - before) * CELL < OPEN)), np.asarray(inside)

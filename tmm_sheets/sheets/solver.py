@@ -18,6 +18,8 @@ from tmm_sheets.construction.scale import HANDY
 
 GAP = 6.0
 """Largest distance that is kept between views, mm: the room of a view left out goes to its neighbours."""
+ROUNDED = 1.0
+"""What a place loses at most when its borders go to whole millimetres, mm."""
 STEPS = ((60.0, 35.0, 20.0, 11.0, 6.0), (4.0, 2.0, 1.0)), ((20.0, 11.0, 6.0), (4.0, 2.0, 1.0))
 """How far borders move at a time, mm: at first as far as is best, in the end to the millimetre; and not so far at first.
 
@@ -41,7 +43,7 @@ class Need:
     ``span`` is what it draws to a scale, in its own unit, ``around`` what comes to it on paper whatever the scale: letters,
     symbols, headings. ``least`` is the size below which it cannot be read, ``most`` that from which on more room is of no use.
     ``finest`` is the least scale factor that is of use. ``drawn`` tells, for what has no scale, the area it fills of a place of
-    some width and height.
+    some width and height. ``covered`` is what lies over the place at its top, the turned designation.
     """
 
     span: tuple[float, float] = (0.0, 0.0)
@@ -50,10 +52,11 @@ class Need:
     most: tuple[float, float] = (inf, inf)
     finest: float = 0.0
     drawn: Callable[[float, float], float] | None = None
+    covered: float = 0.0
 
     def ink(self, width: float, height: float) -> float:
         """Area that is drawn upon in a place of this size, mm^2."""
-        w, h = min(width, self.most[0]), min(height, self.most[1])
+        w, h = min(width - ROUNDED, self.most[0]), min(height - ROUNDED - self.covered, self.most[1])
         if self.drawn is not None:
             return self.drawn(w, h)
         free = w - self.around[0], h - self.around[1]
@@ -64,7 +67,7 @@ class Need:
 
     def short(self, width: float, height: float) -> float:
         """How much a place is too small, in its own size."""
-        return max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] - height, 0.0) / self.least[1]
+        return max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] + self.covered - height, 0.0) / self.least[1]
 
 
 TOO_SMALL = 1e8
