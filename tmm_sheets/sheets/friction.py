@@ -34,6 +34,8 @@ ARROW = 24.0
 """Length of a reaction's arrow, mm."""
 OUTSIDE, WORDS, LEAST = 22.0, 30.0, 8.0
 """Room round a journal for its arrows and signs, height of the words above and below, least radius of the largest journal, mm."""
+NAME, APART = 10.0, 4.0
+"""Height of the words above a pair, room between rows of pairs, mm."""
 SLIDING = 24.0, 40.0
 """Half a length of a guide: at least, and at most where no journal stands beside it, mm."""
 TITLE = 18.0
@@ -160,18 +162,35 @@ def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     columns, room = grid(len(shown), box.width, box.height)
     scale, half = _drawn(of, room)
     left = canvas.title(box, tr("Pairs with friction"), ratio(scale) if of.radii else "")
+    rows = [shown[n:n + columns] for n in range(0, len(shown), columns)]
+    reach = [np.max([_reach(of, index, force, k, scale, half) for index, _, force in row], axis=0) for row in rows]
     # A pair keeps its words near; what height is left is in one piece for others.
-    width, height = box.width / columns, min(left.height / ceil(len(shown) / columns), 2 * (half + OUTSIDE) + WORDS)
-    for n, (index, step, force) in enumerate(shown):
-        x, y = left.x0 + n % columns * width, left.y1 - n // columns * height
-        place = Box(x, y - height, x + width, y)
-        at = complex(project.study.positions.points[_hinge(of, index)].at(k))
-        frame = Frame(scale, place.centre + 3.0j - scale.mm(at))
-        if index in of.moments:
-            _turning(project, canvas, place, frame, index, step, force)
-        else:
-            _sliding(project, canvas, place, frame, index, step, force, half)
-        _said(canvas, place, _told(project, of, index, force, k))
+    shrunk = min(1.0, left.height / sum(float(up + down) + WORDS + APART for up, down in reach))
+    y = left.y1
+    for row, (up, down) in zip(rows, reach, strict=True):
+        top, y = y, y - (float(up + down) + WORDS + APART) * shrunk
+        for n, (index, step, force) in enumerate(row):
+            place = Box(left.x0 + n * box.width / columns, y, left.x0 + (n + 1) * box.width / columns, top)
+            at = complex(project.study.positions.points[_hinge(of, index)].at(k))
+            frame = Frame(scale, complex(place.centre.real, top - (NAME + float(up)) * shrunk) - scale.mm(at))
+            if index in of.moments:
+                _turning(project, canvas, place, frame, index, step, force)
+            else:
+                _sliding(project, canvas, place, frame, index, step, force, half)
+            _said(canvas, place, _told(project, of, index, force, k))
+
+
+def _reach(of: Friction, index: str, force: complex, k: int, scale: Scale, half: float) -> tuple[float, float]:
+    """How far what is drawn of a pair reaches above and below its middle, mm; ``half`` a length of a guide."""
+    u = force / abs(force) if force else 0j
+    if index in of.moments:
+        journal = scale.mm(float(of.radii[_hinge(of, index)].args[1]))
+        ends = [1j * (journal + 4.0), -1j * (journal + 4.0), (journal + 14.0) * u]
+    else:
+        normal = u * complex(np.exp(-1j * float(of.deviations[index].at(k)))) if force else 1j
+        ends = [a * half * 1j * normal + b * (half / 6 + 8.0) * normal for a in (1, -1) for b in (1, -1)]
+        ends.append((half + ARROW / 4) * u)
+    return max(z.imag for z in ends), -min(z.imag for z in ends)
 
 
 def _turning(project: Project, canvas: Canvas, box: Box, frame: Frame, index: str, step: Step, force: complex) -> None:
@@ -247,7 +266,7 @@ def _told(project: Project, of: Friction, index: str, force: complex, k: int) ->
 
 def _said(canvas: Canvas, box: Box, lines: list[str]) -> None:
     height = size_for(lines, box.width - 4.0, 3.5)
-    canvas.lines(complex(box.centre.real, box.y0 + 3.0 + 6.0 * (len(lines) - 1)), lines, 6.0, height, "centre")
+    canvas.lines(complex(box.centre.real, box.y0 + 3.0 + APART + 6.0 * (len(lines) - 1)), lines, 6.0, height, "centre")
 
 
 def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
