@@ -126,7 +126,9 @@ def _head(t: Trace, paper: _Paper) -> Head:
     there = paper.widening(t.element, begin, tip)
     # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
     alone = not any(abs(z - begin) < _length(t.element) for z in paper.tips)
-    if _is_head(t.element, there) and (bare or alone):
+    # Two lines that part at a small angle widen as a head does, up to where they are told apart: a whole head must be seen.
+    whole = not np.isnan(_share(t.element, there))
+    if whole and _is_head(t.element, there) and (bare or alone):
         return "reversed"
     return "absent" if bare else "unknown"
 

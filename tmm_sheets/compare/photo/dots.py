@@ -16,6 +16,7 @@ from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
 from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.drawing.marks import Points
 
 REACH, FAR = 1.7, 6.0
 """mm about the place of a dot that are looked at, and within which a spot may be this dot."""
@@ -27,8 +28,8 @@ SIZES = 0.45, 2.8
 """Area of a spot as a share of that of the dot."""
 WIDER, ROUND, FULL = 1.0, 2.0, 0.6
 """mm by which a spot may be wider than the dot, how much longer than wide, and the least share of its rectangle that it fills."""
-ALONE = 0.9
-"""mm about a spot without other ink."""
+ALONE, ROOM = 0.9, 2.5
+"""mm about a spot without other ink; mm beyond the farthest spot that are looked at."""
 FAINT, DARK, SMALL_DARK, SMALL = 0.3, 0.6, 0.35, 0.45
 """Darkness from which on a place belongs to a spot, and least darkness of a spot and of a dot in its place, as shares of the
 lines'; the same of dots of less than the radius, mm, which blur makes pale."""
@@ -60,31 +61,39 @@ def displaced_dots(
     usual
         How dark lines usually are.
     """
-    import cv2
-
-    free = np.maximum(taken, words) == 0
-    seen = ((ink > FAINT * usual) & free).astype(np.uint8)
-    _, _, stats, middles = cv2.connectedComponentsWithStats(seen, connectivity=8)
-    w, h, area = (stats[:, k].astype(np.float64) for k in (cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT, cv2.CC_STAT_AREA))
-    spots = np.flatnonzero((np.maximum(w, h) <= ROUND * np.minimum(w, h)) & (area > FULL * w * h) & (area < (4 * SCALE) ** 2))
-    spots = spots[np.array([_alone(seen, stats[k]) for k in spots], bool)]
-    w, h, area, middles = w[spots], h[spots], area[spots], middles[spots]
-    z = (middles[:, 0] + 0.5) / SCALE + 1j * (PAPER.y1 - (middles[:, 1] + 0.5) / SCALE)
-    touched = cv2.boxFilter(free.astype(np.float32), -1, (TOUCHED, TOUCHED))
-    clear = np.array([touched[round(y), round(x)] > 0.999 for x, y in middles], bool)
-    dark = sample(cv2.dilate(ink, np.ones((3, 3), np.uint8)), pixels(z))
     out = []
     for e in some:
-        size, far = np.pi * e.radius**2 * SCALE**2, np.abs(z - e.centre)
         least = usual * (SMALL_DARK if e.radius < SMALL else DARK)
-        sized = (area > SIZES[0] * size) & (area < SIZES[1] * size) & (np.maximum(w, h) < (2 * e.radius + WIDER) * SCALE)
-        like = sized & (far < FAR) & (far > max(LEAST, e.radius + ASIDE)) & (dark > least) & ~at(z, hidden)
-        if e.radius < SMALL:  # or it may be the end of a line that was drawn over
-            like &= clear
-        if like.any() and not _in_place(e, lines, ink, words, least):
-            by = complex(z[like][far[like].argmin()]) - e.centre
+        spots = _spots(e, taken, ink, words, FAINT * usual, least)
+        spots = spots[~at(spots, hidden)]
+        if len(spots) and not _in_place(e, lines, ink, words, least):
+            by = complex(spots[np.abs(spots - e.centre).argmin()]) - e.centre
             out.append(Trace(e, "beside", by, deviation=abs(by), at=np.asarray(e.points + by)))
     return out
+
+
+def _spots(e: Element, taken: Any, ink: Any, words: Any, faint: float, least: float) -> Points:
+    """Middles of spots about a dot's place that may be this dot: from ``faint`` on they are seen, ``least`` dark in the middle."""
+    import cv2
+
+    middle, half = complex(pixels(np.array([e.centre]))[0]), round((FAR + ROOM) * SCALE)
+    top, left = max(round(middle.imag) - half, 0), max(round(middle.real) - half, 0)
+    here = (slice(top, round(middle.imag) + half), slice(left, round(middle.real) + half))
+    free = (np.maximum(taken[here], words[here]) == 0).astype(np.uint8)
+    seen = (ink[here] > faint).astype(np.uint8) & free
+    # The end of a line that was drawn over is no small dot.
+    clear = cv2.erode(free, np.ones((TOUCHED, TOUCHED), np.uint8)) > 0
+    _, labels, stats, middles = cv2.connectedComponentsWithStats(seen, connectivity=8)
+    size, out = np.pi * e.radius**2 * SCALE**2, []
+    for k in range(1, len(stats)):
+        w, h, area = (int(n) for n in stats[k, 2:])
+        z = complex((left + middles[k, 0] + 0.5) / SCALE, PAPER.y1 - (top + middles[k, 1] + 0.5) / SCALE)
+        round_ = max(w, h) <= min(ROUND * min(w, h), (2 * e.radius + WIDER) * SCALE) and area > FULL * w * h
+        if (round_ and SIZES[0] * size < area < SIZES[1] * size and max(LEAST, e.radius + ASIDE) < abs(z - e.centre) < FAR
+                and int(ink[here][labels == k].max()) > least and _alone(seen, stats[k])
+                and (e.radius >= SMALL or clear[round(middles[k, 1]), round(middles[k, 0])])):  # fmt: skip
+            out.append(z)
+    return np.array(out, complex)
 
 
 def _alone(seen: Any, box: Any) -> bool:

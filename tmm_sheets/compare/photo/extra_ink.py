@@ -54,12 +54,23 @@ def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: floa
     """
     free = np.where(words > 0, np.uint8(0), left)
     out = _regions(free, level, straight=False)
-    strokes = [] if wiped is None else _strokes(left, wiped, max(level, dark))
-    for x in (*_regions(left, level, straight=True), *strokes):
-        if all(max(abs(x.middle.real - y.middle.real) - (x.width + y.width) / 2,
-                   abs(x.middle.imag - y.middle.imag) - (x.height + y.height) / 2) > 0 for y in out):
+    for x in _regions(left, level, straight=True):
+        if all(not _in_common(x, y) for y in out):
             out.append(x)
-    return sorted(_without_creases(out), key=lambda q: -q.length)
+    smooth = _without_creases(out)
+    creases = [x for x in out if x not in smooth]
+    for x in [] if wiped is None else _strokes(left, wiped, max(level, dark)):
+        crease = min(x.width, x.height) <= CREASE and (x.length > SPAN or any(_in_common(x, y) for y in creases))
+        if not crease and all(_in_common(x, y) <= 0.5 * x.length for y in smooth):
+            smooth.append(x)
+    return sorted(smooth, key=lambda q: -q.length)
+
+
+def _in_common(x: ExtraInk, y: ExtraInk) -> float:
+    """Diagonal of the rectangle that two regions have in common, mm."""
+    w = (x.width + y.width) / 2 - abs(x.middle.real - y.middle.real)
+    h = (x.height + y.height) / 2 - abs(x.middle.imag - y.middle.imag)
+    return hypot(min(w, x.width, y.width), min(h, x.height, y.height)) if min(w, h) > 0 else 0.0
 
 
 def _without_creases(some: list[ExtraInk]) -> list[ExtraInk]:
