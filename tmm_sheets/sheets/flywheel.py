@@ -43,7 +43,7 @@ _BELOW = 7.0  # room of position numbers beside an axis
 
 def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Technological forces over the crank angle; where one begins or ends the moment graph is cut off."""
-    fw: Flywheel = project.flywheel
+    fw = with_tangents(project)  # the first view of its sheets: what is said of another method comes before what lacks room
     s, r = fw.scales, fw.reduced
     names = list(r.forces_at(fw.samples[:1]))
     one, many, letter_of, unit = (
