@@ -19,6 +19,7 @@ from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
+from tmm_sheets.sheets.flywheel import force_graph
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 
@@ -185,5 +186,12 @@ def test_the_graph_of_excess_energy_is_never_a_line():
     texts = [m for m in sheet.drawing.marks if isinstance(m, Text)]
     # What its ordinates are against those of the other graph is said right under either title.
     for title, said in (("График суммарной работы", "Ординаты ΔE увеличены"), ("Диаграмма", "уменьшены в 50 раз")):
-        (above,), (beneath,) = ([m.at for m in texts if m.text.startswith(words)] for words in (title, said))
+        (above,), (beneath,) = ([m.at for m in texts if words in m.text] for words in (title, said))
         assert 0 < (above - beneath).imag < 30
+
+
+def test_the_first_view_says_that_the_sheet_is_of_another_method():
+    """Not that its moments lack room: nobody could make use of that."""
+    other = SimpleNamespace(flywheel=SimpleNamespace(method="mertsalov"))
+    with pytest.raises(CannotBuild, match="wittenbauer"):
+        force_graph(other, Canvas(), Box(0, 0, 100, 100), {"axis": 20})

@@ -4,7 +4,8 @@ import pytest
 
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box, Text
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -38,3 +39,13 @@ def test_a_scale_factor_is_no_larger_than_its_title(width):
     canvas.title(Box(0.0, 0.0, width, 100.0), "Acceleration polygon (position 8)", "μ_a = 2 mm")
     title, *_, factor = (m for m in canvas.marks if isinstance(m, Text) and m.height >= 2.5)
     assert factor.height <= title.height
+
+
+@pytest.mark.parametrize(("name", "n"), [("loom", 3), ("screen", 3), ("lugansk/shaper", 2), ("tests/projects/planer.toml", 2)])
+def test_the_title_of_the_energy_mass_diagram_is_as_large_as_the_others_and_no_line_runs_through_it(name, n):
+    drawing = composed(Project(read(name)), n).drawing
+    (title,) = (m for m in drawing.marks if isinstance(m, Text) and m.text.startswith("Диаграмма энергомасс"))
+    assert title.height == 5.0
+    box = Box.around(text_box(title))
+    upright = [(m.a.real, *sorted((m.a.imag, m.b.imag))) for m in drawing.marks if isinstance(m, Line) and m.style != "text"]
+    assert not [x for x, low, high in upright if box.x0 < x < box.x1 and low < box.y0 and high > box.y1]

@@ -43,7 +43,7 @@ _BELOW = 7.0  # room of position numbers beside an axis
 
 def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Technological forces over the crank angle; where one begins or ends the moment graph is cut off."""
-    fw: Flywheel = project.flywheel
+    fw = with_tangents(project)  # the first view of its sheets: what is said of another method comes before what lacks room
     s, r = fw.scales, fw.reduced
     names = list(r.forces_at(fw.samples[:1]))
     one, many, letter_of, unit = (
@@ -295,10 +295,10 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     turned = _inertia_graph(fw, Box(*options["inertia"]), options)
     g = graphs.Graph(complex(options["axis"], energy.origin.imag))
     points = plan["points"].value
-    # The title stands in the widest gap between the lines that come down from the graph of J.
+    # The title stands in the widest gap between the lines that come down from the graph of J; too wide for it, it interrupts them.
     cuts = np.unique(np.append(g(points).real, (g.origin.real, box.x1)))
     widest = int(np.argmax(np.diff(cuts)))
-    gap = Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1)
+    gap = _for_title(Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), g.origin.real, box.x1)
     title = _narrow_title(canvas, gap, f"{s.energy}", f"{s.inertia}")
     if scale is not s.energy:
         title = _beneath(canvas, title, _enlarged(scale.mu / s.energy.mu))
@@ -310,8 +310,13 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     for k, p in enumerate(points[:-1]):
         here = of.position(k)
         # Produced to the graphs that they come from; a graph of another scale stands elsewhere.
-        for origin in (*([energy(complex(x[k], p.imag))] if scale is s.energy else []), turned(masses[k])):
-            here.line("points", origin, g(p))
+        if scale is s.energy:
+            here.line("points", energy(complex(x[k], p.imag)), g(p))
+        above, below = complex(turned(masses[k])), complex(g(p))
+        if gap.x0 + 0.5 < below.real < gap.x1 - 0.5 and below.imag < title.y1:
+            here.line("points", above, complex(above.real, gap.y1 + 1.0))
+            above = complex(above.real, title.y1 + 1.5)
+        here.line("points", above, below)
         here.dot("points", 0.7, "main")
     for near in together(points[:-1], 1.0):
         away = points[near[0]] - middle
@@ -322,7 +327,7 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     pen.arrow(g(-12.0), g(reach), "axis", 3.0)
     pen.label(g(reach), tr("J^red, kg·m^2"), -1 + 1j, 3.5, 1.5, leader=False)
     pen.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
-    pen.text(g(1j * (high + graphs.OVER)) + 2, tr("ΔE, J"), 3.5)
+    pen.label(g(1j * (high + graphs.OVER)), tr("ΔE, J"), 1, 3.5, 2.0, leader=False)
     beside = abs(fw.ab_mm) < 12.0
     for name, end in (("max", "a"), ("min", "b")):
         cut, u = plan[end].value, plan[f"t_{name}"].value
@@ -347,6 +352,15 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
 def _of_segment(fw: Wittenbauer) -> str:
     """Length of ab, mm, as it stands at the diagram and in the formulas."""
     return fixed(fw.ab_mm, 2) if abs(fw.ab_mm) >= 10 else number(fw.ab_mm, 4)
+
+
+def _for_title(gap: Box, low: float, high: float) -> Box:
+    """A gap, widened inside of ``low`` .. ``high`` to what the title of the diagram needs."""
+    lack = letter(tr("Energy-mass diagram"), 5.0).width + 2.0 - gap.width
+    if lack <= 0 or high - low < gap.width + lack:
+        return gap
+    x0 = min(max(gap.x0 - lack / 2, low), high - gap.width - lack)
+    return Box(x0, gap.y0, x0 + gap.width + lack, gap.y1)
 
 
 def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:

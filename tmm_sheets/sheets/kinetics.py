@@ -227,7 +227,7 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
         if 0.05 < length < max(box.width, box.height):
             said.append(tr("ΣM_{centre} = 0: h_{{{index}}} = {value} mm").format(centre=about, index=pair, value=fixed(length, 1)))
     if said:
-        _fitted(canvas, complex(box.x0 + 2.0, box.y0), "; ".join(said), 3.5, box.width - 4.0, "left")
+        _fitted(canvas, complex(box.centre.real, box.y0), "; ".join(said), 3.5, box.width - 4.0)
 
 
 def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
