@@ -50,17 +50,25 @@ def project(reduced, form="rim"):
     return SimpleNamespace(flywheel=flywheel(reduced, data), reduced=reduced)
 
 
+COLUMN = ("force_graph", "moments", "works")
+
+
 def draw(p, only=None):
     canvas = Canvas()
+    wanted = "column" if only in COLUMN else only
     for view in VIEWS:
         module, name = view["draw"].split(".")
-        if only in (None, name):
+        if wanted in (None, name):
             getattr(import_module(f"tmm_sheets.sheets.{module}"), name)(p, canvas, Box(*map(float, view["box"])), view)
+    if only in COLUMN:
+        k = next(k for k, part in enumerate(canvas.parts) if part.draw == f"flywheel.{only}")
+        end = canvas.parts[k + 1].first if k + 1 < len(canvas.parts) else len(canvas.marks)
+        canvas.marks[:] = canvas.marks[canvas.parts[k].first:end]
     return canvas
 
 
 def option(name, key):
-    return next(v[key] for v in VIEWS if v["draw"] == f"flywheel.{name}")
+    return next(v[key] for v in VIEWS if v["draw"] == f"flywheel.{'column' if name in COLUMN else name}")
 
 
 def reach(marks):
@@ -163,7 +171,14 @@ def dense(points):
     return np.concatenate(parts)
 
 
-@pytest.mark.parametrize("name", ["force_graph", "moments", "works", "total_work", "inertia"])
+def test_an_axis_longer_than_its_place_is_refused():
+    view = next(v for v in VIEWS if v["draw"] == "flywheel.column")
+    x0, y0, x1, y1 = view["box"]
+    with pytest.raises(CannotBuild, match=r"view flywheel\.column needs \d+ mm more width"):
+        import_module("tmm_sheets.sheets.flywheel").column(project(Shaper()), Canvas(), Box(x0, y0, x1 - 40, y1), view)
+
+
+@pytest.mark.parametrize("name", ["column", "total_work", "inertia"])
 def test_a_place_that_is_too_small_is_refused(name):
     view = next(v for v in VIEWS if v["draw"] == f"flywheel.{name}")
     x0, y0, x1, _ = view["box"]

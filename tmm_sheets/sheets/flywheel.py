@@ -8,6 +8,7 @@ graph of dE and under the turned graph of J: its options ``energy`` and ``inerti
 from __future__ import annotations
 
 from cmath import rect
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import degrees, pi
 from string import ascii_lowercase
@@ -39,6 +40,51 @@ CROWD = 4
 FELT = 0.02
 """Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
 _BELOW = 7.0  # room of position numbers beside an axis
+
+
+Stacked = tuple[Callable[..., None], float, float]
+"""A graph of a column: what draws it, the height of its ordinates and what it needs under them, mm."""
+
+
+def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Forces, moments and works one under another."""
+    fw: Flywheel = project.flywheel
+    lines = [line for name in fw.reduced.forces_at(fw.samples[:1]) for line in _acting(fw, name)]
+    forces = np.concatenate([np.zeros(1), *(line.imag for line in lines)])
+    parts = (force_graph, float(np.ptp(forces)), _BELOW), *of_moments(fw)
+    stacked(project, canvas, box, options, "flywheel.column", [(_view(draw), height, below) for draw, height, below in parts])
+
+
+def _view(draw: Callable[..., None]) -> Callable[..., None]:
+    """One graph of the column as a view of its own."""
+    def begun(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+        canvas.of = f"flywheel.{draw.__name__}"
+        canvas.begin(box, "", canvas.of)
+        draw(project, canvas, box, options)
+
+    return begun
+
+
+def of_moments(fw: Flywheel) -> tuple[Stacked, Stacked]:
+    """The graphs of moments and works as parts of a column."""
+    moment = np.concatenate(([0.0, fw.M_constant], *(fw.at_samples.moment(side).value for side in (1, -1))))
+    work = np.append(fw.work_curve(fw.samples), (0.0, fw.driving_plan["K"].value.imag))
+    # The constant moment is lettered above its line.
+    return (moments, float(np.ptp(fw.scales.moment.mm(moment))) + 6.0, 4.0), (works, float(np.ptp(work)), 4.0)
+
+
+def stacked(project: Any, canvas: Canvas, box: Box, options: Options, name: str, views: Sequence[Stacked]) -> None:
+    """Graphs one under another, each as high as it is, the room left over between them."""
+    over = graphs.OVER + graphs.HEAD
+    spare = (box.height - sum(height + below + over for _, height, below in views)) / (len(views) - 1)
+    graphs.check_room(box, box.y1 - min(spare, 0.0) * (len(views) - 1), name)
+    fw: Flywheel = project.flywheel
+    graphs.check_width(box, options["axis"] + fw.scales.angle.mm(fw.reduced.period) + graphs.OVER, name)
+    top = box.y1
+    for view, height, below in views:
+        low = top - height - below - over
+        view(project, canvas, Box(box.x0, low, box.x1, top), options)
+        top = low - spare
 
 
 def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -198,7 +244,7 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     end = fw.driving_plan["K"].value
     curve = s.angle.mm(fw.samples) + 1j * fw.work_curve(fw.samples)
     low, high = min(0.0, end.imag, curve.imag.min()), max(0.0, end.imag, curve.imag.max())
-    g = graphs.Graph(complex(options["axis"], (box.y0 + box.y1 - (low + high)) / 2))
+    g = graphs.Graph(complex(options["axis"], box.y0 + 4.0 - low))
     graphs.check_room(box, g.origin.imag + high, "flywheel.works")
     of, drive = (stage(canvas, p, None, g.place()) for p in (fw.work_plan, fw.driving_plan))
     of.curve("A(φ)", g(curve))

@@ -14,6 +14,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, PlacedFrame
 from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.drawing.title_block import TURNED
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import tell, tr
@@ -66,13 +67,22 @@ def check_room(box: Box, top: float, view: str) -> None:
             tell("make its box in the arrangement larger; for a four-stroke engine take the arrangement engine_2"))
 
 
+def check_width(box: Box, right: float, view: str) -> None:
+    """Refuse a place that ends to the left of what has to be drawn."""
+    if right > box.x1 + 0.5:
+        raise CannotBuild(
+            tell("view {view} needs {lack:.0f} mm more width than its place has").format(view=view, lack=right - box.x1),
+            tell("make its box in the arrangement larger; for a four-stroke engine take the arrangement engine_2"))
+
+
 def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str, under: str = "") -> None:
     """Title and scale factor on one line over the angle axis: the left column has no height to give away.
 
-    ``under`` is said of the graph's ordinates right beneath.
+    A long one begins at the left of the axis, under the turned designation. ``under`` is said of the graph's ordinates right
+    beneath.
     """
-    x0 = options["axis"]
-    for size in (5.0, 3.5, 2.5):
+    left = box.x0 if box.y1 < TURNED.y0 else max(box.x0, min(TURNED.x1 + 4.0, options["axis"]))
+    for size, x0 in ((5.0, options["axis"]), (5.0, left), (3.5, left), (2.5, left)):
         name, scale = letter(title, size), letter(factor, size)
         if x0 + name.width + scale.width + 8 <= box.x1:
             break

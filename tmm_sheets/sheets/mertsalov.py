@@ -7,7 +7,6 @@ options ``energies`` (change, second group, first group) and ``inertia`` are the
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import degrees
 from typing import TYPE_CHECKING, Any, cast
 
@@ -60,23 +59,10 @@ def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """All graphs one under another: moments, works, energies, inertia; each as high as it is, the room left over between them."""
     fw = _procedure(project)
     s = fw.scales
-    work = np.append(fw.work_curve(fw.samples), (0.0, fw.driving_plan["K"].value.imag))
-    moment = np.concatenate(([0.0, fw.M_constant], *(fw.at_samples.moment(side).value for side in (1, -1))))
     energy = np.concatenate(([0.0], fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))))
-    views: list[tuple[Callable[..., None], float, float]] = [
-        # The constant moment is lettered above its line.
-        (flywheel.moments, float(np.ptp(s.moment.mm(moment))) + 6.0, 4.0), (flywheel.works, float(np.ptp(work)), 4.0),
-        (energies, float(np.ptp(energy)), 8.0),
-        (inertia, float(s.inertia.mm(fw.inertia(fw.samples)).max()) + (LEGEND if len(_terms(fw)) > NAMED else 0.0), 8.0)]
-    over = graphs.OVER + graphs.HEAD
-    spare = (box.height - sum(height + below + over for _, height, below in views)) / (len(views) - 1)
-    graphs.check_room(box, box.y1 - min(spare, 0.0) * (len(views) - 1), "mertsalov.column")
-    top = box.y1
-    for view, height, below in views:
-        low = top - height - below - over
-        # The works stand in the middle of their place, which so reaches as far below them as above.
-        view(project, canvas, Box(box.x0, low - (over - below if view is flywheel.works else 0.0), box.x1, top), options)
-        top = low - spare
+    flywheel.stacked(project, canvas, box, options, "mertsalov.column", [
+        *flywheel.of_moments(fw), (energies, float(np.ptp(energy)), 8.0),
+        (inertia, float(s.inertia.mm(fw.inertia(fw.samples)).max()) + (LEGEND if len(_terms(fw)) > NAMED else 0.0), 8.0)])
 
 
 def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:

@@ -148,18 +148,19 @@ class ReducedData(Protocol):
 class DiagramSpace:
     """Room for the diagrams on paper, mm: length of the angle axis and extents of the ordinates.
 
-    ``stack`` is the room of moment, work, energy and inertia together where they stand one under another; then the extents of
-    each are the most it may have.
+    ``stack`` is the room together of the first ``stacked`` of moment, work, energy and inertia, which stand one under another:
+    the extents of each are the most it may have.
     """
 
-    angle: float = 256.0
-    force: float = 30.0
-    moment: float = 56.0
+    angle: float = 215.0
+    force: float = 22.0
+    moment: float = 130.0
     work: float = 200.0
     energy: float = 186.0
     inertia: float = 225.0
-    pole: tuple[float, float] = (25.0, 50.0)
-    stack: float = 0.0
+    pole: tuple[float, float] = (25.0, 85.0)
+    stack: float = 260.0
+    stacked: int = 2
 
 
 @dataclass(frozen=True)
@@ -436,7 +437,7 @@ class Flywheel(ABC):
             raise CannotBuild(tell("a flywheel needs links with masses"),
                               tell("add mass, centre and inertia to [[link]] of the project file"))
         spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), heaviest)
-        mu_m, mu_a, mu_e, mu_j = _stacked(spans, mu_phi, space) if space.stack else _alone(spans, mu_phi, space)
+        mu_m, mu_a, mu_e, mu_j = _scaled(spans, mu_phi, space)
         return FlywheelScales(
             angle=Scale("μ_φ", mu_phi, tr("rad/mm")),
             force=fit(*(("μ_M′", tr("N·m/mm")) if reduced.forces_are_moments else ("μ_F", tr("N/mm"))), largest, space.force),
@@ -1150,37 +1151,25 @@ def _next_handy(mu: float) -> float:
 Four = tuple[float, float, float, float]
 
 
-def _alone(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
-    """Scale factors of moment, work, energy and inertia, each for its own room; those of moment and work suit the pole."""
-    mu_m, mu_a, mu_e, mu_j = (handy(span / room) for span, room in
-                              zip(spans, (space.moment, space.work, space.energy, space.inertia), strict=True))
-    while not space.pole[0] <= (pole := mu_a / (mu_m * mu_phi)) <= space.pole[1]:
-        if pole > space.pole[1]:
-            mu_m = _next_handy(mu_m)
-        else:
-            mu_a = _next_handy(mu_a)
-    return mu_m, mu_a, mu_e, mu_j
+def _scaled(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
+    """Scale factors of moment, work, energy and inertia; those of moment and work suit the pole.
 
-
-def _stacked(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
-    """The same for graphs one under another: of all that fit together those with the greatest product of heights.
-
-    The moments are what everything else comes from: where they can, they get ``READABLE`` first.
+    Of all with which the graphs one under another fit together those with the greatest product of their heights. The moments are
+    what everything else comes from: where they can, they get ``READABLE`` first. What stands alone fills its own room.
     """
     series = []
     for span, room in zip(spans, (space.moment, space.work, space.energy, space.inertia), strict=True):
         series.append([handy(span / room)])
-        for _ in range(STEPS):
+        for _ in range(STEPS if len(series) <= space.stacked else 0):
             series[-1].append(_next_handy(series[-1][-1]))
     mu = np.meshgrid(*series, indexing="ij", sparse=True)
     heights = [span / m for span, m in zip(spans, mu, strict=True)]
     pole = mu[1] / (mu[0] * mu_phi)
-    fitting = (sum(heights) <= space.stack) & (pole >= space.pole[0]) & (pole <= space.pole[1])
+    fitting = (sum(heights[:space.stacked]) <= space.stack) & (pole >= space.pole[0]) & (pole <= space.pole[1])
     # A pole distance that a ruler lays off, in half millimetres, where there is one.
-    laid_off = fitting & (np.abs(2 * pole - np.round(2 * pole)) < 1e-6)
-    fitting = laid_off if laid_off.any() else fitting
-    readable = fitting & (heights[0] >= READABLE)
-    products = np.where(readable if readable.any() else fitting, np.prod(np.broadcast_arrays(*heights), axis=0), 0.0)
+    for wanted in (heights[0] >= READABLE, np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
+        fitting = fitting & wanted if (fitting & wanted).any() else fitting
+    products = np.where(fitting, np.prod(np.broadcast_arrays(*heights), axis=0), 0.0)
     best = np.unravel_index(int(np.argmax(products)), products.shape)
     mu_m, mu_a, mu_e, mu_j = (of[int(i)] for of, i in zip(series, best, strict=True))
     return mu_m, mu_a, mu_e, mu_j
