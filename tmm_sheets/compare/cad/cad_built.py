@@ -110,13 +110,15 @@ def _explained(drawn: DrawnPlan, errors: Errors, space: DrawingSpace, move: Plac
     usual = _share(drawn, space.lines, move, drawn.points)
     found = [_Found(_share(drawn, space.lines, move, points), points, h) for h, points in _mistakes(drawn, errors, before)]
     best = max((f.share for f in found), default=0.0)
-    if best < MOST or not explains(usual, best):
-        found += [_Found(_share(drawn, space.lines, move, points, vanishing=False), points, said)
-                  for points, said in _points_off(drawn, errors, space, move)]
-        best = max((f.share for f in found), default=0.0)
+    if best >= MOST and explains(usual, best):
+        return next(f for f in found if f.share >= AS_GOOD * best)
+    found += [_Found(_share(drawn, space.lines, move, points), points, said)
+              for points, said in _points_off(drawn, errors, space, move)]
+    best = max((f.share for f in found), default=0.0)
     if best < MOST or not explains(usual, best):
         return None
-    return next(f for f in found if f.share >= AS_GOOD * best)
+    # A point may lie on another one, or on another vector: that only makes what is wrong disappear.
+    return max((f for f in found if f.share >= AS_GOOD * best), key=lambda f: _ink(drawn, space.lines, move, f.points))
 
 
 def _mistakes(drawn: DrawnPlan, errors: Errors, told: Sequence[Hypothesis]) -> Iterator[tuple[Hypothesis, Sequence[PlanPoint]]]:
@@ -146,21 +148,23 @@ def _points_off(drawn: DrawnPlan, errors: Errors, space: DrawingSpace, move: Pla
                     yield points, said.format(point=letter_of(step), distance=millimetres(off * move.scale))
 
 
-def _share(drawn: DrawnPlan, theirs: KnownLines, move: Placing, points: Sequence[PlanPoint], vanishing: bool = True) -> float:
-    """Share of a plan's vectors, by length, that have ink where its points come to lie.
-
-    A mistake may make vectors ``vanishing``; a point that lies on another one instead only makes what is wrong disappear.
-    """
+def _share(drawn: DrawnPlan, theirs: KnownLines, move: Placing, points: Sequence[PlanPoint]) -> float:
+    """Share of a plan's vectors, by length, that have ink where its points come to lie; what becomes too short is not drawn."""
     inked = whole = 0.0
     for e in drawn.vectors:
         line = between(e, points)
         size = max(abs(line[1] - line[0]), e.length)
-        drawn_at_all = abs(line[1] - line[0]) > DRAWN
-        if size > DRAWN and (drawn_at_all or not vanishing):
+        if abs(line[1] - line[0]) > DRAWN:
             weight = min(size, WEIGHT)
             whole += weight
-            inked += weight * (drawn_at_all and _inked(theirs, move, line) >= WHOLE)
+            inked += weight * (_inked(theirs, move, line) >= WHOLE)
     return inked / whole if whole else 0.0
+
+
+def _ink(drawn: DrawnPlan, theirs: KnownLines, move: Placing, points: Sequence[PlanPoint]) -> int:
+    """How much ink a plan's vectors have together where its points come to lie, in places of a millimetre."""
+    some = np.concatenate([sampled(np.asarray(move(between(e, points))), 0.5)[0] for e in drawn.vectors])
+    return len(np.unique(np.round(some[theirs.nearest(some, NEAR)[2]])))
 
 
 def _inked(theirs: KnownLines, move: Placing, line: Points) -> float:
