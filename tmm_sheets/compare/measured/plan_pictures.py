@@ -56,7 +56,7 @@ class PlanPictures:
     def picture(self, start: Judged) -> Picture | None:
         """The plan that a mistake shows in at its position; None where that is no plan of points."""
         plan, mu = self.plans.get(start.entry.plan, (None, 1.0))
-        if plan is None or not (start.entry.is_distance or start.entry.is_way):
+        if plan is None or start.entry.kind not in ("length", "angle"):
             return None
         k = start.at
         lines = [(s.tail, s.head) for s in plan.segments] or [
@@ -76,7 +76,7 @@ class PlanPictures:
         drawn = laid_out(fixed, wrong, self._ties(start, at))
         off = [_line(wrong, pair) for pair in lines if np.abs(_line(wrong, pair) - _line(at, pair)).max() > SHOWS]
         head = start.entry.terms[-1][0]
-        places = ((drawn.get(head, wrong.get(head, origin)), 0.03 * float(size), letter_of(head)),)
+        places = ((drawn.get(head, wrong[head]), 0.03 * float(size), letter_of(head)),) if head in at else ()
         return Picture(tuple(_line(at, pair) for pair in lines),
                        tuple(_line(drawn, pair) for pair in lines if pair[0] in drawn and pair[1] in drawn), tuple(off), places)
 
