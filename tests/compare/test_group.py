@@ -120,3 +120,12 @@ def test_an_empty_folder(tmp_path):
 def test_a_bad_scheme(tmp_path, was, now, said):
     with pytest.raises(BadInput, match=said):
         scheme(tmp_path, SCHEME.replace(was, now))
+
+
+def test_students_stand_in_the_order_of_a_register(tmp_path):
+    """Ukrainian and Russian letters are not in the order of their codes, capitals count as others."""
+    names = ["Андрієнко", "бойко", "Гнатюк", "Ґудзь", "Ежов", "Ёлкин", "Єременко", "Жук", "Ильин", "Іваненко", "Їжак", "Яценко"]
+    for name in reversed(names):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "sheet 1.dxf").write_bytes(b"")
+    assert list(group._works(tmp_path)) == names

@@ -100,6 +100,18 @@ def test_an_arrow_keeps_its_head_in_a_view_of_another_scale(times):
     assert abs(now.b - now.a) == pytest.approx(times * e.length - head)
 
 
+def test_a_short_arrow_in_a_small_view_has_no_shaft_beyond_its_tip():
+    """Its shaft ended nearer to the tail than to the tip; where there is no room for the head the whole line is its shaft."""
+    shortest = min((e for e in KNOWN.elements if e.role == "vector" and e.arrow and e.kind == "line" and len(e.fills) == 1
+                    and e.length > 5), key=lambda e: e.length)
+    for times in (0.2, 0.4, 0.6, 0.9, 2.0):
+        small = moved(shortest, Placing(times + 0j, 7 + 3j))
+        (shaft,) = (m for m in small.marks if isinstance(m, Line))
+        along = (np.array([shaft.a, shaft.b]) - small.points[0]) / (small.points[-1] - small.points[0])
+        assert along.real.min() > -1e-9
+        assert along.real.max() < 1 + 1e-9
+
+
 @pytest.mark.parametrize(("title", "other"), [("Положение 9", True), ("ПЛАН СКОРОСТЕЙ ПОЛ. 9", True), ("Положение 3", False),
                                               ("План сил звена 9", False)])
 def test_a_title_of_another_position_may_be_the_position_alone(title, other):

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from unicodedata import normalize
 
 from tmm_sheets import texts
 from tmm_sheets.compare.known_sheet import sheet_numbers
@@ -115,7 +116,7 @@ def _works(folder: Path) -> dict[str, list[Path]]:
     if not folder.is_dir():
         raise BadInput(Problem(tell("is no folder"), str(folder)))
     found: dict[str, list[Path]] = {}
-    for path in sorted(folder.rglob("*")):
+    for path in sorted(folder.rglob("*"), key=lambda path: [_alphabetically(part) for part in path.relative_to(folder).parts]):
         inside = path.relative_to(folder)
         if any(part.startswith((".", "__")) for part in inside.parts):
             continue  # what operating systems leave in folders and archives
@@ -128,6 +129,15 @@ def _works(folder: Path) -> dict[str, list[Path]]:
                                hint=tell("put each student's drawings (.dxf), measured numbers (.csv) and photographs (.jpg, .png, "
                                          ".pdf) into a folder of the student's name in it")))
     return found
+
+
+_AFTER = str.maketrans({"ё": "е\uffff", "ґ": "г\uffff", "є": "е\uffff", "і": "и\uffff", "ї": "и\uffff\uffff"})
+"""Letters that the alphabet has elsewhere than the code page: right after others."""
+
+
+def _alphabetically(name: str) -> tuple[str, str]:
+    """A name as a register is in order: capitals or not."""
+    return normalize("NFC", name).casefold().translate(_AFTER), name
 
 
 def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:

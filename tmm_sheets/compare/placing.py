@@ -102,12 +102,13 @@ def shafts(marks: Iterable[Mark], moved: Iterable[Mark], was: Points, now: Point
     along = now[-1] - now[0]
     turn = along / (was[-1] - was[0]) * abs(was[-1] - was[0]) / abs(along)
 
-    def end(z: complex) -> complex:
-        k = 0 if abs(z - was[0]) < abs(z - was[-1]) else -1
+    def end(z: complex, k: int) -> complex:
         return complex(now[k] + (z - was[k]) * turn)
 
     def shaft(m: Line) -> Line:
-        a, b = end(m.a), end(m.b)
+        # In a short arrow the shaft may end nearer to the tail than to the tip.
+        first = 0 if ((m.b - m.a) * np.conj(was[-1] - was[0])).real > 0 else -1
+        a, b = end(m.a, first), end(m.b, -1 - first)
         backwards = ((b - a) * np.conj((m.b - m.a) * turn)).real <= 0  # there is no room for the head
         return m._replace(a=complex(now[0]), b=complex(now[-1])) if backwards else m._replace(a=a, b=b)
 

@@ -45,7 +45,8 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
 
     def seen(view: ElementView) -> Drawing:
         move = moves.get(view, Placing())
-        return Drawing(lambda line: _inked(space.lines, move, line), move.back(tips).tolist(), move.scale)
+        return Drawing(lambda line: _inked(space.lines, move, line), lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
+                       move.back(tips).tolist(), move.scale)
 
     return built_plan.built_otherwise(project, known, wrong, seen, made)
 

@@ -168,10 +168,9 @@ class _Lost:
 
     def left_over(self) -> dict[ElementView, FoundView]:
         """The views of a line or two, without title or letters, that are found in the ink no other view has."""
-        left = [v for v in dict.fromkeys(e.view for e in self.known.elements) if v.n and v not in self.moves]
-        search = self._search(left)
+        search = self._search([v for v in dict.fromkeys(e.view for e in self.known.elements) if v.n and v not in self.moves])
         out: dict[ElementView, FoundView] = {}
-        for view in sorted(search.views, key=lambda v: -sum(e.length for e in search.main[v])):
+        for view in search.views:
             one = search.changed(view, search.main[view], 1, left_over=True) if search.enough() else None
             if one is not None and search.worth(view, one) >= SURE:
                 out[view] = one

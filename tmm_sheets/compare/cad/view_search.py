@@ -57,8 +57,8 @@ FEW_LINES = 3
 """Least number of lines by which a changed view is known."""
 MANY_LINES = 4
 """From so many lines on a view can be known without others."""
-TRIED = 10
-"""How many places of a view are looked at."""
+TRIED, TRIED_LAST = 10, 60
+"""How many places of a view are looked at, and how many in what the others leave."""
 MOST = 500
 """Most points of a view that are compared."""
 SCALES = tuple(sorted({a / b * 10.0**k for a in HANDY for b in HANDY for k in (-1, 0, 1) if 0.1 < a / b * 10.0**k < 10}))
@@ -210,17 +210,18 @@ class Search:
         """The places a view may be at, at a scale if that is known, on which a share of its lines agrees."""
         seen: list[Placing] = []
         middle = complex(self.points[v].mean())
-        for placing in _voted(_of_sheet(self.main[v]), self.shapes, middle, scale, agree):
+        most = TRIED_LAST if left_over else TRIED
+        for placing in _voted(_of_sheet(self.main[v]), self.shapes, middle, scale, agree, 4 * most):
             if agree and self.free.share(placing(self.points[v][::10]), 2.0) < agree:
                 continue
             fitted = _fitted(self.points[v], self.free, placing, scale)
-            if fitted is None or any(abs(fitted(middle) - p(middle)) < 1 and abs(fitted.scale / p.scale - 1) < 0.02 for p in seen):
+            if fitted is None or any(_alike(fitted, p, middle) for p in seen):
                 continue
             seen.append(fitted)
             one = self._judged(k, v, fitted, least, taken, left_over)
             if one is not None:
                 yield one
-            if len(seen) >= TRIED:
+            if len(seen) >= most:
                 return
 
     def _judged(self, k: int, v: ElementView, placing: Placing, least: int, taken: int, left_over: bool = False) -> _Try | None:
@@ -278,7 +279,17 @@ def distinct(elements: Iterable[Element]) -> int:
 
 def handy(placing: Placing) -> bool:
     """Whether one may have drawn at that scale: its ratio to ours is one of handy scale factors."""
-    return min(abs(placing.scale / r - 1) for r in SCALES) < 0.004
+    return abs(placing.scale / _handiest(placing) - 1) < 0.004
+
+
+def _handiest(placing: Placing) -> float:
+    """The nearest scale that one may have drawn at."""
+    return min(SCALES, key=lambda r: abs(placing.scale / r - 1))
+
+
+def _alike(a: Placing, b: Placing, middle: complex) -> bool:
+    """Whether two placings are one."""
+    return bool(abs(a(middle) - b(middle)) < NEAR and abs(a.scale / b.scale - 1) < ALIKE)
 
 
 def _some(points: Points) -> Points:
@@ -334,8 +345,8 @@ def _shapes(found: Sequence[Points]) -> _Shapes:
                    np.array(weight))
 
 
-def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None, agree: float = 0.0) -> Iterator[Placing]:
-    """Placings, at a scale if that is known, by how many of our lines agree on them, the best first; ``about`` is the middle.
+def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None, agree: float, most: int) -> Iterator[Placing]:
+    """The ``most`` placings, at a scale if that is known, on which lines of ours agree, the best first; ``about`` is the middle.
 
     ``agree`` is the least share of our lines, by weight, that has to.
     """
@@ -363,7 +374,7 @@ def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None, 
             best.setdefault(cell, []).append(n)
     weights = {cell: float(ours.weight[list(of)].sum()) for cell, of in votes.items()}
     least = agree * float(ours.weight.sum())
-    for cell in sorted((cell for cell, weight in weights.items() if weight >= least), key=lambda cell: -weights[cell])[: 4 * TRIED]:
+    for cell in sorted((cell for cell, weight in weights.items() if weight >= least), key=lambda cell: -weights[cell])[:most]:
         rows = np.array(best[cell])
         # The longest line tells the scale best.
         n = int(rows[ours.weight[i[rows]].argmax()])
@@ -376,7 +387,7 @@ def _fitted(ours: Points, theirs: KnownLines, start: Placing, known: float | Non
     if not 0.9 < nudged.scale / start.scale < 1.1 or abs(nudged.degrees) > 3:
         nudged = start
     middle = complex(ours.mean())
-    scale = known or min(SCALES, key=lambda r: abs(nudged.scale / r - 1))
+    scale = known or _handiest(nudged)
     if known is None and abs(nudged.scale / scale - 1) > 0.01:
         scale = nudged.scale
     level = Placing(complex(scale), complex(nudged(middle)) - scale * middle)

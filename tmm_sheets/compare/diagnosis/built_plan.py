@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.construction.error import Errors
@@ -85,9 +86,10 @@ class _Found:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A view of a drawing: what ink it has, the ends of its lines, mm of our sheet, and its scale, its mm by ours."""
+    """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; and its scale."""
 
     inked: Inked
+    ink: Callable[[Points], NDArray[np.bool_]]
     tips: Sequence[complex]
     scale: float = 1.0
 
@@ -166,7 +168,7 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
         out = []
         for m in mistakes:
             points = drawn.moved(replay(errors, [c for one in (*made, m) for c in one.changes]))
-            share = _share(drawn, drawing.inked, points, not isinstance(m.said, str)) if points else 0.0
+            share = _share(drawn, drawing.inked, points) if points else 0.0
             if share >= MOST and explains(usual, share):
                 out.append(_Found(share, points, m))
         return out
@@ -176,14 +178,19 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
         led_on += [replace(f, mistake=before[-1]) for f in tried(before[-1:], before[:-1])]
     if led_on:
         return max(led_on, key=lambda f: f.share)
-    for mistakes in ((_Mistake(h, h.changes) for h in possible([drawn], errors)), _points_off(drawn, drawing)):
-        found = tried(mistakes, before)
-        gains = [(more, f) for f in found if (more := gain(f.mistake)) > 0]
-        best = max((f.share for _, f in gains), default=0.0)
-        gains = [(more, f) for more, f in gains if f.share >= AS_GOOD * best]
-        if gains:
-            return next(f for more, f in gains if more >= AS_GOOD * max(m for m, _ in gains))
-    return None
+    usual_ones = _best(tried((_Mistake(h, h.changes) for h in possible([drawn], errors)), before), gain)
+    if usual_ones:
+        more = [gain(f.mistake) for f in usual_ones]
+        return next(f for f, m in zip(usual_ones, more, strict=True) if m >= AS_GOOD * max(more))
+    # A point may lie on another one, or on another vector: that only makes what is wrong disappear.
+    return max(_best(tried(_points_off(drawn, drawing), before), gain), key=lambda f: _ink(drawn, drawing, f.points), default=None)
+
+
+def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[_Found]:
+    """Those with which a plan has most ink, or nearly, of those with which the whole sheet has more."""
+    found = [f for f in found if gain(f.mistake) > 0]
+    best = max((f.share for f in found), default=0.0)
+    return [f for f in found if f.share >= AS_GOOD * best]
 
 
 def _points_off(drawn: DrawnPlan, drawing: Drawing) -> Iterator[_Mistake]:
@@ -202,17 +209,20 @@ def _points_off(drawn: DrawnPlan, drawing: Drawing) -> Iterator[_Mistake]:
                                (Change(p.step, displaced(by), drawn.k),))
 
 
-def _share(drawn: DrawnPlan, inked: Inked, points: Sequence[PlanPoint], vanishing: bool = True) -> float:
-    """Share of a plan's vectors, by length, that have ink where its points come to lie.
-
-    A mistake may make vectors ``vanishing``; a point that lies on another one instead only makes what is wrong disappear.
-    """
+def _share(drawn: DrawnPlan, inked: Inked, points: Sequence[PlanPoint]) -> float:
+    """Share of a plan's vectors, by length, that have ink where its points come to lie; what becomes too short is not drawn."""
     there = whole = 0.0
     for e in drawn.vectors:
         line = between(e, points)
         length = abs(line[1] - line[0])
-        if length > DRAWN or (e.length > DRAWN and not vanishing):
+        if length > DRAWN:
             weight = min(max(length, e.length), WEIGHT)
             whole += weight
-            there += weight * (length > DRAWN and inked(line) >= WHOLE)
+            there += weight * (inked(line) >= WHOLE)
     return there / whole if whole else 0.0
+
+
+def _ink(drawn: DrawnPlan, drawing: Drawing, points: Sequence[PlanPoint]) -> int:
+    """How much ink a plan's vectors have together where its points come to lie, in places of a millimetre."""
+    some = np.concatenate([sampled(between(e, points), 0.5)[0] for e in drawn.vectors if abs(np.diff(between(e, points))[0]) > 0.5])
+    return len(np.unique(np.round(some[drawing.ink(some)])))

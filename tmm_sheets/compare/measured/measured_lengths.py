@@ -14,6 +14,7 @@ from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.judged import Judged, Mistake
 from tmm_sheets.compare.measured.measured_units import said as said_unit
+from tmm_sheets.compare.measured.plan_pictures import PlanPictures
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.construction.protocol import letter_of, sentence
 from tmm_sheets.errors import BadInput, Problem
@@ -63,8 +64,9 @@ def compare(project: Project, path: Path, pencil: float, reading: float, say: Ca
     judged = judge(filled, found, pencil, reading)
     notes = (*found.notes, *filled.notes)
     title = tell("{project}: {file}").format(project=name, file=path.name)
+    pictures = PlanPictures(judged, found, found.errors(filled.factors, pencil, reading))
     return Report(_text(judged, filled), _tree(name, judged, filled, pencil, reading), notes=notes,
-                  story=_story(title, judged, filled, notes))
+                  story=_story(title, judged, filled, notes, pictures))
 
 
 # --- text ------------------------------------------------------------------------------------------------------------------
@@ -140,11 +142,12 @@ def _name(j: Judged) -> str:
     return f"{place}{j.entry.quantity}"
 
 
-def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes: tuple[str, ...]) -> story.Story:
+def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes: tuple[str, ...],
+           pictures: PlanPictures) -> story.Story:
     """The report as it is read: the mistakes, the numbers plan by plan."""
     tables = tuple(story.Table(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some), tuple(j.verdict for j in some))
                    for of, some in ((of, list(some)) for of, some in groupby(judged, lambda j: j.entry.title)))
-    return story.Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged)), tables)
+    return story.Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged, pictures)), tables)
 
 
 def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
@@ -173,7 +176,7 @@ def _starts(judged: list[Judged]) -> list[Judged]:
     return sorted((j for j in judged if j.starts), key=lambda j: j.order)
 
 
-def _mistakes(judged: list[Judged]) -> Iterator[story.Mistake]:
+def _mistakes(judged: list[Judged], pictures: PlanPictures | None = None) -> Iterator[story.Mistake]:
     for j in _starts(judged)[:MOST]:
         details = []
         after = [f for f in judged if f.follows is j]
@@ -184,7 +187,8 @@ def _mistakes(judged: list[Judged]) -> Iterator[story.Mistake]:
             some = ", ".join(_name(f) for f in after[:6]) + (" ..." if len(after) > 6 else "")
             said = tell_n("{n} follows from it: {numbers}", "{n} follow from it: {numbers}", len(after))
             details.append(said.format(n=len(after), numbers=some))
-        yield story.Mistake(f"{j.entry.title}, {_name(j)}", _what(j), j.verdict, tuple(details))
+        yield story.Mistake(f"{j.entry.title}, {_name(j)}", _what(j), j.verdict, tuple(details),
+                            pictures.picture(j) if pictures is not None else None)
 
 
 def _advice(judged: list[Judged]) -> list[str]:

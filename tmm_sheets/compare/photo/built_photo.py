@@ -32,6 +32,8 @@ STEP = 0.5
 REACH = 0.6
 """How far beside its place a pencil's line may run in a straightened picture, mm."""
 OFFSETS = np.arange(-REACH, REACH + 0.05, 0.1)
+WIDE = 7
+"""Pixels of a picture within which a place has the ink of another."""
 ALONG = 7
 """So many neighbouring places are averaged: a line that only crosses is no ink along this one."""
 ENDS = 1.5
@@ -41,18 +43,23 @@ Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
 
 def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[PhotoFinding], ink: Any) -> Built:
     """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of the sheet."""
+    import cv2
+
     wrong: dict[ElementView, list[Element]] = {}
     for f in findings:
         if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red":
             wrong.setdefault(f.element.view, []).append(f.element)
+    if not wrong:
+        return {}
     level = line_level(ink)
+    near = cv2.dilate(ink, np.ones((WIDE, WIDE), np.uint8))
     tips: dict[ElementView, list[complex]] = {}
     for f in findings:
         if f.verdict == "red" and f.element.kind == "line" and f.trace.at is not None:
             tips.setdefault(f.element.view, []).extend(f.trace.at[[0, -1]].tolist())
 
     def seen(view: ElementView) -> Drawing:
-        return Drawing(lambda line: inked(ink, line, level), tips.get(view, []))
+        return Drawing(lambda line: inked(ink, line, level), lambda z: sample(near, pixels(z)) > level, tips.get(view, []))
 
     return built_plan.built_otherwise(project, known, wrong, seen)
 
