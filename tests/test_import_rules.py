@@ -49,7 +49,7 @@ RULES = {
     "compare.diagnosis": ("compare construction drawing", "project"),
     "compare.diagnosis.hypotheses": ("compare.diagnosis construction methods.linkage", ""),
     "compare.diagnosis.replay": ("construction", ""),
-    "compare.measured": (f"compare construction sheets {METHODS}", "project"),
+    "compare.measured": (f"compare construction drawing sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
     "bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),

@@ -120,7 +120,7 @@ TEXT = one(lambda e: e.kind == "text" and e.text == "H = 142")
 
 
 GREENISH, AMBER, GONE, TURNED = (
-    [e for e in EXACT if e.view.n and e.kind == "line" and e.length > 60 and e.style == "thin" and e is not LINE
+    [e for e in EXACT if e.view.n and e.kind == "line" and 60 < e.length < 150 and e.style == "thin" and e is not LINE
      and e.points[0].imag == e.points[1].imag][k] for k in range(4))  # fmt: skip
 ARROW = one(lambda e: e.kind == "line" and len(e.fills) == 1 and e.length > 30)
 STRAY = np.array([500 + 430j, 540 + 445j])
