@@ -23,8 +23,10 @@ WHOLE, DARKER, FULLER = 0.85, 1.25, 0.12
 its own place."""
 BETWEEN = 0.6
 """Darkness between a stroke and a line beside it, as a share of the line's, below which paper separates them."""
-BROAD, STROKE = 1.6, 0.5
+BROAD, STROKE = 1.6, 0.7
 """mm to either side of a line within which what belongs to its stroke is told by the ink, and within which others are of it."""
+BLUR = 11
+"""Steps over which a line's ink may be seen, beside its own width."""
 LEFT = 0.8
 """mm off its place from which on a line has left its stroke."""
 BAND = 17
@@ -122,20 +124,24 @@ def beside(t: Trace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owne
 
 
 def _apart(profile: Any, found: Any, drawn: Any, offsets: Floats, level: float) -> Any:
-    """Where paper separates places across a line from the stroke it is in, and no other line is drawn between them.
+    """Where paper separates places across a line from the stroke it is in, and no other line, nor its blur, is between them.
 
     ``found`` is where lines were found, ``drawn`` where others belong.
     """
+    import cv2
+
+    away = np.abs(offsets)
+    near = (drawn & (away > STROKE)) | (found & (away > 1.5 * STROKE))
+    others = cv2.dilate(near.astype(np.uint8), np.ones((1, BLUR), np.uint8)) > 0
     out = np.zeros(profile.shape, bool)
     middle = len(offsets) // 2
     for side in (slice(middle, None), slice(middle, None, -1)):
         aside = np.abs(offsets[side])
-        stroke = found[:, side] & (aside <= 2 * STROKE)
+        stroke = found[:, side] & (aside <= 1.5 * STROKE)
         beyond = ~np.logical_or.accumulate(stroke[:, ::-1], 1)[:, ::-1]
         ink = np.where(beyond | (np.roll(beyond, -1, 1) & stroke), profile[:, side], np.inf)
         paler = beyond & (np.minimum.accumulate(ink, 1) < np.maximum(BETWEEN * profile[:, side], level))
-        other = drawn[:, side] & (aside > STROKE)
-        out[:, side] = np.logical_or.accumulate(paler, 1) & ~np.logical_or.accumulate(other, 1)
+        out[:, side] = np.logical_or.accumulate(paler, 1) & ~np.logical_or.accumulate(others[:, side], 1)
     return out
 
 
