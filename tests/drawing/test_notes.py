@@ -46,3 +46,11 @@ def test_a_view_without_ink_has_its_remark_in_its_place():
     crowded, at = placed(canvas)
     assert crowded == []
     assert 200 < at.imag < 290
+
+
+def test_a_remark_of_no_view_has_its_place():
+    canvas = Canvas()
+    canvas.line(60 + 20j, 240 + 20j, "vector")
+    canvas.note(Box(50.0, 200.0, 250.0, 290.0), "Less than 1 mm")
+    _, at = placed(canvas)
+    assert 200 < at.imag < 290

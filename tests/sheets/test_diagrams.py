@@ -7,6 +7,7 @@ from tests.project_files import from_file, project
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Line, Polyline, Text
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
@@ -154,3 +155,21 @@ def test_both_sheets_have_room(name):
     ([0.0, 0.0], ["0", "0"]), ([1e-3, -2e-3], ["0,001000", "−0,002000"])])  # fmt: skip
 def test_two_numbers_said_to_differ_can_be_told_apart(values, said):
     assert graphs.column(values, 4, least=1) == said
+
+
+@pytest.mark.parametrize("curves", [
+    [], [np.array([0j, 100 + 0j])], [np.array([38 - 20j, 42 + 20j])],
+    [np.array([30 - 20j, 50 + 20j]), np.array([58 - 20j, 62 + 20j])],
+    [np.array([-5 - 9j, 105 + 9j])]], ids=["none", "along the axis", "one", "two", "flat"])  # fmt: skip
+def test_numbers_of_positions_keep_off_the_curves_and_each_other(curves):
+    canvas, x = Canvas(), np.array([0.0, 10.0, 20.0, 36.0, 40.0, 52.0, 60.0, 100.0])
+    graphs.numbers(canvas, graphs.Graph(0j), x, [str(k + 9) for k in range(len(x))], np.where(x < 50, 1.0, -1.0), curves)
+    texts = [m for m in canvas.marks if isinstance(m, Text)]
+    assert len(texts) == len(x)
+    boxes = [Box.around(text_box(m)) for m in texts]
+    for k, box in enumerate(boxes):
+        assert not any(box.x0 < b.x1 and b.x0 < box.x1 and box.y0 < b.y1 and b.y0 < box.y1 for b in boxes[k + 1:])
+    inner = [Box(b.x0 + 0.2, b.y0 + 0.2, b.x1 - 0.6, b.y1 - 0.2) for b in boxes[1:]]
+    if len(curves) and np.ptp(curves[0].imag) != 18:  # a flat one that runs through all places is in the way of some
+        points = np.concatenate([graphs.dense(curve) for curve in curves])
+        assert not any((box.x0 < p.real < box.x1) and (box.y0 < p.imag < box.y1) for box in inner for p in points)

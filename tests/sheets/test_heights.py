@@ -7,6 +7,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.project import Project
+from tmm_sheets.sheets import kinetics
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -49,3 +50,9 @@ def test_the_title_of_the_energy_mass_diagram_is_as_large_as_the_others_and_no_l
     box = Box.around(text_box(title))
     upright = [(m.a.real, *sorted((m.a.imag, m.b.imag))) for m in drawing.marks if isinstance(m, Line) and m.style != "text"]
     assert not [x for x, low, high in upright if box.x0 < x < box.x1 and low < box.y0 and high > box.y1]
+
+
+@pytest.mark.parametrize(("force", "said"), [(0.0, "0"), (6.7966, "6,797"), (9.99999, "10"), (10.0, "10,0"), (9999.94, "9999,9"),
+                                             (10000.0, "10000"), (106232.4, "106232")])
+def test_forces_have_no_more_figures_than_can_be_believed(force, said):
+    assert kinetics.newtons(force) == said

@@ -69,7 +69,9 @@ def wrapped(text: str, height: float, count: int) -> list[str]:
 
 
 def _ink(canvas: Canvas, note: Note) -> Box:
-    """What is drawn of a view, in all its parts; its place where there is nothing."""
+    """What is drawn of a view, in all its parts; its place where there is nothing, or nobody said what belongs to it."""
+    if note.part < 0:
+        return note.box
     ends = [*(part.first for part in canvas.parts[1:]), len(canvas.marks)]
     own = [canvas.marks[part.first:end] for part, end in zip(canvas.parts, ends, strict=True)
            if part.draw == canvas.parts[note.part].draw and all(note.box.contains(z, 0.1) for z in part.box.corners)]

@@ -167,7 +167,7 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     points = fw.moment_plan["M"].value
     # Where the curve runs along the axis its numbers stand on the side the graph leaves free.
     body = line.imag[int(np.argmax(np.abs(line.imag)))]
-    axes(fw, of, "M", g, low, high, tr("M, N·m"), np.where(np.abs(points.imag) < 1.0, body, points.imag))
+    axes(fw, of, "M", g, low, high, tr("M, N·m"), np.where(np.abs(points.imag) < 1.0, body, points.imag), [line])
     uprights(of, "M")
     pole = plan["P"].value
     rays = stage(canvas, plan, None, g.place())
@@ -184,11 +184,15 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.label(g(0.78 * length + 1j * level), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
 
 
-def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any) -> None:
-    """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive."""
+def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any,
+         curves: Sequence[Any] = ()) -> None:
+    """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive.
+
+    They keep clear of the ``curves`` that the graph has, mm of it.
+    """
     angle, r, pen = fw.scales.angle, fw.reduced, of.pen(step, "axis")
     graphs.axes(pen, g, angle.mm(r.period), low, high, ordinate)
-    graphs.numbers(pen, g, angle.mm(r.phi), fw.labels, side)
+    graphs.numbers(pen, g, angle.mm(r.phi), fw.labels, side, [g(curve) for curve in curves])
 
 
 def _down_to_axis(line: Any) -> Any:
@@ -256,7 +260,7 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         heights = (0.0, ends[k].imag, x * end.imag / end.real)
         uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
         canvas.tracing("construction", fw.total_plan["ΣA"].path, label).line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
-    axes(fw, of, "A(φ)", g, low, high, tr("A, J"), np.zeros(len(fw.labels)))
+    axes(fw, of, "A(φ)", g, low, high, tr("A, J"), np.zeros(len(fw.labels)), [curve])
     k = len(curve) // 2
     canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
@@ -293,7 +297,8 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     of = stage(canvas, fw.total_plan, None, g.place())
     of.curve("points", g(s.angle.mm(fw.samples) + 1j * ordinates))
     uprights(of, "points")
-    axes(fw, of, "points", g, low, high, tr("ΔE, J"), fw.total_plan["points"].value.imag)
+    axes(fw, of, "points", g, low, high, tr("ΔE, J"), fw.total_plan["points"].value.imag,
+         [s.angle.mm(fw.samples) + 1j * ordinates])
 
 
 def _enlarged(ratio: float) -> str:

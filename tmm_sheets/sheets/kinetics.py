@@ -314,8 +314,8 @@ def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre:
 
 
 def newtons(force: float) -> str:
-    """A force for the sheet: tenths of a newton, small ones with four figures."""
-    return fixed(force, 1) if force >= 10 else number(force, 4)
+    """A force for the sheet: tenths of a newton, whole ones from 10 kN on, small forces with four figures."""
+    return fixed(force, 0 if force >= 1e4 else 1) if force >= 10 else number(force, 4)
 
 
 def _equation(terms: list[str], width: float) -> list[str]:
