@@ -204,7 +204,7 @@ def test_the_scale_factor_of_a_view_is_that_of_the_plans_in_it():
     mu = {v.name: v.mu for n in (1, 2, 3, 4) for v in views(composed(shaper, n))}
     assert mu["План ускорений (положение 2)"] == 0.02
     assert mu["План скоростей, положение 7"] == 0.02  # printed once, over all ten of them
-    assert mu["План сил звена 4"] == 15.0
+    assert mu["План сил звена 4"] == 20.0
     assert mu["Выбор радиуса ролика"] == 0.0001
     assert mu["Картина зацепления"] == 0.00025
     assert mu["Графики работ"] is None  # 10 J/mm upwards only

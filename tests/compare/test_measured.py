@@ -174,7 +174,7 @@ def test_a_sum_is_plotted_from_its_parts(shaper, off, said):
     own[total.id] = 4 * (own[work.id] + 0.5 * own[driving.id]) + off
     lines = [MeasuredLine(shaper.entries[name], value, 0.05, i) for i, (name, value) in enumerate(own.items())]
     found = {j.entry.id: j for j in judged(shaper, Filled(lines))}[total.id]
-    assert found.tolerance == pytest.approx(3.9, abs=0.1)
+    assert found.tolerance == pytest.approx(3.75, abs=0.1)
     assert found.verdict == said
     assert found.starts == (said == "red")
     assert ("does not follow from your own y_A(5)" in found.remark) == (said == "red")
@@ -327,7 +327,7 @@ def test_a_number_computed_from_one_read_wrong(shaper):
     names = ("velocities/2/pd5", "results/2/V_D5", "results/2/M_F5", "results/2/M_red", "reduced-moment/2/y_M")
     filled = Hand(shaper, np.random.default_rng(1), sigma=0.0).filled({name: shaper.entries[name] for name in names})
     changed(filled, velocities__2__pd5=41.0, results__2__V_D5=0.82, results__2__M_F5=-304.5, results__2__M_red=-304.5,
-            **{"reduced-moment__2__y_M": -30.5})
+            **{"reduced-moment__2__y_M": -38.1})
     of = judged(shaper, filled)
     begun = starts(of)
     assert [j.entry.id for j in begun] == ["velocities/2/pd5"]

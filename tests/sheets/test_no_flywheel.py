@@ -203,8 +203,8 @@ def test_the_work_by_mid_ordinates_stands_beside_the_area():
     assert any("−991,1" in w and "середин" in w for w in words)
     assert any("−975,3" in w and "+1,63" in w for w in words)
     said = list(sentences(p.flywheel.work_plan, 0, float))[-2:]
-    assert "−65,0" in said[0]  # of 15 J/mm
-    assert "−1,1" in said[1]
+    assert "−97,5" in said[0]
+    assert "−1,6" in said[1]
 
 
 def test_the_work_of_the_press_is_half_of_force_times_stroke():

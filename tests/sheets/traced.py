@@ -236,6 +236,8 @@ def _abscissae(step: Step, project: Project) -> Any:
         return None
     if step.plan == "reduction":
         return project.cycle.turned
+    if step.plan == "energy-mass-speed":
+        return project.flywheel.reduced.phi
     rows = {s.name: np.asarray(s.value) for s in step.ancestors() if np.size(s.value) == np.size(step.value)}
     if "K" in rows:
         ways = rows["K"]

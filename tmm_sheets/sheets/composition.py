@@ -212,7 +212,8 @@ def _velocities(project: Project, view: View) -> Node:
     def drawn(width: float, height: float) -> float:
         return in_place(round(width), round(height))
 
-    return _leaf(view.box, Need(least=(0.7 * view.box.width, 0.7 * view.box.height), drawn=drawn), 1.5)
+    # All velocities are measured on them, and all that follows from these.
+    return _leaf(view.box, Need(least=(0.7 * view.box.width, 0.7 * view.box.height), drawn=drawn), 3)
 
 
 def _accelerations(project: Project, view: View) -> Node:

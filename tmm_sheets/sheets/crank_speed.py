@@ -54,7 +54,8 @@ def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     left = canvas.title(box, tr("Graph of the angular velocity ω_1(φ_1)"), f"{y}, {x}")
     high, low = y.mm(highest - mean), y.mm(lowest - mean)
     g = graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
-    of = stage(canvas, plan, None, g.place(x.mu, y.mu))
+    # The axis stands at the mean: the zero of the angular velocities lies far below it.
+    of = stage(canvas, plan, None, graphs.Graph(g.origin - 1j * y.mm(mean)).place(x.mu, y.mu))
     length = x.mm(fw.reduced.period)
     of.curve("ω1", g(x.mm(fw.samples) + 1j * y.mm(fw.speed_curve(fw.samples) - mean)))
     pen = of.pen("ω1", "axis")

@@ -152,14 +152,14 @@ class DiagramSpace:
     the extents of each are the most it may have.
     """
 
-    angle: float = 215.0
-    force: float = 22.0
+    angle: float = 256.0
+    force: float = 17.0
     moment: float = 130.0
     work: float = 200.0
     energy: float = 186.0
     inertia: float = 225.0
-    pole: tuple[float, float] = (25.0, 85.0)
-    stack: float = 260.0
+    pole: tuple[float, float] = (25.0, 67.0)
+    stack: float = 261.5
     stacked: int = 2
 
 
@@ -1155,7 +1155,8 @@ def _scaled(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
     """Scale factors of moment, work, energy and inertia; those of moment and work suit the pole.
 
     Of all with which the graphs one under another fit together those with the greatest product of their heights. The moments are
-    what everything else comes from: where they can, they get ``READABLE`` first. What stands alone fills its own room.
+    what everything else comes from: where they can, they get ``READABLE`` first, or three quarters of it. What stands alone fills
+    its own room.
     """
     series = []
     for span, room in zip(spans, (space.moment, space.work, space.energy, space.inertia), strict=True):
@@ -1166,8 +1167,8 @@ def _scaled(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
     heights = [span / m for span, m in zip(spans, mu, strict=True)]
     pole = mu[1] / (mu[0] * mu_phi)
     fitting = (sum(heights[:space.stacked]) <= space.stack) & (pole >= space.pole[0]) & (pole <= space.pole[1])
-    # A pole distance that a ruler lays off, in half millimetres, where there is one.
-    for wanted in (heights[0] >= READABLE, np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
+    # Then a pole distance that a ruler lays off, in half millimetres, where there is one.
+    for wanted in (heights[0] >= READABLE, heights[0] >= 0.75 * READABLE, np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
         fitting = fitting & wanted if (fitting & wanted).any() else fitting
     products = np.where(fitting, np.prod(np.broadcast_arrays(*heights), axis=0), 0.0)
     best = np.unravel_index(int(np.argmax(products)), products.shape)
