@@ -80,7 +80,9 @@ class Values:
             for step in chain((*plan, *plan.asides.values())):
                 if step.evaluated:
                     own = plans.get(step.plan, plan)
-                    found += _shown(step.value, unit(step, own), by_plan.get(step.plan, set()))
+                    # Arms of forces are measured where these are drawn, on the schemes of the groups.
+                    drawn = by_plan.get("positions" if step.name.startswith("h") else step.plan, set())
+                    found += _shown(step.value, unit(step, own), by_plan.get(step.plan, set()) | drawn)
                     for a in step.args:
                         if not isinstance(a, Step):
                             found += _shown(a.value if isinstance(a, Given) else a, getattr(a, "unit", ""), set())
