@@ -110,7 +110,7 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
         # One way or the other: of what turns by less than its own error neither is wrong.
         tolerance, rows = 0.5 if tolerance < 0.5 else float("inf"), []
     # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
-    elif not isfinite(tolerance) or tolerance > {"length": max(exact, LONG), "angle": ANY_WAY}.get(e.kind, tolerance):
+    elif not isfinite(tolerance) or tolerance > {"length": max(abs(exact), LONG), "angle": ANY_WAY}.get(e.kind, tolerance):
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact, e.signed) if e.kind == "angle" else measured - exact
