@@ -59,7 +59,7 @@ def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: floa
             out.append(x)
     smooth = _without_creases(out)
     creases = [x for x in out if x not in smooth]
-    for x in [] if wiped is None else _strokes(left, wiped, max(level, dark)):
+    for x in [] if wiped is None else _strokes(left, wiped, words, max(level, dark)):
         crease = min(x.width, x.height) <= CREASE and (x.length > SPAN or any(_in_common(x, y) for y in creases))
         if not crease and all(_in_common(x, y) <= 0.5 * x.length for y in smooth):
             smooth.append(x)
@@ -116,8 +116,8 @@ def _regions(left: Any, level: float, straight: bool) -> list[ExtraInk]:
     return out
 
 
-def _strokes(left: Any, wiped: Any, level: float) -> list[ExtraInk]:
-    """Strokes in pieces, each shorter than a region that is reported."""
+def _strokes(left: Any, wiped: Any, words: Any, level: float) -> list[ExtraInk]:
+    """Strokes in pieces, each shorter than a region that is reported, that are not all edges of letters."""
     import cv2
 
     scale = SCALE / COARSE
@@ -141,7 +141,8 @@ def _strokes(left: Any, wiped: Any, level: float) -> list[ExtraInk]:
     out = []
     for z in groups:
         width, height = np.ptp(z.real), np.ptp(z.imag)
-        if hypot(width, height) >= EXTRA and np.abs(z[1::2] - z[::2]).sum() >= INK:
+        free = sample(words, pixels((z[::2] + z[1::2]) / 2), nearest=True) == 0
+        if hypot(width, height) >= EXTRA and np.abs(z[1::2] - z[::2]).sum() >= INK and free.any():
             middle = complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
             out.append(ExtraInk(middle, float(width), float(height), hypot(width, height)))
     return out

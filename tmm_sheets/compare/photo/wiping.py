@@ -12,6 +12,8 @@ from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
+WRITTEN = 0.9
+"""Margin around lettering that is wiped out, mm: the edges of its letters in a row look like a stroke."""
 ROOM, DENSE_ROOM = 1.4, 2.0
 """Margin around a line that is wiped out, mm; more for one among others, whose ink cannot be told from theirs."""
 
@@ -57,7 +59,7 @@ def wipe_small(wiped: Any, e: Element) -> None:
     import cv2
 
     if e.kind == "text":
-        fill(wiped, grown(e.points, 0.6))
+        fill(wiped, grown(e.points, WRITTEN))
         for p in e.pieces:
             cv2.polylines(wiped, [fixed(p)], False, 255, round(1.5 * SCALE), cv2.LINE_8, 4)
     else:
