@@ -65,7 +65,7 @@ def judged(project, n):
         placing._draw = original
     # The circle of an enlarged detail is a window: what is inside is read through it.
     ink = owners.Ink([m for m in composed.drawing.marks[: composed.parts[-1].first]
-                      if not (isinstance(m, Arc) and m.of == "details.corner")])
+                      if not (isinstance(m, Arc) and m.of == placing.WINDOW)])
     corners = [placing.text_box(m) for m in composed.drawing.marks[: composed.parts[-1].first] if isinstance(m, Text)]
     written = np.array([(z.real.min(), z.imag.min(), z.real.max(), z.imag.max()) for z in corners]).reshape(-1, 4)
     widths = [line_type(m.style).width if hasattr(m, "style") else 0.0 for m in ink.marks]

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.lettering import advance, letter
-from tmm_sheets.drawing.marks import Box, Fill, Line, Mark, Points, Text, flat
+from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Text, flat
 from tmm_sheets.words import tell
 
 CELL = 0.5
@@ -43,6 +43,10 @@ COVERING = 30.0
 """Cost of a place over the leader of another label, in millimetres of distance."""
 CROSSING, OVER, MISREAD = 8.0, 300.0, 1e4
 """Cost of each thing a leader crosses or runs along, of lettering under it, of being read as another thing's letter, mm."""
+WINDOW = "details.corner"
+"""What draws the circles of enlarged details."""
+SEVERAL = 10
+"""So many leaders met are as bad as a label that is read as another thing's."""
 ROUNDS = 2
 """So many times labels whose leaders meet others are set again."""
 SHELF = 0.8
@@ -90,18 +94,20 @@ def text_box(mark: Text) -> Points:
 def place(canvas: Canvas, area: Box) -> list[Crowded]:
     """Set every requested label of the canvas inside ``area``; returns those that found no free place.
 
-    A leader that meets what was set after it gets another place when all the others have theirs.
+    What meets a leader that was set after it gets another place when all the others have theirs.
     """
-    grid, ink = Grid(area, canvas.marks, len(canvas.labels)), owners.Ink(canvas.marks)
+    grid = Grid(area, canvas.marks, len(canvas.labels))
+    # The circle of an enlarged detail is a window: what is inside is read through it.
+    ink = owners.Ink([m for m in canvas.marks if not (isinstance(m, Arc) and m.of == WINDOW)])
     found = [_found(grid, ink, k, label) for k, label in enumerate(canvas.labels)]
     for _ in range(ROUNDS):
         for k, label in enumerate(canvas.labels):
-            if not (ill := grid.ill(k)):
+            if not (ill := grid.ill(k) + _misread(grid, ink, *found[k][:2])):
                 continue
             grid.lift(ink, k)
             other = _placed(grid, ink, label, *_size(label))
             grid.put(ink, k, *other[:2])
-            if grid.ill(k) < ill:
+            if grid.ill(k) + _misread(grid, ink, *other[:2]) < ill:
                 found[k] = other
             else:
                 grid.put(ink, k, *found[k][:2])
@@ -332,6 +338,15 @@ def _placed(grid: Grid, ink: owners.Ink, label: Label, w: float, h: float) -> tu
             if there is not None and not others.run_on[there]:
                 return moved, Box(*others.sides[:, there]), True
     return label, Box(*places.sides[:, places.least() if k is None else k]), bool(len(places.free))
+
+
+def _misread(grid: Grid, ink: owners.Ink, label: Label, box: Box) -> int:
+    """Whether a label without a leader is read as another's because of the leader of one: more than a crossing of two leaders."""
+    p = grid.leaders
+    near = (p.real > box.x0 - NEAR) & (p.real < box.x1 + NEAR) & (p.imag > box.y0 - NEAR) & (p.imag < box.y1 + NEAR)
+    if _led(label, box) or not near.any():
+        return 0
+    return SEVERAL * bool(owners.Round(ink, label, 2 * (NEAR + label.gap) + box.width).reads(box))
 
 
 def _led(label: Label, box: Box) -> bool:
