@@ -119,9 +119,15 @@ CURVE = one(lambda e: e.kind == "curve" and len(e.points) > 50)
 TEXT = one(lambda e: e.kind == "text" and e.text == "H = 142")
 
 
+def alone(e):
+    """Whether no other level line lies on the level of this one."""
+    return all(o is e or o.kind != "line" or o.points[0].imag != o.points[1].imag or abs(o.points[0].imag - e.points[0].imag) > 5
+               or max(o.points.real.min(), e.points.real.min()) > min(o.points.real.max(), e.points.real.max()) for o in EXACT)
+
+
 GREENISH, AMBER, GONE, TURNED = (
-    [e for e in EXACT if e.view.n and e.kind == "line" and 60 < e.length < 150 and e.style == "thin" and e is not LINE
-     and e.points[0].imag == e.points[1].imag][k] for k in range(4))  # fmt: skip
+    [e for e in EXACT if e.view.n and e.kind == "line" and 60 < e.length < 150 and e.role == "construction" and e is not LINE
+     and e.points[0].imag == e.points[1].imag and alone(e)][k] for k in range(4))  # fmt: skip
 ARROW = one(lambda e: e.kind == "line" and len(e.fills) == 1 and e.length > 30)
 STRAY = np.array([500 + 430j, 540 + 445j])
 TURN = np.exp(1j * np.radians(2))
