@@ -7,16 +7,16 @@ together with it explains most of what is left. All plans that follow from it ar
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.view_search import AS_DRAWN, CALLED, FEW_LINES, NEAR, SURE, FoundView, Search, distinct, handy, unused
-from tmm_sheets.compare.diagnosis.built_plan import AS_GOOD, EQUAL, errors_of, explains, possible
+from tmm_sheets.compare.diagnosis.built_plan import AS_GOOD, EQUAL, KINDS, errors_of, explains, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, drawn_plan, rebuilt
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.diagnosis.replay import replay
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from tmm_sheets.compare.cad.layout import Layout
     from tmm_sheets.project import Project
 
-KINDS = get_args(Kind)
-"""Kinds of mistakes, the more usual first."""
 MISTAKES = 2
 """So many mistakes are looked for in views that are not found."""
 

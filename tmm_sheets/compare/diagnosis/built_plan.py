@@ -31,6 +31,8 @@ from tmm_sheets.words import tell
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
+KINDS = get_args(Kind)
+"""Kinds of mistakes, the more usual first."""
 Inked = Callable[[Points], float]
 """Share of a line, by both its ends, mm of our sheet, that ink in its direction covers in a drawing."""
 
@@ -153,8 +155,7 @@ def possible(shown: Iterable[DrawnPlan], errors: Errors) -> list[Hypothesis]:
         before = list(ordered(steps, lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
         for h in hypotheses(before, drawn.k, drawn.plan.labels):
             found.setdefault((h.words, id(h.step), h.at, h.other), h)
-    kinds = get_args(Kind)
-    return sorted(found.values(), key=lambda h: kinds.index(h.kind))
+    return sorted(found.values(), key=lambda h: KINDS.index(h.kind))
 
 
 def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float, before: Sequence[_Mistake],
@@ -180,17 +181,18 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
         return max(led_on, key=lambda f: f.share)
     usual_ones = _best(tried((_Mistake(h, h.changes) for h in possible([drawn], errors)), before), gain)
     if usual_ones:
-        more = [gain(f.mistake) for f in usual_ones]
-        return next(f for f, m in zip(usual_ones, more, strict=True) if m >= AS_GOOD * max(more))
+        most = max(more for more, _ in usual_ones)
+        return next(f for more, f in usual_ones if more >= AS_GOOD * most)
     # A point may lie on another one, or on another vector: that only makes what is wrong disappear.
-    return max(_best(tried(_points_off(drawn, drawing), before), gain), key=lambda f: _ink(drawn, drawing, f.points), default=None)
+    off = [f for _, f in _best(tried(_points_off(drawn, drawing), before), gain)]
+    return max(off, key=lambda f: _ink(drawn, drawing, f.points), default=None)
 
 
-def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[_Found]:
-    """Those with which a plan has most ink, or nearly, of those with which the whole sheet has more."""
-    found = [f for f in found if gain(f.mistake) > 0]
-    best = max((f.share for f in found), default=0.0)
-    return [f for f in found if f.share >= AS_GOOD * best]
+def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[tuple[float, _Found]]:
+    """Those with which a plan has most ink, or nearly, of those with which the whole sheet has more; with by how much more."""
+    gains = [(more, f) for f in found if (more := gain(f.mistake)) > 0]
+    best = max((f.share for _, f in gains), default=0.0)
+    return [(more, f) for more, f in gains if f.share >= AS_GOOD * best]
 
 
 def _points_off(drawn: DrawnPlan, drawing: Drawing) -> Iterator[_Mistake]:
