@@ -583,10 +583,16 @@ def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: s
     canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
 
 
+STRUCTURE = 200.0
+"""Width beyond which the table of groups, of five short columns, is not drawn apart, mm: a row is to be read as one."""
+
+
 def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Structure of the mechanism: mobility by Chebyshev, formula of structure, Assur groups."""
     m = project.mechanism
     moving, pairs = len(m.links), len(m.pairs)
+    spare = max(0.0, box.width - STRUCTURE) / 2
+    box = box.inset(spare, 0.0, spare, 0.0)
     inside = canvas.title(box, tr("Structure of the mechanism"))
     lines = (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure)
     canvas.lines(complex(box.x0 + 2.0, inside.y1 - 6.0), lines, 7.0)
