@@ -31,7 +31,7 @@ def test_every_speed_has_its_segment(name, monkeypatch):
         if sign.startswith("ω"):
             q, b = project.study.velocities.reference[sign.removeprefix("ω_")][:2]
             arm = abs(project.study.positions.points[b].at(0) - project.study.positions.points[q].at(0))
-            values = values * arm
+            values = np.abs(values) * arm
         assert any(np.allclose(values, length * mu, atol=1e-9) for length in lengths.values()), sign
 
 

@@ -376,7 +376,9 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     low, high = _energy_range(fw)
     pen = of.pen("points", "axis")
     pen.arrow(g(-12.0), g(reach), "axis", 3.0)
-    pen.label(g(reach), tr("J^red, kg·m^2"), -1 + 1j, 3.5, 1.5, leader=False)
+    # Over or under the end of the axis, never beyond it: there the next column begins.
+    sign = tr("J^red, kg·m^2")
+    pen.label(g(reach - letter(sign, 3.5).width / 2 - 2.0), sign, 1j, 3.5, 1.5, leader=False)
     pen.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
     pen.label(g(1j * (high + graphs.OVER)), tr("ΔE, J"), 1, 3.5, 2.0, leader=False)
     beside = abs(fw.ab_mm) < 12.0
