@@ -189,7 +189,9 @@ class Grid:
         """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
         found = [n for n, way in self._led.items() if n != k and _over(self.boxes[k:k + 1], *way)]
         if k in self._led:
-            found += [n for n, way in self._led.items() if n != k and owners.crossing(*np.array([way]).T, *self._led[k]).any()]
+            others = [n for n in self._led if n != k]
+            a, b = np.array([self._led[n] for n in others]).reshape(-1, 2).T
+            found += np.array(others, int)[owners.crossing(a, b, *self._led[k])].tolist()
             found += [n for n in range(len(self.boxes)) if n != k and _over(self.boxes[n:n + 1], *self._led[k])]
         return list(dict.fromkeys(found))
 
