@@ -96,9 +96,8 @@ def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
         (tr("Graph of the moment {shown}"), tr("Graphs of the moments {shown}"), "M", tr("N·m")) if r.forces_are_moments else
         (tr("Graph of the force {shown}"), tr("Graphs of the forces {shown}"), "F", tr("N")))
     title = one if len(names) == 1 else many
-    if beside := [] if r.forces_are_moments else [f"{f.name[0]}_{{{f.name[1:]}}}" for f in r.forces if f.point is None]:
-        # A moment has no place among the ordinates of forces.
-        canvas.note(box, tr("The reduced moment of forces counts as well: {shown}").format(shown=", ".join(beside)))
+    if r.moments_beside:  # no place among the ordinates of forces
+        canvas.note(box, tr("The reduced moment of forces counts as well: {shown}").format(shown=", ".join(r.moments_beside)))
     graphs.heading(canvas, box, options, title.format(shown=", ".join(f"{n}(φ_1)" for n in names)), f"{s.force}")
     acting = {name: _acting(fw, name) for name in names}
     low = min((float(line.imag.min()) for lines in acting.values() for line in lines), default=0.0)
