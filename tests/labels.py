@@ -20,7 +20,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.drawing import labels as placing
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.marks import Arc, Box, Line, Text
+from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
@@ -50,10 +50,11 @@ class Fault(NamedTuple):
 
 def judged(project, n):
     """Faults of the labels of a sheet, and how many labels it has."""
-    kept = []
+    kept, windows = [], set()
     original = placing._draw
 
     def keeping(canvas, label, box):
+        windows.update(canvas.windows)
         first = len(canvas.marks)
         original(canvas, label, box)
         kept.append(Placed(label, box, [m for m in canvas.marks[first:] if isinstance(m, Line) and m.style != "text"]))
@@ -63,9 +64,7 @@ def judged(project, n):
         composed = sheet.composed(project, n)
     finally:
         placing._draw = original
-    # The circle of an enlarged detail is a window: what is inside is read through it.
-    ink = owners.Ink([m for m in composed.drawing.marks[: composed.parts[-1].first]
-                      if not (isinstance(m, Arc) and m.of == placing.WINDOW)])
+    ink = owners.Ink([m for n, m in enumerate(composed.drawing.marks[: composed.parts[-1].first]) if n not in windows])
     corners = [placing.text_box(m) for m in composed.drawing.marks[: composed.parts[-1].first] if isinstance(m, Text)]
     written = np.array([(z.real.min(), z.imag.min(), z.real.max(), z.imag.max()) for z in corners]).reshape(-1, 4)
     widths = [line_type(m.style).width if hasattr(m, "style") else 0.0 for m in ink.marks]

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from tests.methods.linkage.shaper_truth import Shaper
+from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
@@ -210,3 +211,11 @@ def test_the_first_view_says_that_the_sheet_is_of_another_method():
     other = SimpleNamespace(flywheel=SimpleNamespace(method="mertsalov"))
     with pytest.raises(CannotBuild, match="wittenbauer"):
         force_graph(other, Canvas(), Box(0, 0, 100, 100), {"axis": 20})
+
+
+@pytest.mark.parametrize(("name", "said"), [("tests/projects/stirrer.toml", True),  # a force and two moments
+                                            ("tests/projects/planer.toml", False),  # a moment alone: it has the graph
+                                            ("tests/projects/feeder.toml", False)])  # a force alone
+def test_moments_beside_the_graph_of_forces_are_told(name, said):
+    words = " ".join(m.text for m in composed(Project(read(name)), 2).drawing.marks if isinstance(m, Text))
+    assert ("учтено также" in words) is said

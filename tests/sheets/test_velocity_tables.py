@@ -31,7 +31,7 @@ def test_every_speed_has_its_segment(name, monkeypatch):
         if sign.startswith("ω"):
             q, b = project.study.velocities.reference[sign.removeprefix("ω_")][:2]
             arm = abs(project.study.positions.points[b].at(0) - project.study.positions.points[q].at(0))
-            values = values * arm
+            values = np.abs(values) * arm
         assert any(np.allclose(values, length * mu, atol=1e-9) for length in lengths.values()), sign
 
 
@@ -47,3 +47,14 @@ def test_a_narrow_place_has_some_columns_only(monkeypatch):
     ((_, lengths), (_, speeds)), _ = tables(Project(read("lugansk/shaper")), monkeypatch)
     assert len(lengths) >= kinematics.COLUMNS
     assert len(lengths) <= kinematics.COLUMNS or (len(lengths) + len(speeds)) * kinematics.COLUMN <= 377
+
+
+@pytest.mark.parametrize("name", ["screen", "lugansk/shaper"])
+def test_angular_velocities_have_the_sign_that_they_have_elsewhere(name, monkeypatch):
+    project = Project(read(name))
+    (_, (_, speeds)), _ = tables(project, monkeypatch)
+    turning = {sign.removeprefix("ω_"): values for sign, values in speeds.items() if sign.startswith("ω_")}
+    assert turning
+    for link, values in turning.items():
+        assert np.allclose(values, project.study.velocities.omega[link].value)
+    assert any(np.min(values) < 0 < np.max(values) for values in turning.values())

@@ -117,7 +117,8 @@ class Canvas:
     are the names of those that a project file may set.
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again;
     ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things;
-    ``shortened`` are texts that were too long for their cell of a form.
+    ``shortened`` are texts that were too long for their cell of a form. ``windows`` are the numbers of circles through which what
+    is inside is read.
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -133,6 +134,7 @@ class Canvas:
     dimensions: list[Dimension] = field(default_factory=list)
     forms: list[Form] = field(default_factory=list)
     shortened: list[str] = field(default_factory=list)
+    windows: set[int] = field(default_factory=set)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
@@ -183,6 +185,11 @@ class Canvas:
         """Full circle."""
         if radius > 1e-6:
             self.marks.append(Arc(complex(centre), float(radius), 0.0, 2 * pi, style, self.of, self.by))
+
+    def window(self, centre: complex, radius: float) -> None:
+        """Circle of an enlarged detail: it parts no label from what it names."""
+        self.windows.add(len(self.marks))
+        self.circle(centre, radius, "thin")
 
     def arc(self, centre: complex, radius: float, start: float, end: float, style: str = "thin") -> None:
         """Arc from angle ``start`` counter-clockwise to ``end``, rad."""

@@ -7,6 +7,7 @@ matter of four look-ups, so all candidate places of a label are judged at once.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
 
@@ -16,7 +17,7 @@ import numpy.typing as npt
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.lettering import advance, letter
-from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Text, flat
+from tmm_sheets.drawing.marks import Box, Fill, Line, Mark, Points, Text, flat
 from tmm_sheets.words import tell
 
 CELL = 0.5
@@ -43,11 +44,11 @@ COVERING = 30.0
 """Cost of a place over the leader of another label, in millimetres of distance."""
 CROSSING, OVER, MISREAD = 8.0, 300.0, 1e4
 """Cost of each thing a leader crosses or runs along, of lettering under it, of being read as another thing's letter, mm."""
-WINDOW = "details.corner"
-"""What draws the circles of enlarged details."""
+OUTSIDE = 20.0
+"""Cost of a place that leaves the place of the label's view, in millimetres of distance."""
 SEVERAL = 10
 """So many leaders met are as bad as a label that is read as another thing's."""
-ROUNDS = 2
+ROUNDS = 3
 """So many times labels whose leaders meet others are set again."""
 SHELF = 0.8
 """Clear distance, mm, of lettering from the shelf it stands on."""
@@ -96,21 +97,16 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
 
     What meets a leader that was set after it gets another place when all the others have theirs.
     """
-    grid = Grid(area, canvas.marks, len(canvas.labels))
-    # The circle of an enlarged detail is a window: what is inside is read through it.
-    ink = owners.Ink([m for m in canvas.marks if not (isinstance(m, Arc) and m.of == WINDOW)])
+    grid = Grid(area, canvas.marks, len(canvas.labels), [part.box for part in canvas.parts])
+    ink = owners.Ink([m for n, m in enumerate(canvas.marks) if n not in canvas.windows])
     found = [_found(grid, ink, k, label) for k, label in enumerate(canvas.labels)]
     for _ in range(ROUNDS):
-        for k, label in enumerate(canvas.labels):
-            if not (ill := grid.ill(k) + _misread(grid, ink, *found[k][:2])):
-                continue
-            grid.lift(ink, k)
-            other = _placed(grid, ink, label, *_size(label))
-            grid.put(ink, k, *other[:2])
-            if grid.ill(k) + _misread(grid, ink, *other[:2]) < ill:
-                found[k] = other
-            else:
-                grid.put(ink, k, *found[k][:2])
+        for k in range(len(found)):
+            if _ill(grid, ink, found, (k,)):
+                # One that has no better place gets it when the one it meets makes room, or changes places with it.
+                ways = ((k,), *(pair for q in grid.met(k) for pair in ((k, q), (q, k))))
+                any(_set_again(grid, ink, canvas.labels, found, some) for some in ways) or \
+                    any(_exchanged(grid, ink, found, k, q) for q in grid.met(k))
     for label, box, _ in found:
         _draw(canvas, label, box)
     crowded = [Crowded(label.text, label.anchor) for label, (_, _, free) in zip(canvas.labels, found, strict=True) if not free]
@@ -121,11 +117,12 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
 class Grid:
     """Ink on the sheet as two summed-area tables; lettering (``written``), that of the labels (``boxes``) last, and their leaders.
 
-    Places of labels that are not set are not numbers.
+    Places of labels that are not set are not numbers. ``views`` are the places of the parts that labels belong to.
     """
 
-    def __init__(self, area: Box, marks: list[Mark], labels: int = 0) -> None:
+    def __init__(self, area: Box, marks: list[Mark], labels: int = 0, views: Sequence[Box] = ()) -> None:
         self.area = area
+        self.views = views
         shape = (int(area.height / CELL) + 3, int(area.width / CELL) + 3)
         heavy, light = np.zeros(shape, np.uint8), np.zeros(shape, np.uint8)
         runs: dict[bool, list[Points]] = {True: [], False: []}
@@ -180,12 +177,23 @@ class Grid:
         ink.lead(*ends.T)
 
     def ill(self, k: int) -> int:
-        """How many other leaders and how much other lettering the leader of label ``k`` meets."""
+        """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering."""
+        over = sum(_over(self.boxes[k:k + 1], *way) for n, way in self._led.items() if n != k)
         if k not in self._led:
-            return 0
+            return over
         a, b = np.array([way for n, way in self._led.items() if n != k]).reshape(-1, 2).T
         written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
-        return int(owners.crossing(a, b, *self._led[k]).sum()) + _over(written, *self._led[k])
+        return int(owners.crossing(a, b, *self._led[k]).sum()) + _over(written, *self._led[k]) + over
+
+    def met(self, k: int) -> list[int]:
+        """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
+        found = [n for n, way in self._led.items() if n != k and _over(self.boxes[k:k + 1], *way)]
+        if k in self._led:
+            others = [n for n in self._led if n != k]
+            a, b = np.array([self._led[n] for n in others]).reshape(-1, 2).T
+            found += np.array(others, int)[owners.crossing(a, b, *self._led[k])].tolist()
+            found += [n for n in range(len(self.boxes)) if n != k and _over(self.boxes[n:n + 1], *self._led[k])]
+        return list(dict.fromkeys(found))
 
     def _ink(self, target: npt.NDArray[np.uint8], p: Points) -> None:
         i, j = ((p.imag - self.area.y0) / CELL).astype(int), ((p.real - self.area.x0) / CELL).astype(int)
@@ -197,6 +205,18 @@ class Grid:
         i0, j0 = max(int((min(y) - self.area.y0) / CELL), 0), max(int((min(x) - self.area.x0) / CELL), 0)
         i1, j1 = int((max(y) - self.area.y0) / CELL) + 1, int((max(x) - self.area.x0) / CELL) + 1
         target[i0:max(i1, 0), j0:max(j1, 0)] = 1
+
+    def free(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Which rectangles lie inside the sheet, clear of heavy lines, lettering and the labels that are set."""
+        clear = x0, y0, x1, y1 = sides + _MARGIN
+        blocked = self.under(self.heavy, clear) > 0
+        blocked |= (sides[:2] < self.inside[:2]).any(axis=0) | (sides[2:] > self.inside[2:]).any(axis=0)
+        b = self.boxes
+        b = b[(b[:, 2] > x0.min()) & (b[:, 0] < x1.max()) & (b[:, 3] > y0.min()) & (b[:, 1] < y1.max())]  # few are so near
+        if len(b):
+            beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
+            blocked |= (beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])).any(axis=1)
+        return np.asarray(~blocked)
 
     def under(self, table: npt.NDArray[np.int32], sides: npt.NDArray[np.float64]) -> npt.NDArray[np.int32]:
         """Inked cells under rectangles; ``sides`` are their x0, y0, x1, y1, shape (4, n)."""
@@ -246,23 +266,18 @@ class _Places:
         cost = (distances * 1.2 + far)[:, None]
         cost = (cost + _TURNING if label.away else np.repeat(cost, len(units), axis=1)).ravel()
         sides = np.array([centres.real - w / 2, centres.imag - h / 2, centres.real + w / 2, centres.imag + h / 2])
-        clear = x0, y0, x1, y1 = sides + _MARGIN
-        blocked = grid.under(grid.heavy, clear) > 0
-        blocked |= (sides[:2] < grid.inside[:2]).any(axis=0) | (sides[2:] > grid.inside[2:]).any(axis=0)
-        b = grid.boxes
-        b = b[(b[:, 2] > x0.min()) & (b[:, 0] < x1.max()) & (b[:, 3] > y0.min()) & (b[:, 1] < y1.max())]  # few are so near
-        if len(b):
-            beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
-            blocked |= (beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])).any(axis=1)
+        x0, y0, x1, y1 = sides + _MARGIN
         self.run_on = _beside(sides, grid.written, WORD * label.height)
         cost = cost + LIGHT * grid.under(grid.light, sides) + RUN_ON * self.run_on
+        if 0 <= label.part < len(grid.views) and (view := grid.views[label.part]).contains(label.anchor):
+            cost = cost + OUTSIDE * ((x0 < view.x0) | (y0 < view.y0) | (x1 > view.x1) | (y1 > view.y1))
         p = grid.leaders
         p = p[(p.real > x0.min()) & (p.real < x1.max()) & (p.imag > y0.min()) & (p.imag < y1.max())]
         if len(p):
             over = (p.real > x0[:, None]) & (p.real < x1[:, None]) & (p.imag > y0[:, None]) & (p.imag < y1[:, None])
             cost = cost + COVERING * over.any(axis=1)
         self.sides, self.cost = sides, cost
-        free = np.flatnonzero(~blocked)
+        free = np.flatnonzero(grid.free(sides))
         self.free = free[np.argsort(self.cost[free], kind="stable")]
 
     def read(self, here: owners.Round, leaders: bool = True) -> int | None:
@@ -308,10 +323,53 @@ def _size(label: Label) -> tuple[float, float]:
     return laid.width + 0.15 * label.height, laid.ascent + laid.descent
 
 
-def _found(grid: Grid, ink: owners.Ink, k: int, label: Label) -> tuple[Label, Box, bool]:
+Found = tuple[Label, Box, bool]
+"""A label, which may have moved, its place, whether there was room for it."""
+
+
+def _found(grid: Grid, ink: owners.Ink, k: int, label: Label) -> Found:
     found = _placed(grid, ink, label, *_size(label))
     grid.put(ink, k, *found[:2])
     return found
+
+
+def _ill(grid: Grid, ink: owners.Ink, found: list[Found], some: tuple[int, ...]) -> int:
+    """What is wrong with some labels where they stand, see :meth:`Grid.ill` and :func:`_misread`."""
+    return sum(grid.ill(k) + _misread(grid, ink, *found[k][:2]) for k in some)
+
+
+def _set_again(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Found], some: tuple[int, ...]) -> bool:
+    """Take some labels off and set them again in this order; they stay where they were unless that makes it better."""
+    before, ill = [found[k] for k in some], _ill(grid, ink, found, some)
+    for k in some:
+        grid.lift(ink, k)
+    for k in some:
+        found[k] = _found(grid, ink, k, labels[k])
+    return _kept(grid, ink, found, some, before, ill)
+
+
+def _exchanged(grid: Grid, ink: owners.Ink, found: list[Found], k: int, q: int) -> bool:
+    """Let two labels change places, as leaders that cross ask for, if both have room there and that makes it better."""
+    before, ill = [found[k], found[q]], _ill(grid, ink, found, (k, q))
+    for n in (k, q):
+        grid.lift(ink, n)
+    for n, (label, own, _), to in ((k, before[0], before[1][1].centre), (q, before[1], before[0][1].centre)):
+        half = complex(own.width, own.height) / 2
+        box = Box((to - half).real, (to - half).imag, (to + half).real, (to + half).imag)
+        clear = bool(grid.free(np.array(box)[:, None])[0])
+        found[n] = label, box, clear and (_led(label, box) or not _reads(ink, label, box))
+        grid.put(ink, n, label, box)
+    return _kept(grid, ink, found, (k, q), before, ill if found[k][2] and found[q][2] else 0)
+
+
+def _kept(grid: Grid, ink: owners.Ink, found: list[Found], some: tuple[int, ...], before: list[Found], ill: int) -> bool:
+    """Whether labels stand better than ``ill`` now; else they go back to where they were before."""
+    if _ill(grid, ink, found, some) < ill:
+        return True
+    for k, was in zip(some, before, strict=True):
+        found[k] = was
+        grid.put(ink, k, *was[:2])
+    return False
 
 
 def _draw(canvas: Canvas, label: Label, box: Box) -> None:
@@ -346,7 +404,12 @@ def _misread(grid: Grid, ink: owners.Ink, label: Label, box: Box) -> int:
     near = (p.real > box.x0 - NEAR) & (p.real < box.x1 + NEAR) & (p.imag > box.y0 - NEAR) & (p.imag < box.y1 + NEAR)
     if _led(label, box) or not near.any():
         return 0
-    return SEVERAL * bool(owners.Round(ink, label, 2 * (NEAR + label.gap) + box.width).reads(box))
+    return SEVERAL * bool(_reads(ink, label, box))
+
+
+def _reads(ink: owners.Ink, label: Label, box: Box) -> str:
+    """What is wrong with a label there that has no leader, see :meth:`owners.Round.reads`."""
+    return owners.Round(ink, label, 2 * (NEAR + label.gap) + box.width).reads(box)
 
 
 def _led(label: Label, box: Box) -> bool:

@@ -73,11 +73,11 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     factor = Scale(scale.symbol, float(f"{scale.mu / times:.6g}"), scale.unit)
     canvas.title(box, f"{name} ({times}:1)", str(factor))
     with canvas.as_role("symbol"):
-        canvas.circle(window.centre, half, "thin")
+        canvas.window(window.centre, half)
         _enlarged(canvas, it, window.centre, half, times)
         radius = _free_radius(canvas, it)
         canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
-        canvas.circle(it.centre, radius, "thin")
+        canvas.window(it.centre, radius)
         # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
         canvas.label(it.centre, name, 1 + 1j, 5.0, radius + 2.0, shelf=radius)
 

@@ -48,8 +48,10 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     there = [steps for steps in g.false_points(pos.false[g.name]) if not any(np.isnan(step.at(k)) for step in steps)]
     false = stage(canvas, pos.false[g.name], k, frame)
     play(false, cut=2.0)
-    for steps in there:
+    for n, steps in enumerate(there, 1):
         false.dot(steps[2], 0.5, "thin")
+        for step in (steps[0], steps[2]):  # where leg 1 is put, and the point of the locus that follows
+            false.letters(step, str(n), false.at(step) - s.at(special.step), 2.5, 0.8)
     third = g.legs[2]
     play(s, [pos.points[third.corner]], "thin", cut=16.0)
     _locus(false, there, pos.points[third.corner])

@@ -96,6 +96,8 @@ def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
         (tr("Graph of the moment {shown}"), tr("Graphs of the moments {shown}"), "M", tr("N·m")) if r.forces_are_moments else
         (tr("Graph of the force {shown}"), tr("Graphs of the forces {shown}"), "F", tr("N")))
     title = one if len(names) == 1 else many
+    if r.moments_beside:  # no place among the ordinates of forces
+        canvas.note(box, tr("The reduced moment of forces counts as well: {shown}").format(shown=", ".join(r.moments_beside)))
     graphs.heading(canvas, box, options, title.format(shown=", ".join(f"{n}(φ_1)" for n in names)), f"{s.force}")
     acting = {name: _acting(fw, name) for name in names}
     low = min((float(line.imag.min()) for lines in acting.values() for line in lines), default=0.0)
@@ -376,7 +378,9 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
     low, high = _energy_range(fw)
     pen = of.pen("points", "axis")
     pen.arrow(g(-12.0), g(reach), "axis", 3.0)
-    pen.label(g(reach), tr("J^red, kg·m^2"), -1 + 1j, 3.5, 1.5, leader=False)
+    # Over or under the end of the axis, never beyond it: there the next column begins.
+    sign = tr("J^red, kg·m^2")
+    pen.label(g(reach - letter(sign, 3.5).width / 2 - 2.0), sign, 1j, 3.5, 1.5, leader=False)
     pen.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
     pen.label(g(1j * (high + graphs.OVER)), tr("ΔE, J"), 1, 3.5, 2.0, leader=False)
     beside = abs(fw.ab_mm) < 12.0

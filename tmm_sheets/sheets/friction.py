@@ -312,10 +312,12 @@ def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     of, study = _friction(project), project.study
     n, forces = len(study.labels), study.forces
     assert forces.balancing is not None
-    drive, sign = np.abs(np.broadcast_to(forces.balancing.value, (n,))), balancing_sign(project)
+    sign, unit = balancing_sign(project), tr("N·m") if study.driver is None else tr("N")
+    # A moment has the sign that it has in its graph; of a force in the mesh the size is told.
+    drive = study.balance["M"].value if study.driver is None else np.abs(forces.balancing.value)
     columns = [(tr("F_{{{index}}}, N").format(index=index), np.abs(np.broadcast_to(forces.reactions[f"F{index}"].value, (n,))))
                for index in of.pairs]
-    columns.append((f"|{sign}|, {tr('N·m') if study.driver is None else tr('N')}", drive))
+    columns.append((f"{sign}, {unit}", np.broadcast_to(drive, (n,))))
     columns.append((tr("N_f, W"), np.broadcast_to(of.total.value, (n,))))
     rows = [[tr("No."), *(name for name, _ in columns)]]
     cells = [graphs.column(values, 4) for _, values in columns]

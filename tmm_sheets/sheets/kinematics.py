@@ -494,7 +494,7 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     linear: dict[str, Any] = {}
     for seg, value in varying:
         linear.setdefault(seg.symbol.replace("\u0305", ""), value)
-    turning = [(f"ω_{link}", np.abs(w.value)) for link, w in vel.omega.items()
+    turning = [(f"ω_{link}", w.value) for link, w in vel.omega.items()
                if np.ndim(w.value) and link in vel.reference]
     speeds = [*linear.items(), *turning]
     stacked = bool(options.get("stacked"))

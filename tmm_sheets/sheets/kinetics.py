@@ -256,10 +256,18 @@ def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable
             pen.ray_line(tail, foot, "thin", 2.0)
         pen.line(centre, foot, "thin")
         pen.dot(foot, 0.35, "thin")
-        places = [centre + t * (foot - centre) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
+        # On an arm that runs on over a shorter one its letter stands beyond the end of that.
+        first = centre + _covered(foot - centre, [f - centre for f in feet]) * (foot - centre)
+        places = [first + t * (foot - first) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
         at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
         pen.label(at, " = ".join(f"h_{{{name}}}" for name in dict.fromkeys([letters, *same])), 1j * (foot - centre), 2.5, 0.8)
         busy.append(at)
+
+
+def _covered(arm: complex, others: Iterable[complex]) -> float:
+    """The part of an arm that shorter ones on its line take, as far as enough for a letter is left of it."""
+    along = [(other / arm).real for other in others if abs((other / arm).imag) * abs(arm) < 0.6]
+    return max((t for t in along if t > 0 and t * abs(arm) < abs(arm) - 3.0), default=0.0)
 
 
 def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:

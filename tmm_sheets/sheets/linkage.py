@@ -98,9 +98,10 @@ _PLAIN = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 
 
 def indexed(name: str) -> str:
-    """Name of a point in lettering markup: what follows its letter is the index."""
+    """Name of a point in lettering markup: what follows its letter is the index, a prime stands behind it."""
     name = name.translate(_PLAIN)
-    return f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
+    plain = name.rstrip("′")
+    return f"{plain[0]}_{{{plain[1:]}}}{name[len(plain):]}" if plain[1:] else name
 
 
 def crank_pins(pos: Positions) -> tuple[str, ...]:
@@ -252,14 +253,17 @@ def _draw_block(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
 
 
 def _draw_pairs(s: Stage, pos: Positions, at: Mapping[str, complex], *, whole: bool) -> None:
-    """Hinges and fixed pivots; of single groups only those pivots that are pairs of the mechanism."""
+    """Hinges and fixed pivots; of single groups only those pivots that are pairs of the mechanism.
+
+    The point of a ram where guide and slot meet is a hinge only where a group hangs on it.
+    """
     m = pos.mechanism
     for name, z in at.items():
         pen = s.pen(pos.points[name], "symbol")
         if name in m.fixed:
             if whole or name == m.crank.pivot or any(name in g.outer for g in m.groups):
                 symbols.pivot(pen, z, _base_direction(pos, name))
-        elif not any(g.kind.ram(g) and g.inner == name for g in m.groups):
+        elif not any(g.kind.ram(g) and g.inner == name for g in m.groups) or any(name in g.outer for g in m.groups):
             symbols.hinge(pen, z)
 
 

@@ -96,7 +96,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     flywheel.axes(fw, of, "points", g, 0.0, float(curve.max()), ordinate, np.ones(len(fw.labels)))
     k = int(np.argmax(curve))
     canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
-    _tangent(fw, of.position(project.force_index), box)
+    _tangent(fw, of.position(project.force_index), box, graphs.HEAD + (LEGEND if len(parts) > NAMED else 0.0))
 
 
 def _terms(fw: Mertsalov) -> list[tuple[str, Step, Any]]:
@@ -110,13 +110,13 @@ def _terms(fw: Mertsalov) -> list[tuple[str, Step, Any]]:
     return [(name, step, part) for name, step, part in found if part.max() > 4.0]
 
 
-def _tangent(fw: Mertsalov, of: Stage, box: Box) -> None:
+def _tangent(fw: Mertsalov, of: Stage, box: Box, head: float) -> None:
     """Tangent of the graph of inertia at the position of the force analysis, which gives the acceleration of the crank there."""
     step = fw.position_acceleration["ψ"]
     psi = float(of.value(step))
     at, u = of.at("points"), complex(np.cos(psi), np.sin(psi))
-    # As long as its place allows: a steep one ends under the heading and above the numbers of the axis.
-    low, high = segment_inside(box.inset(2.0, 2.0, 2.0, graphs.HEAD), at - 26.0 * u, at + 26.0 * u) or (at, at)
+    # As long as its place allows: a steep one ends under the heading, its legend too, and above the numbers of the axis.
+    low, high = segment_inside(box.inset(2.0, 2.0, 2.0, head), at - 26.0 * u, at + 26.0 * u) or (at, at)
     of.canvas.tracing("construction", step.path, of.label).line(low, high, "axis")
     of.dot("points", 0.7, "main")
     # The vertex of the angle lies on the tangent, away from the curve's own label.

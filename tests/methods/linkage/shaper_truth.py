@@ -67,6 +67,7 @@ class Shaper(AsSteps):
     omega1: float = OMEGA
     resisting: bool = True
     forces_are_moments: bool = False
+    moments_beside: tuple[str, ...] = ()
 
     def __post_init__(self):
         object.__setattr__(self, "labels", tuple(str(k) for k in range(self.positions)))

@@ -130,6 +130,11 @@ class ReducedData(Protocol):
         """True where ``forces_at`` tells moments, N m."""
         ...
 
+    @property
+    def moments_beside(self) -> tuple[str, ...]:
+        """Signs of technological moments that ``forces_at`` does not tell, since there are forces."""
+        ...
+
     def forces_at(self, phi: Any, side: int = 1) -> Mapping[str, Floats]:
         """Magnitudes of the technological forces, N, by their signs in lettering markup."""
         ...

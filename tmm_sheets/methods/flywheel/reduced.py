@@ -279,7 +279,12 @@ class Reduced:
     def forces_at(self, phi: Any, side: int = 0) -> dict[str, Any]:
         """Technological forces as graphs show them, N, by their signs in lettering markup; moments, N m, if there are none."""
         shown = [f for f in self.forces if f.point is not None] or self.forces
-        return {f"{f.name[0]}_{{{f.name[1:]}}}": np.asarray(f.shown(phi, side)) for f in shown}
+        return {_sign(f): np.asarray(f.shown(phi, side)) for f in shown}
+
+    @property
+    def moments_beside(self) -> tuple[str, ...]:
+        """Signs of technological moments beside forces: :meth:`forces_at` tells nothing of them."""
+        return () if self.forces_are_moments else tuple(_sign(f) for f in self.forces if f.point is None)
 
     @property
     def force_steps(self) -> tuple[Step, ...]:
@@ -357,3 +362,8 @@ class Reduced:
     def inertia_terms(self) -> dict[str, Any]:
         """Twice the kinetic energy of each link, term by term, at the numbered positions, kg m2/s2."""
         return {name: np.broadcast_to(term.value, np.shape(self.numbered.phi)) for name, term in self.numbered.terms.items()}
+
+
+def _sign(load: Any) -> str:
+    """Sign of a load in lettering markup."""
+    return f"{load.name[0]}_{{{load.name[1:]}}}"
