@@ -30,6 +30,8 @@ HUB = 2.0
 """Distance of a free wheel's hub from the line of its shaft, mm."""
 NAME = 30.0
 """Room for a link's speed of rotation on its plan, mm."""
+OVER = 34.0
+"""Room over and under the views with their title, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
 """Least width left for the picture of velocities and greatest of its velocities, mm: flat lines are hard to compare."""
 
@@ -37,11 +39,17 @@ NARROWEST, WIDEST = 75.0, 100.0
 def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Axial view, picture of velocities and front view side by side on one main axis, to one scale."""
     canvas.of = "reducer-velocities"
-    _Scheme(project.reducer, canvas, box).draw()
+    views = SchemeOfReducer(project.reducer)
+    views.place(canvas, box, "reducer-scheme", tr("Scheme of the reducer, picture of velocities and end view"))
+    views.draw()
 
 
 class SchemeViews:
-    """Views on one main axis and the picture of velocities; heights in metres over the axis become millimetres of the sheet."""
+    """Views on one main axis and the picture of velocities; heights in metres over the axis become millimetres of the sheet.
+
+    They reach to ``top``, ``bottom`` and ``side`` (m), the axial view is ``width`` wide (mm); ``above`` is what else stands over
+    the picture, mm.
+    """
 
     reducer: Any
     canvas: Canvas
@@ -54,23 +62,27 @@ class SchemeViews:
     bottom: float
     side: float
     width: float
+    above = 0.0
 
-    def place(self, box: Box, key: str, title: str, above: float = 0.0) -> None:
-        """Find the scale and the places of the axial view, the picture of velocities beside it and the end view at the right.
+    def fitted(self, width: float, height: float) -> Scale:
+        """The scale with which they fit a place with their title."""
+        return standard((self.top + self.bottom, height - OVER - self.above), (2 * self.side, width - self.beside(NARROWEST)))
 
-        They need ``top``, ``bottom`` and ``side`` (m) and ``width`` (mm); ``above`` is what else stands over the picture, mm.
-        """
-        inner = box.inset(0, 0, 0, 18)
-        beside = inner.width - self.width - NARROWEST - 24
-        self.mu = standard((self.top + self.bottom, inner.height - 16 - above), (2 * self.side, beside))
-        self.canvas.scales[key] = self.mu
+    def beside(self, picture: float) -> float:
+        """Width of what comes to the end view with a picture of velocities of this width, mm."""
+        return self.width + picture + 24.0
+
+    def place(self, canvas: Canvas, box: Box, key: str, title: str) -> None:
+        """Find the scale and the places of the axial view, the picture of velocities beside it and the end view at the right."""
+        self.canvas = canvas
+        self.mu = canvas.scales[key] = self.fitted(box.width, box.height)
         self.box = self.canvas.title(box, title, ratio(self.mu))
         spare = self.box.height - (self.top + self.bottom) / self.mu.mu
         self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
         self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
         left = self.box.x0 + self.width + 12
         right = self.front.real - self.side / self.mu.mu - 12
-        self.picture = Box(left, self.box.y0, right, self.box.y1 - above)
+        self.picture = Box(left, self.box.y0, right, self.box.y1 - self.above)
 
     def y(self, height: float) -> float:
         """Ordinate on the sheet of a height over the main axis."""
@@ -158,11 +170,12 @@ class SchemeViews:
             letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
             self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
 
-class _Scheme(SchemeViews):
+
+class SchemeOfReducer(SchemeViews):
     """The three views of a reducer."""
 
-    def __init__(self, reducer: Any, canvas: Canvas, box: Box) -> None:
-        self.reducer, self.canvas = reducer, canvas
+    def __init__(self, reducer: Any) -> None:
+        self.reducer = reducer
         self.stages, self.pair = reducer.stages, reducer.simple
         self.before = reducer.data.simple == "before"
         stage = self.stages[0]
@@ -173,7 +186,6 @@ class _Scheme(SchemeViews):
         self.bottom = max(self.reach, two if self.before else one + 2 * two)
         self.side = max(self.reach, one, two)
         self.width = self.columns() * COLUMN + 2 * STUB
-        self.place(box, "reducer-scheme", tr("Scheme of the reducer, picture of velocities and end view"))
 
     def columns(self) -> int:
         """Columns of the axial view between the shafts that lead in and out."""
@@ -181,6 +193,7 @@ class _Scheme(SchemeViews):
         return len(self.stages) * each
 
     def draw(self) -> None:
+        """Draw the three views."""
         with self.canvas.as_role("symbol"):
             self.axial()
             self.end_view()
@@ -189,6 +202,7 @@ class _Scheme(SchemeViews):
     # --- axial view ---------------------------------------------------------------------------------------------
 
     def axial(self) -> None:
+        """Wheels, shafts and carriers edge on."""
         c = self.canvas
         x = self.box.x0 + 3.0
         end = self.box.x0 + self.width

@@ -21,7 +21,9 @@ SLEEVE = 6.0
 def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Axial view, picture of velocities and end view side by side on one main axis, to one scale."""
     canvas.of = "train-velocities"
-    _Scheme(project.train, canvas, box).draw()
+    views = SchemeOfTrain(project.train)
+    views.place(canvas, box, "train-scheme", tr("Scheme of the train, picture of velocities and end view"))
+    views.draw()
 
 
 def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -122,12 +124,13 @@ def _signed(value: float) -> str:
     return f"({text})" if value < 0 else text
 
 
-class _Scheme(SchemeViews):
+class SchemeOfTrain(SchemeViews):
     """The views of a train: each mesh has a column of its own, wheels on one planet shaft are joined by a sleeve."""
 
-    def __init__(self, train: Any, canvas: Canvas, box: Box) -> None:
+    above = 8.0
+
+    def __init__(self, train: Any) -> None:
         self.reducer = self.train = train
-        self.canvas = canvas
         ends = [(self.height(name) + side * train.radius(name, m)) for m in train.meshes
                 for name in (m.central, m.planet) for side in (1, -1)]
         self.top, self.bottom = max(ends), -min(ends)
@@ -135,7 +138,6 @@ class _Scheme(SchemeViews):
         self.side = max(self.side, *(train.distance(m) + train.radius(m.planet, m) for m in train.meshes if m.carrier), 0.0)
         columns = len(train.meshes) + len({m.carrier for m in train.meshes if m.carrier})
         self.width = columns * COLUMN + 2 * STUB
-        self.place(box, "train-scheme", tr("Scheme of the train, picture of velocities and end view"), 8.0)
 
     def height(self, name: str) -> float:
         """Height of a wheel's axis over the main one, m."""
@@ -143,12 +145,14 @@ class _Scheme(SchemeViews):
         return float(found)
 
     def draw(self) -> None:
+        """Draw the three views."""
         with self.canvas.as_role("symbol"):
             self.axial()
             self.end_view()
         self.velocities()
 
     def axial(self) -> None:
+        """Wheels, shafts and carriers edge on."""
         c, train = self.canvas, self.train
         c.line(complex(self.box.x0 + 1, self.axis), complex(self.box.x0 + self.width + 2, self.axis), "centre")
         x = self.box.x0 + STUB
