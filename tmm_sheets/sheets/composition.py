@@ -442,7 +442,10 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "friction.table": _friction_table, "friction.positions": _friction_positions,
     "gear.engagement": gear_needs.engagement, "gear.sliding": gear_needs.sliding, "gear.mesh": gear_needs.mesh,
     "rack.generating": gear_needs.generating, "reducer.scheme": gear_needs.scheme_of_reducer, "reducer.speeds": gear_needs.speeds,
-    "train.scheme": gear_needs.scheme_of_train, "train.speeds": gear_needs.speeds,
+    "train.scheme": gear_needs.scheme_of_train, "train.speeds": gear_needs.speeds, "reducer.choice": gear_needs.choice,
+    "reducer.conditions": gear_needs.conditions, "reducer.points": gear_needs.points_of_reducer,
+    "train.points": gear_needs.points_of_train, "train.table": gear_needs.links_of_train, "train.willis": gear_needs.willis,
+    "train.sizes": gear_needs.dimensions,
     "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
 }
 """Views that tell what they need; others keep the size of their boxes."""

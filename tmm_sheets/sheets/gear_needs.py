@@ -92,3 +92,44 @@ def _scheme(views: reducer.SchemeViews, view: View) -> Node:
 def speeds(project: Project, view: View) -> Node:
     """A plan of speeds of rotation: rays from a pole to a line."""
     return _node(view, (150.0, 100.0), lambda width, height: 0.6 * width * min(height, 190))
+
+
+def _table(view: View, rows: int, head: float = 16.0) -> Node:
+    """A table of so many rows under its title, from the least height of a row to the greatest of use."""
+    need = Need(least=(150.0, head + 6.0 * rows), most=(190.0, head + reducer.ROW * rows), drawn=lambda w, h: w * h)
+    return Node(need, area=need.least[0] * need.most[1])
+
+
+def choice(project: Project, view: View) -> Node:
+    """Tooth sets with the line that says how they were chosen."""
+    return _table(view, len(project.reducer.sets) + 1, 24.0)
+
+
+def conditions(project: Project, view: View) -> Node:
+    """Conditions of a reducer and the remarks under them."""
+    return _table(view, 9 + 2 * bool(project.reducer.simple) + len(project.reducer.warnings))
+
+
+def points_of_reducer(project: Project, view: View) -> Node:
+    """Velocities of the points of a reducer's picture."""
+    return _table(view, len(reducer.moving_points(project.reducer)) + 1)
+
+
+def points_of_train(project: Project, view: View) -> Node:
+    """The same of a train's."""
+    return _table(view, len(reducer.moving_points(project.train)) + 1)
+
+
+def links_of_train(project: Project, view: View) -> Node:
+    """Wheels and carriers of a train with the remarks under them."""
+    return _table(view, len(project.train.names) + 1 + len(project.train.warnings))
+
+
+def willis(project: Project, view: View) -> Node:
+    """Two lines for each mesh of a train."""
+    return _table(view, 2 * len(project.train.meshes))
+
+
+def dimensions(project: Project, view: View) -> Node:
+    """Lines of diameters and distances."""
+    return _table(view, len(train.dimensions(project)))

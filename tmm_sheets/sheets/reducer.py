@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy
+from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
@@ -32,8 +33,10 @@ NAME = 30.0
 """Room for a link's speed of rotation on its plan, mm."""
 OVER = 34.0
 """Room over and under the views with their title, mm."""
+ROW = 12.0
+"""Greatest height of a row of the tables, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
-"""Least width left for the picture of velocities and greatest of its velocities, mm: flat lines are hard to compare."""
+"""Least width left for the picture of velocities and what its velocities may always take, mm."""
 
 
 def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -123,7 +126,9 @@ class SchemeViews:
         c, plan = self.canvas, self.reducer.velocities
         ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
         low, high = (f([v.real for v in ends.values()]) for f in (min, max))
-        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, WIDEST)), tr("(m/s)/mm"))
+        # Lines that stand less steep than 45 degrees are hard to draw others parallel to.
+        steep = max(WIDEST, self.mu.mm(max(v.imag for v in ends.values()) - min(v.imag for v in ends.values())))
+        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, steep)), tr("(m/s)/mm"))
         c.scales[plan.name] = mu
         whole = mu.mm(high - low)
         zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
@@ -454,20 +459,24 @@ def table_of_points(of: Any, canvas: Canvas, box: Box) -> None:
     rows = rows_of_points(of, canvas)
     left = canvas.title(box, tr("Velocities of the points"))
     widths = widened([0.16 * box.width, 0.28 * box.width, 0.28 * box.width, 0.28 * box.width], rows, 3.5)
-    canvas.table(complex(box.x0, left.y1), widths, rows, left.height / len(rows), 3.5)
+    canvas.table(complex(box.x0, left.y1), widths, rows, min(left.height / len(rows), ROW), 3.5)
 
 
 def rows_of_points(of: Any, canvas: Canvas) -> list[list[str]]:
     """Heading and a row for each point whose velocity the picture has."""
-    plan, mu = of.velocities, canvas.scales[of.velocities.name]
+    mu = canvas.scales[of.velocities.name]
     rows = [[tr("Point"), tr("Distance from the axis, mm"), tr("Segment of the picture, mm"), tr("V, m/s")]]
-    for end in plan:
-        name = end.name.upper()
-        if end.name.islower() and end.rule.gives == "point" and name in plan:
-            at = complex(end.value)
-            measured = f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}"
-            rows.append([name, number(1e3 * abs(at.imag)), measured, number(at.real)])
+    for end in moving_points(of):
+        name, at = end.name.upper(), complex(end.value)
+        measured = f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}"
+        rows.append([name, number(1e3 * abs(at.imag)), measured, number(at.real)])
     return rows
+
+
+def moving_points(of: Any) -> list[Step]:
+    """Ends of the velocities that the picture has."""
+    plan = of.velocities
+    return [end for end in plan if end.name.islower() and end.rule.gives == "point" and end.name.upper() in plan]
 
 
 def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -488,7 +497,7 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         inner = Box(inner.x0, inner.y0, inner.x1, inner.y1 - 6.0)
     wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
     widths = [w * box.width / sum(wide) for w in wide]
-    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(8.0, inner.height / len(rows)), height=3.5)
+    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(ROW, inner.height / len(rows)), height=3.5)
 
 
 def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -517,7 +526,7 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         names = "; ".join(f"d_{{{w.number}}}" for w in some)
         rows.append((tr("Pitch diameters {names}, mm").format(names=names), "; ".join(number(float(w.d.value)) for w in some)))
     inner = canvas.title(box, tr("Conditions and results of the reducer"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), 8.0)
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), ROW)
     for k, text in enumerate(r.warnings):
         said = f"{text[0].upper()}{text[1:]}."
-        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 6 - 6 * k), 0.0, said)
+        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)

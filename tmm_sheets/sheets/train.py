@@ -7,11 +7,11 @@ from math import pi
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted, letter, size_for
+from tmm_sheets.drawing.lettering import fitted, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
-from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, STUB, SchemeViews, plan_of_speeds, sizes_of_points, table_of_points
+from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, ROW, STUB, SchemeViews, plan_of_speeds, table_of_points
 from tmm_sheets.words import tr
 
 SLEEVE = 6.0
@@ -41,15 +41,10 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
         n = number(float(plan[f"n{name}"].value))
         rows.append((f"{name} — {tr('given')}" if name in train.given else name, teeth, n))
     inner = canvas.title(box, tr("Wheels and speeds of rotation, rpm"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(train.warnings), box.x1, inner.y1), rows, (30.0, 40.0), 8.0)
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(train.warnings), box.x1, inner.y1), rows, (30.0, 40.0), ROW)
     for k, text in enumerate(train.warnings):
         said = f"{text[0].upper()}{text[1:]}."
-        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 6 - 6 * k), 0.0, said)
-
-
-def points_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of points can do with, mm."""
-    return sizes_of_points(project.train, canvas)
+        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)
 
 
 def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -57,21 +52,15 @@ def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     table_of_points(project.train, canvas, box)
 
 
-def sizes_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the dimensions can do with, mm."""
-    lines = _sizes(project)
-    return [(max(letter(line, 3.5).width for line in lines) + 6.0, 12.0 + step * len(lines)) for step in (8.0, 7.0)]
-
-
 def sizes(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Pitch diameters and distances of axes in letters and in numbers."""
-    lines = _sizes(project)
+    lines = dimensions(project)
     left = canvas.title(box, tr("Dimensions of the train, mm"))
-    step = min(8.0, left.height / len(lines))
-    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, 3.5)
+    step = min(ROW, left.height / len(lines))
+    canvas.lines(complex(box.x0, left.y1 - 0.8 * step), lines, step, size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5))
 
 
-def _sizes(project: Any) -> list[str]:
+def dimensions(project: Any) -> list[str]:
     """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the central wheels."""
     train = project.train
     plan = train.kinematics
