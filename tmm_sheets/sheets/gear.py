@@ -28,8 +28,8 @@ DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
 LEVEL = radians(7)
 """Angle that radii keep from the level centre line."""
-PITCHES = 1.25
-"""Pitches that the view of the meshing zone must show at least."""
+PITCHES, MOST = 1.25, 1.5
+"""Pitches that the view of the meshing zone must show at least, and those it shows at most."""
 MESH = 18.0, 32.0
 """What comes to the meshing zone: names of circles beside it; title and edges over and under it, mm."""
 DEEPEST = 10.0
@@ -381,7 +381,9 @@ class _Detail:
         self.pole = place.centre
         tall = mesh_height(gear) / 2 / mu.mu + 8
         low, high = self.pole.imag - tall, self.pole.imag + tall
-        self.window = Window(canvas, Box(place.x0, max(inner.y0, low), place.x1, min(inner.y1, high)))
+        # Farther from the pole the teeth sink below the edges, and of each only pieces would be seen.
+        wide = min(place.width, MOST * gear.p / mu.mu) / 2
+        self.window = Window(canvas, Box(self.pole.real - wide, max(inner.y0, low), self.pole.real + wide, min(inner.y1, high)))
         self.at = Frame(mu, self.pole)
         self.stage = stage(canvas, gear.engagement, 0, self.at)
 

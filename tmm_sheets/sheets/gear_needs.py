@@ -65,7 +65,7 @@ def mesh(project: Project, view: View) -> Node:
 
     def drawn(width: int, height: int) -> float:
         mu = gear.mesh_scale(pair, width, height).mu
-        return min(width, 1.6 * gear.PITCHES * pair.p / mu) * min(height, gear.mesh_height(pair) / mu + gear.MESH[1])
+        return min(width, gear.MOST * pair.p / mu + gear.MESH[0]) * min(height, gear.mesh_height(pair) / mu + gear.MESH[1])
 
     return _node(view, (120.0, 90.0), drawn)
 
