@@ -1,6 +1,7 @@
 """The gear sheet: every view stays in its place, fills it, and shows what the plans hold."""
 
 import tomllib
+from importlib import import_module
 from itertools import combinations
 from math import radians
 from types import SimpleNamespace
@@ -13,7 +14,6 @@ from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Polyline, Text, flat
 from tmm_sheets.methods.gears.gear_pair import gear_pair
 from tmm_sheets.resources import template
-from tmm_sheets.sheets import gear as views
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
 DESIGNATION = Box(20, 575, 90, 589)
@@ -39,13 +39,18 @@ PROJECTS = {
 
 def arrangement():
     found = tomllib.loads(template("sheets/gear.toml").read_text("utf-8"))["view"]
-    return [(v["draw"].split(".")[1], Box(*v["box"])) for v in found]
+    return [(v["draw"], Box(*v["box"])) for v in found]
 
 
 def drawn(name, box, data):
     canvas = Canvas()
-    getattr(views, name)(data, canvas, box, {})
+    draw(name, data, canvas, box)
     return canvas
+
+
+def draw(name, data, canvas, box):
+    module, _, function = name.partition(".")
+    getattr(import_module(f"tmm_sheets.sheets.{module}"), function)(data, canvas, box, {})
 
 
 def ink(marks):
@@ -75,27 +80,27 @@ def test_view_stays_in_its_place_and_fills_it(name, box, data):
     # the title stands at the top and the drawing reaches well down
     assert np.ptp(points.imag) >= 0.75 * box.height
     # standard scales are up to a factor of two apart, and the line of action keeps 34 mm for its letters
-    assert np.ptp(points.real) >= (0.5 if name == "sliding" else 0.75) * box.width
+    assert np.ptp(points.real) >= (0.5 if name == "gear.sliding" else 0.75) * box.width
 
 
 @pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
 def test_every_label_finds_its_place(data):
     canvas = Canvas()
     for name, box in arrangement():
-        getattr(views, name)(data, canvas, box, {})
+        draw(name, data, canvas, box)
     assert place(canvas, FRAME) == []
 
 
 def test_scale_of_the_manual():
-    canvas = drawn("engagement", dict(arrangement())["engagement"], PROJECTS["manual 000"])
+    canvas = drawn("gear.engagement", dict(arrangement())["gear.engagement"], PROJECTS["manual 000"])
     assert "М 4:1" in [m.text for m in canvas.marks if isinstance(m, Text)]
     assert canvas.scales["gear-engagement"].mu == 0.00025
 
 
 @pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
 def test_both_centres_stand_on_the_picture_and_teeth_are_thick(data):
-    box = dict(arrangement())["engagement"]
-    canvas = drawn("engagement", box, data)
+    box = dict(arrangement())["gear.engagement"]
+    canvas = drawn("gear.engagement", box, data)
     anchors = {label.text: label.anchor for label in canvas.labels}
     assert box.contains(anchors["O_1"], -10)
     assert box.contains(anchors["O_2"], -10)
@@ -110,7 +115,7 @@ def test_both_centres_stand_on_the_picture_and_teeth_are_thick(data):
 def test_sliding_curves_show_the_table():
     """The drawn curves pass through the values of the divisions, taken back through the scale factor."""
     data = PROJECTS["manual 000"]
-    canvas = drawn("sliding", dict(arrangement())["sliding"], data)
+    canvas = drawn("gear.sliding", dict(arrangement())["gear.sliding"], data)
     curves = [m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "curve"]
     factor = next(m.text for m in canvas.marks if isinstance(m, Text) and "1/мм" in m.text)
     mu = float(factor.split("=")[1].split()[0].replace(",", "."))

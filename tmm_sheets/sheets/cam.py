@@ -138,7 +138,7 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     _integration(stages[0], stages[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
     _integration(stages[1], stages[2], m, m.names[2], m.s, "P_2", "H_2", downs[1])
     _phase_angles(canvas, m, origins[2] - 7j)
-    _relations(canvas, m, complex(box.x0 + 2.0, origins[2].imag + ups[2]))
+    _relations(canvas, m, complex(box.x0 + 2.0, origins[2].imag + ups[2]), x0)
 
 
 def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], ups: list[float]) -> None:
@@ -167,10 +167,17 @@ def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
                 canvas.label((a + b) / 2 - 8j, full, -1j, 3.5, 1.5, leader=False)
 
 
-def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:
-    """Scale factor of the angle, and how the other scale factors and the heights of S'' follow from one another."""
+def _relations(canvas: Canvas, m: FollowerMotion, at: complex, axis: float) -> None:
+    """Scale factor of the angle, and how the other scale factors and the heights of S'' follow from one another.
+
+    In two lines where it would reach the ordinate axis at the abscissa ``axis``.
+    """
     law = m.law
-    canvas.text(at, tr("{scale}  ({degrees} deg/mm)").format(scale=m.scales.phi, degrees=number(degrees(m.scales.phi.mu))), 3.5)
+    said = tr("{scale}  ({degrees} deg/mm)").format(scale=m.scales.phi, degrees=number(degrees(m.scales.phi.mu)))
+    whole = at.real + letter(said, 3.5).width + 2.0 <= axis
+    for line in (said,) if whole else said.split("  "):
+        canvas.text(at, line, 3.5)
+        at -= 8.0j
     second, first, zero = (f"μ_{name}" for name in m.names)
     equal = f"{law.fall.letters}^2/{law.rise.letters}^2 = " if law.rise.law.peak == law.fall.law.peak else ""
     lines = (
@@ -178,7 +185,7 @@ def _relations(canvas: Canvas, m: FollowerMotion, at: complex) -> None:
         f"{first} = {second}·μ_φ·H_1",
         f"{zero} = {first}·μ_φ·H_2",
     )
-    canvas.lines(at - 8.0j, lines, 8.0)
+    canvas.lines(at, lines, 8.0)
 
 
 def _diagram(s: Stage, step: Step, up: float, down: float, end: float, symbol: str, head: str) -> None:

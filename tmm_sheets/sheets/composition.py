@@ -17,7 +17,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
+from tmm_sheets.sheets import false_positions, gear_needs, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
 from tmm_sheets.sheets.frame import needed, standard
 from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
@@ -440,6 +440,12 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "given_position.values": _values, "false_positions.group": _false_positions,
     "friction.mechanism": _friction, "friction.pairs": _friction_pairs, "friction.power": _friction_power,
     "friction.table": _friction_table, "friction.positions": _friction_positions,
+    "gear.engagement": gear_needs.engagement, "gear.sliding": gear_needs.sliding, "gear.mesh": gear_needs.mesh,
+    "rack.generating": gear_needs.generating, "reducer.scheme": gear_needs.scheme_of_reducer, "reducer.speeds": gear_needs.speeds,
+    "train.scheme": gear_needs.scheme_of_train, "train.speeds": gear_needs.speeds, "reducer.choice": gear_needs.choice,
+    "reducer.conditions": gear_needs.conditions, "reducer.points": gear_needs.points_of_reducer,
+    "train.points": gear_needs.points_of_train, "train.table": gear_needs.links_of_train, "train.willis": gear_needs.willis,
+    "train.sizes": gear_needs.dimensions,
     "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
 }
 """Views that tell what they need; others keep the size of their boxes."""

@@ -26,6 +26,12 @@ STRIP = 2.5
 """Depth of the hatched strip along the working part of a flank, mm."""
 DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
+LEVEL = radians(7)
+"""Angle that radii keep from the level centre line."""
+PITCHES, MOST = 1.25, 1.5
+"""Pitches that the view of the meshing zone must show at least, and those it shows at most."""
+MESH = 18.0, 32.0
+"""What comes to the meshing zone: names of circles beside it; title and edges over and under it, mm."""
 DEEPEST = 10.0
 """Specific sliding down to which the curves are followed on their way to minus infinity."""
 
@@ -44,16 +50,22 @@ def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         picture.rotation(wheel)
 
 
+def picture_room(gear: Any, width: float, height: float) -> float:
+    """Room for the height of the engagement picture, mm: two thirds for the centre distance, of a ring nearly all.
+
+    And most of the smaller wheel across the width.
+    """
+    smaller = 1.45 * min(w.ra for w in gear.wheels)
+    tall = height - 60 if gear.internal else 2 / 3 * (height - 16)
+    return float(min(tall, (width - 12) / smaller * gear.height))
+
+
 class _GearPicture:
     """The engagement picture in its place: turns metres of the plans into millimetres of the sheet."""
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
-        # Two thirds of the height for the centre distance, of a ring nearly all, and most of the smaller wheel across the width.
-        smaller = 1.45 * min(w.ra for w in gear.wheels)
-        tall = box.height - 60 if gear.internal else 2 / 3 * (box.height - 16)
-        room = min(tall, (box.width - 12) / smaller * gear.height)
-        self.mu: Scale = gear.picture_scale(room)
+        self.mu: Scale = gear.picture_scale(picture_room(gear, box.width, box.height))
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
             canvas.scales[f"gear-{name}"] = self.mu
         self.box = canvas.title(box, tr("Gear meshing"), ratio(self.mu))
@@ -113,7 +125,9 @@ class _GearPicture:
             centre = self.of(f"O{wheel.number}")
             self.window.circles(self.stage, [wheel])
             self.window.breaks(self.stage, wheel)
-            self.window.line(self.stage, f"O{wheel.number}", centre - 12, centre + 12, "centre")
+            # At the right the extension line of the centre distance continues it; of a ring there is nothing at this level.
+            left = 12.0 if wheel.ring else self.mm(wheel.ra) + 6.0
+            self.window.line(self.stage, f"O{wheel.number}", centre - left, centre + 12, "centre")
             self.stage.pen(f"O{wheel.number}", "symbol").circle(centre, 2.0, "main")
             self.canvas.label(centre, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
 
@@ -156,7 +170,7 @@ class _GearPicture:
         chosen: list[float | None] = []
         for side, count in ((1, 3), (-1, 2)):
             free = [a for a in np.radians(np.arange(14.0, 180.0 - degrees(busy), 1.0))
-                    if place.contains(centre + rect(self.mm(max(wheel.ra, wheel.rf)), far + side * a))]
+                    if abs(a - pi / 2) > LEVEL and place.contains(centre + rect(self.mm(max(wheel.ra, wheel.rf)), far + side * a))]
             # The radii are named beside one another a little inside the root circle, of a ring inside the tip circle.
             room = (free[-1] - free[0]) * 0.7 * self.mm(wheel.rf) if free else 0.0
             apart = min(count, 1 + int(room / 7)) if free else 0
@@ -168,7 +182,8 @@ class _GearPicture:
         c, s = self.canvas, self.stage
         n1, n2, a, b, pole = (self.of(k) for k in ("N1", "N2", "A", "B", "Pw"))
         u = complex(s.plan["N1N2"].value)
-        reach = 1.25 * max(abs(n1 - pole), abs(n2 - pole))
+        beside = min(pole.real - self.window.box.x0, self.window.box.x1 - pole.real)
+        reach = min(1.25 * max(abs(n1 - pole), abs(n2 - pole)), beside - 8.0)
         h = self.gear.hand
         self.window.line(s, "N1N2", pole - h * reach, pole + h * reach, "thin")
         for end in (pole - h * reach, pole + h * reach):
@@ -344,19 +359,31 @@ def mesh(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> Non
     _Detail(project.gear, canvas, box).draw()
 
 
+def mesh_height(gear: Any) -> float:
+    """Height of the meshing zone with the clearances, m."""
+    return 2.0 * float(max(abs(w.ra - w.rw) + gear.clearance * gear.m for w in gear.wheels))
+
+
+def mesh_scale(gear: Any, width: float, height: float) -> Scale:
+    """Scale of the meshing zone in a place of this size, mm."""
+    return standard((PITCHES * gear.p, width - MESH[0]), (mesh_height(gear), height - MESH[1]))
+
+
 class _Detail:
     """Surroundings of the pole to the largest standard scale that shows a pitch and a quarter."""
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
-        margin = 18.0
-        mu = standard((1.25 * gear.p, box.width - margin))
+        margin = MESH[0]
+        mu = mesh_scale(gear, box.width, box.height)
         inner = canvas.title(box, tr("Meshing zone"), ratio(mu))
         place = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
         self.pole = place.centre
-        tall = mu.mm(max(abs(w.ra - w.rw) + gear.clearance * gear.m for w in gear.wheels)) + 8
+        tall = mesh_height(gear) / 2 / mu.mu + 8
         low, high = self.pole.imag - tall, self.pole.imag + tall
-        self.window = Window(canvas, Box(place.x0, max(inner.y0, low), place.x1, min(inner.y1, high)))
+        # Farther from the pole the teeth sink below the edges, and of each only pieces would be seen.
+        wide = min(place.width, MOST * gear.p / mu.mu) / 2
+        self.window = Window(canvas, Box(self.pole.real - wide, max(inner.y0, low), self.pole.real + wide, min(inner.y1, high)))
         self.at = Frame(mu, self.pole)
         self.stage = stage(canvas, gear.engagement, 0, self.at)
 
@@ -417,7 +444,7 @@ def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     one = gear.wheels[0]
     room = box.width - 34
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
-    if not room / 2 < scale.mm(one.t_pole + gear.beyond_pole) <= room:
+    if not 0.6 * room < scale.mm(one.t_pole + gear.beyond_pole) <= room:
         scale = standard((one.t_pole + gear.beyond_pole, room))
     canvas.scales["gear-sliding"] = scale
     whole = scale.mm(one.t_pole + gear.beyond_pole)

@@ -20,12 +20,23 @@ from tmm_sheets.words import tr
 
 MARGIN = 16.0
 """Room for the names of the circles beside the window, mm."""
+LEFT = 28.0
+"""Room for the sizes of the rack at its other side, mm."""
 PITCHES = 1.5
 """Pitches of the rack that the window must show at least: a tooth of the rack between two of the wheel."""
 NOTES = 24.0
 """Room over the rack for its pitch and the names of its lines, mm."""
+OVER = 16.0 + NOTES
+"""Room over the rack with the title, mm."""
 BELOW = 0.5
 """Modules of the wheel's body under its root circle that the window must show at least."""
+
+
+def extent(gear: Any) -> tuple[float, float]:
+    """What must be seen of wheel and rack over the pole and under it, m."""
+    wheel = gear.pinion
+    rack = wheel.rack
+    return max((rack.shift + wheel.addendum) * gear.m, wheel.ra - rack.r), rack.r - wheel.rf + BELOW * gear.m
 
 
 def generating(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -52,17 +63,15 @@ class _RackPicture:
         self.gear, self.canvas = gear, canvas
         self.wheel = gear.pinion
         self.rack = self.wheel.rack
-        m = gear.m
-        top = max((self.rack.shift + self.wheel.addendum) * m, self.wheel.ra - self.rack.r)
-        bottom = self.rack.r - self.wheel.rf + BELOW * m
-        inner = box.inset(0, 0, MARGIN, 16 + NOTES)
-        scale = standard((PITCHES * pi * m, inner.width), (top + bottom, inner.height))
+        top, bottom = extent(gear)
+        inner = box.inset(LEFT, 0, MARGIN, OVER)
+        scale = standard((PITCHES * pi * gear.m, inner.width), (top + bottom, inner.height))
         canvas.scales["gear-rack"] = scale
         inner = canvas.title(box, tr("Generation of wheel {wheel} by the rack").format(wheel=self.wheel.number), ratio(scale))
         # What height is left goes to the wheel, whose centre may come to stand on the picture.
-        self.pole = complex((inner.x0 + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)
+        self.pole = complex((inner.x0 + LEFT + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)
         low = max(inner.y0, self.pole.imag - min(self.rack.r / scale.mu + 12, 2.2 * bottom / scale.mu))
-        self.window = Window(canvas, Box(inner.x0, low, inner.x1 - MARGIN, inner.y1))
+        self.window = Window(canvas, Box(inner.x0 + LEFT, low, inner.x1 - MARGIN, inner.y1))
         # the plan's origin is the wheel's centre
         self.at = Frame(scale, self.pole - scale.mm(1j * self.rack.r))
         self.stage = stage(canvas, gear.generating, None, self.at)
@@ -171,16 +180,16 @@ class _RackPicture:
         c.line(tip, touch, "thin")
         c.arrow_head(touch, (touch - tip) / abs(touch - tip), 2.5)
         c.label(tip, f"ρ_f = {fixed(rack.tip_radius * 1e3, 2)}", away=-1 + 0.4j, gap=1.5)
-        x = w.x0 + 6.0
+        x = w.x0 - 4.0
         for low, part in ((0.0, self.wheel.addendum), (-rack.addendum * m, rack.addendum)):
             a, b = complex(x, self.height(low)), complex(x, self.height(low + part * m))
             c.line(a, b, "thin")
             c.arrow_head(a, -1j, 3.0)
             c.arrow_head(b, 1j, 3.0)
-            c.label((a + b) / 2, f"h_a^{{*}}m = {number(part * m * 1e3)}", away=1, height=3.5, gap=1.0)
+            c.label((a + b) / 2, f"h_a^{{*}}m = {number(part * m * 1e3)}", away=-1, height=3.5, gap=1.0)
         for level in (-rack.addendum * m, -rack.depth, self.wheel.addendum * m):
             y = self.height(level)
-            c.line(complex(x - 3, y), complex(x + 8, y), "thin")
+            c.line(complex(x - 2, y), complex(w.x0 + 6, y), "thin")
         gaps = [(-rack.depth, -rack.addendum * m, f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}")]
         if abs(rack.shift) * m / self.at.scale.mu > 0.3:
             low, high = sorted((0.0, -rack.shift * m))
@@ -188,7 +197,7 @@ class _RackPicture:
         for k, (low, high, text) in enumerate(gaps):
             at = x if k == 0 else w.x1 - 26
             a, b = complex(at, self.height(low)), complex(at, self.height(high))
-            gap(c, a, b, text, 1 if k == 0 else -1, 2.5)
+            gap(c, a, b, text, -1, 1.5 if k == 0 else 2.5)
         laid = letter(f"p = {fixed(gear.p * 1e3, 2)}", 3.5)
         y = w.y1 - NOTES + 5.0
         half = gear.p / 2 / self.at.scale.mu

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy
+from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
@@ -30,18 +31,28 @@ HUB = 2.0
 """Distance of a free wheel's hub from the line of its shaft, mm."""
 NAME = 30.0
 """Room for a link's speed of rotation on its plan, mm."""
+OVER = 34.0
+"""Room over and under the views with their title, mm."""
+ROW = 12.0
+"""Greatest height of a row of the tables, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
-"""Least width left for the picture of velocities and greatest of its velocities, mm: flat lines are hard to compare."""
+"""Least width left for the picture of velocities and what its velocities may always take, mm."""
 
 
 def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Axial view, picture of velocities and front view side by side on one main axis, to one scale."""
     canvas.of = "reducer-velocities"
-    _Scheme(project.reducer, canvas, box).draw()
+    views = SchemeOfReducer(project.reducer)
+    views.place(canvas, box, "reducer-scheme", tr("Scheme of the reducer, picture of velocities and end view"))
+    views.draw()
 
 
 class SchemeViews:
-    """Views on one main axis and the picture of velocities; heights in metres over the axis become millimetres of the sheet."""
+    """Views on one main axis and the picture of velocities; heights in metres over the axis become millimetres of the sheet.
+
+    They reach to ``top``, ``bottom`` and ``side`` (m), the axial view is ``width`` wide (mm); ``above`` is what else stands over
+    the picture, mm.
+    """
 
     reducer: Any
     canvas: Canvas
@@ -54,23 +65,27 @@ class SchemeViews:
     bottom: float
     side: float
     width: float
+    above = 0.0
 
-    def place(self, box: Box, key: str, title: str, above: float = 0.0) -> None:
-        """Find the scale and the places of the axial view, the picture of velocities beside it and the end view at the right.
+    def fitted(self, width: float, height: float) -> Scale:
+        """The scale with which they fit a place with their title."""
+        return standard((self.top + self.bottom, height - OVER - self.above), (2 * self.side, width - self.beside(NARROWEST)))
 
-        They need ``top``, ``bottom`` and ``side`` (m) and ``width`` (mm); ``above`` is what else stands over the picture, mm.
-        """
-        inner = box.inset(0, 0, 0, 18)
-        beside = inner.width - self.width - NARROWEST - 24
-        self.mu = standard((self.top + self.bottom, inner.height - 16 - above), (2 * self.side, beside))
-        self.canvas.scales[key] = self.mu
+    def beside(self, picture: float) -> float:
+        """Width of what comes to the end view with a picture of velocities of this width, mm."""
+        return self.width + picture + 24.0
+
+    def place(self, canvas: Canvas, box: Box, key: str, title: str) -> None:
+        """Find the scale and the places of the axial view, the picture of velocities beside it and the end view at the right."""
+        self.canvas = canvas
+        self.mu = canvas.scales[key] = self.fitted(box.width, box.height)
         self.box = self.canvas.title(box, title, ratio(self.mu))
         spare = self.box.height - (self.top + self.bottom) / self.mu.mu
         self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
         self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
         left = self.box.x0 + self.width + 12
         right = self.front.real - self.side / self.mu.mu - 12
-        self.picture = Box(left, self.box.y0, right, self.box.y1 - above)
+        self.picture = Box(left, self.box.y0, right, self.box.y1 - self.above)
 
     def y(self, height: float) -> float:
         """Ordinate on the sheet of a height over the main axis."""
@@ -111,7 +126,9 @@ class SchemeViews:
         c, plan = self.canvas, self.reducer.velocities
         ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
         low, high = (f([v.real for v in ends.values()]) for f in (min, max))
-        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, WIDEST)), tr("(m/s)/mm"))
+        # Lines that stand less steep than 45 degrees are hard to draw others parallel to.
+        steep = max(WIDEST, self.mu.mm(max(v.imag for v in ends.values()) - min(v.imag for v in ends.values())))
+        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, steep)), tr("(m/s)/mm"))
         c.scales[plan.name] = mu
         whole = mu.mm(high - low)
         zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
@@ -158,11 +175,12 @@ class SchemeViews:
             letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
             self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
 
-class _Scheme(SchemeViews):
+
+class SchemeOfReducer(SchemeViews):
     """The three views of a reducer."""
 
-    def __init__(self, reducer: Any, canvas: Canvas, box: Box) -> None:
-        self.reducer, self.canvas = reducer, canvas
+    def __init__(self, reducer: Any) -> None:
+        self.reducer = reducer
         self.stages, self.pair = reducer.stages, reducer.simple
         self.before = reducer.data.simple == "before"
         stage = self.stages[0]
@@ -173,7 +191,6 @@ class _Scheme(SchemeViews):
         self.bottom = max(self.reach, two if self.before else one + 2 * two)
         self.side = max(self.reach, one, two)
         self.width = self.columns() * COLUMN + 2 * STUB
-        self.place(box, "reducer-scheme", tr("Scheme of the reducer, picture of velocities and end view"))
 
     def columns(self) -> int:
         """Columns of the axial view between the shafts that lead in and out."""
@@ -181,6 +198,7 @@ class _Scheme(SchemeViews):
         return len(self.stages) * each
 
     def draw(self) -> None:
+        """Draw the three views."""
         with self.canvas.as_role("symbol"):
             self.axial()
             self.end_view()
@@ -189,6 +207,7 @@ class _Scheme(SchemeViews):
     # --- axial view ---------------------------------------------------------------------------------------------
 
     def axial(self) -> None:
+        """Wheels, shafts and carriers edge on."""
         c = self.canvas
         x = self.box.x0 + 3.0
         end = self.box.x0 + self.width
@@ -440,20 +459,24 @@ def table_of_points(of: Any, canvas: Canvas, box: Box) -> None:
     rows = rows_of_points(of, canvas)
     left = canvas.title(box, tr("Velocities of the points"))
     widths = widened([0.16 * box.width, 0.28 * box.width, 0.28 * box.width, 0.28 * box.width], rows, 3.5)
-    canvas.table(complex(box.x0, left.y1), widths, rows, left.height / len(rows), 3.5)
+    canvas.table(complex(box.x0, left.y1), widths, rows, min(left.height / len(rows), ROW), 3.5)
 
 
 def rows_of_points(of: Any, canvas: Canvas) -> list[list[str]]:
     """Heading and a row for each point whose velocity the picture has."""
-    plan, mu = of.velocities, canvas.scales[of.velocities.name]
+    mu = canvas.scales[of.velocities.name]
     rows = [[tr("Point"), tr("Distance from the axis, mm"), tr("Segment of the picture, mm"), tr("V, m/s")]]
-    for end in plan:
-        name = end.name.upper()
-        if end.name.islower() and end.rule.gives == "point" and name in plan:
-            at = complex(end.value)
-            measured = f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}"
-            rows.append([name, number(1e3 * abs(at.imag)), measured, number(at.real)])
+    for end in moving_points(of):
+        name, at = end.name.upper(), complex(end.value)
+        measured = f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}"
+        rows.append([name, number(1e3 * abs(at.imag)), measured, number(at.real)])
     return rows
+
+
+def moving_points(of: Any) -> list[Step]:
+    """Ends of the velocities that the picture has."""
+    plan = of.velocities
+    return [end for end in plan if end.name.islower() and end.rule.gives == "point" and end.name.upper() in plan]
 
 
 def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -474,7 +497,7 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         inner = Box(inner.x0, inner.y0, inner.x1, inner.y1 - 6.0)
     wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
     widths = [w * box.width / sum(wide) for w in wide]
-    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(8.0, inner.height / len(rows)), height=3.5)
+    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(ROW, inner.height / len(rows)), height=3.5)
 
 
 def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -503,7 +526,7 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         names = "; ".join(f"d_{{{w.number}}}" for w in some)
         rows.append((tr("Pitch diameters {names}, mm").format(names=names), "; ".join(number(float(w.d.value)) for w in some)))
     inner = canvas.title(box, tr("Conditions and results of the reducer"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), 8.0)
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), ROW)
     for k, text in enumerate(r.warnings):
         said = f"{text[0].upper()}{text[1:]}."
-        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 6 - 6 * k), 0.0, said)
+        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)

@@ -7,11 +7,11 @@ from math import pi
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted, letter, size_for
+from tmm_sheets.drawing.lettering import fitted, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
-from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, STUB, SchemeViews, plan_of_speeds, sizes_of_points, table_of_points
+from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, ROW, STUB, SchemeViews, plan_of_speeds, table_of_points
 from tmm_sheets.words import tr
 
 SLEEVE = 6.0
@@ -21,7 +21,9 @@ SLEEVE = 6.0
 def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Axial view, picture of velocities and end view side by side on one main axis, to one scale."""
     canvas.of = "train-velocities"
-    _Scheme(project.train, canvas, box).draw()
+    views = SchemeOfTrain(project.train)
+    views.place(canvas, box, "train-scheme", tr("Scheme of the train, picture of velocities and end view"))
+    views.draw()
 
 
 def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -39,15 +41,10 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
         n = number(float(plan[f"n{name}"].value))
         rows.append((f"{name} — {tr('given')}" if name in train.given else name, teeth, n))
     inner = canvas.title(box, tr("Wheels and speeds of rotation, rpm"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(train.warnings), box.x1, inner.y1), rows, (30.0, 40.0), 8.0)
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(train.warnings), box.x1, inner.y1), rows, (30.0, 40.0), ROW)
     for k, text in enumerate(train.warnings):
         said = f"{text[0].upper()}{text[1:]}."
-        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 6 - 6 * k), 0.0, said)
-
-
-def points_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of points can do with, mm."""
-    return sizes_of_points(project.train, canvas)
+        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)
 
 
 def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -55,21 +52,15 @@ def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     table_of_points(project.train, canvas, box)
 
 
-def sizes_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the dimensions can do with, mm."""
-    lines = _sizes(project)
-    return [(max(letter(line, 3.5).width for line in lines) + 6.0, 12.0 + step * len(lines)) for step in (8.0, 7.0)]
-
-
 def sizes(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Pitch diameters and distances of axes in letters and in numbers."""
-    lines = _sizes(project)
+    lines = dimensions(project)
     left = canvas.title(box, tr("Dimensions of the train, mm"))
-    step = min(8.0, left.height / len(lines))
-    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, 3.5)
+    step = min(ROW, left.height / len(lines))
+    canvas.lines(complex(box.x0, left.y1 - 0.8 * step), lines, step, size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5))
 
 
-def _sizes(project: Any) -> list[str]:
+def dimensions(project: Any) -> list[str]:
     """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the central wheels."""
     train = project.train
     plan = train.kinematics
@@ -122,12 +113,13 @@ def _signed(value: float) -> str:
     return f"({text})" if value < 0 else text
 
 
-class _Scheme(SchemeViews):
+class SchemeOfTrain(SchemeViews):
     """The views of a train: each mesh has a column of its own, wheels on one planet shaft are joined by a sleeve."""
 
-    def __init__(self, train: Any, canvas: Canvas, box: Box) -> None:
+    above = 8.0
+
+    def __init__(self, train: Any) -> None:
         self.reducer = self.train = train
-        self.canvas = canvas
         ends = [(self.height(name) + side * train.radius(name, m)) for m in train.meshes
                 for name in (m.central, m.planet) for side in (1, -1)]
         self.top, self.bottom = max(ends), -min(ends)
@@ -135,7 +127,6 @@ class _Scheme(SchemeViews):
         self.side = max(self.side, *(train.distance(m) + train.radius(m.planet, m) for m in train.meshes if m.carrier), 0.0)
         columns = len(train.meshes) + len({m.carrier for m in train.meshes if m.carrier})
         self.width = columns * COLUMN + 2 * STUB
-        self.place(box, "train-scheme", tr("Scheme of the train, picture of velocities and end view"), 8.0)
 
     def height(self, name: str) -> float:
         """Height of a wheel's axis over the main one, m."""
@@ -143,12 +134,14 @@ class _Scheme(SchemeViews):
         return float(found)
 
     def draw(self) -> None:
+        """Draw the three views."""
         with self.canvas.as_role("symbol"):
             self.axial()
             self.end_view()
         self.velocities()
 
     def axial(self) -> None:
+        """Wheels, shafts and carriers edge on."""
         c, train = self.canvas, self.train
         c.line(complex(self.box.x0 + 1, self.axis), complex(self.box.x0 + self.width + 2, self.axis), "centre")
         x = self.box.x0 + STUB
