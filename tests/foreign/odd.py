@@ -231,6 +231,36 @@ def scanner_app(shot: Shot) -> Taken:
     return np.asarray(flat, np.uint8), _with(truth, lifted[..., :2] / lifted[..., 2:])
 
 
+def rolled(shot: Shot) -> Taken:
+    """The sheet came out of a tube: two opposite edges stand up."""
+    return shot.take(None, "rolled")
+
+
+def pencil_beneath(shot: Shot) -> Taken:
+    """A pencil lies under the sheet."""
+    return shot.take(None, "ridge")
+
+
+def wide_angle(shot: Shot) -> Taken:
+    """The telephone's other lens, its bend not taken back."""
+    return shot.take(None, "wide")
+
+
+def panorama(shot: Shot) -> Taken:
+    """Put together from two pictures by the telephone: what is right of a seam lies some millimetres elsewhere."""
+    picture, truth = shot.take()
+    pixels = _pixels(truth)
+    density = float(np.hypot(*(pixels[30, 80] - pixels[30, 4]))) / 760
+    by = density * float(shot.random.uniform(1, 4)) * np.exp(1j * shot.random.uniform(0, 2 * np.pi))
+    h, w = picture.shape[:2]
+    seam = shot.random.uniform(0.25, 0.75) * w
+    y, x = np.mgrid[0:h, 0:w].astype(np.float32)
+    step = np.clip((x - seam) / (3 * density) + 0.5, 0, 1)
+    lifted = cv2.remap(picture, x - step * by.real, y - step * by.imag, cv2.INTER_LINEAR)
+    there = np.clip((pixels[..., 0] - seam) / (3 * density) + 0.5, 0, 1)
+    return np.asarray(lifted, np.uint8), _with(truth, pixels + there[..., None] * np.array([by.real, by.imag]))
+
+
 def storm(shot: Shot) -> Taken:
     """Several difficulties at once."""
     traits = [*shot.random.choice(sorted(POSE), 2, replace=False), *shot.random.choice(sorted(WEATHER), 2, replace=False)]
@@ -256,6 +286,10 @@ KINDS: dict[str, Callable[[Shot], Taken]] = {
         monitor,
         strong_jpeg,
         scanner_app,
+        rolled,
+        pencil_beneath,
+        wide_angle,
+        panorama,
         storm,
     )
 }

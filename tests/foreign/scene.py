@@ -219,10 +219,12 @@ def taken(
     project, sheet = what.sheet
     if ink is None:
         ink = pencil.draw(drawn, random)
-    paper = Paper(random, waves="waves" in traits, folds="folds" in traits)
+    paper = Paper(random, **{trait: trait in traits for trait in ("waves", "folds", "rolled", "ridge")})
     tilt = float(random.uniform(20, 32)) if "oblique" in traits else float(abs(random.normal(0, 7)) + 2)
     roll = float(random.choice((-1, 1)) * random.uniform(4, 8) if "corner" in traits else random.normal(0, 2.5))
-    camera = Camera(random, _megapixels(traits, random, most), np.radians(tilt), float(random.uniform(*fill)), np.radians(roll))
+    megapixels = _megapixels(traits, random, most)
+    share = float(random.uniform(*fill))
+    camera = Camera(random, megapixels, np.radians(tilt), share, np.radians(roll), wide="wide" in traits)
     if "corner" in traits:
         _move_corner_out(camera, random)
     picture = _seen(what, marks, ink, paper, camera, random, floor)
