@@ -35,30 +35,41 @@ def photographed(elements):
     return ink
 
 
-def examined(elements):
-    """What is found in such a picture: findings as they are drawn, and what was built."""
+def examined(elements, hidden=None):
+    """What is found in such a picture: findings as they are drawn, and what was built; ``hidden`` (1 mm) is covered."""
     ink = photographed(elements)
-    found = SimpleNamespace(ink=ink, hidden=None, uncertainty=0.15, soft=False)
-    findings = [judge(t, 0.25, 0.15) for t in tracing.trace(KNOWN.elements, ink)[0]]
-    built = built_photo.built_otherwise(SHAPER, KNOWN, findings, ink)
+    if hidden is not None:
+        ink[np.kron(hidden, np.ones((round(SCALE), round(SCALE)), bool))] = 0
+    found = SimpleNamespace(ink=ink, hidden=hidden, uncertainty=0.15, soft=False)
+    findings = [judge(t, 0.25, 0.15) for t in tracing.trace(KNOWN.elements, ink, hidden)[0]]
+    built = built_photo.built_otherwise(SHAPER, KNOWN, findings, ink, hidden)
     return built, built_photo.as_built(KNOWN.elements, built, found, 0.25)[0] if built else findings
 
 
-def slipped(step, way):
-    """The elements with a step of the plan of accelerations done otherwise, and what is wrong then."""
+def slipped(**ways):
+    """The elements with steps of plans done otherwise, by their ids, and what is wrong then."""
     drawn = Drawn(list(KNOWN.elements), {v: Placing() for v in VIEWS.values()})
     plans, errors = errors_of(SHAPER, KNOWN)
     mu = {f.plan: f.mu[0] for f in KNOWN.sheet.frames if f.plan in plans}
     found = SimpleNamespace(plans=[(plans[name], name) for name in mu], errors=lambda *_: errors,
                             scales={name: SimpleNamespace(mu=mu[name]) for name in mu})
-    plan = plans["accelerations"]
-    assert follows(found, KNOWN, drawn, Slip("coriolis", step, plan.labels.index("2"), {plan[step]: way}))
+    k = plans["accelerations"].labels.index("2")
+    steps = {"coriolis": plans["accelerations"]["k"], "inertia": plans["force-5"]["3"]}
+    assert follows(found, KNOWN, drawn, Slip("both", "", k, {steps[name]: way for name, way in ways.items()}))
     return followed(drawn, KNOWN), drawn.wrong
+
+
+def other_way(a, made, k):
+    return a[0] - 2j * a[1] * (a[3] - a[2])
+
+
+def backwards(a, made, k):
+    return 2 * a[0] - made[k]
 
 
 @pytest.fixture(scope="module")
 def coriolis():
-    elements, wrong = slipped("k", lambda a, made, k: a[0] - 2j * a[1] * (a[3] - a[2]))
+    elements, wrong = slipped(coriolis=other_way)
     return *examined(elements), wrong
 
 
@@ -77,6 +88,42 @@ def test_what_follows_is_told_as_such(coriolis):
     assert all("as follows from the mistake" in f.what for f in bad.values())
     by_number = {e.number: e for e in KNOWN.elements}
     assert all(f.element is by_number[n] for n, f in bad.items())  # judged by, and shown beside, what ought to be there
+
+
+def test_two_mistakes_are_both_named():
+    built, findings = examined(slipped(coriolis=other_way, inertia=backwards)[0])
+    assert {v.name: plan.mistake.kind for v, (plan, _) in built.items()} == dict(zip(NAMES, ("coriolis", "inertia"), strict=True))
+    bad = [f for f in findings if f.verdict != "green" and f.element.role == "vector"]
+    assert bad
+    assert all("as follows from the mistake" in f.what for f in bad)
+
+
+def test_a_mistake_is_named_though_part_of_the_plan_is_hidden():
+    elements, wrong = slipped(coriolis=other_way)
+    plan = [e for e in elements if e.view.name == NAMES[0] and e.role == "vector"]
+    longest = max((e for e in plan if e.number in wrong), key=lambda e: e.length)
+    hidden = np.zeros((round(PAPER.height), round(PAPER.width)), bool)
+    middle = longest.points.mean()
+    row, column = round(PAPER.y1 - middle.imag), round(middle.real)
+    half = round(0.2 * longest.length)
+    hidden[row - half:row + half, column - half:column + half] = True
+    built, _ = examined(elements, hidden)
+    assert {plan.mistake.kind for plan, _ in built.values()} == {"coriolis"}
+    hidden[:] = False
+    x, y = (np.concatenate([part(e.points) for e in plan]) for part in (np.real, np.imag))
+    hidden[round(PAPER.y1 - y.max()) - 5:round(PAPER.y1 - y.min()) + 5, round(x.min()) - 5:round(x.max()) + 5] = True
+    built, _ = examined(elements, hidden)
+    assert NAMES[0] not in {v.name for v in built}  # what is not seen speaks for nothing
+
+
+def test_of_amber_lines_alone_no_mistake_is_named():
+    pairs = [(e, w) for e, w in zip(KNOWN.elements, slipped(coriolis=other_way)[0], strict=True) if e.kind == "line"]
+    most = max(abs(w.points - e.points).max() for e, w in pairs)
+    faint = {e.number: e.points + 0.6 / most * (w.points - e.points) for e, w in pairs}
+    elements = [replace(e, points=faint.get(e.number, e.points), fills=()) for e in KNOWN.elements]
+    built, findings = examined(elements)
+    assert not built
+    assert {f.verdict for f in findings} == {"green", "amber"}
 
 
 def test_a_sound_plan_has_no_mistake():

@@ -17,6 +17,7 @@ from tmm_sheets.compare.photo.photograph import Picture
 from tmm_sheets.compare.photo.refusal import refusal
 from tmm_sheets.compare.photo.sheet_map import CORNERS, projected
 from tmm_sheets.compare.photo.wiping import fill
+from tmm_sheets.errors import CannotBuild
 
 INSIDE = (np.linspace(90, 820, 12)[None, :] + 1j * np.linspace(20, 570, 9)[:, None]).ravel()
 
@@ -113,6 +114,18 @@ def test_homographies_of_many_quadrilaterals():
     quads = CORNERS + rng.uniform(-40, 40, (6, 4)) + 1j * rng.uniform(-40, 40, (6, 4))
     for quad, h in zip(quads, homographies(quads), strict=True):
         assert projected(h, CORNERS) == pytest.approx(quad, abs=1e-6)
+
+
+def test_a_frame_found_elsewhere_is_fitted_as_finely_as_the_first(monkeypatch):
+    def nothing(*_):
+        raise CannotBuild("no frame")
+
+    tried = []
+    monkeypatch.setattr(rectification.frame_search, "find", nothing)
+    monkeypatch.setattr(rectification._Attempts, "finer", lambda attempts: tried.append(attempts.best))
+    found = rectification.rectify(Picture(without_its_left_side()), known(), Path("photo.jpg"))
+    assert tried[0] is None
+    assert tried[-1].check is found.check
 
 
 def test_a_map_that_is_wrong_in_a_corner_is_doubtful():

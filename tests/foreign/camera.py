@@ -15,12 +15,16 @@ Picture = NDArray[np.float32]
 class Camera:
     """Looks at the sheet from `tilt` rad aside, turned by `roll` rad; `fill` is the share of the picture that the sheet takes."""
 
-    def __init__(self, random: np.random.Generator, megapixels: float, tilt: float, fill: float, roll: float) -> None:
+    def __init__(
+        self, random: np.random.Generator, megapixels: float, tilt: float, fill: float, roll: float, *, wide: bool = False
+    ) -> None:
         self.width = int(np.sqrt(megapixels * 1e6 * 4 / 3)) // 2 * 2
         self.height = int(self.width * 3 / 4) // 2 * 2
         self.focus = self.width * float(random.uniform(0.68, 0.85))
         azimuth = random.uniform(0, 2 * np.pi)
         self.bend = (float(random.uniform(-0.035, 0.03)), float(random.uniform(-0.01, 0.01)))
+        if wide:
+            self.focus, self.bend = self.width * float(random.uniform(0.42, 0.55)), (float(random.uniform(-0.16, -0.06)), 0.0)
         self.back = np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
         right = np.cross([0.0, 1.0, 0.0], self.back)
         right /= np.linalg.norm(right)

@@ -131,11 +131,17 @@ DESKS = {
 def lay_beneath(desk: Grey, ink: Grey, random: np.random.Generator) -> Grey:
     """Another drawing sheet, `ink` as drawn, on the desk under where the sheet will lie: edges and frame look out on some sides."""
     angle = np.radians(random.choice((-1, 1)) * random.uniform(0.3, 7))
-    by = np.array([random.choice((-1, 1)) * random.uniform(8, 60), random.choice((-1, 1)) * random.uniform(8, 60)])
+    by = random.choice((-1, 1)) * random.uniform(8, 60), random.choice((-1, 1)) * random.uniform(8, 60)
+    return lay(desk, ink, float(np.degrees(angle)), by)
+
+
+def lay(desk: Grey, ink: Grey, turn: float, by: tuple[float, float]) -> Grey:
+    """A drawing sheet, `ink` as drawn, on the desk, turned by `turn` degrees, (dx, dy) mm from where the sheet will lie."""
+    angle = np.radians(turn)
     c, s = np.cos(angle), np.sin(angle)
     scale = ink.shape[1] / SIZE[0]
     middle = np.array(SIZE) / 2
-    shift = by + middle - np.array([[c, -s], [s, c]]) @ middle
+    shift = np.array(by) + middle - np.array([[c, -s], [s, c]]) @ middle
     # ink pixel -> sheet mm -> table mm -> desk pixel; rows of ink go downwards, those of the desk upwards
     to_sheet = np.array([[1 / scale, 0, 0], [0, -1 / scale, SIZE[1]], [0, 0, 1]])
     to_table = np.array([[c, -s, shift[0]], [s, c, shift[1]], [0, 0, 1]])

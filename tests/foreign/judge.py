@@ -87,7 +87,7 @@ def _run(picture: Path, truth: dict[str, Any], folder: Path) -> tuple[int, str, 
         done = subprocess.run(words, capture_output=True, text=True, timeout=900, env={**os.environ, "LANGUAGE": "en"})
     except subprocess.TimeoutExpired:
         return -1, "took longer than 900 s", time.monotonic() - start
-    return done.returncode, " ".join(done.stderr.split())[:300], time.monotonic() - start
+    return done.returncode, " ".join(done.stderr.split())[-600:], time.monotonic() - start
 
 
 def _rectified(picture: Path, truth: dict[str, Any]) -> NDArray[np.uint8]:

@@ -28,7 +28,9 @@ def creases(random: np.random.Generator) -> tuple[Floats, Floats]:
 class Paper:
     """A sheet on a table; flat, its lower left corner is at (0, 0, 0)."""
 
-    def __init__(self, random: np.random.Generator, *, waves: bool = False, folds: bool = False) -> None:
+    def __init__(
+        self, random: np.random.Generator, *, waves: bool = False, folds: bool = False, rolled: bool = False, ridge: bool = False
+    ) -> None:
         self.u = np.arange(-MARGIN, SIZE[0] + MARGIN + STEP, STEP)
         self.v = np.arange(-MARGIN, SIZE[1] + MARGIN + STEP, STEP)
         u, v = np.meshgrid(self.u, self.v)
@@ -40,6 +42,16 @@ class Paper:
         if folds:
             self.creases = creases(random)
             z = z + self._panels(u, v, random)
+        if rolled:  # it came out of a tube: two opposite edges stand up
+            across, width = (u, SIZE[0]) if random.random() < 0.7 else (v, SIZE[1])
+            length = float(random.uniform(40, 120))
+            for depth in (across, width - across):
+                z = z + float(random.uniform(0.1, 0.5)) * length * np.exp(-np.maximum(depth, 0) / length)
+        if ridge:  # a pencil lies under it
+            middle, angle = random.uniform((150, 100), (700, 500)), random.uniform(0, np.pi)
+            du, dv = u - middle[0], v - middle[1]
+            along, off = du * np.cos(angle) + dv * np.sin(angle), dv * np.cos(angle) - du * np.sin(angle)
+            z = z + 7.0 * np.exp(-((off / 14) ** 2) - np.maximum(np.abs(along) - 85, 0) ** 2 / 300)
         z = _smooth(z)
         self.x = self._length_kept(z, 1) + self.u[0]
         self.y = self._length_kept(z, 0) + self.v[0]

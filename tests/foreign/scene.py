@@ -205,18 +205,29 @@ def taken(
     wrong: list[mistakes.Mistake],
     random: np.random.Generator,
     most: float = 12.0,
+    *,
+    ink: pencil.Ink | None = None,
+    floor: desks.Grey | None = None,
+    fill: tuple[float, float] = (0.8, 0.93),
 ) -> tuple[NDArray[np.uint8], dict[str, Any]]:
-    """The picture of a drawing that ought to have `marks`, and the truth about it."""
+    """The picture of a drawing that ought to have `marks`, and the truth about it.
+
+    `ink` is what lies on the paper if no pencil drew it, `floor` what the paper lies on, `fill` the least and the largest share
+    of the picture that the sheet takes.
+    """
     traits = what.traits
     project, sheet = what.sheet
-    ink = pencil.draw(drawn, random)
-    paper = Paper(random, waves="waves" in traits, folds="folds" in traits)
+    if ink is None:
+        ink = pencil.draw(drawn, random)
+    paper = Paper(random, **{trait: trait in traits for trait in ("waves", "folds", "rolled", "ridge")})
     tilt = float(random.uniform(20, 32)) if "oblique" in traits else float(abs(random.normal(0, 7)) + 2)
     roll = float(random.choice((-1, 1)) * random.uniform(4, 8) if "corner" in traits else random.normal(0, 2.5))
-    camera = Camera(random, _megapixels(traits, random, most), np.radians(tilt), float(random.uniform(0.8, 0.93)), np.radians(roll))
+    megapixels = _megapixels(traits, random, most)
+    share = float(random.uniform(*fill))
+    camera = Camera(random, megapixels, np.radians(tilt), share, np.radians(roll), wide="wide" in traits)
     if "corner" in traits:
         _move_corner_out(camera, random)
-    picture = _seen(what, marks, ink, paper, camera, random)
+    picture = _seen(what, marks, ink, paper, camera, random, floor)
     told: dict[str, Any] = {}
     if "side" in traits:
         table = _on_grid(camera, camera.on_table)
@@ -300,14 +311,21 @@ def _bilinear(table: Floats, rows: Floats, columns: Floats) -> Floats:
 
 
 def _seen(
-    what: Scene, marks: list[drawing.Mark], ink: pencil.Ink, paper: Paper, camera: Camera, random: np.random.Generator
+    what: Scene,
+    marks: list[drawing.Mark],
+    ink: pencil.Ink,
+    paper: Paper,
+    camera: Camera,
+    random: np.random.Generator,
+    floor: desks.Grey | None = None,
 ) -> Picture:
     """The scene in even light, linear RGB."""
     traits = what.traits
     uv = _on_grid(camera, lambda pixels: camera.on_paper(pixels, paper))
     table = _on_grid(camera, camera.on_table)
-    name = next((trait for trait in sorted(traits) if trait in desks.DESKS), str(random.choice(("plain", "wood", "dark", "plain"))))
-    floor = desks.DESKS[name](random)
+    if floor is None:
+        usual = str(random.choice(("plain", "wood", "dark", "plain")))
+        floor = desks.DESKS[next((trait for trait in sorted(traits) if trait in desks.DESKS), usual)](random)
     turn = float(random.uniform(-0.15, 0.15)) if random.random() < 0.7 else float(random.uniform(0, np.pi))
     if "beneath" in traits:
         other = pencil.draw([mark for mark in marks if mark.role in ("frame", "text", "vector", "table", "link")], random)
@@ -351,11 +369,12 @@ def _seen(
     return picture
 
 
-def save(picture: NDArray[np.uint8], truth: dict[str, Any], place: Path) -> Path:
-    """Write NAME.jpg (document mode: NAME.png) and NAME.json; the file of the picture."""
+def save(picture: NDArray[np.uint8], truth: dict[str, Any], place: Path, quality: int | None = None) -> Path:
+    """Write NAME.jpg and NAME.json; the file of the picture."""
     from PIL import Image
 
-    quality = int(np.random.default_rng((truth["seed"], truth["number"], 2)).integers(70, 95))
+    if quality is None:
+        quality = int(np.random.default_rng((truth["seed"], truth["number"], 2)).integers(70, 95))
     name = f"{truth['number']:03d}_{truth['difficulty']}"
     place.mkdir(parents=True, exist_ok=True)
     image = Image.fromarray(cv2.cvtColor(picture, cv2.COLOR_BGR2RGB))

@@ -15,6 +15,8 @@ from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.photo import tracing
+from tmm_sheets.compare.photo.hidden import Mask
+from tmm_sheets.compare.photo.hidden import at as hidden_at
 from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge
 from tmm_sheets.compare.photo.profiles import pixels, sample
@@ -36,13 +38,24 @@ WIDE = 7
 """Pixels of a picture within which a place has the ink of another."""
 ALONG = 7
 """So many neighbouring places are averaged: a line that only crosses is no ink along this one."""
+SHOWN = 0.5
+"""Share of a line that must show for it to be judged by what shows."""
 ENDS = 1.5
 """Beside the ends of a line others begin, mm."""
 Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
 
 
-def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[PhotoFinding], ink: Any) -> Built:
-    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of the sheet."""
+def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[PhotoFinding], ink: Any,
+                    hidden: Mask | None = None) -> Built:
+    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of the sheet.
+
+    Parameters
+    ----------
+    project, known, findings
+        The sheet, and what was found of its elements.
+    ink, hidden
+        The rectified sheet, and where it is hidden.
+    """
     import cv2
 
     wrong: dict[ElementView, list[Element]] = {}
@@ -59,7 +72,7 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[Phot
             tips.setdefault(f.element.view, []).extend(f.trace.at[[0, -1]].tolist())
 
     def seen(view: ElementView) -> Drawing:
-        return Drawing(lambda line: inked(ink, line, level), lambda z: sample(near, pixels(z)) > level, tips.get(view, []))
+        return Drawing(lambda line: inked(ink, line, level, hidden), lambda z: sample(near, pixels(z)) > level, tips.get(view, []))
 
     return built_plan.built_otherwise(project, known, wrong, seen)
 
@@ -88,8 +101,11 @@ def _judged(f: PhotoFinding | None, was: Element, found: Rectified, pencil: floa
     return replace(f, verdict=verdict(deviation, f.tolerance), deviation=deviation, what=what)
 
 
-def inked(ink: Any, line: Points, level: float) -> float:
-    """Share of a line, by both its ends, mm, that ink in its direction covers; ``level`` is the darkness of ink."""
+def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> float:
+    """Share of a line, by both its ends, mm, that ink in its direction covers; ``level`` is the darkness of ink.
+
+    A line that is hidden in part is judged by the rest of it, if that is the greater part: what is not seen speaks for nothing.
+    """
     import cv2
 
     size = float(abs(line[1] - line[0]))
@@ -98,4 +114,6 @@ def inked(ink: Any, line: Points, level: float) -> float:
     along = (line[1] - line[0]) / size
     points, normals = sampled(np.array([line[0] + ENDS * along, line[1] - ENDS * along]), STEP)
     profile = sample(ink, pixels(points[:, None] + normals[:, None] * OFFSETS))
-    return float((cv2.blur(profile, (1, ALONG), borderType=cv2.BORDER_REPLICATE).max(1) > level).mean())
+    there = cv2.blur(profile, (1, ALONG), borderType=cv2.BORDER_REPLICATE).max(1) > level
+    shown = np.ones(len(points), bool) if hidden is None else ~hidden_at(points, hidden)
+    return float(there[shown].mean() if shown.mean() > SHOWN else there.mean())

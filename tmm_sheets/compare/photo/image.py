@@ -134,7 +134,7 @@ def examine(
     built: built_photo.Built = {}
     if placed is None:
         say(tell("looking for what was done wrong"))
-        built = built_photo.built_otherwise(project, ours, findings, found.ink)
+        built = built_photo.built_otherwise(project, ours, findings, found.ink, found.hidden)
     if built:
         findings, extra = built_photo.as_built(known, built, found, pencil)
     extra = [x for x in extra if placed is None or placed.strange(x)]

@@ -151,7 +151,10 @@ def rectify(
         attempts.finer()
     if by_lines and not attempts.sound:
         say(tell("looking for the frame elsewhere"))
+        before = attempts.best
         attempts.elsewhere(as_lines([e for e in known if e.length < LONGEST], most=1500))
+        if attempts.best is not before:
+            attempts.finer()
     best = attempts.best
     if best is None:
         assert refused is not None

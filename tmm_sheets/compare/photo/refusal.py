@@ -27,6 +27,10 @@ EDGE = 0.01
 """Share of the picture's longer side within which its edge is."""
 OUT = 0.2
 """Share of a side outside the picture from which on that is what is wrong with it."""
+FLAT_OR_PLACED = marked(
+    "lay the sheet flat, weights on its corners, and photograph from straight above; "
+    "if a view was drawn in another place, give --views FILE"
+)
 _HIDDEN = (
     marked("the lower side of the frame is hidden or was not drawn"),
     marked("the right side of the frame is hidden or was not drawn"),
@@ -75,13 +79,11 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
                tell("put the sheet on a plain ground that is darker than the paper, nothing under it"))
     if len(check.shifted):
         parts = tell("parts of the sheet lie {by} mm elsewhere, neighbours alike: {n}, circled in the overlay of the attempt")
-        yield (parts.format(by=millimetres(check.shift), n=len(check.shifted)),
-               tell("lay the sheet flat, weights on its corners, and photograph from straight above; "
-                    "if a view was drawn in another place, give --views FILE"))
+        yield parts.format(by=millimetres(check.shift), n=len(check.shifted)), tell(FLAT_OR_PLACED)
     elif len(check.astray):
         places = tell("parts of the sheet whose lines are elsewhere: {n} of {all}, circled in the overlay of the attempt")
-        yield (places.format(n=len(check.astray), all=check.judged),
-               tell("lay the sheet flat, weights on its corners, and photograph from straight above"))
+        flat = tell("lay the sheet flat, weights on its corners, and photograph from straight above")
+        yield places.format(n=len(check.astray), all=check.judged), tell(FLAT_OR_PLACED) if check.framed else flat
     else:
         share = tell("only {share} % of its lines are where they belong")
         yield share.format(share=round(100 * check.match)), tell("photograph from straight above, sharp, in even light")
