@@ -28,8 +28,14 @@ NOTES = 24.0
 """Room over the rack for its pitch and the names of its lines, mm."""
 OVER = 16.0 + NOTES
 """Room over the rack with the title, mm."""
+USUAL, MOST = 1.3, 2.2
+"""How far the window goes under the pole, in what must be seen there: without the wheel's centre, and with it at the most."""
 BELOW = 0.5
 """Modules of the wheel's body under its root circle that the window must show at least."""
+
+SEEN = 0.5
+"""Undercut is named where the rack's flank reaches so far beyond its limit that it is to be seen, mm on the sheet: a shift by the
+rule of seventeen teeth leaves some hundredths."""
 
 
 def extent(gear: Any) -> tuple[float, float]:
@@ -68,9 +74,11 @@ class _RackPicture:
         scale = standard((PITCHES * pi * gear.m, inner.width), (top + bottom, inner.height))
         canvas.scales["gear-rack"] = scale
         inner = canvas.title(box, tr("Generation of wheel {wheel} by the rack").format(wheel=self.wheel.number), ratio(scale))
-        # What height is left goes to the wheel, whose centre may come to stand on the picture.
+        # What height is left goes to the wheel where its centre comes to stand on the picture: a body without it is bare paper.
         self.pole = complex((inner.x0 + LEFT + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)
-        low = max(inner.y0, self.pole.imag - min(self.rack.r / scale.mu + 12, 2.2 * bottom / scale.mu))
+        centre, body = self.rack.r / scale.mu + 12, bottom / scale.mu
+        room = self.pole.imag - inner.y0
+        low = self.pole.imag - (centre if centre <= min(room, MOST * body) else min(room, USUAL * body))
         self.window = Window(canvas, Box(inner.x0 + LEFT, low, inner.x1 - MARGIN, inner.y1))
         # the plan's origin is the wheel's centre
         self.at = Frame(scale, self.pole - scale.mm(1j * self.rack.r))
@@ -163,7 +171,7 @@ class _RackPicture:
             u = right * rect(1, k * self.wheel.tau)
             root, tip = (self.at.scale.mm(r) for r in (self.wheel.rf, self.wheel.ra))
             self.window.line(self.stage, "O", self.at.origin + u * (root - 4), self.at.origin + u * (tip + 4), "centre")
-        if self.rack.undercut:
+        if -self.rack.rho_limit * np.sin(self.rack.alpha) / self.at.scale.mu > SEEN:
             start = np.sqrt(self.wheel.rb**2 + self.wheel.t_fillet**2)
             flank = (shape.flank - shape.centre) / shape.axis
             k = int(np.argmin(abs(abs(flank) - start)))
