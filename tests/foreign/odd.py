@@ -256,7 +256,8 @@ def panorama(shot: Shot) -> Taken:
     seam = shot.random.uniform(0.25, 0.75) * w
     y, x = np.mgrid[0:h, 0:w].astype(np.float32)
     step = np.clip((x - seam) / (3 * density) + 0.5, 0, 1)
-    lifted = cv2.remap(picture, x - step * by.real, y - step * by.imag, cv2.INTER_LINEAR)
+    where = ((x - step * by.real).astype(np.float32), (y - step * by.imag).astype(np.float32))
+    lifted = cv2.remap(picture, *where, cv2.INTER_LINEAR)
     there = np.clip((pixels[..., 0] - seam) / (3 * density) + 0.5, 0, 1)
     return np.asarray(lifted, np.uint8), _with(truth, pixels + there[..., None] * np.array([by.real, by.imag]))
 
