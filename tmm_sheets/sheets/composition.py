@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
+from importlib import import_module
 from math import ceil, inf
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -17,7 +18,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets import false_positions, gear_needs, kinematic_frames, kinetic_frames
+from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
 from tmm_sheets.sheets.frame import needed, standard
 from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
@@ -427,6 +428,16 @@ def _roller(project: Project, view: View) -> Node | None:
     return _leaf(view.box, Need(least=(116.0, 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
 
 
+def _of_gears(name: str) -> Callable[[Project, View], Node | None]:
+    """Need of a view of gears, whose modules only their own sheets import."""
+
+    def need(project: Project, view: View) -> Node | None:
+        found: Callable[[Project, View], Node | None] = getattr(import_module("tmm_sheets.sheets.gear_needs"), name)
+        return found(project, view)
+
+    return need
+
+
 NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinematics.position_plans": _positions, "kinematics.velocity_plans": _velocities,
     "kinematics.acceleration_plan": _accelerations, "kinematics.structure": _structure,
@@ -440,12 +451,23 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "given_position.values": _values, "false_positions.group": _false_positions,
     "friction.mechanism": _friction, "friction.pairs": _friction_pairs, "friction.power": _friction_power,
     "friction.table": _friction_table, "friction.positions": _friction_positions,
-    "gear.engagement": gear_needs.engagement, "gear.sliding": gear_needs.sliding, "gear.mesh": gear_needs.mesh,
-    "rack.generating": gear_needs.generating, "reducer.scheme": gear_needs.scheme_of_reducer, "reducer.speeds": gear_needs.speeds,
-    "train.scheme": gear_needs.scheme_of_train, "train.speeds": gear_needs.speeds, "reducer.choice": gear_needs.choice,
-    "reducer.conditions": gear_needs.conditions, "reducer.points": gear_needs.points_of_reducer,
-    "train.points": gear_needs.points_of_train, "train.table": gear_needs.links_of_train, "train.willis": gear_needs.willis,
-    "train.sizes": gear_needs.dimensions,
+    **{view: _of_gears(name) for view, name in {
+        "gear.engagement": "engagement",
+        "gear.sliding": "sliding",
+        "gear.mesh": "mesh",
+        "rack.generating": "generating",
+        "reducer.scheme": "scheme_of_reducer",
+        "reducer.speeds": "speeds",
+        "train.scheme": "scheme_of_train",
+        "train.speeds": "speeds",
+        "reducer.choice": "choice",
+        "reducer.conditions": "conditions",
+        "reducer.points": "points_of_reducer",
+        "train.points": "points_of_train",
+        "train.table": "links_of_train",
+        "train.willis": "willis",
+        "train.sizes": "dimensions",
+    }.items()},
     "load_diagram.over_turn": _loads, "synthesis.sizes": _synthesis,
 }
 """Views that tell what they need; others keep the size of their boxes."""

@@ -54,7 +54,7 @@ def generating(project: Project, view: View) -> Node:
 
     def drawn(width: int, height: int) -> float:
         mu = standard((across, width - beside), (high, height - rack.OVER)).mu
-        return min(width, 1.6 * across / mu + beside) * min(height, 1.6 * high / mu + rack.OVER)
+        return min(width, 1.6 * across / mu + beside) * min(height, rack.USUAL * high / mu + rack.OVER)
 
     return _node(view, (120.0, 110.0), drawn)
 

@@ -28,7 +28,7 @@ NOTES = 24.0
 """Room over the rack for its pitch and the names of its lines, mm."""
 OVER = 16.0 + NOTES
 """Room over the rack with the title, mm."""
-USUAL, MOST = 1.3, 2.2
+USUAL, MOST = 1.6, 2.2
 """How far the window goes under the pole, in what must be seen there: without the wheel's centre, and with it at the most."""
 BELOW = 0.5
 """Modules of the wheel's body under its root circle that the window must show at least."""

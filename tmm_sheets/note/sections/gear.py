@@ -80,11 +80,10 @@ def scope(r: Reader) -> Scope:
     if scale is not None:
         found.fields["mu"] = scale_text(scale)
     found.fields["in_scale"] = (words(r.language)["phrases"]["in_scale"], *scale_text(scale)) if scale is not None else ""
-    for name, picture, focus in (
-        ("engagement", "gear.engagement", ENGAGED),
-        ("mesh", "gear.mesh", ()),
-        ("rack", "rack.generating", ()),
-    ):
+    pictures = [("engagement", "gear.engagement", ENGAGED), ("mesh", "gear.mesh", ())]
+    if pair.profile == "rack":  # of a pair with fillets the note speaks of no tool; the sheet shows it
+        pictures.append(("rack", "rack.generating", ()))
+    for name, picture, focus in pictures:
         figure = r.pictures.figure(picture, focus)
         if figure is not None:
             found.figures[name] = figure
