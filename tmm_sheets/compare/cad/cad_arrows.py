@@ -33,6 +33,8 @@ BESIDE = 0.8
 """How far beside a line the tip of its head may be, mm."""
 AHEAD = 0.9
 """Least cosine of the angle between a line and its head."""
+TURNED = 0.6
+"""The same for the head of an arc that is drawn elsewhere, perhaps turned."""
 OWN = 0.3
 """How far a line may be from the one its head asks for, mm."""
 SAME = 0.3
@@ -57,6 +59,7 @@ class _Arrow:
     tip: complex
     tail: complex
     alone: bool
+    curved: bool = False
 
     @property
     def way(self) -> complex:
@@ -92,6 +95,10 @@ def arrows(state: Comparison) -> None:
         if k not in taken and _drawn_aside(state, arrow, complex(heads.tip[k])):
             taken[k] = arrow.tip
             wanted.remove(arrow)
+    for _, arrow, k in _pairs(_with_arc, wanted, heads):
+        if k not in taken:
+            taken[k] = arrow.tip
+            wanted.remove(arrow)
     for arrow in wanted:
         if len(heads.area) and not _open_head(state, arrow.tip):
             _tell(state, arrow, tell("no arrow head"), 2 * state.tolerance)
@@ -125,7 +132,7 @@ def _wanted(state: Comparison) -> Iterator[_Arrow]:
             tail = complex(other) if e.kind == "line" and not outside else tip + 3 * back
             if finding.shift is not None and finding.verdict != "green" and e.kind == "line":
                 tip, tail = _found_at(e.middle, tip, finding), _found_at(e.middle, tail, finding)
-            yield _Arrow(n, finding, tip, tail, e.kind == "line" and len(e.fills) == 1)
+            yield _Arrow(n, finding, tip, tail, e.kind == "line" and len(e.fills) == 1, e.kind == "arc")
 
 
 def _found_at(middle: complex, z: complex, finding: CadFinding) -> complex:
@@ -169,7 +176,7 @@ def _elsewhere(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
     size = abs(arrow.tip - arrow.tail)
     there = (np.abs(t.imag) < BESIDE) & (t.real > 2.0) & (t.real < size + BEYOND)
     there &= (heads.way * np.conj(arrow.way)).real > AHEAD
-    return np.where(there & arrow.alone, np.abs(heads.tip - arrow.tip), np.inf)
+    return np.where(there & (not arrow.curved), np.abs(heads.tip - arrow.tip), np.inf)
 
 
 def _aside(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
@@ -177,6 +184,13 @@ def _aside(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
     off = np.abs(heads.tip - arrow.tip)
     near = off < min(max(3.0, 0.35 * abs(arrow.tip - arrow.tail)), FARTHEST)
     return np.where(near & ((heads.way * np.conj(arrow.way)).real > AHEAD) & arrow.alone, off, np.inf)
+
+
+def _with_arc(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
+    """The same for heads about the tip of an arc that is drawn elsewhere: they go with it."""
+    off = np.abs(heads.tip - arrow.tip)
+    reach = 2 * AT_TIP + arrow.finding.deviation if arrow.curved and arrow.finding.verdict != "green" else 0.0
+    return np.where((off < min(reach, FARTHEST)) & ((heads.way * np.conj(arrow.way)).real > TURNED), off, np.inf)
 
 
 def _drawn_aside(state: Comparison, arrow: _Arrow, tip: complex) -> bool:
@@ -213,7 +227,7 @@ def _tell(state: Comparison, arrow: _Arrow, what: str, deviation: float) -> None
     """Add what is wrong with the head of an arrow to what is known of its line."""
     finding = state.found[arrow.n]
     deviation = max(deviation, finding.deviation)
-    said = ", ".join(x for x in (finding.what, what) if x)
+    said = finding.what if what in finding.what else ", ".join(x for x in (finding.what, what) if x)
     state.found[arrow.n] = replace(finding, verdict=verdict(deviation, state.tolerance), deviation=deviation, what=said)
 
 

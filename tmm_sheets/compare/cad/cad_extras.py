@@ -12,7 +12,7 @@ from tmm_sheets.compare.cad import cad_lettering
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, Comparison, middle_of, reach_of
 from tmm_sheets.compare.cad.cad_findings import ExtraStroke
 from tmm_sheets.compare.cad.cad_ink import normal
-from tmm_sheets.compare.cad.line_fit import lines, shapes
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines, shapes
 from tmm_sheets.compare.cad.overlaps import Left, left, pieces
 from tmm_sheets.compare.findings import farthest, place
 from tmm_sheets.compare.placing import HINGE
@@ -27,6 +27,10 @@ LEAST = 1.0
 """Shortest stretch of extra ink, mm."""
 TOUCHING = 0.06
 """Distance of places that count as one, mm."""
+FILLED, PART = 3.0, 1.5
+"""How far from its place a filled area may be, mm, and a part of one that is there."""
+HEAD = 1.5
+"""How far from the end of its line a corner of a head may be, mm."""
 HEAP = 14.0
 """Width plus height of the smallest extra ink that is not put together with its neighbours, mm."""
 
@@ -38,32 +42,36 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     """The extra ink, longest first; the findings of elements that are too long are changed accordingly."""
     rest = left(state.theirs, state.claimed())
     cad_lettering.strange_ink(state, rest)
-    rest = _outside_zones(state, rest)
+    rest, uncut = _outside_zones(state, rest)
     owners = _owners(state)
     found: list[tuple[list[Left], float]] = []
+    excess: list[tuple[float, int, list[Left]]] = []
     for chain in _chains(state, rest):
         size = sum(r.b - r.a for r in chain)
         if size <= state.tolerance:
             continue
-        before, after = _neighbours(state, chain, owners)
+        before, after = _neighbours(state, [uncut.get(r, r) for r in chain], owners)
         if before is not None and after is not None and size < 4.5:
             continue  # one line drawn through where ours are two
         n = before if before is not None else after
         if n is not None and state.elements[n].kind in ("line", "arc", "curve") and _continues(state, n, chain, owners):
-            _too_long(state, n, size, chain)
+            excess.append((sum(r.b - r.a for r in {uncut.get(r, r) for r in chain}), n, chain))
         elif size > LEAST:
             found.append((chain, size))
-    return tuple(sorted((*_extra_lines(state, found), *_extra_areas(state), *_extra_text(state)), key=lambda x: -x.length))
+    for size, n, chain in sorted(excess, key=lambda x: -x[0]):
+        _too_long(state, n, size, chain)
+    drawn = pieces(state.theirs, [r for chain, _ in found for r in chain])
+    return tuple(sorted((*_extra_lines(state, found), *_extra_areas(state, drawn), *_extra_text(state)), key=lambda x: -x.length))
 
 
-def _outside_zones(state: Comparison, rest: list[Left]) -> list[Left]:
-    """The part of the rest that is outside the zones where any ink, or short strokes, may lie."""
+def _outside_zones(state: Comparison, rest: list[Left]) -> tuple[list[Left], dict[Left, Left]]:
+    """The part of the rest that is outside the zones where any ink, or short strokes, may lie; and of what it is a part."""
     import shapely
 
     free_zones, text_zones = _free_zones(state), [_polygon(z) for z in state.lettered]
     zones = [*free_zones, *text_zones]
     if not zones or not rest:
-        return rest
+        return rest, {}
     free = pieces(state.theirs, rest)
     short = np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner[free.owner]] < SHORT
     tree, ink = shapely.STRtree(zones), shapes(free.a, free.b)
@@ -78,13 +86,16 @@ def _outside_zones(state: Comparison, rest: list[Left]) -> list[Left]:
     touched: dict[int, list[Any]] = {}
     for i, k in pairs("intersects"):
         touched.setdefault(i, []).append(zones[k])
-    out = []
+    out: list[Left] = []
+    uncut: dict[Left, Left] = {}
     for i, r in enumerate(rest):
         if i not in touched:
             out.append(r)
         elif i not in within:
-            out += _beyond(state, r, shapely.difference(ink[i], shapely.union_all(touched[i])))
-    return [r for r in out if r.b - r.a > 0.05]
+            parts = list(_beyond(state, r, shapely.difference(ink[i], shapely.union_all(touched[i]))))
+            uncut |= dict.fromkeys(parts, r)
+            out += parts
+    return [r for r in out if r.b - r.a > 0.05], uncut
 
 
 def _free_zones(state: Comparison) -> list[Any]:
@@ -203,6 +214,8 @@ def _too_long(state: Comparison, n: int, size: float, chain: list[Left]) -> None
     loop = _loop(state, n, size, at, chain) if e.kind != "line" else None
     if loop is not None:
         size, at = loop
+        if size <= old.deviation:
+            return  # it is farther off elsewhere
         what = farthest(size, at)
     deviation = max(old.deviation, size)
     judged = verdict(deviation, state.tolerance)
@@ -265,15 +278,18 @@ def _heaps(middles: Points, near: float = 5.0) -> Iterator[list[int]]:
         yield heap
 
 
-def _extra_areas(state: Comparison) -> Iterator[ExtraStroke]:
-    ours = [complex(h.mean()) for e in state.elements for h in e.fills]
-    known = np.array(ours, dtype=complex)
+def _extra_areas(state: Comparison, extra: KnownLines) -> Iterator[ExtraStroke]:
+    """Extra filled areas; the heads of ``extra`` lines are told with these."""
+    known = np.array([complex(h.mean()) for e in state.elements for h in e.fills], dtype=complex)
+    used = state.areas[sorted(state.used_areas)]
+    # Of what is drawn as an area another piece may be one, too: half a head.
+    reach = np.array([PART if (np.abs(used - z) < FILLED).any() else FILLED for z in known])
     for k, area in enumerate(state.space.areas):
         z = area.points
         around = float(np.abs(np.diff(np.append(z, z[:1]))).sum())
         if k in state.used_areas or not area.solid or around < 2.0:
             continue
-        if len(known) and np.abs(known - state.areas[k]).min() < 3.0:
+        if (np.abs(known - state.areas[k]) < reach).any() or extra.nearest(z, HEAD)[2].any():
             continue
         yield ExtraStroke(state.space.entities[area.entity], around, middle_of(z), reach_of(z))
 

@@ -9,29 +9,50 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_comparison import SIZE_OF_SYMBOL, Comparison
-from tmm_sheets.compare.cad.overlaps import overlaps
+from tmm_sheets.compare.cad.overlaps import left, overlaps
 from tmm_sheets.compare.findings import shifted
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 
+NEAR, FAR = 2.0, 6.0
+"""How far from its place a filled area is looked for, and a dot, mm."""
+ASIDE = 4.0
+"""How far aside the strokes of a hatching may lie, mm."""
+ONE_PLACE = 0.3
+"""Dots whose places are as near as this, mm, are one."""
+
 
 def filled(state: Comparison) -> None:
-    """Find the dots and other filled areas by the nearest area."""
-    for n, e in enumerate(state.elements):
-        if n in state.found or not (e.kind == "fill" or (e.kind == "circle" and e.fills)):
+    """Find the dots and other filled areas by the nearest area; a dot is that of one place."""
+    wanted = {n: complex(e.fills[0].mean()) for n, e in enumerate(state.elements)
+              if n not in state.found and (e.kind == "fill" or (e.kind == "circle" and e.fills))}
+    dots = np.array([a.solid and _round(a.points) for a in state.space.areas], dtype=bool)
+    trials = []
+    for n, centre in wanted.items():
+        off = np.abs(state.areas - centre)
+        near = (off < NEAR) | ((off < FAR) & dots & (state.elements[n].kind == "circle"))
+        trials += [(float(off[k]), n, k) for k in np.flatnonzero(near).tolist()]
+    dot_at: dict[int, complex] = {}
+    for _, n, k in sorted(trials):
+        dot = state.elements[n].kind == "circle"
+        if n in state.found or (dot and abs(dot_at.get(k, wanted[n]) - wanted[n]) > ONE_PLACE):
             continue
-        centre = complex(state.elements[n].fills[0].mean())
-        off = np.abs(state.areas - centre) if len(state.areas) else np.zeros(0)
-        if len(off) and off.min() < 2.0:
-            k = int(off.argmin())
-            state.used_areas.add(k)
-            shift = complex(state.areas[k] - centre)
-            counted = abs(shift) if e.kind == "circle" else max(abs(shift) - SIZE_OF_SYMBOL, 0.0)
-            state.found[n] = state.finding(n, counted, shifted(shift) if abs(shift) > state.tolerance else "", shift=shift,
-                                          entities=(state.space.areas[k].entity,))
-        else:
-            what = tell("the dot is missing") if e.kind == "circle" else tell("not filled")
-            state.found[n] = state.finding(n, 2 * state.tolerance, what, missing=True)
+        if dot:
+            dot_at[k] = wanted[n]
+        state.used_areas.add(k)
+        shift = complex(state.areas[k] - wanted[n])
+        counted = abs(shift) if dot else max(abs(shift) - SIZE_OF_SYMBOL, 0.0)
+        state.found[n] = state.finding(n, counted, shifted(shift) if abs(shift) > state.tolerance else "", shift=shift,
+                                      entities=(state.space.areas[k].entity,))
+    for n in wanted.keys() - state.found.keys():
+        what = tell("the dot is missing") if state.elements[n].kind == "circle" else tell("not filled")
+        state.found[n] = state.finding(n, 2 * state.tolerance, what, missing=True)
+
+
+def _round(z: Points) -> bool:
+    """Whether an area is a dot: as far to all its sides."""
+    off = np.abs(z - z.mean())
+    return bool(len(z) > 4 and off.max() < 1.3 * np.median(off))
 
 
 def heads_of_dimensions(state: Comparison) -> None:
@@ -52,18 +73,27 @@ def hatching(state: Comparison) -> None:
     ours, of, _ = state.ours(numbers)
     near = overlaps(ours, state.theirs, state.tolerance)
     owner = of[near.ours]
-    slanting = state.theirs.only(np.abs(np.abs(np.angle((state.theirs.b - state.theirs.a) ** 2)) - pi / 2) < 0.6)
-    middles = (slanting.a + slanting.b) / 2
+    slanting = np.abs(np.abs(np.angle((state.theirs.b - state.theirs.a) ** 2)) - pi / 2) < 0.6
+    middles = (state.theirs.a + state.theirs.b) / 2
     patterns = np.array([complex(a.points.mean()) for a in state.space.areas if not a.solid], dtype=complex)
     for n in numbers:
         mine, whole = owner == n, state.whole(n)
-        box = Box.around(state.elements[n].points, 1.5).corners
-        own = float((near.s1 - near.s0)[mine].sum()) > 0.8 * whole
-        if own or _inside(patterns, box).any() or float(slanting.length[_inside(middles, box)].sum()) > 0.4 * whole:
+        if float((near.s1 - near.s0)[mine].sum()) > 0.8 * whole:
             state.found[n] = state.finding(n, 0.0, "")
             state.claims.append(near.only(mine))
-            if not own:
-                state.zones.append(box)
+    left_over = np.zeros(len(state.theirs.a), bool)
+    left_over[[r.piece for r in left(state.theirs, state.claimed())]] = True
+    for n in numbers:
+        if n in state.found:
+            continue
+        box = Box.around(state.elements[n].points, ASIDE).corners
+        strokes = np.flatnonzero(slanting & left_over & _inside(state.theirs.a, box) & _inside(state.theirs.b, box))
+        here = slanting & _inside(middles, Box.around(state.elements[n].points, 1.5).corners)
+        if _inside(patterns, box).any() or float(state.theirs.length[here].sum()) > 0.4 * state.whole(n) or \
+                float(state.theirs.length[strokes].sum()) > 0.8 * state.whole(n):
+            state.found[n] = state.finding(n, 0.0, "")
+            state.claim([(int(j), 0.0, float(state.theirs.length[j])) for j in strokes], n)
+            state.zones.append(Box.around(state.elements[n].points, 1.5).corners)
         else:
             state.found[n] = state.finding(n, 2 * state.tolerance, tell("not hatched"), missing=True)
 

@@ -9,7 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, JOINT, LOOSE_STYLES, SIZE_OF_SYMBOL, Comparison
+from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.overlaps import Circle, Left, Numbers, OverlapRun, Overlaps, circle, gaps, overlaps, pieces, runs, union
 from tmm_sheets.compare.findings import farthest, missing_part, of_radius, place, shifted, too_long, turned
 from tmm_sheets.compare.placing import HINGE
@@ -18,10 +20,16 @@ from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell
 
+OWN = 0.3
+"""Share of a line below which most of it is the ink of others."""
+ELSEWHERE = 12.0
+"""A curve, arc or small circle that is drawn farther from its place than this, mm, is another one."""
 FARTHEST = 25.0
 """A line whose ends are farther off than this, mm, is another line."""
 FULL = 0.97
 """Share of its circumference from which on a circle is a whole one."""
+SAME_SHAPE = 0.3
+"""How far a stroke may be from the shape of an element that is drawn elsewhere, mm."""
 
 
 # --- circles ----------------------------------------------------------------------------------------------------------
@@ -59,6 +67,32 @@ def _take_circle(state: Comparison, n: int, c: Circle) -> None:
     state.claim([(j, 0.0, float(state.theirs.length[j])) for j in state.of_strokes(c.strokes)], n)
 
 
+def elsewhere(state: Comparison, rest: Sequence[Left]) -> None:
+    """Find the curves, arcs and small circles that are drawn as they should be, but not where: strokes of the same shape."""
+    wanted = [n for n in state.inked if n not in state.found and state.elements[n].kind != "line"]
+    strokes = {k: state.space.strokes[k].points for k in _mostly_free(state, rest)} if wanted else {}
+    number = np.array(list(strokes), dtype=np.int64)
+    boxes = [Box.around(z) for z in strokes.values()]
+    middles, sizes = (np.array(x, dtype=complex) for x in ([b.centre for b in boxes], [complex(b.width, b.height) for b in boxes]))
+    trials = []
+    for n in wanted:
+        box = Box.around(state.elements[n].points)
+        shifts, other = middles - box.centre, sizes - complex(box.width, box.height)
+        near = (np.abs(shifts) < ELSEWHERE) & (np.maximum(np.abs(other.real), np.abs(other.imag)) < 2 * SAME_SHAPE)
+        trials += [(float(abs(shifts[i])), n, int(number[i]), complex(shifts[i])) for i in np.flatnonzero(near).tolist()]
+    used: set[int] = set()
+    for off, n, k, by in sorted(trials, key=lambda x: x[0]):
+        e = state.elements[n]
+        ours, theirs = lines([e.points + by]), lines([strokes[k]])
+        if n in state.found or k in used or off > _missing(state, n) or min(
+                theirs.share(ours.points(0.5), SAME_SHAPE), ours.share(theirs.points(0.5), SAME_SHAPE)) < FULL:
+            continue
+        used.add(k)
+        state.found[n] = state.finding(n, off, shifted(by) if off > state.tolerance else "", shift=by,
+                                       entities=state.entities_of_strokes((k,)))
+        state.claim([(j, 0.0, float(state.theirs.length[j])) for j in state.of_strokes((k,))], n)
+
+
 def _fitted(state: Comparison, rest: Iterable[Left]) -> Iterator[Circle]:
     """Circles and arcs among the strokes that are mostly unclaimed; arcs of one circle are one."""
     arcs = list(_arcs(state, rest))
@@ -75,24 +109,34 @@ def _fitted(state: Comparison, rest: Iterable[Left]) -> Iterator[Circle]:
 
 
 def _arcs(state: Comparison, rest: Iterable[Left]) -> Iterator[Circle]:
+    for k in _mostly_free(state, rest):
+        z = state.space.strokes[k].points
+        fit = circle(z) if len(z) >= 5 else None
+        if fit is not None and fit[2] <= 0.03 + 0.01 * fit[1]:
+            yield Circle(fit[0], fit[1], min(float(np.abs(np.diff(z)).sum()) / (2 * pi * fit[1]), 1.0), (k,))
+
+
+def _mostly_free(state: Comparison, rest: Iterable[Left]) -> Iterator[int]:
+    """The strokes of which no element claims more than half."""
     free: dict[int, float] = {}
     for piece, a, b in rest:
         k = int(state.theirs.owner[piece])
         free[k] = free.get(k, 0.0) + b - a
     for k, size in free.items():
-        z = state.space.strokes[k].points
-        whole = float(np.abs(np.diff(z)).sum())
-        fit = circle(z) if len(z) >= 5 and size >= 0.5 * whole else None
-        if fit is not None and fit[2] <= 0.03 + 0.01 * fit[1]:
-            yield Circle(fit[0], fit[1], min(whole / (2 * pi * fit[1]), 1.0), (k,))
+        if size >= 0.5 * float(np.abs(np.diff(state.space.strokes[k].points)).sum()):
+            yield k
 
 
 # --- straight lines ---------------------------------------------------------------------------------------------------
 
 
 class _Trial(NamedTuple):
-    """A run that may have been drawn for a line: its number and its ends, ``far`` mm at most from those of the line."""
+    """A run that may have been drawn for a line: its number and its ends, ``far`` mm at most from those of the line.
 
+    ``claimed`` tells that most of it is the ink of others.
+    """
+
+    claimed: bool
     far: float
     n: int
     run: int
@@ -105,7 +149,7 @@ def straight(state: Comparison, rest: Sequence[Left]) -> None:
     if not wanted:
         return
     made = _Runs(state, rest)
-    trials = sorted((trial for n in wanted for trial in made.near(n)), key=lambda trial: trial.far)
+    trials = sorted((trial for n in wanted for trial in made.near(n)), key=lambda trial: (trial.claimed, trial.far))
     used: set[int] = set()
     for shared in (0.0, 3.0):  # in the second round one line may be that of several elements as near as this, mm
         for trial in trials:
@@ -129,6 +173,7 @@ class _Runs:
         self.first_dashed = len(unbroken)
         self.runs = unbroken + [r for r in runs(free, 4.5) if len(r.parts) > 1 and r.parts not in plain]
         self.a, self.b = np.array([r.a for r in self.runs]), np.array([r.b for r in self.runs])
+        self.free = np.array([free.length[list(r.parts)].sum() for r in self.runs])
         # Under stretches at its ends that other elements have claimed the line goes on.
         under = np.array([_under(state, r, rest) for r in self.runs]).reshape(-1, 2)
         self.before, self.after = under[:, 0], under[:, 1]
@@ -152,7 +197,8 @@ class _Runs:
         for c, d in (forth, back, (self.tip_a, self.tip_b), (self.tip_b, self.tip_a)):
             off = np.maximum(np.abs(c - p), np.abs(d - q))
             for k in np.flatnonzero(parallel & (off < farthest)).tolist():
-                yield _Trial(float(off[k]), n, k, (complex(c[k]), complex(d[k])))
+                claimed = bool(self.free[k] < OWN * abs(d[k] - c[k]))
+                yield _Trial(claimed, float(off[k]), n, k, (complex(c[k]), complex(d[k])))
 
 
 def _under(state: Comparison, run: OverlapRun, rest: Sequence[Left]) -> tuple[float, float]:
@@ -199,7 +245,14 @@ def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: O
         said.append(tell("{by} mm along itself").format(by=told(f"{abs((shift * np.conj(u)).real):.2f}")))
     state.found[n] = state.finding(n, deviation, ", ".join(said), shift=shift, turn=turn, size=size,
                                    entities=state.entities_of(rest[k].piece for k in run.parts))
-    state.claim([(rest[k].piece, rest[k].a, rest[k].b) for k in run.parts], n)
+    state.claim([_whole_stretch(state, rest[k], c, d) for k in run.parts], n)
+
+
+def _whole_stretch(state: Comparison, r: Left, c: complex, d: complex) -> tuple[int, float, float]:
+    """An unclaimed stretch as far as the line from ``c`` to ``d`` goes on along its piece: lines that cross it claim bits of it."""
+    a, b = state.theirs.a[r.piece], state.theirs.b[r.piece]
+    t = sorted(((z - a) * np.conj((b - a) / abs(b - a))).real for z in (c, d))
+    return r.piece, min(r.a, max(float(t[0]), 0.0)), max(r.b, min(float(t[1]), float(abs(b - a))))
 
 
 # --- curves -----------------------------------------------------------------------------------------------------------
