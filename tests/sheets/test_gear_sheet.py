@@ -91,6 +91,15 @@ def test_every_label_finds_its_place(data):
     assert place(canvas, FRAME) == []
 
 
+def test_an_undercut_of_hundredths_is_not_named():
+    """The rule of seventeen teeth gives 3/17; the exact limit is 1 - 14 sin^2(20 deg)/2 = 0.1812, 16 um of the rack farther."""
+    data = PROJECTS["manual 000"]
+    assert 0.0 < (1 - 7 * np.sin(radians(20)) ** 2 - 3 / 17) * 3.5 < 0.02
+    assert data.gear.pinion.rack.undercut
+    canvas = drawn("rack.generating", dict(arrangement())["rack.generating"], data)
+    assert "подрез" not in [label.text for label in canvas.labels]
+
+
 def test_scale_of_the_manual():
     canvas = drawn("gear.engagement", dict(arrangement())["gear.engagement"], PROJECTS["manual 000"])
     assert "М 4:1" in [m.text for m in canvas.marks if isinstance(m, Text)]
