@@ -72,7 +72,7 @@ def judged(project, n):
     for p in kept:
         what = "" if p.leader else owners.Round(ink, p.label, 60.0).reads(p.box)
         near = ink.near(p.box, 0.0)
-        over = near[owners._enters(ink.a[near], ink.b[near] - ink.a[near], p.box)]
+        over = near[owners.enters(ink.a[near], ink.b[near] - ink.a[near], *p.box)]
         if any(widths[ink.of[k]] > THICK for k in over):
             what = f"{what} covers".strip()
         what = f"{what} {_badly_led(p, kept, written)}".strip()
@@ -87,9 +87,7 @@ def _badly_led(p, kept, written):
     boxes = np.vstack([written, *(q.box for q in kept if q is not p)])
     a, b = (np.array([getattr(m, end) for q in kept if q is not p for m in q.leader]) for end in "ab")
     for line in p.leader:
-        z = line.a + np.linspace(0, 1, 200)[:, None] * (line.b - line.a)
-        x0, y0, x1, y1 = boxes.T
-        if ((z.real > x0) & (z.real < x1) & (z.imag > y0) & (z.imag < y1)).any():
+        if owners.enters(line.a, line.b - line.a, *boxes.T).any():
             return LED[0]
         if len(a) and owners.crossing(a, b, line.a, line.b).any():
             return LED[1]

@@ -7,7 +7,7 @@ matter of four look-ups, so all candidate places of a label are judged at once.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 
@@ -48,17 +48,17 @@ OUTSIDE = 20.0
 """Cost of a place that leaves the place of the label's view, in millimetres of distance."""
 SEVERAL = 10
 """So many leaders met are as bad as a label that is read as another thing's."""
-ROUNDS = 3
-"""So many times labels whose leaders meet others are set again."""
+TURNING = 4.0
+"""Cost of the direction opposite to the one asked for, in millimetres of distance."""
 SHELF = 0.8
 """Clear distance, mm, of lettering from the shelf it stands on."""
 
-_DISTANCES = np.array([0.0, 0.6, 1.4, 2.5, 4.0, 6.0, 8.5, 11.0, 14.0, 18.0, 23.0])
-_DIRECTIONS = np.exp(1j * np.linspace(0, 2 * pi, 24, endpoint=False))
-_TURNING = 4.0 * np.abs(np.angle(_DIRECTIONS)) / pi
-"""Cost of each direction, the first being the one asked for."""
+Around = tuple[npt.NDArray[np.float64], Points]
+"""Distances and directions, the first being the one asked for, in which places are tried."""
+USUAL: Around = np.array([0.0, 0.6, 1.4, 2.5, 4.0, 6.0, 8.5, 11.0, 14.0, 18.0, 23.0]), np.exp(2j * pi * np.arange(24) / 24)
+CLOSER: Around = np.concatenate(([0.0, 0.6, 1.4, 2.5], np.arange(4.0, 40.0))), np.exp(2j * pi * np.arange(96) / 96)
+"""Many more, for the few labels whose leader meets something wherever it is led from the usual places."""
 _MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
-_ALONG = np.linspace(0, 1, 40)[:, None]
 _FIRST_BEYOND = np.array([0, 0, 1, 1])[:, None]
 """A rectangle's cells: from the one its lower left corner is in to the one after that of its upper right corner."""
 
@@ -100,13 +100,15 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
     grid = Grid(area, canvas.marks, len(canvas.labels), [part.box for part in canvas.parts])
     ink = owners.Ink([m for n, m in enumerate(canvas.marks) if n not in canvas.windows])
     found = [_found(grid, ink, k, label) for k, label in enumerate(canvas.labels)]
-    for _ in range(ROUNDS):
+    for around in (USUAL, USUAL, CLOSER):
         for k in range(len(found)):
             if _ill(grid, ink, found, (k,)):
                 # One that has no better place gets it when the one it meets makes room, or changes places with it.
                 ways = ((k,), *(pair for q in grid.met(k) for pair in ((k, q), (q, k))))
-                any(_set_again(grid, ink, canvas.labels, found, some) for some in ways) or \
+                done = any(_set_again(grid, ink, canvas.labels, found, some, around) for some in ways) or \
                     any(_exchanged(grid, ink, found, k, q) for q in grid.met(k))
+                if around is CLOSER and not done:
+                    any(_made_room(grid, ink, canvas.labels, found, *pair) for pair in ways[1:])
     for label, box, _ in found:
         _draw(canvas, label, box)
     crowded = [Crowded(label.text, label.anchor) for label, (_, _, free) in zip(canvas.labels, found, strict=True) if not free]
@@ -254,17 +256,18 @@ class _Places:
     numbers of the ``free`` ones, the cheapest first.
     """
 
-    def __init__(self, grid: Grid, label: Label, w: float, h: float) -> None:
+    def __init__(self, grid: Grid, label: Label, w: float, h: float, around: Around = USUAL) -> None:
         self.label, self._grid = label, grid
-        units = _DIRECTIONS if not label.away else _DIRECTIONS * (label.away / abs(label.away))
-        distances = _DISTANCES + label.gap
+        away, directions = around
+        units = directions if not label.away else directions * (label.away / abs(label.away))
+        distances = away + label.gap
         # The rectangle's support along the direction keeps its nearest corner or side at the asked distance.
         support = np.minimum(w / 2 / np.maximum(np.abs(units.real), 1e-9), h / 2 / np.maximum(np.abs(units.imag), 1e-9))
         centres = (label.anchor + units[None, :] * (distances[:, None] + support[None, :])).ravel()
         # A label that should do without a leader line gets one only when nothing near is free.
-        far = 0.0 if label.leader else FAR * (_DISTANCES > NEAR)
+        far = 0.0 if label.leader else FAR * (away > NEAR)
         cost = (distances * 1.2 + far)[:, None]
-        cost = (cost + _TURNING if label.away else np.repeat(cost, len(units), axis=1)).ravel()
+        cost = (cost + TURNING * np.abs(np.angle(directions)) / pi if label.away else np.repeat(cost, len(units), axis=1)).ravel()
         sides = np.array([centres.real - w / 2, centres.imag - h / 2, centres.real + w / 2, centres.imag + h / 2])
         x0, y0, x1, y1 = sides + _MARGIN
         self.run_on = _beside(sides, grid.written, WORD * label.height)
@@ -288,19 +291,36 @@ class _Places:
         """
         poor, least = None, np.inf
         for k in map(int, self.free):
-            box = Box(*self.sides[:, k].tolist())
-            if not _led(self.label, box):
-                ill = MISREAD if here.reads(box) else 0.0
-            elif leaders:
-                over = _over(self._grid.written, *_way(self.label, box))
-                ill = OVER * over if over else CROSSING * here.met(*_way(self.label, box))
-            else:
+            if not leaders and _led(self.label, self.box(k)):
                 continue
+            ill = self.ill(here, k)
             if not ill:
                 return k
             if self.cost[k] + ill < least:
                 poor, least = k, self.cost[k] + ill
         return poor if leaders else None
+
+    def box(self, k: int) -> Box:
+        """A place."""
+        return Box(*self.sides[:, k].tolist())
+
+    def ill(self, here: owners.Round, k: int) -> float:
+        """Cost of what is wrong with the label at a place, 0 for nothing."""
+        box = self.box(k)
+        if not _led(self.label, box):
+            return MISREAD if here.reads(box) else 0.0
+        over = _over(self._grid.written, *_way(self.label, box))
+        return OVER * over if over else CROSSING * here.met(*_way(self.label, box))
+
+    def apart(self, here: owners.Round) -> Iterator[int]:
+        """Free places whose leader runs over no lettering, the cheapest first, none near one before it."""
+        centres = (self.sides[:2] + self.sides[2:]).T @ [0.5, 0.5j]
+        left = self.free
+        while len(left):
+            k, left = int(left[0]), left[1:]
+            if self.ill(here, k) < OVER:
+                yield k
+                left = left[np.abs(centres[left] - centres[k]) > NEAR]
 
     def least(self) -> int:
         """The cheapest place, or where none is free the one that is least inked."""
@@ -327,8 +347,8 @@ Found = tuple[Label, Box, bool]
 """A label, which may have moved, its place, whether there was room for it."""
 
 
-def _found(grid: Grid, ink: owners.Ink, k: int, label: Label) -> Found:
-    found = _placed(grid, ink, label, *_size(label))
+def _found(grid: Grid, ink: owners.Ink, k: int, label: Label, around: Around = USUAL) -> Found:
+    found = _placed(grid, ink, label, *_size(label), around)
     grid.put(ink, k, *found[:2])
     return found
 
@@ -338,14 +358,35 @@ def _ill(grid: Grid, ink: owners.Ink, found: list[Found], some: tuple[int, ...])
     return sum(grid.ill(k) + _misread(grid, ink, *found[k][:2]) for k in some)
 
 
-def _set_again(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Found], some: tuple[int, ...]) -> bool:
+def _set_again(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Found], some: tuple[int, ...],
+               around: Around) -> bool:
     """Take some labels off and set them again in this order; they stay where they were unless that makes it better."""
     before, ill = [found[k] for k in some], _ill(grid, ink, found, some)
     for k in some:
         grid.lift(ink, k)
     for k in some:
-        found[k] = _found(grid, ink, k, labels[k])
+        found[k] = _found(grid, ink, k, labels[k], around)
     return _kept(grid, ink, found, some, before, ill)
+
+
+def _made_room(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Found], k: int, q: int) -> bool:
+    """Try the places of label ``k`` one after another until label ``q`` has a good one, too; else both stay where they were."""
+    before, label, (w, h) = [found[k], found[q]], labels[k], _size(labels[k])
+    for n in (k, q):
+        grid.lift(ink, n)
+    places = _Places(grid, label, w, h, CLOSER)
+    for at in places.apart(owners.Round(ink, label, 2 * (NEAR + label.gap) + w)):
+        found[k] = label, places.box(at), True
+        grid.put(ink, k, *found[k][:2])
+        found[q] = _found(grid, ink, q, labels[q], CLOSER)
+        if not _ill(grid, ink, found, (k, q)):
+            return True
+        for n in (k, q):
+            grid.lift(ink, n)
+    for n, was in zip((k, q), before, strict=True):
+        found[n] = was
+        grid.put(ink, n, *was[:2])
+    return False
 
 
 def _exchanged(grid: Grid, ink: owners.Ink, found: list[Found], k: int, q: int) -> bool:
@@ -383,15 +424,15 @@ def _draw(canvas: Canvas, label: Label, box: Box) -> None:
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
 
 
-def _placed(grid: Grid, ink: owners.Ink, label: Label, w: float, h: float) -> tuple[Label, Box, bool]:
+def _placed(grid: Grid, ink: owners.Ink, label: Label, w: float, h: float, around: Around) -> tuple[Label, Box, bool]:
     """Place of a label, which may have moved along the vector it names rather than have a leader; whether there is room for it."""
-    places = _Places(grid, label, w, h)
+    places = _Places(grid, label, w, h, around)
     here = owners.Round(ink, label, 2 * (NEAR + label.gap) + w)
     k = places.read(here)
     if k is None or places.run_on[k] or _led(label, Box(*places.sides[:, k])):
         for anchor in here.along():
             moved = replace(label, anchor=anchor)
-            others = _Places(grid, moved, w, h)
+            others = _Places(grid, moved, w, h, around)
             there = others.read(owners.Round(ink, moved, 2 * (NEAR + label.gap) + w), leaders=False)
             if there is not None and not others.run_on[there]:
                 return moved, Box(*others.sides[:, there]), True
@@ -432,9 +473,8 @@ def _shelf(box: Box) -> tuple[complex, complex]:
 
 def _over(boxes: npt.NDArray[np.float64], a: complex, b: complex) -> int:
     """Over how much lettering a leader runs."""
-    p = a + _ALONG * (b - a)
-    x0, y0, x1, y1 = boxes[(boxes[:, 2] > p.real.min()) & (boxes[:, 0] < p.real.max())].T
-    return int(((p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)).any(axis=0).sum())
+    x0, y0, x1, y1 = boxes[(boxes[:, 2] > min(a.real, b.real)) & (boxes[:, 0] < max(a.real, b.real))].T
+    return int(owners.enters(a, b - a, x0, y0, x1, y1).sum())
 
 
 def _leader(canvas: Canvas, label: Label, box: Box) -> None:

@@ -206,14 +206,14 @@ def _to_box(a: Any, b: Any, box: Box) -> tuple[Floats, Any, Any]:
     best = np.argmin(gaps, axis=0)
     k = np.arange(len(a))
     gap = gaps[best, k]
-    gap[_enters(a, d, box)] = 0.0
+    gap[enters(a, d, *box)] = 0.0
     return gap, at[best, k], on[best, k]
 
 
-def _enters(a: Any, d: Any, box: Box) -> Flags:
-    """Whether segments pass through a rectangle: by their parameter's range between each pair of sides."""
-    first, last = np.zeros(len(a)), np.ones(len(a))
-    for start, step, low, high in ((a.real, d.real, box.x0, box.x1), (a.imag, d.imag, box.y0, box.y1)):
+def enters(a: Any, d: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Flags:
+    """Whether segments pass through rectangles: by their parameter's range between each pair of sides."""
+    first, last = 0.0, 1.0
+    for start, step, low, high in ((np.real(a), np.real(d), x0, x1), (np.imag(a), np.imag(d), y0, y1)):
         safe = np.where(np.abs(step) < 1e-12, 1e-12, step)  # along the sides: far off at both ends, or between them
         u, v = (low - start) / safe, (high - start) / safe
         first, last = np.maximum(first, np.minimum(u, v)), np.minimum(last, np.maximum(u, v))
