@@ -31,7 +31,8 @@ gallery: $(VENV)/.tested  ## every shipped project, small, on contact sheets in 
 	$(BIN)/python -m tests.gallery
 
 gallery-check: gallery  ## the same; fails when a sheet cannot be drawn, a label finds no free place or reads as something else
-	$(BIN)/python -m tests.labels
+	for language in ru uk en; do $(BIN)/python -m tests.labels --lang $$language || exit 1; done
+	$(BIN)/python -m tests.labels --ciphers 60
 
 gold: $(VENV)/.tested  ## accept the display lists as they are drawn now (look at the sheets first)
 	$(BIN)/python -m tests.sheets.gold

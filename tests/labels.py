@@ -1,13 +1,17 @@
-"""Labels of finished sheets: do they read as what they name? ``python -m tests.labels [PROJECT ...]``.
+"""Labels of finished sheets: do they read as what they name?
+
+Usage: python -m tests.labels [--ciphers N --seed S] [--lang L] [PROJECT ...]; without names all shipped projects.
 
 For every label: its own line or point is nearer than any other and the shortest way there crosses nothing, or it has a leader; it
 covers no line thicker than 0.25 mm. See :mod:`tmm_sheets.drawing.owners`. Leaders that run over lettering or cross each other are
-told, and labels so near other lettering on their level that both read as one word are counted; in a crowded corner there may be no
-better place, so these alone are no failure.
+told, and labels so near other lettering on their level that both read as one word are counted. What stands in ``EXCEPTIONS`` is no
+failure: it has its reason there.
 """
 
 from __future__ import annotations
 
+import argparse
+import random
 import sys
 from collections import Counter
 from multiprocessing import Pool
@@ -24,10 +28,17 @@ from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
+from tmm_sheets.words import LANGUAGES, set_paper
 
 THICK = 0.25
 LED = ("leader over lettering", "leaders cross")
 """What is told of leaders."""
+EXCEPTIONS = {
+    ("sixbar/5:3 1", "kinetics.lever"): "nineteen signs about the pole, whose arms are no longer than the signs are high",
+}
+"""Views with a label that has no better place, and why."""
+MACHINES = {"compressor": "В", "crusher": "СДМ", "diesel": "Т", "press": "ЭПС"}
+"""Transport machines and the letters of their specialities."""
 
 
 class Placed(NamedTuple):
@@ -116,17 +127,36 @@ def of_project(name):
     return found, counts
 
 
-def main(patterns):
+def drawn_lots(count, seed):
+    """Ciphers as students have them, of all machines in turn."""
+    lots = random.Random(seed)
+    machines = list(MACHINES.items())
+    return [f"transport/{machine}@{lots.randrange(12):02}-{letters}-{lots.randrange(1000)}"
+            for machine, letters in (machines[n % len(machines)] for n in range(count))]
+
+
+def main(args):
+    asked = argparse.ArgumentParser(prog="python -m tests.labels")
+    asked.add_argument("--ciphers", type=int, default=0)
+    asked.add_argument("--seed", type=int, default=1)
+    asked.add_argument("--lang", choices=LANGUAGES, default=LANGUAGES[0])
+    asked.add_argument("project", nargs="*")
+    o = asked.parse_args(args)
+    which = drawn_lots(o.ciphers, o.seed) + (names(o.project) if o.project or not o.ciphers else [])
     faults, counts = [], np.zeros(3, int)
+    set_paper(o.lang)
     with Pool() as pool:
-        for found, numbers in pool.imap(of_project, names(patterns)):
+        for found, numbers in pool.imap(of_project, which):
             faults += found
             counts += numbers
+    wrong = [f for f in faults if f[:2] not in EXCEPTIONS]
     for f in faults:
-        print(f"{f.sheet:34} {f.view:28} {f.text:24} ({f.at.real:.0f}, {f.at.imag:.0f})  {f.what}")
+        print(f"{f.sheet:34} {f.view:28} {f.text:24} ({f.at.real:.0f}, {f.at.imag:.0f})  {f.what}",
+              f": {EXCEPTIONS[f[:2]]}" if f[:2] in EXCEPTIONS else "", sep="")
     count, leaders, run_on = counts
-    print(f"{count} labels, {leaders} with leaders, {run_on} run on, {len(faults)} faults:", dict(Counter(f.what for f in faults)))
-    sys.exit(1 if any(f.what not in LED for f in faults) else 0)
+    print(f"{len(which)} projects, {count} labels, {leaders} with leaders, {run_on} run on, {len(faults)} faults, "
+          f"{len(wrong)} of them without a reason:", dict(Counter(f.what for f in wrong)))
+    sys.exit(1 if wrong else 0)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,8 @@ SYMBOL = 0.6
 
 PARALLEL, BESIDE = 0.15, 1.5
 """A leader runs along a line when it turns from it by less than this (sine of the angle) and is nearer than so many mm."""
+LED = 3
+"""Crossing another leader is as bad as crossing so many strong lines."""
 STRONG = frozenset({"main", "curve", "vector", "axis", "hidden"})
 """Line types that a leader had better not cross."""
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
@@ -128,14 +130,15 @@ class Round:
         return "nearer" if gaps[foreign].min() < gap - SLACK else ""
 
     def met(self, start: complex, end: complex) -> int:
-        """How many strong lines but its own and other leaders a leader from the anchor crosses, and lines it runs along."""
+        """How many strong lines but its own a leader from the anchor crosses, and lines it runs along; other leaders count more."""
         along = end - start
         d = self.b - self.a
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * abs(along)
         apart = np.minimum(_to_line(self.a, start, end), _to_line(self.b, start, end))
         beside = np.minimum(apart, np.minimum(_distance(self.a, self.b, start + 0.5 * along), _distance(self.a, self.b, end)))
         crossed = (self.strong | self.leaders) & ~self.own
-        return int((parallel & (beside < BESIDE)).sum() + crossing(self.a[crossed], self.b[crossed], start, end).sum())
+        crosses = crossing(self.a[crossed], self.b[crossed], start, end)
+        return int((parallel & (beside < BESIDE)).sum() + crosses.sum() + (LED - 1) * (crosses & self.leaders[crossed]).sum())
 
     def along(self) -> list[complex]:
         """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
@@ -146,12 +149,13 @@ class Round:
 
 
 def _vector(ink: Ink, here: Round, label: Label) -> tuple[complex, complex] | None:
-    """Ends of the vector beside which a label stands."""
+    """Ends of the vector, or of the construction line named by its own letter as an arm is, beside which a label stands."""
     if label.by is None or not label.by.step:
         return None
+    roles = {"vector"} | {"construction"} & {label.by.role}
     for number in ink.of_step(label.by):
         mark = ink.marks[number]
-        if (isinstance(mark, Line) and mark.by is not None and mark.by.role == "vector" and abs(mark.b - mark.a) > LONG
+        if (isinstance(mark, Line) and mark.by is not None and mark.by.role in roles and abs(mark.b - mark.a) > LONG
                 and min(abs(mark.a - label.anchor), abs(mark.b - label.anchor)) > 2 * AT
                 and _distance(np.array([mark.a]), np.array([mark.b]), label.anchor)[0] <= 2 * AT):
             return mark.a, mark.b
