@@ -9,6 +9,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.resources import variants
 from tmm_sheets.sheets import indicator, kinematics, synthesis
@@ -51,6 +52,23 @@ def test_indicator_diagrams_carry_the_pressures_over_the_marks_of_the_path(proje
         assert min(abs(end * mu_p - pressure) for end in ends) < 1e-9
         # The ordinate reaches to the higher of the two branches of this place.
         assert abs(here[0].b - here[0].a) - base == pytest.approx(max(ends), abs=1e-6)
+
+
+@pytest.mark.parametrize(("mu", "refused"), [(0.1, False), (0.05, True)])
+def test_a_scale_of_pressures_that_is_asked_for_is_drawn_or_refused(mu, refused):
+    """6 MPa are 60 mm, or 120 mm, which is more than any place beside a path has; the ordinates keep inside the place of the view."""
+    text = (variants() / "lugansk/engine.toml").read_text(encoding="utf-8")
+    p = Project(variant.parse(f"{text}\n[scales]\nindicator = {mu}\n", "a.toml"))
+    canvas, box = Canvas(), Box(25, 228, 343, 573)
+    if refused:
+        with pytest.raises(CannotBuild, match=r"indicator = 0\.05.* 0\.06 or more"):
+            kinematics.position_plans(p, canvas, box, {})
+        return
+    kinematics.position_plans(p, canvas, box, {})
+    assert canvas.scales["indicator"].mu == mu
+    ends = [z for m in canvas.marks if m.of.startswith("indicator") and isinstance(m, Polyline) for z in m.points]
+    assert max(z.real for z in ends) < box.x1
+    assert min(z.real for z in ends) > box.x0
 
 
 def quick_return():

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 GAP = 25.0
 """Distance of a diagram's abscissa from the path: room for position numbers, mm."""
-HEIGHT = 40.0
-"""Greatest ordinate, mm."""
+HEIGHT, MOST = 40.0, 100.0
+"""Greatest ordinate as we choose the scale factor, and by any the project asks for, mm."""
 SAMPLES = 361
 """Angles per turn at which the curve is drawn."""
 
@@ -76,17 +76,27 @@ def indicators(project: Project) -> list[Indicator]:
     return found
 
 
+def height(project: Project, shown: list[Indicator]) -> float:
+    """Greatest ordinate, mm: by the scale factor that the project asks for, or as we choose it."""
+    mu = project.variant.scales.get("indicator")
+    if mu is None:
+        return HEIGHT
+    return min(max(float(np.max(one.ordinate(_angles(project)))) for one in shown) / mu, MOST)
+
+
 def reach(project: Project) -> tuple[list[complex], list[complex]]:
     """Points of the paths and what the diagrams stick out of them on paper, mm: for the frame of the position plans."""
     z: list[complex] = []
     d: list[complex] = []
-    for n, one in enumerate(indicators(project)):
+    shown = indicators(project)
+    high = height(project, shown) if shown else 0.0
+    for n, one in enumerate(shown):
         # Over the ordinate axis of the first one the scale factor is written, from side to side.
         beyond = 28.0 if n == 0 and abs(one.side.real) > 0.5 else 10.0
         at = np.ravel(project.study.positions.points[str(one.force.point)].value)
         for p in (at[np.argmin((at * np.conj(one.along)).real)], at[np.argmax((at * np.conj(one.along)).real)]):
             z.append(complex(p))
-            d.append(one.side * (GAP + HEIGHT + beyond))
+            d.append(one.side * (GAP + high + beyond))
     return z, d
 
 
@@ -105,7 +115,8 @@ def draw(project: Project, s: Stage) -> None:
     turned = _angles(project)
     top = max(float(np.max(one.ordinate(turned))) for one in shown)
     pressure = shown[0].area != 1
-    scale = pick(project, canvas, "indicator", "μ_p" if pressure else "μ_F", tr("MPa/mm") if pressure else tr("N/mm"), top / HEIGHT)
+    symbol, unit = ("μ_p", tr("MPa/mm")) if pressure else ("μ_F", tr("N/mm"))
+    scale = pick(project, canvas, "indicator", symbol, unit, top / height(project, shown))
     pos = project.study_at(turned, tuple("" for _ in turned)).positions
     for one in shown:
         name, load = str(one.force.point), f"loads/{one.force.name}"
