@@ -35,7 +35,7 @@ SPARE = 20.0
 BEYOND = 10.0
 """A velocity plan so many times as large as usual would leave nothing to see of the others."""
 SWING_ARROW = 20.0
-"""Greatest radius of the arrow of angular velocity behind the pivot of a crank that only swings, which has no circle round it, mm."""
+"""Greatest radius of the arrow of angular velocity behind the pivot of a crank that only swings, without a circle round it, mm."""
 ACCELERATIONS = 9.0, 8.0, 9.0, 24.0
 """Room round the acceleration plan at the left, below, right and above, mm."""
 MOST = 72
