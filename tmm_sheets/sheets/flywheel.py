@@ -508,9 +508,9 @@ def _given_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
 
 
 def _words(canvas: Canvas, left: Box, lines: list[str]) -> None:
-    """Lines in the middle of their place, as large as it allows."""
+    """Lines under their title, as large as their place allows: what is left under them is free for other views."""
     height = size_for(lines, left.width, 5.0)
-    canvas.lines(left.centre + 2.0j * height * (len(lines) / 2 - 1), lines, 2.0 * height, height, "centre")
+    canvas.lines(complex(left.centre.real, left.y1 - 2.0 * height), lines, 2.0 * height, height, "centre")
 
 
 def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
