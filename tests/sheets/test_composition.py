@@ -1,5 +1,6 @@
 """Places of views: what lies gets a wide place, what stands a high one; what is left out gives its room away; always the same."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -207,6 +208,19 @@ def test_an_output_between_two_guides_has_the_diagrams_of_its_point():
     project = Project(catalogue.read("tests/projects/feeder.toml"))
     assert project.diagrams == ("E",)
     assert np.ptp(project.study.positions.points["E"].value.real) < 1e-12
+
+
+def test_what_a_group_of_class_three_drives():
+    """The last of its legs that is held in the frame, not the rod on the crank; of one that slides in the frame the point."""
+    project = Project(catalogue.read("loom"))
+    project.__dict__["_section"] = lambda name: SimpleNamespace(diagrams=(), output=None)
+    assert project.diagrams == ("7",)
+    triad = project.mechanism.groups[0]
+    rod, slider, rocker = triad.legs
+    alone = {("3", "2", "4", "5"): (rod, slider, rocker), ("3", "2", "5", "4"): (rod, rocker, slider)}
+    for (links, legs), driven in zip(alone.items(), ("5", "D"), strict=True):
+        project.__dict__["mechanism"] = replace(project.mechanism, groups=(replace(triad, links=links, legs=legs),))
+        assert project.diagrams == (driven,)
 
 
 def test_the_same_project_has_the_same_places():

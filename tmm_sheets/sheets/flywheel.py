@@ -330,7 +330,8 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     for x, same in ((fw.inertia_plan["points"].value[same[0]].real, same) for same in levels):
         # The first number stands above the axis of J, which begins to the left of the curve.
         canvas.text(g(x) - 2.0 + (-1.2j if x > 0 else 0.8j), ", ".join(fw.labels[k] for k in same), 3.5, "right")
-    reach = curve.imag.max() + graphs.OVER
+    highest = float(curve.imag.max())
+    reach = min(highest + graphs.OVER, max(box.x1 - g.origin.real, highest + 4.0))
     pen = of.pen("points", "axis")
     pen.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
     pen.text(g(length + graphs.OVER) - 2, tr("{symbol}, rad").format(symbol="φ_1"), 3.5, "right")
@@ -742,6 +743,9 @@ def _segment(canvas: Canvas, g: graphs.Graph, b: complex, a: complex, levels: li
     middle = complex(g(x + 1j * sum(gap) / 2))
     if gap[1] - gap[0] > letter(text, 3.5).width + 2:
         canvas.text(middle - 1, text, 3.5, "centre", pi / 2)
+    elif gap[1] - gap[0] > 6.0:
+        # Too near each other for it along the line, the projection lines leave room beside it.
+        canvas.text(middle - 1.5 - 1.2j, text, 3.5, "right")
     else:
         canvas.label(middle, text, -1)
 
