@@ -738,16 +738,26 @@ def _segment(canvas: Canvas, g: graphs.Graph, b: complex, a: complex, levels: li
     canvas.line(p, q, "thin")
     for tip, u in ((p, 1j), (q, -1j)):
         canvas.fill((tip, tip + 3.5 * u + 0.6, tip + 3.5 * u - 0.6), "thin")
-    cuts = sorted({b.imag, a.imag, *(v for v in levels if b.imag < v < a.imag)})
-    gap = max(pairwise(cuts), key=lambda c: c[1] - c[0])
-    middle = complex(g(x + 1j * sum(gap) / 2))
-    if gap[1] - gap[0] > letter(text, 3.5).width + 2:
-        canvas.text(middle - 1, text, 3.5, "centre", pi / 2)
-    elif gap[1] - gap[0] > 6.0:
-        # Too near each other for it along the line, the projection lines leave room beside it.
+    low, top = _widest(b.imag, a.imag, levels)
+    if top - low > letter(text, 3.5).width + 2:
+        canvas.text(complex(g(x + 0.5j * (low + top))) - 1, text, 3.5, "centre", pi / 2)
+        return
+    # Too near each other for it along the line, the projection lines may leave room beside it, clear of the axis' own lettering.
+    low, top = _widest(b.imag, a.imag, [*levels, *AXIS])
+    middle = complex(g(x + 0.5j * (low + top)))
+    if top - low > 6.0:
         canvas.text(middle - 1.5 - 1.2j, text, 3.5, "right")
     else:
         canvas.label(middle, text, -1)
+
+
+AXIS = -8.0, 6.0
+"""Heights under and over an axis that its numbers and its sign take, mm."""
+
+
+def _widest(low: float, top: float, levels: list[float]) -> tuple[float, float]:
+    """The widest gap between the levels from the lowest to the highest."""
+    return max(pairwise(sorted({low, top, *(v for v in levels if low < v < top)})), key=lambda gap: gap[1] - gap[0])
 
 
 @in_role("symbol")
