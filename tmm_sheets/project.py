@@ -83,6 +83,11 @@ class Project:
         if not driven:
             return (cycle.output,) if cycle.output else ()
         g = driven[-1]
+        if len(g.links) > 2:
+            # Of several legs the last one that is held in the frame; the link that they carry where none is.
+            held = {link: pair for pair in m.pairs for link in pair.links if link in g.links and m.frame in pair.links}
+            last = next((link for link in reversed(g.links) if link in held), g.links[0])
+            return (held[last].name.rstrip("′″") if last in held and held[last].motion == "translation" else last,)
         slides = any(point == g.inner and m.guides[guide].link == m.frame for point, guide in g.kind.guided(g))
         return (str(g.inner) if slides else g.links[1],)
 

@@ -1,5 +1,6 @@
 """Places of views: what lies gets a wide place, what stands a high one; what is left out gives its room away; always the same."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,11 +10,12 @@ from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
+from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import friction, kinematic_frames
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
-from tmm_sheets.sheets.sheet import INSIDE
+from tmm_sheets.sheets.sheet import INSIDE, composed
 from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
 
 ROOM = Box(0.0, 0.0, 400.0, 300.0)
@@ -208,6 +210,19 @@ def test_an_output_between_two_guides_has_the_diagrams_of_its_point():
     assert np.ptp(project.study.positions.points["E"].value.real) < 1e-12
 
 
+def test_what_a_group_of_class_three_drives():
+    """The last of its legs that is held in the frame, not the rod on the crank; of one that slides in the frame the point."""
+    project = Project(catalogue.read("loom"))
+    project.__dict__["_section"] = lambda name: SimpleNamespace(diagrams=(), output=None)
+    assert project.diagrams == ("7",)
+    triad = project.mechanism.groups[0]
+    rod, slider, rocker = triad.legs
+    alone = {("3", "2", "4", "5"): (rod, slider, rocker), ("3", "2", "5", "4"): (rod, rocker, slider)}
+    for (links, legs), driven in zip(alone.items(), ("5", "D"), strict=True):
+        project.__dict__["mechanism"] = replace(project.mechanism, groups=(replace(triad, links=links, legs=legs),))
+        assert project.diagrams == (driven,)
+
+
 def test_the_same_project_has_the_same_places():
     one, other = (arranged(Project(catalogue.read("lugansk/shaper")), 1).views for _ in range(2))
     assert one == other
@@ -220,3 +235,16 @@ def test_a_view_left_out_gives_its_room_to_its_neighbours():
     assert not any(v.draw.startswith(("kinetics", "synthesis")) for v in plan.views)
     area = sum(v.box.width * v.box.height for v in plan.views)
     assert area > 0.9 * ((832.0 - 25.0) * (586.0 - 8.0) - TITLE_BLOCK.width * TITLE_BLOCK.height)
+
+
+def test_a_crank_that_swings_has_the_arc_it_goes_through():
+    """No full circle stands on its sheets, and the room of one is not kept: the plans come out larger."""
+    project = Project(catalogue.read("tests/projects/visor.toml"))
+    found = composed(project, 2)
+    way = [m for m in found.drawing.marks if isinstance(m, Arc) and m.by and m.by[:2] == ("construction", "positions/B")]
+    assert len(way) == 1
+    radius = 0.12 / found.scales["positions"].mu
+    assert way[0].radius == pytest.approx(radius)
+    assert np.degrees(way[0].end - way[0].start) == pytest.approx(60 + 2 * np.degrees(5 / radius))
+    assert found.scales["positions"].mu == pytest.approx(0.0008)
+    assert np.degrees(way[0].start + way[0].end) / 2 == pytest.approx(80)

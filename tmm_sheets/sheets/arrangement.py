@@ -38,7 +38,7 @@ NEEDS = {
     "details": "forces",
     "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
     "flywheel": "flywheel", "crank_speed": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear",
-    "reducer": "reducer", "train": "train", "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
+    "reducer": "reducer", "reducer_equations": "reducer", "train": "train", "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
 }
 """Parts of the results that views need, by module or by view."""
 

@@ -384,6 +384,12 @@ def _cam(least: tuple[float, float], share: float) -> Callable[[Project, View], 
     return node
 
 
+def _pressure(project: Project, view: View) -> Node | None:
+    """A graph over the whole turn, whose ordinates stand apart in a wide place: beyond its width more height is of no use."""
+    need = Need(least=(0.88 * view.box.width, 0.7 * view.box.height), drawn=lambda w, h: 0.6 * w * min(h, w))
+    return _leaf(view.box, need)
+
+
 def _of_cam(project: Project, view: View) -> bool:
     """Whether a view is meant for this kind of cam."""
     traits = project.cam.traits
@@ -443,7 +449,7 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinematics.acceleration_plan": _accelerations, "kinematics.structure": _structure,
     "kinematics.velocity_tables": _velocity_tables, "kinetics.group": _group, "kinetics.crank": _crank,
     "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
-    "cam_profile.profile": _profile, "cam.pressure": _cam((0.88, 0.7), 0.6),
+    "cam_profile.profile": _profile, "cam.pressure": _pressure,
     "cam_profile.roller": _roller, "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
     "cam_zone.of_rocker": _cam((0.9, 0.8), 0.6),
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),

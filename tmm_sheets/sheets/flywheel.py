@@ -330,7 +330,8 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     for x, same in ((fw.inertia_plan["points"].value[same[0]].real, same) for same in levels):
         # The first number stands above the axis of J, which begins to the left of the curve.
         canvas.text(g(x) - 2.0 + (-1.2j if x > 0 else 0.8j), ", ".join(fw.labels[k] for k in same), 3.5, "right")
-    reach = curve.imag.max() + graphs.OVER
+    highest = float(curve.imag.max())
+    reach = min(highest + graphs.OVER, max(box.x1 - g.origin.real, highest + 4.0))
     pen = of.pen("points", "axis")
     pen.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
     pen.text(g(length + graphs.OVER) - 2, tr("{symbol}, rad").format(symbol="φ_1"), 3.5, "right")
@@ -508,9 +509,9 @@ def _given_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
 
 
 def _words(canvas: Canvas, left: Box, lines: list[str]) -> None:
-    """Lines in the middle of their place, as large as it allows."""
+    """Lines under their title, as large as their place allows: what is left under them is free for other views."""
     height = size_for(lines, left.width, 5.0)
-    canvas.lines(left.centre + 2.0j * height * (len(lines) / 2 - 1), lines, 2.0 * height, height, "centre")
+    canvas.lines(complex(left.centre.real, left.y1 - 2.0 * height), lines, 2.0 * height, height, "centre")
 
 
 def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
@@ -737,13 +738,26 @@ def _segment(canvas: Canvas, g: graphs.Graph, b: complex, a: complex, levels: li
     canvas.line(p, q, "thin")
     for tip, u in ((p, 1j), (q, -1j)):
         canvas.fill((tip, tip + 3.5 * u + 0.6, tip + 3.5 * u - 0.6), "thin")
-    cuts = sorted({b.imag, a.imag, *(v for v in levels if b.imag < v < a.imag)})
-    gap = max(pairwise(cuts), key=lambda c: c[1] - c[0])
-    middle = complex(g(x + 1j * sum(gap) / 2))
-    if gap[1] - gap[0] > letter(text, 3.5).width + 2:
-        canvas.text(middle - 1, text, 3.5, "centre", pi / 2)
+    low, top = _widest(b.imag, a.imag, levels)
+    if top - low > letter(text, 3.5).width + 2:
+        canvas.text(complex(g(x + 0.5j * (low + top))) - 1, text, 3.5, "centre", pi / 2)
+        return
+    # Too near each other for it along the line, the projection lines may leave room beside it, clear of the axis' own lettering.
+    low, top = _widest(b.imag, a.imag, [*levels, *AXIS])
+    middle = complex(g(x + 0.5j * (low + top)))
+    if top - low > 6.0:
+        canvas.text(middle - 1.5 - 1.2j, text, 3.5, "right")
     else:
         canvas.label(middle, text, -1)
+
+
+AXIS = -8.0, 6.0
+"""Heights under and over an axis that its numbers and its sign take, mm."""
+
+
+def _widest(low: float, top: float, levels: list[float]) -> tuple[float, float]:
+    """The widest gap between the levels from the lowest to the highest."""
+    return max(pairwise(sorted({low, top, *(v for v in levels if low < v < top)})), key=lambda gap: gap[1] - gap[0])
 
 
 @in_role("symbol")

@@ -34,6 +34,8 @@ SPARE = 20.0
 """Largest height between rows of velocity plans beside what they need, mm."""
 BEYOND = 10.0
 """A velocity plan so many times as large as usual would leave nothing to see of the others."""
+SWING_ARROW = 20.0
+"""Greatest radius of the arrow of angular velocity behind the pivot of a crank that only swings, without a circle round it, mm."""
 ACCELERATIONS = 9.0, 8.0, 9.0, 24.0
 """Room round the acceleration plan at the left, below, right and above, mm."""
 MOST = 72
@@ -73,7 +75,7 @@ def graph_below(project: Project) -> bool:
 
 
 def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> Frame:
-    """Frame of the position plans: all positions, the crank circle and what sticks out of them on paper.
+    """Frame of the position plans: all positions, the way of the crank and what sticks out of them on paper.
 
     ``graph`` = false leaves the force graph over them out.
     """
@@ -89,12 +91,18 @@ def positions_around(project: Project, options: dict[str, Any]) -> tuple[float, 
 
 
 def positions_reach(project: Project) -> tuple[Any, Any]:
-    """Points of all position plans and of the crank circle, m, and what sticks out of each on paper, mm."""
+    """Points of all position plans and of the way of the crank pin, m, and what sticks out of each on paper, mm."""
     pos = project.study.positions
     m, c = pos.mechanism, pos.mechanism.crank
-    centre = m.fixed[c.pivot]
-    z = [np.asarray([centre + c.length * u for u in (1, -1, 1j, -1j)])]
-    d = [np.asarray([16.0 + 0j, -16.0, 9.0j, -9.0j])]
+    beside = np.asarray([16.0 + 0j, -16.0, 9.0j, -9.0j])
+    centre, ways = m.fixed[c.pivot], beside / np.abs(beside)
+    if project.cycle.swings:
+        passed = np.exp(1j * project.cycle.world(project.cycle.ring))
+        ways = np.asarray([passed[np.argmax((passed * np.conj(u)).real)] for u in ways])
+        # The arrow of its speed stands behind its pivot.
+        behind = -np.exp(1j * project.cycle.phi[project.force_index])
+        ways, beside = np.append(ways, 0), np.append(beside, behind * (SWING_ARROW + 8.0))
+    z, d = [centre + c.length * ways], [beside]
     for name, step in pos.points.items():
         at = np.ravel(step.value)
         # What sticks out of a point whatever the scale: a pivot's base, a ram's body, numbers and letters.
@@ -105,8 +113,8 @@ def positions_reach(project: Project) -> tuple[Any, Any]:
     for end in (end for ends in linkage.free_ends(pos).values() for end in ends if end is not None):
         z.append(np.ravel(end))
         d.append(np.full(len(np.ravel(end)), 1j))
-    beside, reach = indicator.reach(project)
-    z.append(np.asarray(beside))
+    at_indicator, reach = indicator.reach(project)
+    z.append(np.asarray(at_indicator))
     d.append(np.asarray(reach))
     return np.concatenate(z), np.concatenate(d)
 

@@ -44,7 +44,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     _swing(project, canvas, box)
     canvas.scales["dead-positions"] = frame.scale
     every = stage(canvas, pos.plan, None, frame)
-    play(every, [pos.mechanism.crank.pin], "thin", only="circle")
+    _way_of_crank(project, every)
     _paths(project, every, Box(box.x0 + 2.0, box.y0, box.x1 - 2.0, box.y1 - 18.0))
     of = canvas.of
     for i, label in cycle.drawn:
@@ -79,6 +79,23 @@ def _swing(project: Project, canvas: Canvas, box: Box) -> None:
     low, high = (number(round(float(angle or 0.0), 2)) for angle in limits.angles)
     canvas.note(box, tr("The crank could swing from {low}° (limit of group {first}) to {high}° (limit of group {last})").format(
         low=low, high=high, first=limits.groups[0], last=limits.groups[1]))
+
+
+def _way_of_crank(project: Project, s: Stage) -> None:
+    """The circle of the crank pin; of a crank that only swings the arc it goes through, and a little more."""
+    cycle, c = project.cycle, project.mechanism.crank
+    if not cycle.swings:
+        play(s, [c.pin], "thin", only="circle")
+        return
+    radius = c.length / s.frame.mu[1]
+    low, high = sorted(float(cycle.world(turned)) for turned in (0.0, cycle.period))
+    low -= BEYOND_SWING / radius
+    high = min(high + BEYOND_SWING / radius, low + 2 * pi)
+    s.pen(c.pin, "construction", f"{c.pivot}–{c.pin}").arc(s.at(c.pivot), radius, low, high, "thin")
+
+
+BEYOND_SWING = 5.0
+"""How far the arc of a crank that swings is drawn beyond both of its ends, mm."""
 
 
 def _paths(project: Project, s: Stage, room: Box) -> None:
@@ -224,6 +241,8 @@ def _rotations(project: Project, s: Stage) -> None:
     pos, c = study.positions, m.crank
     pivot = s.at(c.pivot)
     radius = max(0.5 * c.length / s.frame.mu[1], 7.0)
+    if project.cycle.swings:
+        radius = min(radius, kinematic_frames.SWING_ARROW)
     away, crank = linkage.clear_of_crank(s, pos), study.velocities.omega[c.link]
     symbols.rotation_arrow(s.pen(crank, "symbol"), pivot, radius, away, c.omega, f"ω_{c.link}")
     for shape in linkage.shapes(pos):

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
@@ -424,7 +425,7 @@ def plan_of_speeds(reducer: Any, canvas: Canvas, box: Box, part: str) -> None:
     for name, size, away, height in (("P", 0.9, -1j, 5.0), ("0", 0.8, -1 + 1j, 3.5)):
         s.dot(name, size, "main")
         canvas.label(s.at(name), name, away=away, height=height)
-    ends = [(s.at(step), step.name) for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
+    ends = [(s.at(step), step.name) for step in _ends_of_rays(plan)]
     ends.sort(key=lambda pair: pair[0].real)
     places = spread([end.real for end, _ in ends], NAME)
     for i in range(len(places)):
@@ -436,6 +437,11 @@ def plan_of_speeds(reducer: Any, canvas: Canvas, box: Box, part: str) -> None:
         s.dot(link, 0.8, "main")
         s.line(link, end, complex(x, y + 7), "thin", "text")
         canvas.text(complex(x, y + 9), f"n_{{{_link(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
+
+
+def _ends_of_rays(plan: Plan) -> list[Step]:
+    """Points of the plan of speeds that rays from its pole lead to, one for each link."""
+    return [step for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
 
 
 def points_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -477,6 +483,41 @@ def moving_points(of: Any) -> list[Step]:
     """Ends of the velocities that the picture has."""
     plan = of.velocities
     return [end for end in plan if end.name.islower() and end.rule.gives == "point" and end.name.upper() in plan]
+
+
+def links_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of speeds of rotation can do with, mm."""
+    return sizes_of_links(project.reducer, canvas, "reducer")
+
+
+def links(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Links on the plan of the speeds of rotation: segment measured on it, speed."""
+    table_of_links(project.reducer, canvas, box, "reducer")
+
+
+def sizes_of_links(of: Any, canvas: Canvas, part: str) -> list[tuple[float, float]]:
+    """The same of a reducer or a train."""
+    rows = len(_rows_of_links(of, canvas, part))
+    return [(width, 11.0 + row * rows) for width, row in ((180.0, ROW), (150.0, 9.0), (120.0, 7.0))]
+
+
+def table_of_links(of: Any, canvas: Canvas, box: Box, part: str) -> None:
+    """The same of a reducer or a train."""
+    rows = _rows_of_links(of, canvas, part)
+    left = canvas.title(box, tr("Speeds of rotation by the plan"))
+    widths = widened([0.24 * box.width, 0.4 * box.width, 0.36 * box.width], rows, 3.5)
+    canvas.table(complex(box.x0, left.y1), widths, rows, min(left.height / len(rows), ROW), 3.5)
+
+
+def _rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:
+    """Heading and a row for each link on the plan that the sheet has."""
+    plan = of.plans[f"{part}-speeds"]
+    mu = canvas.scales[plan.name]
+    rows = [[tr("Link"), tr("Segment of the plan, mm"), tr("n, rpm")]]
+    for end in _ends_of_rays(plan):
+        measured = f"|0–{_link(end.name)}| = {fixed(abs(mu.mm(complex(end.value).real)), 1)}"
+        rows.append([_link(end.name), measured, number(float(plan[f"n{end.name}"].value))])
+    return rows
 
 
 def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

@@ -11,7 +11,18 @@ from tmm_sheets.drawing.lettering import fitted, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
-from tmm_sheets.sheets.reducer import COLUMN, FACE, HUB, ROW, STUB, SchemeViews, plan_of_speeds, table_of_points
+from tmm_sheets.sheets.reducer import (
+    COLUMN,
+    FACE,
+    HUB,
+    ROW,
+    STUB,
+    SchemeViews,
+    plan_of_speeds,
+    sizes_of_links,
+    table_of_links,
+    table_of_points,
+)
 from tmm_sheets.words import tr
 
 SLEEVE = 6.0
@@ -50,6 +61,16 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
 def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
     table_of_points(project.train, canvas, box)
+
+
+def links_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of speeds of rotation can do with, mm."""
+    return sizes_of_links(project.train, canvas, "train")
+
+
+def links(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Links on the plan of the speeds of rotation: segment measured on it, speed."""
+    table_of_links(project.train, canvas, box, "train")
 
 
 def sizes(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

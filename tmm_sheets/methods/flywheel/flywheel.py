@@ -1160,8 +1160,8 @@ def _scaled(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
     """Scale factors of moment, work, energy and inertia; those of moment and work suit the pole.
 
     Of all with which the graphs one under another fit together those with the greatest product of their heights. The moments are
-    what everything else comes from: where they can, they get ``READABLE`` first, or three quarters of it. What stands alone fills
-    its own room.
+    what everything else comes from: where they can, they get ``READABLE`` first, or one of the ``SHARES`` of it. What stands alone
+    fills its own room.
     """
     series = []
     for span, room in zip(spans, (space.moment, space.work, space.energy, space.inertia), strict=True):
@@ -1173,7 +1173,7 @@ def _scaled(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
     pole = mu[1] / (mu[0] * mu_phi)
     fitting = (sum(heights[:space.stacked]) <= space.stack) & (pole >= space.pole[0]) & (pole <= space.pole[1])
     # Then a pole distance that a ruler lays off, in half millimetres, where there is one.
-    for wanted in (heights[0] >= READABLE, heights[0] >= 0.75 * READABLE, np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
+    for wanted in (*(heights[0] >= share * READABLE for share in SHARES), np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
         fitting = fitting & wanted if (fitting & wanted).any() else fitting
     products = np.where(fitting, np.prod(np.broadcast_arrays(*heights), axis=0), 0.0)
     best = np.unravel_index(int(np.argmax(products)), products.shape)
@@ -1183,6 +1183,8 @@ def _scaled(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
 
 READABLE = 80.0
 """Height of the graphs of the moments together from which on they read well, mm."""
+SHARES = 1.0, 0.75, 0.65
+"""Shares of it that are asked for in turn."""
 STEPS = 17
 """So many steps of the series of scale factors are nearly two decades."""
 

@@ -1,0 +1,97 @@
+"""View of what a reducer is counted by: ratio, conditions and speeds, in letters and in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import letter, size_for
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import fixed, number
+from tmm_sheets.words import tr
+
+SIZES = ((5.0, 12.0), (3.5, 10.0), (3.5, 7.0))
+"""Heights of the letters and distances of the lines that are tried, mm."""
+
+
+def of_stage_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the equations can do with, mm."""
+    lines = list(_lines(project.reducer))
+    return [(max(letter(line, height).width for line in lines) + 6.0, 14.0 + step * len(lines)) for height, step in SIZES]
+
+
+def of_stage(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Ratio, conditions and speeds of a planetary stage, and the ratio of the whole reducer."""
+    lines = list(_lines(project.reducer))
+    left = canvas.title(box, tr("The reducer in numbers"))
+    height = size_for(lines, box.width - 3.0, 5.0)
+    step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+
+
+def _lines(r: Any) -> Iterator[str]:
+    chosen, held = ({step.name: step.value for step in plan} for plan in (r.sets[0], r.conditions))
+    stage = r.stages[0]
+    first, second = stage.signs
+    one, two, three, four = (w.number for w in stage.wheels)
+    z = [f"z_{{{n}}}" for n in (one, two, three, four)]
+    teeth = [str(w.teeth) for w in stage.wheels]
+    together = "" if first * second > 0 else "−"
+    inner = f"i_{{{one}{four}}}^{{H}}"
+
+    def of(a: int, b: int, over: list[str]) -> str:
+        """A quotient of two of them, or of the products of all where the satellites are of two kinds."""
+        return f"{together}{over[3]}/{over[0]}" if stage.single else f"{together}{over[a]}·{over[3]}/({over[0]}·{over[b]})"
+
+    i = number(chosen["i14"], 5)
+    yield f"{inner} = {of(1, 2, z)} = {of(1, 2, teeth)} = {i}"
+    within = f"({i})" if chosen["i14"] < 0 else i
+    enters, leaves = {"sun": (one, "H"), "ring": (four, "H"), "carrier": ("H", one)}[stage.driver]
+    ratio = f"u_{{{enters}{leaves}}}"
+    letters, counted = {"sun": (f"1 − {inner}", f"1 − {within}"), "ring": (f"1 − 1/{inner}", f"1 − 1/{within}"),
+                        "carrier": (f"1/(1 − {inner})", f"1/(1 − {within})")}[stage.driver]
+    yield f"{ratio} = {letters} = {counted} = {fixed(chosen['u_stage'], 3)}"
+    count = len(r.stages)
+    parts = [f"|{ratio}|" + (f"^{{{count}}}" if count > 1 else "")]
+    values = [fixed(chosen["u_planetary"], 3)]
+    if r.simple:
+        pinion, wheel = r.simple
+        parts.append(f"z_{{{wheel.number}}}/z_{{{pinion.number}}}")
+        values.append(f"{wheel.teeth}/{pinion.teeth}")
+    if len(parts) > 1 or count > 1:
+        yield f"u = {'·'.join(parts)} = {'·'.join(values)} = {fixed(chosen['u'], 3)}"
+    signs = ["+" if s > 0 else "−" for s in (first, second)]
+    yield tr("Coaxiality: {letters}; {numbers}").format(
+        letters=f"{z[0]} {signs[0]} {z[1]} = {z[3]} {signs[1]} {z[2]}",
+        numbers=f"{teeth[0]} {signs[0]} {teeth[1]} = {teeth[3]} {signs[1]} {teeth[2]} = {held['coaxiality_left']}")
+    join = "−" if together == "" else "+"
+    divisor = tr("gcd({one}; {two})")
+    letters, counted = ((f"({z[0]} {join} {z[3]})/q", f"({teeth[0]} {join} {teeth[3]})/{held['q']}") if stage.single else
+                        (f"({z[0]}·{z[2]} {join} {z[1]}·{z[3]})/(q·{divisor.format(one=z[1], two=z[2])})",
+                         f"({teeth[0]}·{teeth[2]} {join} {teeth[1]}·{teeth[3]})/({held['q']}·"
+                         f"{divisor.format(one=teeth[1], two=teeth[2])})"))
+    yield tr("Assembly: {letters} = {numbers}").format(letters=letters, numbers=f"{counted} = {number(held['assembly'], 6)}")
+    larger = max(stage.wheels[1:3], key=lambda w: w.teeth)
+    yield tr("Neighbourhood: {letters}").format(
+        letters=f"({z[0]} {signs[0]} {z[1]})·sin(180°/q) > z_{{{larger.number}}} + 2h_a^{{*}}")
+    yield (f"{held['coaxiality_left']}·sin(180°/{held['q']}) = {fixed(held['between'], 2)} > {larger.teeth} + "
+           f"2·{number(held['ha'])} = {fixed(held['width'], 2)}")
+    yield from _speeds(stage, ratio, inner, within, fixed(chosen["u_stage"], 3))
+
+
+def _speeds(stage: Any, ratio: str, inner: str, within: str, u: str) -> Iterator[str]:
+    """Speeds of the links of the stage, positive as the input's, rpm."""
+    one, two, _, four = stage.wheels
+    carrier = stage.carrier if len(stage.carrier) == 1 else f"H_{stage.carrier[1:]}"
+    n = {name: number(float(step.value), 5) for name, step in (("1", one.n), ("2", two.n), ("4", four.n), ("H", stage.n_H))}
+    h, first = f"n_{{{carrier}}}", f"n_{{{one.number}}}"
+    if stage.driver == "carrier":
+        yield f"{first} = {h}·(1 − {inner}) = {n['H']}·(1 − {within}) = {n['1']} " + tr("rpm")
+    else:
+        entry, value = (first, n["1"]) if stage.driver == "sun" else (f"n_{{{four.number}}}", n["4"])
+        yield f"{h} = {entry}/{ratio} = {value}/{u} = {n['H']} " + tr("rpm")
+    sign = "−" if stage.signs[0] > 0 else "+"
+    subtracted = f"({n['H']})" if float(stage.n_H.value) < 0 else n["H"]
+    yield (f"n_{{{two.number}}} = {h} {sign} ({first} − {h})·z_{{{one.number}}}/z_{{{two.number}}} = {n['H']} {sign} "
+           f"({n['1']} − {subtracted})·{one.teeth}/{two.teeth} = {n['2']} " + tr("rpm"))
