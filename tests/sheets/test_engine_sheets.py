@@ -56,7 +56,7 @@ def test_indicator_diagrams_carry_the_pressures_over_the_marks_of_the_path(proje
 
 @pytest.mark.parametrize(("mu", "refused"), [(0.1, False), (0.05, True)])
 def test_a_scale_of_pressures_that_is_asked_for_is_drawn_or_refused(mu, refused):
-    """6 MPa are 60 mm, or 120 mm, which is more than any place beside a path has; the ordinates keep inside the place of the view."""
+    """6 MPa are 60 mm, or 120 mm, more than any place beside a path has; the ordinates keep inside the place of the view."""
     text = (variants() / "lugansk/engine.toml").read_text(encoding="utf-8")
     p = Project(variant.parse(f"{text}\n[scales]\nindicator = {mu}\n", "a.toml"))
     canvas, box = Canvas(), Box(25, 228, 343, 573)
