@@ -25,8 +25,8 @@ SYMBOL = 0.6
 
 PARALLEL, BESIDE = 0.15, 1.5
 """A leader runs along a line when it turns from it by less than this (sine of the angle) and is nearer than so many mm."""
-LED = 3
-"""Crossing another leader is as bad as crossing so many strong lines."""
+LED = 10
+"""Crossing another leader, which GOST 2.316 forbids, is as bad as crossing so many strong lines."""
 STRONG = frozenset({"main", "curve", "vector", "axis", "hidden"})
 """Line types that a leader had better not cross."""
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
