@@ -12,7 +12,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import friction, kinematic_frames
+from tmm_sheets.sheets import friction, kinematic_frames, linkage
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.sheet import INSIDE, composed
@@ -248,3 +248,18 @@ def test_a_crank_that_swings_has_the_arc_it_goes_through():
     assert np.degrees(way[0].end - way[0].start) == pytest.approx(60 + 2 * np.degrees(5 / radius))
     assert found.scales["positions"].mu == pytest.approx(0.0008)
     assert np.degrees(way[0].start + way[0].end) / 2 == pytest.approx(80)
+
+
+def test_a_traced_point_is_drawn_as_a_point_of_its_link():
+    """A coupler point that nothing hangs on: lines of its link lead to it, its mark is no hinge."""
+    point = {"point": [{"name": "E", "link": "2", "from": "A", "towards": "B", "distance": "0.15 m", "angle": "40 deg"}]}
+    project = files.project(files.FOUR_BAR, point, files.EVEN)
+    positions = project.study.positions
+    shape = next(s for s in linkage.shapes(positions) if s.link == "2")
+    assert set(shape.bar) == {"A", "B", "E"}
+    assert linkage.traced(project.mechanism, "2") == ["E"]
+    marks = composed(project, 1).drawing.marks
+    circles = {m.by.step.rpartition("/")[2]: m.radius for m in marks
+               if isinstance(m, Arc) and m.style == "main" and m.by and m.by.role == "symbol" and m.by.step.startswith("positions/")}
+    assert "B" in circles
+    assert "E" not in circles
