@@ -10,7 +10,7 @@ from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
-from tmm_sheets.drawing.marks import Arc
+from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import friction, kinematic_frames, linkage
 from tmm_sheets.sheets.arrangement import arrangement
@@ -262,3 +262,11 @@ def test_a_traced_point_is_drawn_as_a_point_of_its_link():
     circles = {m.by.step for m in marks if isinstance(m, Arc) and m.style == "main" and m.by and m.by.role == "symbol"}
     assert "positions/B" in circles
     assert "positions/E" not in circles
+
+
+def test_a_fixed_point_that_carries_nothing_is_no_part_of_the_mechanism():
+    """It has no letter and takes no room: the plans are as large as without it."""
+    far = {"points": {"O": ["0 m", "0 m"], "C": ["0.42 m", "0.05 m"], "P": ["3 m", "-2 m"]}}
+    one, other = (composed(files.project(files.FOUR_BAR, *more, files.EVEN), 1) for more in ([], [far]))
+    assert one.scales["positions"].mu == other.scales["positions"].mu
+    assert "P" not in {m.text for m in other.drawing.marks if isinstance(m, Text)}

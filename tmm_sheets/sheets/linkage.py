@@ -76,6 +76,13 @@ def _bar(m: Mechanism, link: str, base: tuple[str, ...], aim: str | None = None)
     return Shape(link, bar, over=tuple(over), arms=tuple(arms))
 
 
+def drawn_points(pos: Positions) -> dict[str, Step]:
+    """Points of the mechanism: a fixed one of the file that carries nothing is none."""
+    m = pos.mechanism
+    used = {m.crank.pivot} | {name for g in m.groups for name in g.outer} | {guide.through for guide in m.guides.values()}
+    return {name: step for name, step in pos.points.items() if name in used or name not in m.fixed}
+
+
 def traced(m: Mechanism, link: str) -> list[str]:
     """Points of a link that nothing hangs on and that are nobody's centre of mass: they are there for their paths."""
     used = {link.centre for link in m.links.values()} | {name for g in m.groups for name in g.outer} | \
