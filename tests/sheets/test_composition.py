@@ -14,7 +14,7 @@ from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import friction, kinematic_frames, linkage
 from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
+from tmm_sheets.sheets.composition import SHOWN, TITLE_BLOCK, _reaching, arranged
 from tmm_sheets.sheets.sheet import INSIDE, composed
 from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
 
@@ -270,3 +270,13 @@ def test_a_fixed_point_that_carries_nothing_is_no_part_of_the_mechanism():
     one, other = (composed(files.project(files.FOUR_BAR, *more, files.EVEN), 1) for more in ([], [far]))
     assert one.scales["positions"].mu == other.scales["positions"].mu
     assert "P" not in {m.text for m in other.drawing.marks if isinstance(m, Text)}
+
+
+def test_letters_that_take_the_place_ask_for_more_of_it():
+    """A link of 0.3 m with 54 mm of arrows and letters about it in 56 mm: 2 mm of it would be drawn."""
+    ends, offsets = np.array([0j, 0.3j]), np.array([-27j, 27j])
+    tight, roomy = (_reaching(Box(0.0, 0.0, 200.0, high), ends, offsets, (0.0, 20.0, 0.0, 20.0), (60.0, 40.0))
+                    for high in (96.0, 200.0))
+    assert tight.least[1] == pytest.approx(40.0 + 54.0 + SHOWN)
+    assert roomy.least[1] == pytest.approx(tight.least[1])
+    assert tight.least[0] == roomy.least[0] == 60.0
